@@ -1,0 +1,37 @@
+# keeler_folder(NAME [SOURCES file...] [USES folder...] [LIBRARIES public-library...] [PRIVATE_LIBRARIES library...])
+#
+# One static library a concept folder: target keeler_NAME, alias keeler::NAME. The target shows its users a build-tree
+# directory that holds nothing but a link keeler/NAME to the folder's headers, so a folder that includes another one
+# without naming it under USES does not compile; and USES may name only folders lower in KEELER_FOLDERS.
+function(keeler_folder name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;USES;LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
+  list(FIND KEELER_FOLDERS ${name} own_rank)
+  foreach(used IN LISTS ARG_USES)
+    list(FIND KEELER_FOLDERS ${used} rank)
+    if(rank LESS 0 OR NOT rank LESS own_rank)
+      message(FATAL_ERROR "folder '${name}' may not use '${used}': it stands higher in KEELER_FOLDERS")
+    endif()
+  endforeach()
+  if("${name}" STREQUAL "gravity" AND "collision" IN_LIST ARG_USES)
+    message(FATAL_ERROR "gravity and collision never include each other")
+  endif()
+
+  set(view "${PROJECT_BINARY_DIR}/include-rule/${name}")
+  file(MAKE_DIRECTORY "${view}/keeler")
+  file(CREATE_LINK "${PROJECT_SOURCE_DIR}/include/keeler/${name}" "${view}/keeler/${name}" SYMBOLIC)
+
+  add_library(keeler_${name} STATIC ${ARG_SOURCES})
+  add_library(keeler::${name} ALIAS keeler_${name})
+  set_target_properties(keeler_${name} PROPERTIES EXPORT_NAME ${name})
+  target_include_directories(keeler_${name} PUBLIC
+    "$<BUILD_INTERFACE:${view}>" "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
+  target_link_libraries(keeler_${name} PRIVATE "$<BUILD_INTERFACE:keeler_flags>")
+  foreach(used IN LISTS ARG_USES)
+    target_link_libraries(keeler_${name} PUBLIC keeler_${used})
+  endforeach()
+  target_link_libraries(keeler_${name} PUBLIC ${ARG_LIBRARIES})
+  foreach(library IN LISTS ARG_PRIVATE_LIBRARIES)
+    target_link_libraries(keeler_${name} PRIVATE ${library})
+  endforeach()
+  set_property(GLOBAL APPEND PROPERTY KEELER_TARGETS keeler_${name})
+endfunction()

@@ -1,0 +1,45 @@
+// Self-gravity behind one interface: positions and masses in, accelerations out. The step turns them into kicks.
+#pragma once
+
+#include <keeler/box/shearing_box.hpp>
+#include <keeler/core/vector.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace keeler {
+
+/// What a solver sees: particles at one instant, in any memory order, wherever they stand relative to the cell.
+struct GravityProblem {
+  std::span<const Vec3> positions;    ///< m, Hill's frame
+  std::span<const double> masses;     ///< kg
+  std::span<const std::uint64_t> ids; ///< fix the order of sums where positions do not
+  ShearingBox box;
+  double offset = 0.0;   ///< the box's shear offset at this instant, m
+  double newton_g = 0.0; ///< m^3 kg^-1 rad^-2
+};
+
+class GravitySolver {
+public:
+  virtual ~GravitySolver() = default;
+
+  /// Writes each particle's acceleration (m rad^-2). The bits depend on the problem, not on memory order or threads.
+  virtual void accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) = 0;
+
+  virtual std::string name() const = 0;
+};
+
+/// How self-gravity is computed.
+struct GravitySettings {
+  enum class Solver { direct, tree };
+  Solver solver = Solver::tree;
+  double opening_angle = 0.6; ///< tree: a cell is opened when its size exceeds this times its distance
+  int image_rings = 1;        ///< rings of periodic images around the cell: 1 is 9 boxes, 2 is 25
+  int kick_every = 1;         ///< drifts per kick
+};
+
+std::unique_ptr<GravitySolver> make_gravity_solver(const GravitySettings& settings);
+
+} // namespace keeler

@@ -1,0 +1,34 @@
+// The particle store: one 64-byte line a particle with all that a drift needs, and an id.
+// Memory order is for speed alone; whatever depends on an order uses the ids, which are unique and never change.
+#pragma once
+
+#include <keeler/core/field_table.hpp>
+#include <keeler/orbit/elements.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace keeler {
+
+/// Elements (m) at the common epoch, radius (m) and mass (kg).
+struct Body {
+  Elements elements;
+  double radius = 0.0;
+  double mass = 0.0;
+};
+static_assert(sizeof(Body) == 64);
+
+struct Particles {
+  std::vector<Body> bodies;
+  std::vector<std::uint64_t> ids;
+
+  std::size_t size() const { return bodies.size(); }
+
+  /// Everything that must be stored to continue exactly.
+  void list_fields(FieldTable& table) {
+    table.rows<double>("bodies", bodies, "m, kg", "X, Y, e cos, e sin, i sin, i cos at the epoch; radius; mass");
+    table.rows<std::uint64_t>("ids", ids, "1", "unique identity, kept for ever");
+  }
+};
+
+} // namespace keeler

@@ -1,0 +1,75 @@
+// A checked scene: what a user asked for, in SI and orbits as in the file, with everything derived that the file leaves
+// open. A Scene that exists is valid: load_scene reports every fault with file, line and column.
+#pragma once
+
+#include <keeler/box/shearing_box.hpp>
+#include <keeler/collision/settings.hpp>
+#include <keeler/gravity/solver.hpp>
+#include <keeler/orbit/elements.hpp>
+#include <keeler/particles/sizes.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace keeler {
+
+struct PlanetSettings {
+  std::string preset;             ///< empty when the frequencies are given
+  double orbital_frequency = 0.0; ///< rad/s
+  Frequencies frequencies;        ///< κ/Ω, ν/Ω
+};
+
+struct ParticleSettings {
+  std::size_t count = 0; ///< N, derived when the file gives τ or Σ
+  double density = 0.0;  ///< kg/m³
+  SizeLaw sizes;
+  double velocity_dispersion = 2.0; ///< c_x in ⟨r⟩ Ω
+  std::uint64_t seed = 1;
+};
+
+/// Steps are integers: `end` and the schedules are rounded to whole kick intervals.
+struct TimeSettings {
+  double step = 1e-3;        ///< orbits
+  std::int64_t end_step = 0; ///< steps
+};
+
+struct OutputSettings {
+  std::int64_t snapshot_every = 0;   ///< steps; 0: only at start and end
+  std::int64_t checkpoint_every = 0; ///< steps; 0: only at the end or a stop
+};
+
+struct Scene {
+  std::string title;
+  PlanetSettings planet;
+  double size_x = 0.0, size_y = 0.0; ///< m
+  ParticleSettings particles;
+  CollisionSettings collisions;
+  std::optional<GravitySettings> gravity; ///< none: no gravity code runs
+  std::optional<std::string> start_from;  ///< a snapshot to start from
+  TimeSettings time;
+  OutputSettings output;
+
+  std::string resolved;             ///< the scene as TOML, every key present, frequencies and counts filled in
+  std::vector<std::string> notices; ///< what was rounded or derived and a user should know, a line each
+
+  /// Length of a step in internal time (rad).
+  double step_length() const;
+  /// Surface density that the particles make, kg/m².
+  double surface_density() const;
+  /// Optical depth Σ π r² / area.
+  double optical_depth() const;
+};
+
+/// Reads and checks a scene file; overrides are "a.b=value" with TOML values (bare words are taken as strings).
+/// Throws UsageError "file:line:column: problem; what to do" for the first fault.
+Scene load_scene(const std::string& path, const std::vector<std::string>& overrides = {});
+
+/// The same from text; `name` stands for the file in messages.
+Scene parse_scene(const std::string& text, const std::string& name, const std::vector<std::string>& overrides = {});
+
+/// Every key with default, unit and meaning, as a table (text) or as the manual's Markdown table.
+std::string describe_keys(bool markdown);
+
+} // namespace keeler

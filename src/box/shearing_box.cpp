@@ -1,0 +1,26 @@
+#include <keeler/box/shearing_box.hpp>
+
+#include <cmath>
+
+namespace keeler {
+
+double ShearingBox::offset(std::int64_t half_steps, double half_step) const {
+  // count × displacement as an unevaluated sum of two doubles; fmod of each part is exact.
+  const double count = static_cast<double>(half_steps);
+  const double per_half_step = shear * size_x * half_step;
+  const double product = count * per_half_step;
+  const double rest = std::fma(count, per_half_step, -product);
+  double d = std::fmod(std::fmod(product, size_y) + rest + first_offset, size_y);
+  if (d < 0.0)
+    d += size_y;
+  return d < size_y ? d : 0.0;
+}
+
+Image ShearingBox::image_into_cell(double x, double y, double offset) const {
+  Image image;
+  image.nx = -static_cast<std::int32_t>(std::floor(x / size_x + 0.5));
+  image.ny = -static_cast<std::int32_t>(std::floor((y - image.nx * offset) / size_y + 0.5));
+  return image;
+}
+
+} // namespace keeler

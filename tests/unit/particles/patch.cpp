@@ -1,0 +1,22 @@
+#include <keeler/particles/patch.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace keeler;
+
+TEST_CASE("a patch lists particles by id and gives the elements back") {
+  const Frequencies f{0.99458, 1.00539};
+  Particles particles;
+  particles.ids = {5, 2, 9};
+  particles.bodies = {
+      {{1, 2, 0.3, 0.4, 0.5, 0.6}, 1.0, 10.0}, {{-3, 7, 0, 0, 0, 0}, 2.0, 80.0}, {{0, 0, 1, 1, 1, 1}, 3.0, 270.0}};
+  const ShearingBox box{20, 30, f.shear(), 0.0};
+  const Patch patch = make_patch(particles, box, 4.0, f, -0.01);
+  CHECK(patch.ids == std::vector<std::uint64_t>{2, 5, 9});
+  CHECK(patch.radii == std::vector<double>{2.0, 1.0, 3.0});
+  const Particles back = particles_from(patch, 0.01);
+  const Elements difference = back.bodies[1].elements - particles.bodies[0].elements;
+  for (const double d : {difference.guiding_x, difference.guiding_y, difference.e_cos, difference.e_sin,
+                         difference.i_sin, difference.i_cos})
+    CHECK(std::fabs(d) < 1e-14);
+}
