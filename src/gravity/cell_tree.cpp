@@ -46,15 +46,12 @@ void add_quadrupole(TreeCell& cell, double mass, const Vec3& d) {
   cell.mixed += 3.0 * mass * Vec3(d.x() * d.y(), d.x() * d.z(), d.y() * d.z());
 }
 
-double size_of(const TreeCell& cell) {
-  return (cell.centre - cell.low).cwiseMax(cell.high - cell.centre).norm();
-}
-
 // A cell with its box and range; the moments come later.
 TreeCell bare_cell(const Box& box, std::size_t begin, std::size_t count) {
   TreeCell cell;
   cell.low = box.low;
   cell.high = box.high;
+  cell.size = (box.high - box.low).maxCoeff();
   cell.begin = static_cast<std::uint32_t>(begin);
   cell.count = static_cast<std::uint32_t>(count);
   return cell;
@@ -68,7 +65,6 @@ void sum_particles(TreeCell& cell, const TreeParticle* particles) {
   cell.centre = cell.mass > 0.0 ? Vec3(cell.centre / cell.mass) : Vec3(0.5 * (cell.low + cell.high));
   for (std::uint32_t k = 0; k < cell.count; ++k)
     add_quadrupole(cell, particles[k].mass, place(particles[k]) - cell.centre);
-  cell.size = size_of(cell);
 }
 
 void sum_children(TreeCell& cell, const TreeCell& a, const TreeCell& b) {
@@ -79,7 +75,6 @@ void sum_children(TreeCell& cell, const TreeCell& a, const TreeCell& b) {
   cell.mixed = a.mixed + b.mixed;
   add_quadrupole(cell, a.mass, a.centre - cell.centre);
   add_quadrupole(cell, b.mass, b.centre - cell.centre);
-  cell.size = size_of(cell);
 }
 
 // Closes the cell at `parent`, whose two subtrees are all that follows it.

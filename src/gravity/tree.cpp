@@ -134,10 +134,14 @@ TreeSolver::TreeSolver(double opening_angle, int image_rings, InstructionSet set
 void TreeSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) {
   const double offset = folded_offset(problem.box, problem.offset);
   const std::vector<Vec3> shifts = image_shifts(problem.box, offset, image_rings_);
-  std::vector<TreeParticle> particles(problem.positions.size());
-  parallel_for(particles.size(), [&](std::size_t k) {
-    const Vec3 p = into_cell(problem.box, offset, problem.positions[k]);
-    particles[k] = {p.x(), p.y(), p.z(), problem.masses[k], problem.ids[k], k};
+  const std::size_t particle_count = problem.positions.size();
+  std::vector<TreeParticle> particles(particle_count);
+  const bool same_count = tree_.particles().size() == particle_count;
+  parallel_for(particle_count, [&](std::size_t k) {
+    // in the order of the last tree, where there is one: it is nearly sorted already
+    const std::size_t index = same_count ? tree_.particles()[k].index : k;
+    const Vec3 p = into_cell(problem.box, offset, problem.positions[index]);
+    particles[k] = {p.x(), p.y(), p.z(), problem.masses[index], problem.ids[index], index};
   });
   tree_.build(std::move(particles));
 

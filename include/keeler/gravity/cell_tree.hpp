@@ -27,7 +27,7 @@ struct TreeCell {
   double mass = 0.0;                            ///< kg
   Vec3 diagonal = Vec3::Zero(); ///< Q_xx, Q_yy, Q_zz of the traceless quadrupole about the centre, kg m²
   Vec3 mixed = Vec3::Zero();    ///< Q_xy, Q_xz, Q_yz
-  double size = 0.0;            ///< distance from the centre of mass to the farthest corner of the box, m
+  double size = 0.0;            ///< longest side of the box, m
   std::uint32_t begin = 0;      ///< first particle
   std::uint32_t count = 0;      ///< particles
   std::uint32_t span = 1;       ///< cells of this subtree, itself included; 1 for a leaf

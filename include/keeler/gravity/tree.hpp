@@ -9,8 +9,8 @@
 namespace keeler {
 
 /// A cell attracts a group as a whole when size < opening_angle × (distance from the group's box to the cell's centre
-/// of mass) and the two boxes do not overlap; otherwise it is opened, down to particles. The size is the distance from
-/// the centre of mass to the farthest corner of the cell's tight box. Opening angle 0 gives the direct sum.
+/// of mass) and the two boxes do not overlap; otherwise it is opened, down to particles. The size is the longest side
+/// of the cell's tight box. Opening angle 0 gives the direct sum.
 class TreeSolver final : public GravitySolver {
 public:
   TreeSolver(double opening_angle, int image_rings, InstructionSet set);
