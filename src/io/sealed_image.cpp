@@ -17,7 +17,7 @@ constexpr std::size_t seal_size = 64;
 std::string seal_of(std::span<const std::byte> content) {
   Hash hash;
   hash.add_bytes(content);
-  return fmt::format("{} {:016x} {}   \n", mark, content.size(), hash.hex()); // 11 + 1 + 16 + 1 + 32 + 3
+  return fmt::format("{} {:016x} {}  \n", mark, content.size(), hash.hex()); // 11 + 1 + 16 + 1 + 32 + 3
 }
 
 std::string_view as_text(std::span<const std::byte> bytes) {
