@@ -14,4 +14,5 @@ set(KEELER_CMAKE_PACKAGES
 # Prefix and module of pkg-config, one entry a package; the target is PkgConfig::PREFIX.
 set(KEELER_PKGCONFIG_MODULES
   "CAIRO cairo"
+  "FFTW fftw3"
   "XXHASH libxxhash")
