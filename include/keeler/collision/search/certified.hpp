@@ -18,13 +18,14 @@ namespace keeler {
 /// `Motion` has at(), largest_speed(), largest_acceleration(), gap_error() and closing_error(): see RelativeMotion.
 template<class Motion> FinderResult certified_search(const Motion& motion, const Pair& pair) {
   constexpr double down = 1.0 - 1e-13;
-  constexpr int patience = 24; // passes before the span is halved: a shorter one tightens the bounds near grazing
+  constexpr int patience = 8; // short steps in a row before the window is halved: nearer bounds are tighter
   const double speed_bound = motion.largest_speed(), acceleration_bound = motion.largest_acceleration();
 
   FinderResult result;
   double t = pair.start;
   double window = pair.end - pair.start; // how far ahead a bound looks at most
   bool at_start = true;
+  int short_steps = 0;
   while (true) {
     const Separation now = motion.at(t);
     ++result.evaluations;
@@ -78,8 +79,13 @@ template<class Motion> FinderResult certified_search(const Motion& motion, const
       return result;
     }
     at_start = false;
-    if (++result.iterations % patience == 0)
+    ++result.iterations;
+    if (step >= s) {
+      window *= 2.0;
+      short_steps = 0;
+    } else if (++short_steps % patience == 0) {
       window *= 0.5;
+    }
   }
 }
 

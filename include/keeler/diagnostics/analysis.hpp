@@ -1,0 +1,42 @@
+// Everything measured on one snapshot, or averaged over several of one run, in SI and under the names that
+// `keeler analyze --json` prints.
+#pragma once
+
+#include <keeler/particles/patch.hpp>
+
+#include <array>
+#include <optional>
+#include <span>
+
+namespace keeler {
+
+/// Means over the snapshots; the wakes are those of the mean autocorrelation.
+struct Analysis {
+  std::size_t snapshots = 0;
+  std::size_t particle_count = 0;
+  double time_orbits = 0.0; ///< of the last snapshot
+
+  double mean_radius_m = 0.0;
+  double optical_depth = 0.0;
+  double surface_density_kg_m2 = 0.0;
+  double critical_wavelength_m = 0.0;
+  double toomre_q = 0.0;
+
+  std::array<double, 3> dispersion_m_s{};     ///< c_x, c_y, c_z
+  std::array<double, 3> dispersion_r_omega{}; ///< the same in ⟨r⟩ Ω
+  double scale_height_m = 0.0;
+  double mean_eccentricity_m = 0.0;
+  double mean_inclination_m = 0.0;
+  double filling_factor = 0.0; ///< at z = 0
+  double translational_viscosity_m2_s = 0.0;
+  double random_energy_m2_s2 = 0.0; ///< ⟨½κ²e² + ½ν²i²⟩ per unit mass
+
+  std::optional<double> wake_pitch_degrees; ///< none: no wakes
+  std::optional<double> wake_spacing_m;     ///< radial; none: no wakes or no side maximum
+  double wake_amplitude = 0.0;
+};
+
+/// Throws UsageError when there is no patch, a patch without particles, or patches of different boxes.
+Analysis analyze(std::span<const Patch> patches);
+
+} // namespace keeler

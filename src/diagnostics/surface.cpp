@@ -1,0 +1,38 @@
+#include <keeler/diagnostics/surface.hpp>
+
+#include <keeler/core/units.hpp>
+#include <keeler/diagnostics/dispersion.hpp>
+#include <keeler/diagnostics/mean.hpp>
+
+#include <algorithm>
+
+namespace keeler {
+
+double optical_depth(const Patch& patch) {
+  const double squares = ordered_sum(patch.size(), [&](std::size_t k) { return patch.radii[k] * patch.radii[k]; });
+  return pi * squares / patch.box.area();
+}
+
+double surface_density(const Patch& patch) {
+  return total_mass(patch) / patch.box.area();
+}
+
+double midplane_filling(const Patch& patch) {
+  const double squares = ordered_sum(patch.size(), [&](std::size_t k) {
+    const double z = patch.positions[k].z();
+    return std::max(0.0, patch.radii[k] * patch.radii[k] - z * z);
+  });
+  return pi * squares / patch.box.area();
+}
+
+double critical_wavelength(const Patch& patch) {
+  const double kappa = patch.frequencies.kappa;
+  return 4.0 * pi * pi * newton_g(patch.orbital_frequency) * surface_density(patch) / (kappa * kappa);
+}
+
+double toomre_q(const Patch& patch) {
+  return patch.frequencies.kappa * velocity_dispersion(patch).x() /
+         (3.36 * newton_g(patch.orbital_frequency) * surface_density(patch));
+}
+
+} // namespace keeler
