@@ -138,6 +138,7 @@ TEST_CASE("ParaView finds an unstructured grid of vertices that shares the array
   const hdf5::Handle type(H5Aopen(grid.id(), "Type", H5P_DEFAULT), H5Aclose);
   const hdf5::Handle text(H5Aget_type(type.id()), H5Tclose);
   CHECK(H5Tis_variable_str(text.id()) == 0); // ParaView reads a text of fixed length only
+  CHECK(H5Tget_cset(text.id()) == H5T_CSET_ASCII);
   CHECK(H5Tget_size(text.id()) == std::string("UnstructuredGrid").size());
 
   for (const char* name : {"NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"})
