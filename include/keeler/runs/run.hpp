@@ -1,8 +1,8 @@
 // A run and its folder: steps, schedules of output, checkpoints, and stopping without losing anything.
 //
-// The folder holds scene.toml (resolved), snap_NNNNNN.hdf, checkpoint_NNNNNN.h5 (the last two), series.csv, summary.json
-// and log.jsonl. There is always a snapshot at the start and at the end, and a checkpoint at the end or at a stop. Files
-// are numbered by the step they belong to in units of nothing: 000000 is the first, and a resumed run goes on counting.
+// The folder holds scene.toml (resolved), snap_NNNNNN.hdf, checkpoint_NNNNNN.h5 (the last two), series.csv,
+// summary.json and log.jsonl. There is always a snapshot at the start and at the end, and a checkpoint at the end or at
+// a stop. Files are numbered as they are written, from 000000; a resumed run goes on counting from its checkpoint.
 #pragma once
 
 #include <keeler/scene/scene.hpp>
@@ -34,11 +34,10 @@ struct RunProgress {
 
 struct RunOptions {
   std::filesystem::path folder;
-  bool force = false;                       ///< replace the run that the folder holds
-  std::optional<std::string> from;          ///< a snapshot to start from, in place of the scene's own start
-  std::optional<double> until_orbits;       ///< another end than the scene's
-  std::optional<double> wall_time_s;        ///< stop with a checkpoint before this much wall time has passed
-  std::vector<std::string> arguments;       ///< the command line, for provenance
+  bool force = false;                 ///< replace the run that the folder holds
+  std::optional<double> until_orbits; ///< another end than the scene's
+  std::optional<double> wall_time_s;  ///< stop with a checkpoint before this much wall time has passed
+  std::vector<std::string> arguments; ///< the command line, for provenance
   std::function<void(const RunProgress&)> progress;
   std::function<void(const std::string&)> notice; ///< a line for the user: rounding, a damaged checkpoint passed over
 };
