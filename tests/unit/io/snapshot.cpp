@@ -84,7 +84,7 @@ TEST_CASE("a snapshot gives back the patch") {
     for (std::size_t k = 0; k < count; ++k)
       for (int axis = 0; axis < 3; ++axis) {
         const double v = patch.velocities[k][axis];
-        // v Omega and its division by Omega each round by half a unit in the last place, at most eps/2 of the value
+        // v Omega and its division by Omega each round by at most eps/2 of the value
         CHECK(std::fabs(read.patch.velocities[k][axis] - v) <= std::numeric_limits<double>::epsilon() * std::fabs(v));
       }
   }
