@@ -1,6 +1,8 @@
 // The program: reads the command line, runs one subcommand, and turns every error into one line and an exit code.
 #include "command.hpp"
 
+#include <keeler/core/version.hpp>
+
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -17,7 +19,7 @@ int fail(ExitCode code, const char* message) {
 
 int run(int argc, char** argv) {
   CLI::App program("Keeler simulates a self-gravitating patch of a planetary ring.", "keeler");
-  program.set_version_flag("--version", "keeler " KEELER_VERSION);
+  program.set_version_flag("--version", "keeler " + program_version());
   program.require_subcommand(1);
   Action action;
   add_check(program, action);

@@ -10,12 +10,13 @@
 namespace keeler::hdf5 {
 namespace {
 
-// Fixed length, padded with zeros: ParaView's reader takes no other kind. HDF5 has no text of length 0.
-Handle text_type(std::size_t length) {
+// Fixed length, padded with zeros, ASCII where it is: what ParaView's reader takes. HDF5 has no text of length 0.
+Handle text_type(std::string_view text) {
+  const bool ascii = std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 128; });
   Handle type(checked("make a text", [] { return H5Tcopy(H5T_C_S1); }), H5Tclose);
-  checked("make a text", [&] { return H5Tset_size(type.id(), std::max<std::size_t>(length, 1)); });
+  checked("make a text", [&] { return H5Tset_size(type.id(), std::max<std::size_t>(text.size(), 1)); });
   checked("make a text", [&] { return H5Tset_strpad(type.id(), H5T_STR_NULLPAD); });
-  checked("make a text", [&] { return H5Tset_cset(type.id(), H5T_CSET_UTF8); });
+  checked("make a text", [&] { return H5Tset_cset(type.id(), ascii ? H5T_CSET_ASCII : H5T_CSET_UTF8); });
   return type;
 }
 
@@ -58,7 +59,7 @@ Handle space_of(const Handle& attribute) {
 } // namespace
 
 void write_text_dataset(const Handle& parent, const std::string& name, std::string_view text) {
-  write_dataset(parent, name, text_type(text.size()).id(), {}, padded(text).data());
+  write_dataset(parent, name, text_type(text).id(), {}, padded(text).data());
 }
 
 std::string read_text_dataset(const Handle& parent, const std::string& name) {
@@ -79,7 +80,7 @@ void write_attribute(const Handle& object, const std::string& name, hid_t type, 
 }
 
 void write_attribute(const Handle& object, const std::string& name, std::string_view text) {
-  write_attribute(object, name, text_type(text.size()).id(), {}, padded(text).data());
+  write_attribute(object, name, text_type(text).id(), {}, padded(text).data());
 }
 
 bool has_attribute(const Handle& object, const std::string& name) {

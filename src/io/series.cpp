@@ -50,7 +50,8 @@ Series Series::begin(const std::filesystem::path& file, const std::vector<std::s
 
 Series Series::resume(const std::filesystem::path& file, const std::vector<std::string>& columns,
                       std::int64_t last_step) {
-  if (!std::filesystem::exists(file))
+  std::error_code unknown;
+  if (!std::filesystem::exists(file, unknown))
     return begin(file, columns);
   const std::string text = read_text(file), header = header_line(columns);
   if (!text.starts_with(header))

@@ -79,7 +79,7 @@ double hill_parameter(double density, double distance) {
 }
 
 double midplane_filling(double optical_depth, const SizeLaw& sizes, double velocity_dispersion, double nu) {
-  const double vertical = 0.65 * velocity_dispersion * sizes.mean_power(1);
+  const double vertical = vertical_share * velocity_dispersion * sizes.mean_power(1);
   const double height = vertical / nu;
   return (4.0 / 3.0) * optical_depth * sizes.mean_power(3) / sizes.mean_power(2) / (std::sqrt(two_pi) * height);
 }

@@ -2,6 +2,7 @@
 
 #include "document.hpp"
 
+#include <algorithm>
 #include <cassert>
 
 namespace keeler {
@@ -14,14 +15,12 @@ std::vector<std::string> preset_names() {
 }
 
 PlanetSettings find_preset(const std::string& name) {
-  for (const PresetText& preset : preset_texts())
-    if (preset.name == name) {
-      const Document document = parse_document(std::string(preset.toml), "preset " + name);
-      const auto number = [&](const char* key) { return std::get<double>(find_entry(document, key)->value); };
-      return {name, number("orbital_frequency"), {number("epicyclic_ratio"), number("vertical_ratio")}};
-    }
-  assert(!"the key table offers only presets that exist");
-  return {};
+  const auto& presets = preset_texts();
+  const auto preset = std::find_if(presets.begin(), presets.end(), [&](const PresetText& p) { return p.name == name; });
+  assert(preset != presets.end());
+  const Document document = parse_document(std::string(preset->toml), "preset " + name);
+  const auto number = [&](const char* key) { return std::get<double>(find_entry(document, key)->value); };
+  return {name, number("orbital_frequency"), {number("epicyclic_ratio"), number("vertical_ratio")}};
 }
 
 } // namespace keeler

@@ -19,7 +19,7 @@ const std::vector<PresetText>& preset_texts();
 
 std::vector<std::string> preset_names();
 
-/// The frequencies of a preset that exists.
+/// The frequencies of a preset; the name is one of preset_names().
 PlanetSettings find_preset(const std::string& name);
 
 } // namespace keeler

@@ -2,27 +2,16 @@
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 
 #include <fmt/format.h>
 
-#include <chrono>
-
 namespace keeler {
 namespace {
 
 constexpr double allowed_overlap = 1e-9; // of a radius sum: rounding of positions that were stored in SI
-
-class Stopwatch {
-public:
-  explicit Stopwatch(double& total) : total_(total) {}
-  ~Stopwatch() { total_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
-private:
-  double& total_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 SimulationState first_state(const Scene& scene, const Patch& start) {
   const Overlap overlap = largest_overlap(start);
@@ -60,7 +49,7 @@ void Simulation::advance() {
   if (kick_due())
     half_kick();
   {
-    Stopwatch watch(split_.drift);
+    const Stopwatch watch(split_.drift);
     drift_.collide(state_.particles, state_.box, state_.epoch_offset(), state_.collisions);
     move_on();
   }
@@ -91,7 +80,7 @@ void Simulation::move_on() {
 }
 
 void Simulation::accelerate() {
-  Stopwatch watch(split_.gravity);
+  const Stopwatch watch(split_.gravity);
   const std::size_t count = state_.particles.size();
   const Rotation rotation(scene_.planet.frequencies, -0.5 * state_.step_length);
   positions_.resize(count);
@@ -113,7 +102,7 @@ void Simulation::accelerate() {
 
 // Half a kick interval's velocity change, at the boundary between steps. Two half kicks are always two additions.
 void Simulation::half_kick() {
-  Stopwatch watch(split_.gravity);
+  const Stopwatch watch(split_.gravity);
   const Frequencies& f = scene_.planet.frequencies;
   const Rotation rotation(f, -0.5 * state_.step_length);
   const double half = 0.5 * state_.step_length * scene_.gravity->kick_every;

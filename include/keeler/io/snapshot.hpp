@@ -25,8 +25,8 @@ struct Snapshot {
 void write_snapshot(const std::filesystem::path& file, const Patch& patch, const SnapshotMeta& meta);
 
 /// Reads a snapshot, also one that another tool has changed. All comes back bit for bit except velocities, which pass
-/// through m/s and may differ by one unit in the last place. Throws IoError for damage, for another kind of file, and
-/// where an array is missing, is of another length, or the ids do not increase.
+/// through m/s and may differ by 2.2e-16 of their value (two roundings). Throws IoError for damage, for another kind of
+/// file, and where an array is missing, is of another length, or the ids do not increase.
 Snapshot read_snapshot(const std::filesystem::path& file);
 
 } // namespace keeler

@@ -25,8 +25,11 @@ double distance_from_saturn(const PlanetSettings& planet);
 /// (Daisaka, Tanaka & Ida 2001). Aggregates form above about 1.1.
 double hill_parameter(double density, double distance);
 
+/// c_z / c_x of a fresh patch: equilibria without self-gravity have 0.64 to 0.72.
+inline constexpr double vertical_share = 0.65;
+
 /// Mid-plane filling factor of a Gaussian layer, (4/3) τ ⟨r³⟩/⟨r²⟩ / (√(2π) H) with H = c_z/ν, for a radial velocity
-/// dispersion in ⟨r⟩ Ω. c_z is taken as 0.65 c_x: equilibria without self-gravity have 0.64 to 0.72.
+/// dispersion in ⟨r⟩ Ω, c_z = vertical_share c_x.
 /// The layer is thicker by the particles' own size once they collide, so this is an upper estimate.
 double midplane_filling(double optical_depth, const SizeLaw& sizes, double velocity_dispersion, double nu);
 

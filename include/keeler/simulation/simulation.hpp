@@ -10,7 +10,7 @@
 
 namespace keeler {
 
-/// CPU-independent wall time spent in each part since construction, s.
+/// Wall time spent in each part since construction, s.
 struct TimeSplit {
   double drift = 0.0;
   double gravity = 0.0;

@@ -84,7 +84,7 @@ TEST_CASE("a snapshot gives back the patch") {
     for (std::size_t k = 0; k < count; ++k)
       for (int axis = 0; axis < 3; ++axis) {
         const double v = patch.velocities[k][axis];
-        // v Omega and its division by Omega each round by half a unit in the last place, at most eps/2 of the value
+        // v Omega and its division by Omega each round by at most eps/2 of the value
         CHECK(std::fabs(read.patch.velocities[k][axis] - v) <= std::numeric_limits<double>::epsilon() * std::fabs(v));
       }
   }
@@ -138,6 +138,7 @@ TEST_CASE("ParaView finds an unstructured grid of vertices that shares the array
   const hdf5::Handle type(H5Aopen(grid.id(), "Type", H5P_DEFAULT), H5Aclose);
   const hdf5::Handle text(H5Aget_type(type.id()), H5Tclose);
   CHECK(H5Tis_variable_str(text.id()) == 0); // ParaView reads a text of fixed length only
+  CHECK(H5Tget_cset(text.id()) == H5T_CSET_ASCII);
   CHECK(H5Tget_size(text.id()) == std::string("UnstructuredGrid").size());
 
   for (const char* name : {"NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"})

@@ -28,7 +28,7 @@ TEST_CASE("the presets stand at their places") {
                                                               {"saturn-f-ring", 140.221e6}};
   for (const auto& [name, distance] : places) {
     const PlanetSettings planet = preset_scene(name).planet;
-    CAPTURE(name);
+    CAPTURE(planet.orbital_frequency);
     CHECK(distance_from_saturn(planet) == doctest::Approx(distance).epsilon(3e-4));
     // an axisymmetric planet without density at the ring: κ² + ν² = 2Ω² (Laplace), to the digits given
     const Frequencies& f = planet.frequencies;
