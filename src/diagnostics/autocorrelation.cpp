@@ -94,8 +94,9 @@ double AutocorrelationMap::at(double dx, double dy) const {
   const double u = std::clamp(dx / spacing_x, -static_cast<double>(reach), static_cast<double>(reach));
   const int i = std::min(static_cast<int>(std::floor(u)), reach - 1);
   const double v = dy / spacing_y, floor = std::floor(v);
-  const auto row = [&](double j) { // into −rows/2 … rows/2 − 1
-    return static_cast<int>(j - rows * std::floor((j + rows / 2) / rows));
+  const int half = rows / 2;
+  const auto row = [&](double j) { // into −half … rows − half − 1
+    return static_cast<int>(j - rows * std::floor((j + half) / rows));
   };
   const int j = row(floor), above = row(floor + 1.0);
   const double fx = u - i, fy = v - floor;
