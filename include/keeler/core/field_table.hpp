@@ -64,7 +64,7 @@ public:
   /// A vector whose elements each hold `sizeof(Row) / sizeof(T)` numbers of type T and nothing else.
   template<class T, class Row>
   void rows(std::string name, std::vector<Row>& data, std::string unit, std::string about) {
-    static_assert(std::is_trivially_copyable_v<Row> && sizeof(Row) % sizeof(T) == 0);
+    static_assert(std::is_standard_layout_v<Row> && sizeof(Row) % sizeof(T) == 0);
     Field field = make<T>(std::move(name), sizeof(Row) / sizeof(T), std::move(unit), std::move(about));
     field.rows = [&data] { return data.size(); };
     field.resize = [&data](std::size_t count) { data.resize(count); };

@@ -1,0 +1,96 @@
+// The drift phase: between two kicks, particles ride their epicycles and meet as hard spheres, at exact times on the
+// curved paths, in the order of events.hpp.
+//
+// Candidates come from bounds, never from statistics. At the middle of the step, the epoch of the elements, positions
+// and velocities need no trigonometry. Over half a step no relative coordinate changes by more than
+//   |Δx| <= (h/2) κ (e_i + e_j),   |Δy| <= (h/2) [S |ΔX| + 2 (e_i + e_j)],   |ΔX| <= |Δx| + e_i + e_j,
+// which sets the window of the grid search; and no path leaves its mid-step tangent by more than A h²/8, A = A_i + A_j,
+// which rejects most candidates before a finder runs. A particle that was hit is searched from its new orbit, and how
+// far new orbits stray from the binned places widens all later windows of the step.
+//
+// The answer is that of the sequential order, for any number of threads: searches are independent, events are not.
+#pragma once
+
+#include <keeler/box/shearing_box.hpp>
+#include <keeler/cells/grid.hpp>
+#include <keeler/collision/events.hpp>
+#include <keeler/collision/finders.hpp>
+#include <keeler/collision/settings.hpp>
+#include <keeler/particles/store.hpp>
+
+#include <functional>
+
+namespace keeler {
+
+/// What collisions did, summed in the order of the events. Energies in kg m² rad⁻².
+struct CollisionTally {
+  std::uint64_t fast = 0;     ///< collisions faster than v_cut
+  std::uint64_t slow = 0;     ///< contacts slower than v_cut, bounced elastically
+  std::uint64_t gave_up = 0;  ///< searches that a finder abandoned: contacts may have been lost
+  double energy_lost = 0.0;   ///< dissipated
+  double edge_work = 0.0;     ///< energy gained because pairs met across a sheared edge
+  double momentum_flux = 0.0; ///< Σ (x_j − x_i)(p_y gained by j), kg m² rad⁻¹: the collisional viscosity
+
+  void list_fields(FieldTable& table);
+};
+
+/// One collision as it happened, for observers and tests.
+struct CollisionRecord {
+  double time; ///< relative to the middle of the step, rad
+  std::uint64_t low_id, high_id;
+  Image image;         ///< of the particle with the higher id
+  double normal_speed; ///< approach speed, m rad⁻¹
+  bool fast;           ///< faster than v_cut
+};
+
+class DriftPhase {
+public:
+  /// `step` is the length h of a drift (rad). Throws UsageError for an unknown finder.
+  DriftPhase(const CollisionSettings& settings, const Frequencies& frequencies, double orbital_frequency, double step);
+
+  /// Carries out all collisions in [−h/2, h/2) around the epoch of the elements; `offset` is the box's shear offset at
+  /// the epoch. The elements stay at their epoch. Throws InvariantError when elements are not finite or a particle
+  /// collides more than 100,000 times in the step.
+  void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally);
+
+  /// Called for each collision, in order; none by default.
+  std::function<void(const CollisionRecord&)> observer;
+
+private:
+  // A particle's orbit at mid-step: its tangent, and what bounds its departure from it.
+  struct Middle {
+    Vec3 position, velocity;
+    double eccentricity, acceleration;
+  };
+
+  Middle middle_of(const Body& body) const;
+  void prepare();
+  void predict_all();
+  template<class Visit> void visit_candidates(std::size_t i, const Visit& visit) const;
+  bool may_touch(std::size_t i, std::size_t j, const Image& image, double start) const;
+  FinderResult search(std::size_t i, std::size_t j, const Image& image, Event& event) const;
+  void predict(std::size_t i, std::size_t j, const Image& image);
+  void carry_out(const Event& event, CollisionTally& tally);
+  void changed(std::size_t i, double time);
+  void search_again(std::size_t i, std::size_t j);
+
+  CollisionSettings settings_;
+  Frequencies frequencies_;
+  double orbital_frequency_, step_;
+  Finder find_;
+
+  // the step at hand
+  Particles* particles_ = nullptr;
+  ShearingBox box_;
+  double offset_ = 0.0;
+  PeriodicGrid grid_;
+  EventQueue events_;
+  std::vector<Middle> middles_;
+  std::vector<Vec3> binned_;          // mid-step places as the grid knows them
+  std::vector<double> last_change_;   // time of the last velocity change in this step
+  std::vector<std::uint32_t> stamps_; // velocity changes in this step
+  double largest_radius_ = 0.0, largest_eccentricity_ = 0.0, largest_stray_ = 0.0;
+  std::uint64_t gave_up_ = 0;
+};
+
+} // namespace keeler

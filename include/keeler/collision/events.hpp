@@ -1,0 +1,39 @@
+// The pending contacts of one drift, in the one order that defines the answer: time, then lower id, higher id and
+// image. The next event is the smallest of those pending, so one created at its creator's own time comes after it, and
+// ties are the same on every machine and for any number of threads.
+#pragma once
+
+#include <keeler/box/shearing_box.hpp>
+
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+namespace keeler {
+
+/// A predicted contact. It holds as long as neither particle has changed its velocity since.
+struct Event {
+  double time = 0.0; ///< relative to the epoch, rad
+  std::uint64_t low_id = 0, high_id = 0;
+  Image image;                                 ///< of the particle with the higher id
+  std::uint32_t low = 0, high = 0;             ///< places in the store
+  std::uint32_t low_stamp = 0, high_stamp = 0; ///< velocity changes of each when predicted
+
+  auto key() const { return std::tuple(time, low_id, high_id, image.nx, image.ny); }
+};
+
+/// A binary heap, earliest first. Stale events stay in it until they come up: the caller compares stamps.
+class EventQueue {
+public:
+  void clear() { heap_.clear(); }
+  bool empty() const { return heap_.empty(); }
+  void add(const Event& event);
+  /// Replaces everything by these events.
+  void assign(std::vector<Event>&& events);
+  Event take_first();
+
+private:
+  std::vector<Event> heap_;
+};
+
+} // namespace keeler

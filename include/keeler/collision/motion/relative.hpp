@@ -1,0 +1,49 @@
+// Motion, form "relative epicycle": the relative orbit of two particles is an epicycle of the differences of their
+// elements, so one sine and cosine a guess serve, and its speed and acceleration are bounded for all times.
+#pragma once
+
+#include <keeler/collision/pair.hpp>
+
+#include <algorithm>
+#include <limits>
+
+namespace keeler {
+
+class RelativeMotion {
+public:
+  RelativeMotion(const Pair& pair, const Frequencies& f) : elements_(pair.hi - pair.lo), frequencies_(f) {
+    const double e = elements_.eccentricity(), i = elements_.inclination();
+    const double horizontal = f.shear() * std::fabs(elements_.guiding_x) + 2.0 * e;
+    constexpr double up = 1.0 + 1e-14; // the bounds must hold after their own rounding
+    speed_ = up * std::sqrt(horizontal * horizontal + f.nu * f.nu * i * i);
+    acceleration_ = up * std::hypot(2.0 * f.kappa * e, f.nu * f.nu * i);
+    scale_ = std::max({std::fabs(elements_.guiding_x), std::fabs(elements_.guiding_y), 2.0 * e, i});
+  }
+
+  Separation at(double time) const {
+    const State s = state_at(elements_, frequencies_, Rotation(frequencies_, time));
+    return {s.position, s.velocity};
+  }
+
+  double largest_speed() const { return speed_; }               ///< V: |v| <= V at all times (κ <= 2)
+  double largest_acceleration() const { return acceleration_; } ///< A: |a| <= A at all times
+
+  /// Bound on the rounding of |d|² − R² as evaluated from the elements.
+  double gap_error(double distance, double reach) const {
+    constexpr double ulp = std::numeric_limits<double>::epsilon();
+    return 4.0 * ulp * (distance * distance + reach * reach + 4.0 * distance * scale_);
+  }
+
+  /// Bound on the rounding of 2 d·v.
+  double closing_error(double distance, double speed) const {
+    constexpr double ulp = std::numeric_limits<double>::epsilon();
+    return 8.0 * ulp * (distance * speed + distance * speed_ + speed * scale_);
+  }
+
+private:
+  Elements elements_;
+  Frequencies frequencies_;
+  double speed_, acceleration_, scale_;
+};
+
+} // namespace keeler

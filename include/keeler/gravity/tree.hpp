@@ -1,0 +1,28 @@
+// Gravity by a tree of cells with quadrupoles (Barnes & Hut 1986, Nature 324, 446), walked once for each group of
+// neighbouring particles (Barnes 1990, J. Comput. Phys. 87, 161).
+#pragma once
+
+#include <keeler/gravity/cell_tree.hpp>
+#include <keeler/gravity/kernels.hpp>
+#include <keeler/gravity/solver.hpp>
+
+namespace keeler {
+
+/// A cell attracts a group as a whole when size < opening_angle × (distance from the group's box to the cell's centre
+/// of mass) and the two boxes do not overlap; otherwise it is opened, down to particles. The size is the longest side
+/// of the cell's tight box. Opening angle 0 gives the direct sum.
+class TreeSolver final : public GravitySolver {
+public:
+  TreeSolver(double opening_angle, int image_rings, InstructionSet set);
+
+  void accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) override;
+  std::string name() const override { return "tree"; }
+
+private:
+  double opening_angle_;
+  int image_rings_;
+  AttractionKernels kernels_;
+  CellTree tree_;
+};
+
+} // namespace keeler

@@ -1,0 +1,39 @@
+// A 128-bit fingerprint of data (XXH3): for checksums and for state_hash. It guards against accidents, not against
+// forgery. Its value depends on the bytes alone and is the same on every little-endian machine.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace keeler {
+
+class Hash {
+public:
+  Hash();
+
+  void add_bytes(std::span<const std::byte> bytes);
+
+  /// A number, or a struct of numbers without padding.
+  template<class T> void add(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>);
+    add_bytes(std::as_bytes(std::span(&value, 1)));
+  }
+
+  /// A text, with its length, so that ("ab", "c") and ("a", "bc") differ.
+  void add_text(std::string_view text);
+
+  /// 32 hexadecimal digits for all that was added so far; more may be added afterwards.
+  std::string hex() const;
+
+private:
+  struct Free {
+    void operator()(void* state) const;
+  };
+  std::unique_ptr<void, Free> state_;
+};
+
+} // namespace keeler

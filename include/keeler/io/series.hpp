@@ -1,0 +1,40 @@
+// Time series as CSV: one header line, then one row a sample, with the step first. A row is in the file when append()
+// returns, and is there whole or not at all.
+#pragma once
+
+#include <keeler/io/descriptor.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace keeler {
+
+class Series {
+public:
+  /// Begins a file anew; the first column, "step", is added to those named. Throws IoError.
+  static Series begin(const std::filesystem::path& file, const std::vector<std::string>& columns);
+
+  /// Continues a file after a restart at `last_step`: rows of later steps, which the run will make again, and an
+  /// incomplete last row are cut off first. A missing file is begun anew. Throws IoError, also when the columns differ.
+  static Series resume(const std::filesystem::path& file, const std::vector<std::string>& columns,
+                       std::int64_t last_step);
+
+  /// Adds a row of one number a column, written so that reading gives the same bits. Throws IoError, and then the file
+  /// ends with the row before.
+  void append(std::int64_t step, std::span<const double> values);
+
+  /// Forces the rows to disk. Do so before a checkpoint, so that the series reaches at least as far.
+  void sync();
+
+private:
+  Series(const std::filesystem::path& file, std::size_t columns);
+
+  Descriptor file_;
+  std::size_t columns_; // without the step
+  std::size_t size_;    // bytes of whole rows
+};
+
+} // namespace keeler

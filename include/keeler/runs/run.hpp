@@ -1,0 +1,64 @@
+// A run and its folder: steps, schedules of output, checkpoints, and stopping without losing anything.
+//
+// The folder holds scene.toml (resolved), snap_NNNNNN.hdf, checkpoint_NNNNNN.h5 (the last two), series.csv,
+// summary.json and log.jsonl. There is always a snapshot at the start and at the end, and a checkpoint at the end or at
+// a stop. Files are numbered as they are written, from 000000; a resumed run goes on counting from its checkpoint.
+#pragma once
+
+#include <keeler/scene/scene.hpp>
+#include <keeler/simulation/simulation.hpp>
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace keeler {
+
+/// Requests from outside, set by a signal handler or another thread; obeyed at the end of the step.
+struct RunRequests {
+  std::atomic<bool> stop = false;     ///< write a checkpoint and stop
+  std::atomic<bool> snapshot = false; ///< write a snapshot and go on
+};
+
+/// Where a run stands, after each step.
+struct RunProgress {
+  std::int64_t step = 0, first_step = 0, end_step = 0;
+  double orbits = 0.0, end_orbits = 0.0;
+  double elapsed_s = 0.0;             ///< wall time since the run began or resumed
+  double remaining_s = 0.0;           ///< an estimate
+  double collisions_per_second = 0.0; ///< of wall time, over the run so far
+};
+
+struct RunOptions {
+  std::filesystem::path folder;
+  bool force = false;                 ///< replace the run that the folder holds
+  std::optional<double> until_orbits; ///< another end than the scene's
+  std::optional<double> wall_time_s;  ///< stop with a checkpoint before this much wall time has passed
+  std::vector<std::string> arguments; ///< the command line, for provenance
+  std::function<void(const RunProgress&)> progress;
+  std::function<void(const std::string&)> notice; ///< a line for the user: rounding, a damaged checkpoint passed over
+};
+
+struct RunResult {
+  bool finished = false; ///< false: stopped on request, a checkpoint is on disk
+  std::int64_t step = 0;
+  std::string state_hash;
+};
+
+/// Starts a run. Throws UsageError when the folder holds a run already and force is not given, IoError, InvariantError.
+RunResult start_run(const Scene& scene, const RunOptions& options, RunRequests& requests);
+
+/// Continues the run of a folder from its newest whole checkpoint. Throws IoError when there is none.
+RunResult resume_run(const RunOptions& options, RunRequests& requests);
+
+/// The state in a checkpoint, and its scene. Throws IoError.
+struct StoredRun {
+  Scene scene;
+  SimulationState state;
+};
+StoredRun load_checkpoint(const std::filesystem::path& file);
+
+} // namespace keeler

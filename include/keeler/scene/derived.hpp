@@ -1,0 +1,56 @@
+// Numbers that follow from a scene: what `keeler check` prints, and the formulas that the scene itself is checked with.
+// Everything here is SI.
+#pragma once
+
+#include <keeler/scene/scene.hpp>
+
+#include <cstdint>
+
+namespace keeler {
+
+/// Mass per unit area of particles of this law at optical depth 1, (4/3) ρ ⟨r³⟩/⟨r²⟩, kg/m².
+double surface_density_per_depth(const SizeLaw& sizes, double density);
+
+/// Toomre's critical wavelength 4π²GΣ/κ², m.
+double critical_wavelength(double surface_density, const PlanetSettings& planet);
+
+/// Toomre's Q = κ c_x / (3.36 G Σ) for a radial velocity dispersion in m/s.
+double toomre_q(double surface_density, double dispersion, const PlanetSettings& planet);
+
+/// Distance from the centre of Saturn with these frequencies, m. The planet's oblateness speeds orbits up by as much as
+/// it slows epicycles down, so a³ = 2GM/(Ω² + κ²) holds up to J4; with κ = Ω it is Kepler's law.
+double distance_from_saturn(const PlanetSettings& planet);
+
+/// r_h = 0.82 (ρ / 900 kg m⁻³)^{1/3} (a / 10⁸ m): mutual Hill radius over radius sum of two equal particles
+/// (Daisaka, Tanaka & Ida 2001). Aggregates form above about 1.1.
+double hill_parameter(double density, double distance);
+
+/// c_z / c_x of a fresh patch: equilibria without self-gravity have 0.64 to 0.72.
+inline constexpr double vertical_share = 0.65;
+
+/// Mid-plane filling factor of a Gaussian layer, (4/3) τ ⟨r³⟩/⟨r²⟩ / (√(2π) H) with H = c_z/ν, for a radial velocity
+/// dispersion in ⟨r⟩ Ω, c_z = vertical_share c_x.
+/// The layer is thicker by the particles' own size once they collide, so this is an upper estimate.
+double midplane_filling(double optical_depth, const SizeLaw& sizes, double velocity_dispersion, double nu);
+
+/// The fullest mid-plane that a start without overlap is made for.
+inline constexpr double largest_filling = 0.4;
+
+struct Derived {
+  /// False when the particles come from a start file: then only the steps are known, and the other numbers are 0.
+  bool particles_known = false;
+  std::size_t particle_count = 0;
+  double optical_depth = 0.0;
+  double surface_density = 0.0; ///< kg/m²
+  double lambda_cr = 0.0;       ///< m
+  double toomre_q = 0.0;        ///< at the start
+  double hill_parameter = 0.0;
+  double midplane_filling = 0.0; ///< at the start
+  std::int64_t steps = 0;
+  double memory_mb = 0.0;   ///< estimate of the largest use, 10⁶ bytes
+  double estimated_s = 0.0; ///< estimate of the processor time, s: on one thread the wall time
+};
+
+Derived derive(const Scene& scene);
+
+} // namespace keeler

@@ -1,0 +1,107 @@
+// keeler check: what a scene means, before anything runs.
+#include "command.hpp"
+#include "scene_arguments.hpp"
+
+#include <keeler/scene/derived.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <memory>
+
+namespace keeler {
+namespace {
+
+struct CheckOptions {
+  SceneArguments scene;
+  bool json = false;
+  bool defaults = false;
+  bool markdown = false;
+};
+
+// Numbers that only the start file knows are null.
+nlohmann::ordered_json as_json(const Scene& scene, const Derived& d) {
+  const auto known = [&](double value) -> nlohmann::ordered_json {
+    return d.particles_known ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+  };
+  nlohmann::ordered_json json;
+  json["title"] = scene.title;
+  json["particle_count"] = d.particles_known ? nlohmann::ordered_json(d.particle_count) : nlohmann::ordered_json();
+  json["optical_depth"] = known(d.optical_depth);
+  json["surface_density"] = known(d.surface_density);
+  json["lambda_cr_m"] = known(d.lambda_cr);
+  json["toomre_q"] = known(d.toomre_q);
+  json["hill_parameter"] = known(d.hill_parameter);
+  json["midplane_filling"] = known(d.midplane_filling);
+  json["box_m"] = {known(scene.size_x), known(scene.size_y)};
+  json["steps"] = d.steps;
+  json["memory_mb"] = known(d.memory_mb);
+  json["estimated_s"] = known(d.estimated_s);
+  json["notices"] = scene.notices;
+  return json;
+}
+
+std::string duration(double seconds) {
+  if (seconds < 120.0)
+    return fmt::format("{:.2g} s", seconds);
+  return seconds < 7200.0 ? fmt::format("{:.0f} min", seconds / 60.0) : fmt::format("{:.1f} h", seconds / 3600.0);
+}
+
+void print_particles(const Scene& scene, const Derived& d) {
+  fmt::print("box                {:.4g} m x {:.4g} m", scene.size_x, scene.size_y);
+  fmt::print(" ({:.2f} x {:.2f} lambda_cr)\n", scene.size_x / d.lambda_cr, scene.size_y / d.lambda_cr);
+  fmt::print("particles          {}\n", d.particle_count);
+  fmt::print("optical depth      {:.4g}\n", d.optical_depth);
+  fmt::print("surface density    {:.4g} kg/m^2\n", d.surface_density);
+  fmt::print("lambda_cr          {:.4g} m\n", d.lambda_cr);
+  fmt::print("Toomre Q           {:.3g} at the start\n", d.toomre_q);
+  fmt::print("Hill parameter r_h {:.3g} at Saturn\n", d.hill_parameter);
+  fmt::print("mid-plane filling  {:.3g} at the start\n", d.midplane_filling);
+}
+
+void print_text(const Scene& scene, const Derived& d) {
+  if (!scene.title.empty())
+    fmt::print("{}\n", scene.title);
+  if (d.particles_known)
+    print_particles(scene, d);
+  else
+    fmt::print("box and particles  from {}\n", *scene.start_from);
+  fmt::print("steps              {} of {} orbits\n", d.steps, scene.time.step);
+  if (d.particles_known) {
+    fmt::print("memory             about {:.0f} MB (an estimate)\n", d.memory_mb);
+    fmt::print("time               about {} on one thread (an estimate)\n", duration(d.estimated_s));
+  }
+  for (const std::string& notice : scene.notices)
+    fmt::print("note: {}\n", notice);
+}
+
+ExitCode check(const CheckOptions& options) {
+  if (options.defaults) {
+    fmt::print("{}", describe_keys(options.markdown));
+    return ExitCode::done;
+  }
+  if (options.scene.path.empty())
+    throw UsageError("check needs a scene (there is nothing to check); write keeler check SCENE, or --defaults");
+  const Scene scene = options.scene.load();
+  const Derived derived = derive(scene);
+  if (options.json)
+    fmt::print("{}\n", as_json(scene, derived).dump(2));
+  else
+    print_text(scene, derived);
+  return ExitCode::done;
+}
+
+} // namespace
+
+void add_check(CLI::App& program, Action& action) {
+  const auto options = std::make_shared<CheckOptions>();
+  CLI::App& command = *program.add_subcommand("check", "validate a scene and print what follows from it; runs nothing");
+  options->scene.add_to(command);
+  command.add_flag("--json", options->json, "print the numbers as JSON");
+  CLI::Option* defaults =
+      command.add_flag("--defaults", options->defaults, "print every key with its default, unit and meaning");
+  command.add_flag("--markdown", options->markdown, "print the keys as the manual's table")->needs(defaults);
+  command.callback([options, &action] { action = [options] { return check(*options); }; });
+}
+
+} // namespace keeler

@@ -1,0 +1,46 @@
+// The program: reads the command line, runs one subcommand, and turns every error into one line and an exit code.
+#include "command.hpp"
+
+#include <keeler/core/version.hpp>
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+
+using namespace keeler;
+
+namespace {
+
+int fail(ExitCode code, const char* message) {
+  fmt::print(stderr, "keeler: {}\n", message);
+  return static_cast<int>(code);
+}
+
+int run(int argc, char** argv) {
+  CLI::App program("Keeler simulates a self-gravitating patch of a planetary ring.", "keeler");
+  program.set_version_flag("--version", "keeler " + program_version());
+  program.require_subcommand(1);
+  Action action;
+  add_check(program, action);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& asked) { // --help and --version
+    return program.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(fmt::format("{}; \"keeler --help\" lists what can be asked", error.what()));
+  }
+  return static_cast<int>(action());
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const Error& error) {
+    return fail(error.code(), error.what());
+  } catch (const std::exception& error) {
+    return fail(ExitCode::run_time, error.what());
+  }
+}

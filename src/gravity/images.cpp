@@ -1,0 +1,26 @@
+#include <keeler/gravity/images.hpp>
+
+#include <cmath>
+
+namespace keeler {
+
+double folded_offset(const ShearingBox& box, double offset) {
+  return std::remainder(offset, box.size_y);
+}
+
+std::vector<Vec3> image_shifts(const ShearingBox& box, double offset, int rings) {
+  std::vector<Vec3> shifts;
+  for (int nx = -rings; nx <= rings; ++nx) {
+    const int middle = static_cast<int>(std::nearbyint(nx * offset / box.size_y));
+    for (int ny = middle - rings; ny <= middle + rings; ++ny)
+      shifts.push_back(box.displacement({nx, ny}, offset));
+  }
+  return shifts;
+}
+
+Vec3 into_cell(const ShearingBox& box, double offset, const Vec3& position) {
+  const Image image = box.image_into_cell(position.x(), position.y(), offset);
+  return position + box.displacement(image, offset);
+}
+
+} // namespace keeler

@@ -1,0 +1,89 @@
+#include <keeler/io/checkpoint_folder.hpp>
+
+#include <keeler/core/error.hpp>
+#include <keeler/io/checkpoint.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+namespace keeler {
+namespace {
+
+constexpr std::string_view prefix = "checkpoint_";
+
+// The number in the name of a file that is called checkpoint_NNNNNN + ending.
+std::optional<std::int64_t> number_of(const std::filesystem::path& file, std::string_view ending) {
+  const std::string name = file.filename().string();
+  if (name.size() <= prefix.size() + ending.size() || !name.starts_with(prefix) || !name.ends_with(ending))
+    return std::nullopt;
+  std::int64_t number = 0;
+  const char* last = name.data() + name.size() - ending.size();
+  const auto [end, error] = std::from_chars(name.data() + prefix.size(), last, number);
+  if (error != std::errc{} || end != last)
+    return std::nullopt;
+  return number;
+}
+
+// The files checkpoint_NNNNNN + ending of a folder, highest number first.
+std::vector<std::filesystem::path> list(const std::filesystem::path& folder, std::string_view ending) {
+  std::vector<std::pair<std::int64_t, std::filesystem::path>> found;
+  try {
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      if (const auto number = number_of(entry.path(), ending))
+        found.emplace_back(*number, entry.path());
+  } catch (const std::filesystem::filesystem_error& error) {
+    throw IoError(fmt::format("cannot list folder '{}': {}", folder.string(), error.code().message()));
+  }
+  std::sort(found.rbegin(), found.rend());
+  std::vector<std::filesystem::path> files;
+  for (auto& [number, file] : found)
+    files.push_back(std::move(file));
+  return files;
+}
+
+void remove_file(const std::filesystem::path& file) {
+  std::error_code error;
+  std::filesystem::remove(file, error);
+  if (error)
+    throw IoError(fmt::format("cannot remove '{}': {}", file.string(), error.message()));
+}
+
+} // namespace
+
+std::filesystem::path checkpoint_path(const std::filesystem::path& folder, std::int64_t number) {
+  return folder / fmt::format("{}{:06}.h5", prefix, number);
+}
+
+std::vector<std::filesystem::path> list_checkpoints(const std::filesystem::path& folder) {
+  return list(folder, ".h5");
+}
+
+NewestCheckpoint newest_valid_checkpoint(const std::filesystem::path& folder) {
+  NewestCheckpoint newest;
+  for (const std::filesystem::path& file : list_checkpoints(folder)) {
+    try {
+      read_checkpoint_header(file);
+      newest.path = file;
+      return newest;
+    } catch (const IoError& error) {
+      newest.warnings.push_back(error.what());
+    }
+  }
+  if (newest.warnings.empty())
+    throw IoError(fmt::format("there is no checkpoint in '{}'", folder.string()));
+  throw IoError(
+      fmt::format("no checkpoint in '{}' can be used: {}", folder.string(), fmt::join(newest.warnings, "; ")));
+}
+
+void prune_checkpoints(const std::filesystem::path& folder, std::size_t keep) {
+  const std::vector<std::filesystem::path> files = list_checkpoints(folder);
+  for (std::size_t k = keep; k < files.size(); ++k)
+    remove_file(files[k]);
+  for (const std::filesystem::path& file : list(folder, ".h5.tmp"))
+    remove_file(file);
+}
+
+} // namespace keeler

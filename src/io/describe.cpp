@@ -1,0 +1,110 @@
+#include <keeler/io/describe.hpp>
+
+#include "formats.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/io/sealed_image.hpp>
+
+#include <fmt/format.h>
+
+namespace keeler {
+namespace {
+
+std::string joined(const std::vector<std::string>& values, bool scalar) {
+  return scalar ? values.front() : fmt::format("[{}]", fmt::join(values, ", "));
+}
+
+// The numbers that `read` gives, as text: floating point so that it reads back to the same bits.
+template<class Read> std::string numbers_as_text(const hdf5::Layout& layout, const Read& read) {
+  std::vector<std::string> texts;
+  const auto append_all = [&](auto values) {
+    read(hdf5::native_type<typename decltype(values)::value_type>(), values.data());
+    for (const auto value : values)
+      texts.push_back(fmt::format("{}", value));
+  };
+  if (layout.type.starts_with("float"))
+    append_all(std::vector<double>(layout.count()));
+  else if (layout.type.starts_with("uint"))
+    append_all(std::vector<std::uint64_t>(layout.count()));
+  else if (layout.type.starts_with("int"))
+    append_all(std::vector<std::int64_t>(layout.count()));
+  else
+    return "(" + layout.type + ")";
+  return joined(texts, layout.shape.empty());
+}
+
+std::string attribute_as_text(const hdf5::Handle& object, const std::string& name) {
+  const hdf5::Layout layout = hdf5::layout_of_attribute(object, name);
+  if (layout.type == "text")
+    return hdf5::read_text_attribute(object, name);
+  return numbers_as_text(
+      layout, [&](hid_t type, void* into) { hdf5::read_attribute(object, name, type, layout.count(), into); });
+}
+
+void add_attributes(FileDescription& description, const hdf5::Handle& object, const std::string& group) {
+  for (const std::string& name : hdf5::attribute_names(object))
+    description.attributes[group + "/" + name] = attribute_as_text(object, name);
+}
+
+FieldDescription describe_field(const hdf5::Handle& group, const std::string& name) {
+  const hdf5::Handle dataset = hdf5::open_dataset(group, name);
+  const hdf5::Layout layout = hdf5::layout_of_dataset(dataset);
+  FieldDescription field;
+  field.name = name;
+  field.type = layout.type;
+  field.shape.assign(layout.shape.begin(), layout.shape.end());
+  for (const auto& [attribute, text] : {std::pair("unit", &field.unit), std::pair("about", &field.about)})
+    if (hdf5::has_attribute(dataset, attribute))
+      *text = hdf5::read_text_attribute(dataset, attribute);
+  if (layout.shape.empty())
+    field.value = numbers_as_text(layout, [&](hid_t type, void* into) { hdf5::read_dataset(dataset, type, into); });
+  return field;
+}
+
+void add_fields(FileDescription& description, const hdf5::Handle& image, const std::string& group_name) {
+  const hdf5::Handle group = hdf5::open_group(image, group_name);
+  for (const std::string& name : hdf5::names_in(group))
+    description.fields.push_back(describe_field(group, name));
+}
+
+bool has_format(const hdf5::Handle& object, const char* format) {
+  return hdf5::has_attribute(object, "format") && hdf5::read_text_attribute(object, "format") == format;
+}
+
+FileDescription describe_checkpoint(const hdf5::Handle& image) {
+  FileDescription description;
+  description.kind = FileKind::checkpoint;
+  description.format_version = hdf5::read_attribute<std::int64_t>(image, "format_version");
+  add_fields(description, image, "fields");
+  add_attributes(description, image, "");
+  add_attributes(description, hdf5::open_group(image, "provenance"), "provenance");
+  description.scene = hdf5::read_text_dataset(image, "scene");
+  return description;
+}
+
+FileDescription describe_snapshot(const hdf5::Handle& image) {
+  FileDescription description;
+  description.format_version = hdf5::read_attribute<std::int64_t>(hdf5::open_group(image, "Code"), "format_version");
+  add_fields(description, image, "PartType1");
+  for (const char* group : {"Header", "RingBox", "Code"})
+    add_attributes(description, hdf5::open_group(image, group), group);
+  description.scene = hdf5::read_text_attribute(hdf5::open_group(image, "Parameters"), "scene");
+  return description;
+}
+
+} // namespace
+
+FileDescription describe_file(const std::filesystem::path& file) {
+  const hdf5::Handle image = open_sealed(file, Seal::optional);
+  try {
+    if (has_format(image, checkpoint_format))
+      return describe_checkpoint(image);
+    if (hdf5::exists(image, "Code") && has_format(hdf5::open_group(image, "Code"), snapshot_format))
+      return describe_snapshot(image);
+  } catch (const IoError& error) {
+    throw IoError(fmt::format("cannot read '{}': {}", file.string(), error.what()));
+  }
+  throw IoError(fmt::format("'{}' is neither a snapshot nor a checkpoint of Keeler", file.string()));
+}
+
+} // namespace keeler

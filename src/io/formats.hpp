@@ -1,0 +1,15 @@
+// Names and versions of Keeler's HDF5 files: text attribute "format", integer attribute "format_version" on the root
+// group of a checkpoint and on /Code of a snapshot.
+#pragma once
+
+#include <cstdint>
+
+namespace keeler {
+
+inline constexpr char checkpoint_format[] = "keeler checkpoint";
+inline constexpr std::int64_t checkpoint_version = 1;
+
+inline constexpr char snapshot_format[] = "keeler snapshot";
+inline constexpr std::int64_t snapshot_version = 1;
+
+} // namespace keeler

@@ -1,0 +1,221 @@
+#include <keeler/io/hdf5.hpp>
+
+#include "hdf5_checked.hpp"
+
+#include <keeler/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+
+namespace keeler::hdf5 {
+namespace {
+
+// HDF5 takes two files in memory of one name for the same file.
+std::string fresh_name() {
+  static std::atomic<unsigned long> count{0};
+  return fmt::format("keeler-image-{}", count++);
+}
+
+// Access to files in memory. The oldest format is kept: H5Fget_file_image of HDF5 1.10.8 clears a flag in newer
+// superblocks without renewing their checksum, and the image no longer opens.
+Handle image_access() {
+  constexpr std::size_t growth = std::size_t{1} << 22;
+  Handle access(checked("prepare a file in memory", [] { return H5Pcreate(H5P_FILE_ACCESS); }), H5Pclose);
+  checked("prepare a file in memory", [&] { return H5Pset_fapl_core(access.id(), growth, false); });
+  return access;
+}
+
+// No time stamps: equal content gives equal bytes. Attributes keep their order, which makes HDF5 take object headers of
+// version 2 with room for attributes beyond 64 KiB.
+Handle creation_list(hid_t kind) {
+  Handle list(checked("prepare an object", [&] { return H5Pcreate(kind); }), H5Pclose);
+  checked("prepare an object", [&] { return H5Pset_obj_track_times(list.id(), false); });
+  checked("prepare an object",
+          [&] { return H5Pset_attr_creation_order(list.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED); });
+  return list;
+}
+
+std::string type_name(hid_t type) {
+  switch (checked("read a type", [&] { return H5Tget_class(type); })) {
+  case H5T_FLOAT:
+    return fmt::format("float{}", 8 * H5Tget_size(type));
+  case H5T_INTEGER:
+    return fmt::format("{}int{}", H5Tget_sign(type) == H5T_SGN_NONE ? "u" : "", 8 * H5Tget_size(type));
+  case H5T_STRING:
+    return "text";
+  default:
+    return "other";
+  }
+}
+
+} // namespace
+
+Layout layout_of(const Handle& type, const Handle& space) {
+  Layout layout;
+  layout.type = type_name(type.id());
+  const int rank = checked("read a shape", [&] { return H5Sget_simple_extent_ndims(space.id()); });
+  layout.shape.resize(static_cast<std::size_t>(rank));
+  checked("read a shape", [&] { return H5Sget_simple_extent_dims(space.id(), layout.shape.data(), nullptr); });
+  return layout;
+}
+
+Handle make_space(const Shape& shape) {
+  const int rank = static_cast<int>(shape.size());
+  return {checked("make a shape", [&] { return H5Screate_simple(rank, shape.data(), nullptr); }), H5Sclose};
+}
+
+namespace {
+
+// Chunks of about a megabyte for rows of a few numbers.
+void set_compressed(const Handle& list, const Shape& shape) {
+  constexpr hsize_t rows = 1 << 16;
+  constexpr unsigned level = 1; // higher levels cost several times the time and gain a few per cent on such data
+  Shape chunk = shape;
+  chunk[0] = std::min(chunk[0], rows);
+  const int rank = static_cast<int>(shape.size());
+  checked("set compression", [&] { return H5Pset_chunk(list.id(), rank, chunk.data()); });
+  checked("set compression", [&] { return H5Pset_shuffle(list.id()); });
+  checked("set compression", [&] { return H5Pset_deflate(list.id(), level); });
+  checked("set compression", [&] { return H5Pset_fletcher32(list.id()); });
+}
+
+} // namespace
+
+Handle::~Handle() {
+  if (id_ >= 0) {
+    const Quiet quiet;
+    close_(id_);
+  }
+}
+
+void fail(const std::string& what) {
+  std::string reason = "unknown reason";
+  const auto innermost = [](unsigned depth, const H5E_error2_t* error, void* text) -> herr_t {
+    if (depth == 0 && error->desc != nullptr)
+      *static_cast<std::string*>(text) = error->desc;
+    return 0;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, innermost, &reason);
+  H5Eclear2(H5E_DEFAULT);
+  throw IoError(fmt::format("cannot {}: {}", what, reason));
+}
+
+std::size_t Layout::count() const {
+  std::size_t product = 1;
+  for (const hsize_t extent : shape)
+    product *= extent;
+  return product;
+}
+
+hid_t native_type(FieldType type) {
+  switch (type) {
+  case FieldType::float64:
+    return H5T_NATIVE_DOUBLE;
+  case FieldType::float32:
+    return H5T_NATIVE_FLOAT;
+  case FieldType::int64:
+    return H5T_NATIVE_INT64;
+  case FieldType::uint64:
+    return H5T_NATIVE_UINT64;
+  case FieldType::uint32:
+    break;
+  }
+  return H5T_NATIVE_UINT32;
+}
+
+Handle create_image() {
+  const Handle access = image_access();
+  const Handle creation = creation_list(H5P_FILE_CREATE);
+  return {checked("create a file in memory",
+                  [&] { return H5Fcreate(fresh_name().c_str(), H5F_ACC_EXCL, creation.id(), access.id()); }),
+          H5Fclose};
+}
+
+std::vector<std::byte> image_of(const Handle& file) {
+  checked("complete a file in memory", [&] { return H5Fflush(file.id(), H5F_SCOPE_LOCAL); });
+  std::vector<std::byte> image(used_size(file));
+  checked("copy a file in memory", [&] { return H5Fget_file_image(file.id(), image.data(), image.size()); });
+  return image;
+}
+
+Handle open_image(std::span<const std::byte> image) {
+  const Handle access = image_access();
+  void* bytes = const_cast<std::byte*>(image.data()); // copied, not changed
+  checked("open a file in memory", [&] { return H5Pset_file_image(access.id(), bytes, image.size()); });
+  return {checked("open as HDF5", [&] { return H5Fopen(fresh_name().c_str(), H5F_ACC_RDONLY, access.id()); }),
+          H5Fclose};
+}
+
+std::uint64_t used_size(const Handle& file) {
+  return static_cast<std::uint64_t>(
+      checked("read the size of a file", [&] { return H5Fget_file_image(file.id(), nullptr, 0); }));
+}
+
+Handle create_group(const Handle& parent, const std::string& name) {
+  const Handle list = creation_list(H5P_GROUP_CREATE);
+  return {checked("create group '" + name + "'",
+                  [&] { return H5Gcreate2(parent.id(), name.c_str(), H5P_DEFAULT, list.id(), H5P_DEFAULT); }),
+          H5Gclose};
+}
+
+Handle open_group(const Handle& parent, const std::string& name) {
+  return {checked("open group '" + name + "'", [&] { return H5Gopen2(parent.id(), name.c_str(), H5P_DEFAULT); }),
+          H5Gclose};
+}
+
+bool exists(const Handle& parent, const std::string& name) {
+  return checked("look for '" + name + "'", [&] { return H5Lexists(parent.id(), name.c_str(), H5P_DEFAULT); }) > 0;
+}
+
+std::vector<std::string> names_in(const Handle& group) {
+  std::vector<std::string> names;
+  const auto append = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
+    static_cast<std::vector<std::string>*>(list)->push_back(name);
+    return 0;
+  };
+  checked("list a group", [&] { return H5Literate(group.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, append, &names); });
+  return names;
+}
+
+void link_again(const Handle& from, const std::string& name, const Handle& to, const std::string& new_name) {
+  checked("link '" + new_name + "'",
+          [&] { return H5Lcreate_hard(from.id(), name.c_str(), to.id(), new_name.c_str(), H5P_DEFAULT, H5P_DEFAULT); });
+}
+
+Handle write_dataset(const Handle& parent, const std::string& name, hid_t type, const Shape& shape, const void* data,
+                     Packing packing) {
+  const std::string what = "write '" + name + "'";
+  const Handle space = make_space(shape);
+  const Handle list = creation_list(H5P_DATASET_CREATE);
+  const bool empty = std::find(shape.begin(), shape.end(), hsize_t{0}) != shape.end();
+  if (packing == Packing::compressed && !empty)
+    set_compressed(list, shape);
+  Handle dataset(checked(what,
+                         [&] {
+                           return H5Dcreate2(parent.id(), name.c_str(), type, space.id(), H5P_DEFAULT, list.id(),
+                                             H5P_DEFAULT);
+                         }),
+                 H5Dclose);
+  if (!empty)
+    checked(what, [&] { return H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data); });
+  return dataset;
+}
+
+Handle open_dataset(const Handle& parent, const std::string& name) {
+  return {checked("open '" + name + "'", [&] { return H5Dopen2(parent.id(), name.c_str(), H5P_DEFAULT); }), H5Dclose};
+}
+
+Layout layout_of_dataset(const Handle& dataset) {
+  const Handle type(checked("read a type", [&] { return H5Dget_type(dataset.id()); }), H5Tclose);
+  const Handle space(checked("read a shape", [&] { return H5Dget_space(dataset.id()); }), H5Sclose);
+  return layout_of(type, space);
+}
+
+void read_dataset(const Handle& dataset, hid_t type, void* into) {
+  if (layout_of_dataset(dataset).count() > 0)
+    checked("read a dataset", [&] { return H5Dread(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, into); });
+}
+
+} // namespace keeler::hdf5

@@ -1,0 +1,43 @@
+// For hdf5*.cpp. One door to HDF5: its own printing is off during a call, and a failure becomes an IoError with HDF5's
+// reason.
+#pragma once
+
+#include <keeler/io/hdf5.hpp>
+
+#include <string>
+
+namespace keeler::hdf5 {
+
+/// Switches HDF5's error printing off while it lives.
+class Quiet {
+public:
+  Quiet() {
+    H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  ~Quiet() { H5Eset_auto2(H5E_DEFAULT, print_, data_); }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+
+private:
+  H5E_auto2_t print_ = nullptr;
+  void* data_ = nullptr;
+};
+
+/// Throws IoError "cannot WHAT: reason of the last failure".
+[[noreturn]] void fail(const std::string& what);
+
+/// Calls and returns the result; a negative one is a failure. `what` completes "cannot ...".
+template<class Call> auto checked(const std::string& what, const Call& call) {
+  const Quiet quiet;
+  const auto result = call();
+  if (result < 0)
+    fail(what);
+  return result;
+}
+
+/// Shared by datasets and attributes.
+Layout layout_of(const Handle& type, const Handle& space);
+Handle make_space(const Shape& shape);
+
+} // namespace keeler::hdf5

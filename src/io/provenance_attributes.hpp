@@ -1,0 +1,14 @@
+// For checkpoint.cpp, snapshot.cpp: provenance as text attributes of an HDF5 object.
+#pragma once
+
+#include <keeler/io/hdf5.hpp>
+#include <keeler/io/provenance.hpp>
+
+namespace keeler {
+
+void write_provenance(const hdf5::Handle& object, const Provenance& provenance);
+
+/// All text attributes of the object.
+Provenance read_provenance(const hdf5::Handle& object);
+
+} // namespace keeler

@@ -1,0 +1,69 @@
+#include <keeler/io/sealed_image.hpp>
+
+#include <keeler/core/error.hpp>
+#include <keeler/io/files.hpp>
+#include <keeler/io/hash.hpp>
+
+#include <fmt/format.h>
+
+#include <string>
+
+namespace keeler {
+namespace {
+
+constexpr std::string_view mark = "KEELER-SEAL";
+constexpr std::size_t seal_size = 64;
+
+std::string seal_of(std::span<const std::byte> content) {
+  Hash hash;
+  hash.add_bytes(content);
+  return fmt::format("{} {:016x} {}  \n", mark, content.size(), hash.hex()); // 11 + 1 + 16 + 1 + 32 + 3
+}
+
+std::string_view as_text(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+[[noreturn]] void damaged(const std::filesystem::path& file, const std::string& reason) {
+  throw IoError(fmt::format("'{}' is damaged: {}", file.string(), reason));
+}
+
+// The HDF5 content of a sealed file; empty when it has no seal.
+std::span<const std::byte> sealed_content(const std::filesystem::path& file, std::span<const std::byte> bytes) {
+  if (bytes.size() < seal_size || !as_text(bytes.last(seal_size)).starts_with(mark))
+    return {};
+  const std::span<const std::byte> content = bytes.first(bytes.size() - seal_size);
+  if (as_text(bytes.last(seal_size)) != seal_of(content))
+    damaged(file, "its content does not match its checksum");
+  return content;
+}
+
+} // namespace
+
+void write_sealed(const std::filesystem::path& file, const hdf5::Handle& image) {
+  std::vector<std::byte> bytes = hdf5::image_of(image);
+  const std::string seal = seal_of(bytes);
+  const std::span<const std::byte> tail = std::as_bytes(std::span(seal));
+  bytes.insert(bytes.end(), tail.begin(), tail.end());
+  write_file(file, bytes);
+}
+
+hdf5::Handle open_sealed(const std::filesystem::path& file, Seal seal) {
+  const std::vector<std::byte> bytes = read_file(file);
+  const std::span<const std::byte> content = sealed_content(file, bytes);
+  if (!content.empty())
+    return hdf5::open_image(content);
+  if (seal == Seal::required)
+    damaged(file, "its end is missing or it is not a Keeler file");
+  try {
+    hdf5::Handle image = hdf5::open_image(bytes);
+    // Tools that change a file in place end it where its content ends; anything more is a seal that lost its mark.
+    if (hdf5::used_size(image) != bytes.size())
+      damaged(file, "its end is not what was written");
+    return image;
+  } catch (const IoError& error) {
+    throw IoError(fmt::format("cannot read '{}' as HDF5: {}", file.string(), error.what()));
+  }
+}
+
+} // namespace keeler

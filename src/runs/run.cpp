@@ -1,0 +1,219 @@
+#include <keeler/runs/run.hpp>
+
+#include "recorder.hpp"
+
+#include <keeler/cells/overlap.hpp>
+#include <keeler/core/error.hpp>
+#include <keeler/core/stopwatch.hpp>
+#include <keeler/core/threads.hpp>
+#include <keeler/io/checkpoint.hpp>
+#include <keeler/io/checkpoint_folder.hpp>
+#include <keeler/io/files.hpp>
+#include <keeler/runs/state_hash.hpp>
+#include <keeler/states/initial.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+constexpr double samples_per_orbit = 100.0; // rows of series.csv
+
+std::int64_t whole_kicks(const Scene& scene, double steps) {
+  const double block = scene.gravity ? scene.gravity->kick_every : 1;
+  return static_cast<std::int64_t>(std::max(1.0, std::round(steps / block)) * block);
+}
+
+class Runner {
+public:
+  Runner(const Scene& scene, const RunOptions& options, RunRequests& requests, Simulation& simulation,
+         Recorder& recorder)
+      : scene_(scene), options_(options), requests_(requests), simulation_(simulation), recorder_(recorder),
+        first_step_(simulation.state().step),
+        first_collisions_(simulation.state().collisions.fast + simulation.state().collisions.slow),
+        sample_every_(whole_kicks(scene, 1.0 / (samples_per_orbit * scene.time.step))) {}
+
+  RunResult run() {
+    const SimulationState& state = simulation_.state();
+    while (state.step < scene_.time.end_step && !must_stop()) {
+      simulation_.advance();
+      record();
+      report();
+    }
+    RunResult result;
+    result.finished = state.step >= scene_.time.end_step;
+    if (result.finished && state.step != last_snapshot_)
+      recorder_.snapshot(simulation_);
+    if (state.step != last_checkpoint_)
+      recorder_.checkpoint(simulation_);
+    result.step = state.step;
+    result.state_hash = state_hash(state, scene_);
+    return result;
+  }
+
+  double elapsed() const { return watch_.elapsed(); }
+
+private:
+  bool due(std::int64_t every) const { return every > 0 && simulation_.state().step % every == 0; }
+
+  // Half way through a kick interval the closing half kick is missing: stop and snapshot only at its end.
+  bool between_kicks() const { return !scene_.gravity || due(scene_.gravity->kick_every); }
+
+  bool must_stop() const {
+    const bool out_of_time = options_.wall_time_s && watch_.elapsed() + 3.0 * longest_pass_ > *options_.wall_time_s;
+    return between_kicks() && (requests_.stop || out_of_time);
+  }
+
+  void record() {
+    const std::int64_t step = simulation_.state().step;
+    if (due(sample_every_))
+      recorder_.sample(simulation_);
+    const bool asked = between_kicks() && requests_.snapshot.exchange(false);
+    if (due(scene_.output.snapshot_every) || asked) {
+      recorder_.snapshot(simulation_);
+      last_snapshot_ = step;
+    }
+    if (due(scene_.output.checkpoint_every)) {
+      recorder_.checkpoint(simulation_);
+      last_checkpoint_ = step;
+    }
+  }
+
+  void report() {
+    const double now = watch_.elapsed();
+    longest_pass_ = std::max(longest_pass_, now - last_time_);
+    last_time_ = now;
+    if (!options_.progress)
+      return;
+    const SimulationState& state = simulation_.state();
+    const double done = static_cast<double>(state.step - first_step_);
+    RunProgress p;
+    p.step = state.step, p.first_step = first_step_, p.end_step = scene_.time.end_step;
+    p.orbits = simulation_.orbits(), p.end_orbits = static_cast<double>(p.end_step) * scene_.time.step;
+    p.elapsed_s = now;
+    p.remaining_s = now / done * static_cast<double>(p.end_step - p.step);
+    p.collisions_per_second =
+        static_cast<double>(state.collisions.fast + state.collisions.slow - first_collisions_) / now;
+    options_.progress(p);
+  }
+
+  const Scene& scene_;
+  const RunOptions& options_;
+  RunRequests& requests_;
+  Simulation& simulation_;
+  Recorder& recorder_;
+  double unused_ = 0.0;
+  Stopwatch watch_{unused_};
+  std::int64_t first_step_, last_snapshot_ = -1, last_checkpoint_ = -1;
+  std::uint64_t first_collisions_;
+  std::int64_t sample_every_;
+  double last_time_ = 0.0, longest_pass_ = 0.0;
+};
+
+nlohmann::ordered_json summary_of(const Simulation& simulation, const Scene& scene, const RunResult& result,
+                                  std::int64_t first_step, double wall, double cpu, double output) {
+  const SimulationState& state = simulation.state();
+  const double count = static_cast<double>(state.particles.size()), orbits = simulation.orbits();
+  const auto rate = [&](std::uint64_t n) {
+    return orbits > 0.0 ? 2.0 * static_cast<double>(n) / (count * orbits) : 0.0;
+  };
+  const double joule = scene.planet.orbital_frequency * scene.planet.orbital_frequency;
+  const TimeSplit& split = simulation.time_split();
+  const double passes = count * static_cast<double>(std::max<std::int64_t>(1, state.step - first_step)) * 1e-9;
+  nlohmann::ordered_json json;
+  json["finished"] = result.finished;
+  json["state_hash"] = result.state_hash;
+  json["time_orbits"] = orbits;
+  json["steps"] = state.step;
+  json["particle_count"] = state.particles.size();
+  json["threads"] = threads();
+  json["collisions_per_particle_orbit"] = rate(state.collisions.fast);
+  json["slow_contacts_per_particle_orbit"] = rate(state.collisions.slow);
+  json["finder_gave_up"] = state.collisions.gave_up;
+  json["largest_overlap"] = largest_overlap(simulation.patch()).depth;
+  json["energy_j"] = {{"start", state.energy.start * joule},
+                      {"now", total_energy(state.particles, scene.planet.frequencies) * joule},
+                      {"kick_work", state.energy.kick_work * joule},
+                      {"edge_work", (state.energy.wrap_work + state.collisions.edge_work) * joule},
+                      {"lost_in_collisions", state.collisions.energy_lost * joule},
+                      {"residual", simulation.energy_residual() * joule}};
+  json["wall_s"] = wall;
+  json["cpu_s"] = cpu;
+  json["split"] = {{"drift_s", split.drift}, {"gravity_s", split.gravity}, {"output_s", output}};
+  json["ns_per_particle_step"] = {
+      {"drift", split.drift / passes}, {"gravity", split.gravity / passes}, {"output", output / passes}};
+  return json;
+}
+
+RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& requests, const RunFolder& folder,
+                   Simulation& simulation, Recorder& recorder, double cpu_start) {
+  const std::int64_t first_step = simulation.state().step;
+  Runner runner(scene, options, requests, simulation, recorder);
+  const RunResult result = runner.run();
+  const nlohmann::ordered_json summary = summary_of(simulation, scene, result, first_step, runner.elapsed(),
+                                                    cpu_seconds() - cpu_start, recorder.seconds());
+  write_text(folder.summary(), summary.dump(2) + "\n");
+  recorder.log(result.finished ? "finished" : "stopped", {{"step", result.step}, {"state_hash", result.state_hash}});
+  return result;
+}
+
+struct Loaded {
+  StoredRun run;
+  OutputCounters counters;
+};
+
+Loaded load(const std::filesystem::path& file) {
+  Loaded loaded;
+  const CheckpointHeader header = read_checkpoint_header(file);
+  loaded.run.scene = parse_scene(header.scene, file.string());
+  FieldTable table = loaded.run.state.fields();
+  loaded.counters.list_fields(table);
+  read_checkpoint(file, table);
+  return loaded;
+}
+
+Scene until(Scene scene, const RunOptions& options) {
+  if (options.until_orbits)
+    scene.time.end_step = whole_kicks(scene, *options.until_orbits / scene.time.step);
+  return scene;
+}
+
+} // namespace
+
+StoredRun load_checkpoint(const std::filesystem::path& file) {
+  return load(file).run;
+}
+
+RunResult start_run(const Scene& scene, const RunOptions& options, RunRequests& requests) {
+  const double cpu_start = cpu_seconds();
+  const RunFolder folder(options.folder);
+  Simulation simulation(scene, initial_patch(scene));
+  folder.claim(options.force);
+  Recorder recorder(folder, scene, options.arguments, {}, std::nullopt);
+  recorder.log("started", {{"particles", simulation.state().particles.size()}, {"threads", threads()}});
+  recorder.snapshot(simulation);
+  recorder.sample(simulation);
+  return carry_on(scene, options, requests, folder, simulation, recorder, cpu_start);
+}
+
+RunResult resume_run(const RunOptions& options, RunRequests& requests) {
+  const double cpu_start = cpu_seconds();
+  const RunFolder folder(options.folder);
+  const NewestCheckpoint newest = newest_valid_checkpoint(folder.path());
+  if (options.notice)
+    for (const std::string& warning : newest.warnings)
+      options.notice(warning);
+  Loaded loaded = load(newest.path);
+  const Scene scene = until(std::move(loaded.run.scene), options);
+  const std::int64_t step = loaded.run.state.step;
+  Simulation simulation(scene, std::move(loaded.run.state));
+  folder.cut_snapshots(loaded.counters.snapshots);
+  Recorder recorder(folder, scene, options.arguments, loaded.counters, step);
+  recorder.log("resumed", {{"checkpoint", newest.path.filename().string()}, {"step", step}, {"threads", threads()}});
+  return carry_on(scene, options, requests, folder, simulation, recorder, cpu_start);
+}
+
+} // namespace keeler

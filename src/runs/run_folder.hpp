@@ -1,0 +1,31 @@
+// The files of a run's folder: their names, who may write there, and what a resumed run takes back.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+namespace keeler {
+
+class RunFolder {
+public:
+  explicit RunFolder(std::filesystem::path path) : path_(std::move(path)) {}
+
+  std::filesystem::path scene() const { return path_ / "scene.toml"; }
+  std::filesystem::path series() const { return path_ / "series.csv"; }
+  std::filesystem::path summary() const { return path_ / "summary.json"; }
+  std::filesystem::path log() const { return path_ / "log.jsonl"; }
+  std::filesystem::path snapshot(std::int64_t number) const;
+  const std::filesystem::path& path() const { return path_; }
+
+  /// Makes the folder for a new run. Throws UsageError when it holds anything and force is not given; with force, the
+  /// files of the run that it holds are removed, nothing else. Throws IoError when it cannot be made.
+  void claim(bool force) const;
+
+  /// Removes snapshots from this number on: the resumed run makes them again.
+  void cut_snapshots(std::int64_t from_number) const;
+
+private:
+  std::filesystem::path path_;
+};
+
+} // namespace keeler

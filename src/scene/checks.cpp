@@ -1,0 +1,166 @@
+#include "checks.hpp"
+
+#include "suggest.hpp"
+
+#include <keeler/scene/keys.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+std::string meaning_of(const Key& key) {
+  return key.unit.empty() || key.unit == "1" ? key.meaning : fmt::format("{}, in {}", key.meaning, key.unit);
+}
+
+std::string sample_of(const Key& key) {
+  return fmt::format("{} = {}", key.name(), key.fallback.empty() ? key.example : key.fallback);
+}
+
+[[noreturn]] void fail_unknown(const Entry& entry) {
+  const std::string near = suggest_path(entry.path);
+  const std::string what = std::holds_alternative<Table>(entry.value) ? "table" : "key";
+  fail_at(entry.key_place, fmt::format("unknown {} {} (no scene has it); {}", what, entry.path,
+                                       near.empty() ? "\"keeler check --defaults\" lists every key"
+                                                    : fmt::format("did you mean \"{}\"?", near)));
+}
+
+bool fits_type(const Key& key, const Value& value) {
+  switch (key.type) {
+  case KeyType::text:
+  case KeyType::choice:
+  case KeyType::path:
+    return std::holds_alternative<std::string>(value);
+  case KeyType::number:
+    return std::holds_alternative<double>(value) || std::holds_alternative<std::int64_t>(value);
+  case KeyType::integer:
+    return std::holds_alternative<std::int64_t>(value);
+  case KeyType::pair: {
+    const auto* list = std::get_if<std::vector<double>>(&value);
+    return list && list->size() == 2;
+  }
+  }
+  return false;
+}
+
+std::vector<double> numbers_in(const Value& value) {
+  if (const auto* number = std::get_if<double>(&value))
+    return {*number};
+  if (const auto* integer = std::get_if<std::int64_t>(&value))
+    return {static_cast<double>(*integer)};
+  const auto* list = std::get_if<std::vector<double>>(&value);
+  return list ? *list : std::vector<double>{};
+}
+
+bool fits_value(const Key& key, const Value& value) {
+  const std::vector<double> numbers = numbers_in(value);
+  if (!std::all_of(numbers.begin(), numbers.end(), [&](double n) { return std::isfinite(n) && key.range.contains(n); }))
+    return false;
+  const auto* text = std::get_if<std::string>(&value);
+  if (key.type == KeyType::path)
+    return !text->empty();
+  return key.type != KeyType::choice || std::find(key.choices.begin(), key.choices.end(), *text) != key.choices.end();
+}
+
+void check_value(const Key& key, const Entry& entry) {
+  const bool right_type = fits_type(key, entry.value);
+  if (right_type && fits_value(key, entry.value))
+    return;
+  const std::string is = right_type ? to_toml(entry.value) : kind_words(entry.value);
+  std::string advice = "write for example " + sample_of(key);
+  if (const auto* word = std::get_if<std::string>(&entry.value); word && key.type == KeyType::choice)
+    if (const std::string near = closest(*word, key.choices); !near.empty())
+      advice = fmt::format("did you mean \"{}\"?", near);
+  fail_at(entry.value_place,
+          fmt::format("{} is {}, but must be {} ({}); {}", key.path, is, allowed_words(key), meaning_of(key), advice));
+}
+
+void check_entry(const Entry& entry) {
+  if (const Key* key = find_key(entry.path))
+    return check_value(*key, entry);
+  if (!find_section(entry.path))
+    fail_unknown(entry);
+  if (!std::holds_alternative<Table>(entry.value))
+    fail_at(entry.value_place,
+            fmt::format("{0} is {1}, but must be a table (it holds several keys); write [{0}] and its "
+                        "keys below",
+                        entry.path, kind_words(entry.value)));
+}
+
+void check_contradictions(const Document& document) {
+  for (const Entry& entry : document) {
+    if (const Section* section = find_section(entry.path))
+      if (!section->replaced_by.empty() && find_entry(document, section->replaced_by))
+        fail_at(entry.key_place, fmt::format("[{}] cannot stand beside {} (the start file holds the box and its "
+                                             "particles); remove one of the two",
+                                             entry.path, section->replaced_by));
+    const Key* key = find_key(entry.path);
+    if (!key)
+      continue;
+    for (const std::string& other : key->alternatives)
+      if (const Entry* earlier = find_entry(document, other); earlier && earlier < &entry)
+        fail_at(entry.key_place, fmt::format("{} cannot stand beside {} (either gives the other); keep one of the two",
+                                             entry.path, other));
+    if (!condition_holds(document, entry.path)) {
+      const KeyCondition& needs = key->only_with;
+      fail_at(entry.key_place,
+              fmt::format("{0} has no meaning here (it belongs to {1}{2}); remove it or give {1}{2}", entry.path,
+                          needs.key, needs.value.empty() ? "" : fmt::format(" = \"{}\"", needs.value)));
+    }
+  }
+}
+
+void check_key_present(const Document& document, const Key& key, const std::string& place) {
+  const auto given = [&](const std::string& path) { return find_entry(document, path) != nullptr; };
+  if (given(key.path) || !key.fallback.empty() || !condition_holds(document, key.path) ||
+      std::any_of(key.alternatives.begin(), key.alternatives.end(), given))
+    return;
+  std::string other_ways;
+  for (const std::string& other : key.alternatives)
+    other_ways += " or " + find_key(other)->name();
+  fail_at(place, fmt::format("{} is missing ({}); add for example {}{}", key.path, meaning_of(key), sample_of(key),
+                             other_ways));
+}
+
+void check_complete(const Document& document, const std::string& name) {
+  for (const Section& section : scene_sections()) {
+    const Entry* entry = find_entry(document, section.path);
+    if (!entry && (!section.needed || (!section.replaced_by.empty() && find_entry(document, section.replaced_by))))
+      continue;
+    if (!entry) {
+      const Entry* parent = find_entry(document, Key{.path = section.path}.section());
+      fail_at(parent ? parent->key_place : name + ":1:1",
+              fmt::format("[{0}] is missing ({1}); add a table [{0}]", section.path, section.meaning));
+    }
+    for (const Key& key : scene_keys())
+      if (key.section() == section.path)
+        check_key_present(document, key, entry->key_place);
+  }
+}
+
+} // namespace
+
+bool condition_holds(const Document& document, const std::string& path) {
+  const Key& key = *find_key(path);
+  if (key.only_with.key.empty())
+    return true;
+  const Entry* entry = find_entry(document, key.only_with.key);
+  if (key.only_with.value.empty())
+    return entry != nullptr;
+  const Value value =
+      entry ? entry->value : parse_override_value(find_key(key.only_with.key)->fallback, "", "")[0].value;
+  const auto* word = std::get_if<std::string>(&value);
+  return word && *word == key.only_with.value;
+}
+
+void check_document(const Document& document, const std::string& name) {
+  for (const Entry& entry : document)
+    check_entry(entry);
+  check_contradictions(document);
+  check_complete(document, name);
+}
+
+} // namespace keeler

@@ -1,0 +1,109 @@
+#include <keeler/scene/derived.hpp>
+
+#include <keeler/core/units.hpp>
+#include <keeler/particles/patch.hpp>
+
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+// What a run costs, for the estimates alone. Rough figures for one core of 2023; nothing but the estimate uses them.
+namespace cost {
+constexpr double drift_ns = 400.0;      // per particle and step
+constexpr double tree_ns = 1500.0;      // per particle and kick, 9 boxes, opening angle 0.6
+constexpr double direct_pair_ns = 1.0;  // per pair and image
+constexpr double program_bytes = 20e6;  // code, libraries, buffers that do not grow with N
+constexpr double neighbours = 20.0;     // listed for each particle
+constexpr double tree_node_bytes = 120; // box, mass, centre, quadrupole, links
+constexpr double nodes_per_particle = 0.5;
+} // namespace cost
+
+double bytes_per_particle(const Scene& scene) {
+  const double state = sizeof(Body) + sizeof(std::uint64_t);
+  const double output_copy = 2 * sizeof(Vec3) + 2 * sizeof(double) + sizeof(std::uint64_t); // a Patch
+  const double mirror = 8 * sizeof(float);
+  const double lists = cost::neighbours * sizeof(std::uint32_t);
+  const double sort = sizeof(Body) + 2 * sizeof(std::uint64_t);
+  double total = state + output_copy + mirror + lists + sort;
+  if (scene.gravity) {
+    total += 2 * sizeof(Vec3) + sizeof(double) + sizeof(std::uint64_t); // a GravityProblem and its answer
+    if (scene.gravity->solver == GravitySettings::Solver::tree)
+      total += cost::nodes_per_particle * cost::tree_node_bytes + 4 * sizeof(double);
+  }
+  return total;
+}
+
+double gravity_ns_per_kick(const GravitySettings& gravity, double count) {
+  const double side = 2.0 * gravity.image_rings + 1.0;
+  const double images = side * side;
+  if (gravity.solver == GravitySettings::Solver::direct)
+    return cost::direct_pair_ns * count * images;
+  // interactions per particle grow as ln N / θ² (Barnes & Hut 1986), here from N = 10⁴
+  const double opening = 0.6 / gravity.opening_angle;
+  return cost::tree_ns * opening * opening * std::log(count * images + 2.0) / std::log(9e4);
+}
+
+double estimate_seconds(const Scene& scene, std::int64_t steps) {
+  const double count = static_cast<double>(scene.particles.count);
+  double ns_per_step = cost::drift_ns;
+  if (scene.gravity)
+    ns_per_step += gravity_ns_per_kick(*scene.gravity, count) / scene.gravity->kick_every;
+  return 1e-9 * ns_per_step * count * static_cast<double>(steps);
+}
+
+} // namespace
+
+double surface_density_per_depth(const SizeLaw& sizes, double density) {
+  return (4.0 / 3.0) * density * sizes.mean_power(3) / sizes.mean_power(2);
+}
+
+double critical_wavelength(double surface_density, const PlanetSettings& planet) {
+  const double kappa = planet.frequencies.kappa * planet.orbital_frequency;
+  return 4.0 * pi * pi * newton_g_si * surface_density / (kappa * kappa);
+}
+
+double toomre_q(double surface_density, double dispersion, const PlanetSettings& planet) {
+  const double kappa = planet.frequencies.kappa * planet.orbital_frequency;
+  return kappa * dispersion / (3.36 * newton_g_si * surface_density);
+}
+
+double distance_from_saturn(const PlanetSettings& planet) {
+  constexpr double saturn_gm = 3.7931207e16; // m³ s⁻² (Jacobson et al. 2006)
+  const double kappa = planet.frequencies.kappa, omega = planet.orbital_frequency;
+  return std::cbrt(2.0 * saturn_gm / (omega * omega * (1.0 + kappa * kappa)));
+}
+
+double hill_parameter(double density, double distance) {
+  return 0.82 * std::cbrt(density / 900.0) * distance / 1e8;
+}
+
+double midplane_filling(double optical_depth, const SizeLaw& sizes, double velocity_dispersion, double nu) {
+  const double vertical = vertical_share * velocity_dispersion * sizes.mean_power(1);
+  const double height = vertical / nu;
+  return (4.0 / 3.0) * optical_depth * sizes.mean_power(3) / sizes.mean_power(2) / (std::sqrt(two_pi) * height);
+}
+
+Derived derive(const Scene& scene) {
+  Derived d;
+  d.steps = scene.time.end_step;
+  d.particles_known = !scene.start_from.has_value();
+  if (!d.particles_known)
+    return d;
+  const ParticleSettings& particles = scene.particles;
+  d.particle_count = particles.count;
+  d.optical_depth = scene.optical_depth();
+  d.surface_density = scene.surface_density();
+  d.lambda_cr = critical_wavelength(d.surface_density, scene.planet);
+  const double dispersion =
+      particles.velocity_dispersion * particles.sizes.mean_power(1) * scene.planet.orbital_frequency;
+  d.toomre_q = toomre_q(d.surface_density, dispersion, scene.planet);
+  d.hill_parameter = hill_parameter(particles.density, distance_from_saturn(scene.planet));
+  d.midplane_filling =
+      midplane_filling(d.optical_depth, particles.sizes, particles.velocity_dispersion, scene.planet.frequencies.nu);
+  d.memory_mb = 1e-6 * (cost::program_bytes + bytes_per_particle(scene) * static_cast<double>(particles.count));
+  d.estimated_s = estimate_seconds(scene, d.steps);
+  return d;
+}
+
+} // namespace keeler

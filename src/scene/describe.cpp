@@ -1,0 +1,55 @@
+#include <keeler/scene/scene.hpp>
+
+#include <keeler/scene/keys.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace keeler {
+namespace {
+
+using Row = std::array<std::string, 4>; // key, default, unit, meaning
+
+std::string meaning_words(const Key& key) {
+  std::string words = fmt::format("{}; {}", key.meaning, allowed_words(key));
+  for (const std::string& other : key.alternatives)
+    words += fmt::format("; or {}", find_key(other)->name());
+  if (!key.only_with.value.empty())
+    words += fmt::format("; with {} = \"{}\"", find_key(key.only_with.key)->name(), key.only_with.value);
+  else if (!key.only_with.key.empty())
+    words += fmt::format("; with {}", find_key(key.only_with.key)->name());
+  return words;
+}
+
+std::vector<Row> make_rows(bool markdown) {
+  std::vector<Row> rows = {{"key", "default", "unit", "meaning; what it must be"}};
+  if (markdown)
+    rows.push_back({"---", "---", "---", "---"});
+  for (const Key& key : scene_keys()) {
+    const std::string code = markdown ? "`" : "";
+    const std::string fallback = key.fallback.empty() ? "none" : code + key.fallback + code;
+    rows.push_back({code + key.path + code, fallback, key.unit, meaning_words(key)});
+  }
+  return rows;
+}
+
+} // namespace
+
+std::string describe_keys(bool markdown) {
+  const std::vector<Row> rows = make_rows(markdown);
+  std::array<std::size_t, 3> widths{};
+  for (const Row& row : rows)
+    for (std::size_t k = 0; k < widths.size(); ++k)
+      widths[k] = std::max(widths[k], row[k].size());
+
+  std::string out;
+  for (const Row& row : rows)
+    out += markdown ? fmt::format("| {} | {} | {} | {} |\n", row[0], row[1], row[2], row[3])
+                    : fmt::format("{:{}}  {:{}}  {:{}}  {}\n", row[0], widths[0], row[1], widths[1], row[2], widths[2],
+                                  row[3]);
+  return out;
+}
+
+} // namespace keeler

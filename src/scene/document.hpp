@@ -1,0 +1,49 @@
+// A TOML text as a flat list of entries, each with the place that messages name. No other file sees the TOML library.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace keeler {
+
+struct Table {};
+
+/// A TOML value that no key takes; `what` names it in messages.
+struct Unusable {
+  std::string what;
+};
+
+using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, Table, Unusable>;
+
+/// One key or table header. Names that are not plain keep their quotes in the path, so "a.b" is never a table a.
+struct Entry {
+  std::string path;        ///< "particles.sizes.radius"
+  std::string key_place;   ///< where the name stands: "scene.toml:3:1", or "--set a.b=value"
+  std::string value_place; ///< where the value stands
+  Value value;
+  bool overridden = false; ///< given by an override
+};
+
+/// In the order of the file, overrides last. No path occurs twice.
+using Document = std::vector<Entry>;
+
+const Entry* find_entry(const Document& document, const std::string& path);
+
+/// Throws UsageError where the text is not TOML; `name` stands for the file.
+Document parse_document(const std::string& text, const std::string& name);
+
+/// The value of an override: TOML, or else the text itself as a string. All entries get the place and are overridden.
+Document parse_override_value(const std::string& text, const std::string& path, const std::string& place);
+
+/// Throws UsageError "place: message".
+[[noreturn]] void fail_at(const std::string& place, const std::string& message);
+
+/// "a string", "a table", …
+std::string kind_words(const Value& value);
+
+/// The value as TOML on one line (tables and unusable values in words).
+std::string to_toml(const Value& value);
+
+} // namespace keeler

@@ -1,0 +1,88 @@
+#include "overrides.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/scene/keys.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace keeler {
+namespace {
+
+bool is_within(const std::string& path, const std::string& table) {
+  return path == table || path.rfind(table + ".", 0) == 0;
+}
+
+bool is_dotted_name(const std::string& path) {
+  const auto allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
+           c == '.';
+  };
+  return !path.empty() && std::all_of(path.begin(), path.end(), allowed) && path.front() != '.' && path.back() != '.' &&
+         path.find("..") == std::string::npos;
+}
+
+void erase_within(Document& document, const std::string& table) {
+  document.erase(std::remove_if(document.begin(), document.end(),
+                                [&](const Entry& entry) { return is_within(entry.path, table); }),
+                 document.end());
+}
+
+// Drops what the file (never another override) says at a path.
+void drop_from_file(Document& document, const std::string& path, const std::string& place,
+                    std::vector<std::string>& notices) {
+  const Entry* entry = find_entry(document, path);
+  if (!entry || entry->overridden)
+    return;
+  notices.push_back(fmt::format("{} of the file is dropped: {} takes its place", path, place));
+  erase_within(document, path);
+}
+
+void drop_contradictions(Document& document, const Entry& by, std::vector<std::string>& notices) {
+  const Key* overriding = find_key(by.path);
+  if (!overriding)
+    return;
+  for (const std::string& other : overriding->alternatives)
+    drop_from_file(document, other, by.value_place, notices);
+  for (const Section& section : scene_sections())
+    if (section.replaced_by == by.path)
+      drop_from_file(document, section.path, by.value_place, notices);
+  for (const Key& key : scene_keys()) {
+    const std::string& condition = key.only_with.key;
+    const auto& others = overriding->alternatives;
+    const bool was_alternative = std::find(others.begin(), others.end(), condition) != others.end();
+    const std::string* value = std::get_if<std::string>(&by.value);
+    if (was_alternative || (condition == by.path && value && *value != key.only_with.value))
+      drop_from_file(document, key.path, by.value_place, notices);
+  }
+}
+
+void add_parent_tables(Document& document, const std::string& path, const std::string& place) {
+  for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1))
+    if (!find_entry(document, path.substr(0, dot)))
+      document.push_back({path.substr(0, dot), place, place, Table{}, true});
+}
+
+void apply_override(Document& document, const std::string& text, std::vector<std::string>& notices) {
+  const std::string place = "--set " + text;
+  const std::size_t equals = text.find('=');
+  const std::string path = text.substr(0, equals);
+  if (equals == std::string::npos || !is_dotted_name(path))
+    throw UsageError(place + ": not an override (it needs a key and a value); write --set table.key=value");
+  erase_within(document, path);
+  add_parent_tables(document, path, place);
+  for (const Entry& entry : parse_override_value(text.substr(equals + 1), path, place)) {
+    drop_contradictions(document, entry, notices);
+    document.push_back(entry);
+  }
+}
+
+} // namespace
+
+void apply_overrides(Document& document, const std::vector<std::string>& overrides, std::vector<std::string>& notices) {
+  for (const std::string& text : overrides)
+    apply_override(document, text, notices);
+}
+
+} // namespace keeler

@@ -1,0 +1,125 @@
+#include "particles_and_box.hpp"
+
+#include "text_files.hpp"
+
+#include <keeler/core/units.hpp>
+#include <keeler/scene/derived.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+SizeLaw read_sizes(Settings& settings, const std::string& scene_name) {
+  SizeLaw sizes;
+  const std::string law = settings.text("particles.sizes.law");
+  if (law == "equal") {
+    sizes.min = sizes.max = settings.number("particles.sizes.radius");
+  } else if (law == "power") {
+    sizes.kind = SizeLaw::Kind::power;
+    sizes.exponent = settings.number("particles.sizes.exponent");
+    sizes.min = settings.number("particles.sizes.min");
+    sizes.max = settings.number("particles.sizes.max");
+    if (sizes.min >= sizes.max)
+      fail_at(
+          settings.place("particles.sizes.min"),
+          fmt::format("particles.sizes.min = {} is not below max = {} (a power law needs a range); lower min, or write "
+                      "law = \"equal\"",
+                      sizes.min, sizes.max));
+  } else {
+    sizes.kind = SizeLaw::Kind::file;
+    const std::string place = settings.place("particles.sizes.path");
+    sizes.path = settings.file_path("particles.sizes.path", scene_name);
+    sizes.listed = read_radii(sizes.path, place);
+  }
+  return sizes;
+}
+
+// The key that sets how much there is, and the optical depth it asks for (0 when a count waits for the box).
+struct Amount {
+  std::string key;
+  double optical_depth = 0.0;
+};
+
+Amount read_amount(const Settings& settings, const ParticleSettings& particles) {
+  if (settings.has("particles.optical_depth"))
+    return {"particles.optical_depth", settings.number("particles.optical_depth")};
+  if (settings.has("particles.surface_density"))
+    return {"particles.surface_density", settings.number("particles.surface_density") /
+                                             surface_density_per_depth(particles.sizes, particles.density)};
+  return {"particles.count"};
+}
+
+void read_box(Scene& scene, Settings& settings, const Amount& amount) {
+  const std::string wavelengths = "box.size_in_wavelengths";
+  const bool by_wavelength = settings.has(wavelengths);
+  const std::string key = by_wavelength ? wavelengths : "box.size";
+  const std::string place = settings.place(key);
+  std::vector<double> size = settings.numbers(key);
+  if (by_wavelength) {
+    if (amount.key == "particles.count")
+      fail_at(place,
+              "box.size_in_wavelengths cannot stand beside particles.count (the wavelength follows from the surface "
+              "density, and with a count this follows from the box); give box.size or particles.optical_depth");
+    const double surface_density =
+        amount.optical_depth * surface_density_per_depth(scene.particles.sizes, scene.particles.density);
+    const double wavelength = critical_wavelength(surface_density, scene.planet);
+    for (double& length : size)
+      length *= wavelength;
+    settings.resolve("box.size", size, wavelengths);
+  }
+  scene.size_x = size[0];
+  scene.size_y = size[1];
+  const double diameter = 2.0 * scene.particles.sizes.largest();
+  if (!(std::min(size[0], size[1]) >= diameter))
+    fail_at(place,
+            fmt::format("the box of {:.4g} m x {:.4g} m is smaller than a particle (the largest is {:.4g} m across); "
+                        "enlarge the box or lower the radius",
+                        size[0], size[1], diameter));
+}
+
+void read_count(Scene& scene, Settings& settings, const Amount& amount) {
+  const std::string place = settings.place(amount.key);
+  ParticleSettings& particles = scene.particles;
+  double count = 0.0;
+  if (amount.key == "particles.count") {
+    count = static_cast<double>(settings.integer(amount.key));
+  } else {
+    const double particle_area = pi * particles.sizes.mean_power(2);
+    count = std::round(amount.optical_depth * scene.size_x * scene.size_y / particle_area);
+  }
+  if (!(count >= 1.0 && count <= 1e9))
+    fail_at(place, fmt::format("{} with this box makes {:.3g} particles (a run takes 1 to 1e9); change the box or {}",
+                               amount.key, count, amount.key));
+  particles.count = static_cast<std::size_t>(count);
+  if (amount.key != "particles.count")
+    settings.resolve("particles.count", static_cast<std::int64_t>(particles.count), amount.key);
+
+  const double filling = midplane_filling(scene.optical_depth(), particles.sizes, particles.velocity_dispersion,
+                                          scene.planet.frequencies.nu);
+  if (!(filling <= largest_filling)) {
+    const double enough = particles.velocity_dispersion * filling / largest_filling;
+    fail_at(place, fmt::format("too dense (the mid-plane would be filled to {:.2f}, and {:.1f} is the most that can be "
+                               "placed without overlap); raise velocity_dispersion to at least {:.2f} or lower the "
+                               "optical depth of {:.3g}",
+                               filling, largest_filling, std::ceil(enough * 100.0) / 100.0, scene.optical_depth()));
+  }
+}
+
+} // namespace
+
+void read_particles_and_box(Scene& scene, Settings& settings, const std::string& name) {
+  ParticleSettings& particles = scene.particles;
+  particles.density = settings.number("particles.density");
+  particles.sizes = read_sizes(settings, name);
+  particles.velocity_dispersion = settings.number("particles.velocity_dispersion");
+  particles.seed = static_cast<std::uint64_t>(settings.integer("particles.seed"));
+  const Amount amount = read_amount(settings, particles);
+  read_box(scene, settings, amount);
+  read_count(scene, settings, amount);
+}
+
+} // namespace keeler

@@ -1,0 +1,137 @@
+#include <keeler/scene/scene.hpp>
+
+#include "checks.hpp"
+#include "overrides.hpp"
+#include "particles_and_box.hpp"
+#include "presets.hpp"
+#include "settings.hpp"
+#include "text_files.hpp"
+
+#include <keeler/core/units.hpp>
+#include <keeler/scene/derived.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+PlanetSettings read_planet(Settings& settings) {
+  PlanetSettings planet;
+  if (settings.has("planet.preset")) {
+    planet = find_preset(settings.text("planet.preset"));
+    settings.resolve("planet.orbital_frequency", planet.orbital_frequency, "planet.preset");
+    settings.resolve("planet.epicyclic_ratio", planet.frequencies.kappa);
+    settings.resolve("planet.vertical_ratio", planet.frequencies.nu);
+  } else {
+    planet.orbital_frequency = settings.number("planet.orbital_frequency");
+    planet.frequencies = {settings.number("planet.epicyclic_ratio"), settings.number("planet.vertical_ratio")};
+  }
+  return planet;
+}
+
+CollisionSettings read_collisions(const Settings& settings) {
+  CollisionSettings collisions;
+  collisions.finder = settings.text("collisions.finder");
+  collisions.elastic_below = settings.number("collisions.elastic_below");
+  RestitutionLaw& law = collisions.restitution;
+  if (settings.text("collisions.restitution.law") == "bridges") {
+    law.kind = RestitutionLaw::Kind::bridges;
+    law.scale = settings.number("collisions.restitution.scale");
+  } else {
+    law.kind = RestitutionLaw::Kind::constant;
+    law.value = settings.number("collisions.restitution.value");
+  }
+  return collisions;
+}
+
+std::optional<GravitySettings> read_gravity(const Settings& settings) {
+  if (!settings.has("gravity"))
+    return {};
+  GravitySettings gravity;
+  if (settings.text("gravity.solver") == "direct") {
+    gravity.solver = GravitySettings::Solver::direct;
+  } else {
+    gravity.solver = GravitySettings::Solver::tree;
+    gravity.opening_angle = settings.number("gravity.opening_angle");
+  }
+  gravity.image_rings = static_cast<int>(settings.integer("gravity.image_rings"));
+  gravity.kick_every = static_cast<int>(settings.integer("gravity.kick_every"));
+  return gravity;
+}
+
+// A time in orbits as steps: the nearest multiple of the kick interval, but at least one unless the time is 0.
+std::int64_t whole_kicks(Scene& scene, Settings& settings, const std::string& key) {
+  const double orbits = settings.number(key);
+  const std::int64_t per_kick = scene.gravity ? scene.gravity->kick_every : 1;
+  const double interval = scene.time.step * static_cast<double>(per_kick);
+  const double kicks = orbits / interval;
+  if (!(kicks < 1e15))
+    fail_at(settings.place(key),
+            fmt::format("{} = {} is too long (a step of {} makes more than 1e15 steps); lower it or "
+                        "raise time.step",
+                        key, orbits, scene.time.step));
+  if (orbits == 0.0)
+    return 0;
+  const std::int64_t whole = std::max<std::int64_t>(1, std::llround(kicks));
+  const std::int64_t steps = whole * per_kick;
+  if (std::fabs(kicks - static_cast<double>(whole)) > 1e-9 * kicks) {
+    const double rounded = static_cast<double>(steps) * scene.time.step;
+    const std::string kicks_every = per_kick > 1 ? fmt::format("kicks, one every {} steps", per_kick) : "steps";
+    scene.notices.push_back(fmt::format("{} = {} is rounded to {:.12g} orbits (whole {} of {} orbits)", key, orbits,
+                                        rounded, kicks_every, scene.time.step));
+    settings.resolve(key, rounded);
+  }
+  return steps;
+}
+
+void read_times(Scene& scene, Settings& settings) {
+  scene.time.step = settings.number("time.step");
+  scene.time.end_step = whole_kicks(scene, settings, "time.end");
+  scene.output.snapshot_every = whole_kicks(scene, settings, "output.snapshot_every");
+  scene.output.checkpoint_every = whole_kicks(scene, settings, "output.checkpoint_every");
+}
+
+} // namespace
+
+double Scene::step_length() const {
+  return two_pi * time.step;
+}
+
+double Scene::surface_density() const {
+  return optical_depth() * (start_from ? 0.0 : surface_density_per_depth(particles.sizes, particles.density));
+}
+
+double Scene::optical_depth() const {
+  if (start_from)
+    return 0.0;
+  return static_cast<double>(particles.count) * pi * particles.sizes.mean_power(2) / (size_x * size_y);
+}
+
+Scene parse_scene(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
+  Scene scene;
+  Document document = parse_document(text, name);
+  apply_overrides(document, overrides, scene.notices);
+  check_document(document, name);
+
+  Settings settings(std::move(document));
+  scene.title = settings.text("title");
+  scene.planet = read_planet(settings);
+  if (settings.has("start"))
+    scene.start_from = settings.file_path("start.from", name);
+  else
+    read_particles_and_box(scene, settings, name);
+  scene.collisions = read_collisions(settings);
+  scene.gravity = read_gravity(settings);
+  read_times(scene, settings);
+  scene.resolved = settings.resolved();
+  return scene;
+}
+
+Scene load_scene(const std::string& path, const std::vector<std::string>& overrides) {
+  return parse_scene(read_text_file(path, path), path, overrides);
+}
+
+} // namespace keeler

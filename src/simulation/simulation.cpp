@@ -1,0 +1,132 @@
+#include <keeler/simulation/simulation.hpp>
+
+#include <keeler/cells/overlap.hpp>
+#include <keeler/core/error.hpp>
+#include <keeler/core/stopwatch.hpp>
+#include <keeler/core/threads.hpp>
+#include <keeler/core/units.hpp>
+
+#include <fmt/format.h>
+
+namespace keeler {
+namespace {
+
+constexpr double allowed_overlap = 1e-9; // of a radius sum: rounding of positions that were stored in SI
+
+SimulationState first_state(const Scene& scene, const Patch& start) {
+  const Overlap overlap = largest_overlap(start);
+  if (overlap.depth > allowed_overlap)
+    throw InvariantError(fmt::format("particles {} and {} of the initial state overlap by {:.2e} of their radius sum; "
+                                     "start from a state without overlaps",
+                                     overlap.id_i, overlap.id_j, overlap.depth));
+  SimulationState state;
+  state.step_length = scene.step_length();
+  state.box = start.box;
+  state.box.shear = scene.planet.frequencies.shear();
+  state.box.first_offset = start.offset;
+  Patch patch = start;
+  patch.frequencies = scene.planet.frequencies;
+  state.particles = particles_from(patch, 0.5 * state.step_length);
+  state.energy.start = total_energy(state.particles, scene.planet.frequencies);
+  return state;
+}
+
+} // namespace
+
+Simulation::Simulation(const Scene& scene, const Patch& start) : Simulation(scene, first_state(scene, start)) {
+  if (solver_)
+    accelerate();
+}
+
+Simulation::Simulation(const Scene& scene, SimulationState state)
+    : scene_(scene), state_(std::move(state)),
+      drift_(scene.collisions, scene.planet.frequencies, scene.planet.orbital_frequency, state_.step_length) {
+  if (scene_.gravity)
+    solver_ = make_gravity_solver(*scene_.gravity);
+}
+
+void Simulation::advance() {
+  if (kick_due())
+    half_kick();
+  {
+    const Stopwatch watch(split_.drift);
+    drift_.collide(state_.particles, state_.box, state_.epoch_offset(), state_.collisions);
+    move_on();
+  }
+  if (kick_due()) {
+    accelerate();
+    half_kick();
+  }
+}
+
+// To the epoch of the next step, and back into the cell by guiding centre.
+void Simulation::move_on() {
+  const Frequencies& f = scene_.planet.frequencies;
+  const Rebase rebase(f, state_.step_length);
+  ++state_.step;
+  const double offset = state_.epoch_offset();
+  const double gain = -0.25 * f.shear() * f.kappa * f.kappa;
+  state_.energy.wrap_work += ordered_sum(state_.particles.size(), [&](std::size_t k) {
+    Body& body = state_.particles.bodies[k];
+    Elements& el = body.elements;
+    rebase(el);
+    const Image image = state_.box.image_into_cell(el.guiding_x, el.guiding_y, offset);
+    if (image == Image{})
+      return 0.0;
+    const double before = el.guiding_x;
+    el = state_.box.image_of(el, image, offset);
+    return body.mass * gain * (el.guiding_x * el.guiding_x - before * before);
+  });
+}
+
+void Simulation::accelerate() {
+  const Stopwatch watch(split_.gravity);
+  const std::size_t count = state_.particles.size();
+  const Rotation rotation(scene_.planet.frequencies, -0.5 * state_.step_length);
+  positions_.resize(count);
+  masses_.resize(count);
+  state_.accelerations.resize(count);
+  parallel_for(count, [&](std::size_t k) {
+    const Body& body = state_.particles.bodies[k];
+    positions_[k] = state_at(body.elements, scene_.planet.frequencies, rotation).position;
+    masses_[k] = body.mass;
+  });
+  const GravityProblem problem{positions_,
+                               masses_,
+                               state_.particles.ids,
+                               state_.box,
+                               state_.boundary_offset(),
+                               newton_g(scene_.planet.orbital_frequency)};
+  solver_->accelerate(problem, state_.accelerations);
+}
+
+// Half a kick interval's velocity change, at the boundary between steps. Two half kicks are always two additions.
+void Simulation::half_kick() {
+  const Stopwatch watch(split_.gravity);
+  const Frequencies& f = scene_.planet.frequencies;
+  const Rotation rotation(f, -0.5 * state_.step_length);
+  const double half = 0.5 * state_.step_length * scene_.gravity->kick_every;
+  state_.energy.kick_work += ordered_sum(state_.particles.size(), [&](std::size_t k) {
+    Body& body = state_.particles.bodies[k];
+    const Vec3 dv = half * state_.accelerations[k];
+    const Vec3 v = state_at(body.elements, f, rotation).velocity;
+    kick(body.elements, dv, f, rotation);
+    return body.mass * (v.dot(dv) + 0.5 * dv.squaredNorm());
+  });
+}
+
+Patch Simulation::patch() const {
+  Patch patch = make_patch(state_.particles, state_.box, state_.boundary_offset(), scene_.planet.frequencies,
+                           -0.5 * state_.step_length);
+  patch.orbital_frequency = scene_.planet.orbital_frequency;
+  patch.time_orbits = orbits();
+  return patch;
+}
+
+double Simulation::energy_residual() const {
+  const EnergyBudget& e = state_.energy;
+  return total_energy(state_.particles, scene_.planet.frequencies) - e.start - e.kick_work - e.wrap_work -
+         state_.collisions.edge_work + state_.collisions.energy_lost;
+}
+
+} // namespace keeler

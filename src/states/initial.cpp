@@ -1,0 +1,38 @@
+#include <keeler/states/initial.hpp>
+
+#include <keeler/io/snapshot.hpp>
+#include <keeler/scene/derived.hpp>
+#include <keeler/states/uniform.hpp>
+
+namespace keeler {
+
+Patch patch_from_snapshot(const std::string& path, const Scene& scene) {
+  Patch patch = read_snapshot(path).patch;
+  // Velocities are stored in m/s; the scene's orbital frequency decides what they are in its own time.
+  for (Vec3& velocity : patch.velocities)
+    velocity *= patch.orbital_frequency / scene.planet.orbital_frequency;
+  patch.orbital_frequency = scene.planet.orbital_frequency;
+  patch.frequencies = scene.planet.frequencies;
+  patch.box.shear = scene.planet.frequencies.shear();
+  patch.time_orbits = 0.0;
+  return patch;
+}
+
+Patch initial_patch(const Scene& scene) {
+  if (scene.start_from)
+    return patch_from_snapshot(*scene.start_from, scene);
+  const double mean_radius = scene.particles.sizes.mean_power(1);
+  UniformRequest request;
+  request.box = {scene.size_x, scene.size_y, scene.planet.frequencies.shear(), 0.0};
+  request.frequencies = scene.planet.frequencies;
+  request.radii = draw_radii(scene.particles.sizes, scene.particles.count, scene.particles.seed);
+  request.density = scene.particles.density;
+  request.dispersion_x = scene.particles.velocity_dispersion * mean_radius;
+  request.dispersion_z = vertical_share * request.dispersion_x;
+  request.seed = scene.particles.seed;
+  Patch patch = uniform_patch(request);
+  patch.orbital_frequency = scene.planet.orbital_frequency;
+  return patch;
+}
+
+} // namespace keeler

@@ -1,0 +1,95 @@
+#!/bin/bash
+# check.sh KEELER SOURCE_DIR: `keeler check` accepts the examples, and answers each bad scene with exit code 2 and exactly
+# one line on stderr that holds the expected words.
+set -u
+keeler=$1
+source_dir=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failures=0
+
+fail() {
+  echo "FAILED: $*"
+  failures=$((failures + 1))
+}
+
+# accepts NAME ARGUMENT...: exit 0 and nothing on stderr
+accepts() {
+  local name=$1
+  shift
+  "$keeler" "$@" >"$work/out" 2>"$work/err" || fail "$name: exit $?"
+  [ -s "$work/err" ] && fail "$name: $(cat "$work/err")"
+}
+
+# prints NAME WORDS: the last accepted command printed the words
+prints() {
+  grep -qF -- "$2" "$work/out" || fail "$1: no '$2' in: $(cat "$work/out")"
+}
+
+# refuses NAME WORDS ARGUMENT...: exit 2, nothing on stdout, one line on stderr with the words
+refuses() {
+  local name=$1 words=$2 code=0
+  shift 2
+  "$keeler" "$@" >"$work/out" 2>"$work/err" || code=$?
+  [ "$code" -eq 2 ] || fail "$name: exit $code instead of 2"
+  [ -s "$work/out" ] && fail "$name: printed $(cat "$work/out")"
+  [ "$(wc -l <"$work/err")" -eq 1 ] || fail "$name: not one line: $(cat "$work/err")"
+  grep -q "^keeler: " "$work/err" || fail "$name: does not name the program: $(cat "$work/err")"
+  grep -qF -- "$words" "$work/err" || fail "$name: no '$words' in: $(cat "$work/err")"
+}
+
+good=$source_dir/examples/a-ring-wakes/scene.toml
+
+# bad NAME WORDS SED-COMMAND: the good scene, changed, is refused
+bad() {
+  local scene=$work/scene.toml
+  sed "$3" "$good" >"$scene"
+  cmp -s "$scene" "$good" && fail "$1: the change does nothing"
+  refuses "$1" "$2" check "$scene"
+}
+
+for scene in "$source_dir"/examples/*/scene.toml; do
+  accepts "$scene" check "$scene"
+  prints "$scene" "steps"
+  accepts "$scene as JSON" check "$scene" --json
+  for key in particle_count optical_depth surface_density lambda_cr_m toomre_q hill_parameter midplane_filling box_m \
+    steps memory_mb estimated_s notices; do
+    prints "$scene as JSON" "\"$key\":"
+  done
+done
+accepts "overrides before and after" check --set particles.count=500 "$good" --set 'box.size=[100, 100]'
+prints "overrides before and after" "particles          500"
+accepts "defaults" check --defaults
+prints "defaults" "particles.velocity_dispersion"
+accepts "version" --version
+prints "version" "keeler "
+accepts "help" --help
+accepts "help of check" check --help
+
+bad "unknown key" 'scene.toml:12:1: unknown key particles.densty (no scene has it); did you mean "density"?' 's/^density/densty/'
+bad "unknown table" 'did you mean "gravity"?' 's/\[gravity\]/[gravty]/'
+bad "wrong type" 'particles.optical_depth is a string' 's/optical_depth = 0.5/optical_depth = "half"/'
+bad "negative radius" 'particles.sizes.radius is -1.0' 's/radius = 1.0/radius = -1.0/'
+bad "small box" 'is smaller than a particle' 's/size_in_wavelengths = .*/size = [1.5, 100]/'
+bad "too dense" 'too dense' 's/optical_depth = 0.5/optical_depth = 5/'
+bad "missing section" '[time] is missing' '/^\[time\]/,/^end/d'
+bad "missing key" 'particles.density is missing' '/^density/d'
+bad "contradiction" 'cannot stand beside' 's/^optical_depth.*/&\ncount = 5/'
+bad "not TOML" 'not TOML' 's/^\[box\]/[box/'
+refuses "binary" "not TOML" check "$keeler"
+refuses "no file" "cannot be read (No such file or directory)" check "$work/absent.toml"
+refuses "a folder" "cannot be read (Is a directory)" check "$work"
+if [ "$(id -u)" -ne 0 ]; then # root may read everything
+  cp "$good" "$work/locked.toml"
+  chmod 000 "$work/locked.toml"
+  refuses "unreadable file" "cannot be read (Permission denied)" check "$work/locked.toml"
+fi
+refuses "bad override" "--set gravity.solver=quantum: gravity.solver" check "$good" --set gravity.solver=quantum
+refuses "override without a value" "not an override" check "$good" --set gravity
+refuses "no scene" "check needs a scene" check
+refuses "no command" "subcommand"
+refuses "unknown command" "" chekc
+refuses "unknown option" "--wibble" check --wibble
+
+echo "$failures failures"
+[ "$failures" -eq 0 ]

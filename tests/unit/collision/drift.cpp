@@ -1,0 +1,229 @@
+#include <keeler/collision/drift.hpp>
+
+#include "unit/collision/brute_force.hpp"
+
+#include <keeler/cells/overlap.hpp>
+#include <keeler/core/error.hpp>
+#include <keeler/core/threads.hpp>
+#include <keeler/core/units.hpp>
+#include <keeler/particles/sizes.hpp>
+#include <keeler/states/uniform.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace keeler;
+
+namespace {
+
+constexpr double omega = 1.3175e-4;
+
+struct Scenario {
+  std::size_t count = 60;
+  double optical_depth = 0.5, filling = 0.15;
+  double smallest = 1.0; // radius; the largest is 1
+  double kappa = 1.0, nu = 1.0;
+  double step = two_pi * 1e-3;
+  RestitutionLaw restitution;
+};
+
+struct Start {
+  Particles particles;
+  ShearingBox box;
+  double offset; // at the epoch, the middle of the step
+};
+
+Start make_start(const Scenario& s, std::uint64_t seed) {
+  UniformRequest request;
+  request.frequencies = {s.kappa, s.nu};
+  const SizeLaw law{s.smallest < 1.0 ? SizeLaw::Kind::power : SizeLaw::Kind::equal, 3.0, s.smallest, 1.0, {}, {}};
+  request.radii = draw_radii(law, s.count, seed);
+  double area = 0.0, volume = 0.0;
+  for (const double r : request.radii) {
+    area += pi * r * r / s.optical_depth;
+    volume += 4.0 / 3.0 * pi * r * r * r;
+  }
+  request.box = {std::sqrt(area) * 1.2, std::sqrt(area) / 1.2, request.frequencies.shear(), 0.0};
+  request.box.first_offset = 0.41 * request.box.size_y * static_cast<double>(seed % 3);
+  request.dispersion_z = s.nu * volume / area / (std::sqrt(two_pi) * s.filling);
+  request.dispersion_x = request.dispersion_z / (0.65 * s.nu);
+  request.seed = seed;
+  const Patch patch = uniform_patch(request);
+  return {particles_from(patch, 0.5 * s.step), request.box, request.box.offset(1, 0.5 * s.step)};
+}
+
+CollisionSettings settings_of(const Scenario& s) {
+  CollisionSettings settings;
+  settings.restitution = s.restitution;
+  return settings;
+}
+
+std::vector<CollisionRecord> run_drift(const Scenario& s, Start& start, CollisionTally& tally) {
+  DriftPhase drift(settings_of(s), {s.kappa, s.nu}, omega, s.step);
+  std::vector<CollisionRecord> records;
+  drift.observer = [&](const CollisionRecord& record) { records.push_back(record); };
+  drift.collide(start.particles, start.box, start.offset, tally);
+  return records;
+}
+
+// Compares one drift with the twin; returns the number of collisions. Times must agree to 1e-9 of a step, or to the
+// rounding of |d|² − R² (about 1e-14 (R² + R times a coordinate of 30)) over its slope where grazing makes that larger.
+std::size_t compare(const Scenario& s, std::uint64_t seed, int scans) {
+  Start start = make_start(s, seed), copy = start;
+  CollisionTally tally;
+  const std::vector<CollisionRecord> records = run_drift(s, start, tally);
+  test::BruteForce twin(settings_of(s), {s.kappa, s.nu}, omega, s.step, scans);
+  const std::vector<CollisionRecord> expected = twin.collide(copy.particles, copy.box, copy.offset);
+  REQUIRE(records.size() == expected.size());
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    CHECK(records[k].low_id == expected[k].low_id);
+    CHECK(records[k].high_id == expected[k].high_id);
+    CHECK(records[k].image == expected[k].image);
+    const double rounding = 3e-13 / std::max(1e-9, expected[k].normal_speed);
+    CHECK(std::fabs(records[k].time - expected[k].time) <= std::max(1e-9 * s.step, rounding));
+  }
+  return records.size();
+}
+
+} // namespace
+
+TEST_CASE("the same collisions as the brute-force twin: pairs, images, order, times") {
+  std::size_t collisions = 0;
+  Scenario s;
+  SUBCASE("a thousandth of an orbit") {
+    s.step = two_pi * 1e-3;
+  }
+  SUBCASE("a hundredth of an orbit") {
+    s.step = two_pi * 1e-2;
+  }
+  SUBCASE("general frequencies") {
+    s.kappa = 0.95, s.nu = 3.6;
+    s.step = two_pi * 5e-3;
+  }
+  SUBCASE("sizes 1:10") {
+    s.smallest = 0.1;
+    s.count = 90;
+    s.step = two_pi * 5e-3;
+  }
+  SUBCASE("filling 0.4, small sizes too") {
+    s.filling = 0.4, s.smallest = 0.3, s.optical_depth = 1.2;
+    s.step = two_pi * 3e-3;
+  }
+  SUBCASE("filling 0.4, equal sizes, large step") {
+    s.filling = 0.4, s.optical_depth = 1.0, s.count = 40;
+    s.step = two_pi * 2e-2;
+  }
+  SUBCASE("the bridges law") {
+    s.restitution.kind = RestitutionLaw::Kind::bridges;
+    s.step = two_pi * 1e-2;
+  }
+  for (std::uint64_t seed = 1; seed <= 12; ++seed)
+    collisions += compare(s, seed, 400);
+  CHECK(collisions > 10); // the comparison is not empty
+}
+
+TEST_CASE("two hundred particles against the twin") {
+  Scenario s;
+  s.count = 200;
+  s.step = two_pi * 5e-3;
+  for (const double filling : {0.1, 0.4}) {
+    s.filling = filling;
+    s.optical_depth = filling > 0.2 ? 1.0 : 0.5;
+    CHECK(compare(s, 21, 300) > 5);
+  }
+}
+
+TEST_CASE("the same bits for any number of threads and any order in memory") {
+  Scenario s;
+  s.count = 3000;
+  s.step = two_pi * 1e-2;
+  const Start start = make_start(s, 5);
+  set_threads(1);
+  Start one = start;
+  CollisionTally tally_one;
+  const auto records = run_drift(s, one, tally_one);
+  CHECK(records.size() > 100);
+
+  for (const int count : {2, 3}) {
+    set_threads(count);
+    Start other = start;
+    CollisionTally tally;
+    run_drift(s, other, tally);
+    CHECK(std::memcmp(one.particles.bodies.data(), other.particles.bodies.data(), 64 * s.count) == 0);
+    CHECK(tally.energy_lost == tally_one.energy_lost);
+  }
+  Start reversed = start;
+  std::reverse(reversed.particles.bodies.begin(), reversed.particles.bodies.end());
+  std::reverse(reversed.particles.ids.begin(), reversed.particles.ids.end());
+  CollisionTally tally;
+  run_drift(s, reversed, tally);
+  std::reverse(reversed.particles.bodies.begin(), reversed.particles.bodies.end());
+  CHECK(std::memcmp(one.particles.bodies.data(), reversed.particles.bodies.data(), 64 * s.count) == 0);
+  CHECK(tally.momentum_flux == tally_one.momentum_flux);
+}
+
+TEST_CASE("collisions keep the sums that mechanics keeps, and lose the energy that they book") {
+  for (const double nu : {1.0, 3.6}) {
+    Scenario s;
+    s.count = 800;
+    s.nu = nu;
+    s.smallest = 0.3;
+    s.step = two_pi * 1e-2;
+    s.kappa = 0.99458;
+    Start start = make_start(s, 8);
+    const Frequencies f{s.kappa, s.nu};
+    const auto sums = [&](const Particles& p) {
+      Eigen::Array<double, 7, 1> total = Eigen::Array<double, 7, 1>::Zero();
+      for (const Body& b : p.bodies) {
+        const Elements& el = b.elements;
+        total += b.mass * Eigen::Array<double, 7, 1>{el.guiding_x, el.guiding_y, el.e_cos,     el.e_sin,
+                                                     el.i_sin,     el.i_cos,     energy(el, f)};
+      }
+      return total;
+    };
+    const auto before = sums(start.particles);
+    CollisionTally tally;
+    const auto records = run_drift(s, start, tally);
+    CHECK(records.size() > 20);
+    const auto after = sums(start.particles);
+    double scale = 0.0; // what the sums are made of
+    for (const Body& b : start.particles.bodies)
+      scale += b.mass * (std::fabs(b.elements.guiding_x) + std::fabs(b.elements.guiding_y));
+    for (int k = 0; k < 6; ++k)
+      CHECK(std::fabs(after[k] - before[k]) < 1e-14 * scale);
+    CHECK(tally.energy_lost > 0.0);
+    CHECK(std::fabs(after[6] - before[6] + tally.energy_lost - tally.edge_work) < 1e-12 * scale * start.box.size_x);
+  }
+}
+
+TEST_CASE("no overlap deeper than rounding after many dense steps") {
+  Scenario s;
+  s.count = 300;
+  s.filling = 0.4;
+  s.optical_depth = 1.0;
+  s.step = two_pi * 2e-3;
+  Start start = make_start(s, 2);
+  DriftPhase drift(settings_of(s), {1.0, 1.0}, omega, s.step);
+  const Rebase rebase({1.0, 1.0}, s.step);
+  CollisionTally tally;
+  for (int step = 0; step < 200; ++step) {
+    const double offset = start.box.offset(2 * step + 1, 0.5 * s.step);
+    drift.collide(start.particles, start.box, offset, tally);
+    const double end_offset = start.box.offset(2 * step + 2, 0.5 * s.step);
+    const Patch patch = make_patch(start.particles, start.box, end_offset, {1.0, 1.0}, 0.5 * s.step);
+    CHECK(largest_overlap(patch).depth < 1e-11);
+    for (Body& body : start.particles.bodies)
+      rebase(body.elements);
+  }
+  CHECK(tally.fast > 1000);
+}
+
+TEST_CASE("bad elements and unknown finders are errors, not hangs") {
+  Scenario s;
+  Start start = make_start(s, 1);
+  start.particles.bodies[3].elements.e_cos = std::nan("");
+  CollisionTally tally;
+  CHECK_THROWS_AS(run_drift(s, start, tally), InvariantError);
+  CollisionSettings settings;
+  settings.finder = "guess";
+  CHECK_THROWS_AS(DriftPhase(settings, {1, 1}, omega, 0.01), UsageError);
+}

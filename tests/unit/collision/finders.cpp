@@ -1,0 +1,177 @@
+#include <keeler/collision/finders.hpp>
+
+#include <keeler/collision/restitution.hpp>
+#include <keeler/core/random.hpp>
+#include <keeler/core/units.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace keeler;
+
+namespace {
+
+// A pair that touches with a given depth of closest approach at a chosen time: |d| has its minimum R − depth there.
+Pair grazing_pair(RandomStream& random, const Frequencies& f, double step, double depth, double speed) {
+  Pair pair;
+  pair.reach = 2.0;
+  pair.step = step;
+  pair.start = -0.5 * step;
+  pair.end = 0.5 * step;
+  const double when = (random.uniform() - 0.5) * step * 0.8;
+  Vec3 d(random.normal(), random.normal(), random.normal());
+  d *= (pair.reach - depth) / d.norm();
+  Vec3 v(random.normal(), random.normal(), random.normal());
+  v -= d * (v.dot(d) / d.squaredNorm());
+  v *= speed / v.norm();
+  pair.lo = {};
+  pair.hi = elements_from({d, v}, f, Rotation(f, when));
+  return pair;
+}
+
+// The relative motion in extended precision, and its deepest point before a time by a dense scan with bisection: the
+// twin of the finders. `closing` at a time, `deepest` over approaching parts only: a pair that separates from contact
+// is no hit.
+class Twin {
+public:
+  using Real = long double;
+
+  Twin(const Pair& pair, const Frequencies& f) : pair_(pair), f_(f), el_(pair.hi - pair.lo) {}
+
+  Real gap(Real t) const { return at(t).first; }
+  Real closing(Real t) const { return at(t).second; }
+
+  /// The least |d|² − R² that an approach reaches in [start, end].
+  Real deepest(Real end, int points) const {
+    Real least = HUGE_VALL, before = pair_.start;
+    for (int k = 1; k <= points && end > pair_.start; ++k) {
+      const Real now = pair_.start + (end - pair_.start) * k / points;
+      if (closing(before) < 0) {
+        Real low = now;
+        if (closing(now) >= 0) {
+          Real a = before;
+          for (int step = 0; step < 80; ++step) {
+            const Real middle = (a + low) / 2;
+            (closing(middle) < 0 ? a : low) = middle;
+          }
+        }
+        least = std::min(least, gap(low));
+      }
+      before = now;
+    }
+    return least;
+  }
+
+  /// What rounding of the elements in double precision can do to |d|² − R²: some units in the last place of its terms.
+  Real rounding() const {
+    const Real scale = std::max(
+        {std::fabs(el_.guiding_x), std::fabs(el_.guiding_y), 2 * el_.eccentricity(), el_.inclination(), pair_.reach});
+    return 32 * 2.2e-16L * pair_.reach * scale;
+  }
+
+private:
+  std::pair<Real, Real> at(Real t) const {
+    const Real k = f_.kappa, n = f_.nu, s = (4 - k * k) / 2;
+    const Real ec = el_.e_cos * std::cos(k * t) - el_.e_sin * std::sin(k * t);
+    const Real es = el_.e_sin * std::cos(k * t) + el_.e_cos * std::sin(k * t);
+    const Real z = el_.i_sin * std::cos(n * t) + el_.i_cos * std::sin(n * t);
+    const Real vz = n * (el_.i_cos * std::cos(n * t) - el_.i_sin * std::sin(n * t));
+    const Real x = el_.guiding_x - ec, y = el_.guiding_y - s * el_.guiding_x * t + 2 / k * es;
+    return {x * x + y * y + z * z - static_cast<Real>(pair_.reach) * pair_.reach,
+            2 * (x * k * es + y * (2 * ec - s * el_.guiding_x) + z * vz)};
+  }
+
+  Pair pair_;
+  Frequencies f_;
+  Elements el_;
+};
+
+} // namespace
+
+TEST_CASE("the certified finder finds every first contact, grazing ones too, and invents none") {
+  const Finder certified = finder_named("certified");
+  RandomStream random(11, RandomPurpose::position, 0);
+  int hits = 0, misses = 0, most_passes = 0;
+  for (const Frequencies f : {Frequencies{1.0, 1.0}, Frequencies{0.95, 1.05}, Frequencies{1.0, 3.6}})
+    for (const double step : {two_pi * 1e-3, two_pi * 1e-2, two_pi * 0.1, two_pi * 0.2})
+      for (const double depth : {0.3, 1e-3, 1e-6, 1e-9, 1e-12, -1e-12, -1e-9, -1e-6, -1e-2})
+        for (int k = 0; k < 30; ++k) {
+          const Pair pair = grazing_pair(random, f, step, depth, std::pow(10.0, -2.0 + 3.0 * random.uniform()));
+          const FinderResult result = certified(pair, f);
+          const Twin twin(pair, f);
+          REQUIRE(result.exit != FinderExit::gave_up);
+          most_passes = std::max(most_passes, result.iterations);
+          if (result.contact()) {
+            ++hits;
+            CHECK(twin.gap(result.time) <= twin.rounding());
+            CHECK(twin.closing(result.time) <= 1e-12L);
+            CHECK(twin.deepest(result.time, 100) >= (result.exit == FinderExit::hit ? -twin.rounding() : -HUGE_VALL));
+          } else {
+            ++misses;
+            CHECK(twin.deepest(pair.end, 100) >= -twin.rounding());
+          }
+        }
+  CHECK(hits > 500);
+  CHECK(misses > 500);
+  MESSAGE("most passes of a search: " << most_passes);
+}
+
+TEST_CASE("after a bounce the pair is not found again at once, and its later contact is") {
+  const Finder certified = finder_named("certified");
+  const Frequencies f{1.0, 1.0};
+  RandomStream random(3, RandomPurpose::position, 1);
+  int bounces = 0;
+  for (int k = 0; k < 2000; ++k) {
+    Pair pair = grazing_pair(random, f, 0.3, 0.5, 20.0);
+    FinderResult first = certified(pair, f);
+    if (first.exit != FinderExit::hit || Twin(pair, f).gap(pair.start) < 0)
+      continue; // starts buried
+    ++bounces;
+    const Rotation r(f, first.time);
+    const State s = state_at(pair.hi, f, r);
+    const Vec3 n = s.position.normalized();
+    kick(pair.hi, -1.5 * s.velocity.dot(n) * n, f, r); // ε = 0.5
+    pair.start = first.time;
+    const FinderResult second = certified(pair, f);
+    if (second.contact())
+      CHECK(second.time > first.time);
+    CHECK(second.exit != FinderExit::gave_up);
+  }
+  CHECK(bounces > 500);
+}
+
+TEST_CASE("a number that is not finite never reads as a miss") {
+  const Frequencies f{1.0, 1.0};
+  for (const FinderEntry& entry : finder_table()) {
+    Pair pair;
+    pair.hi.guiding_x = std::nan("");
+    pair.reach = 1.0;
+    pair.start = -0.1, pair.end = 0.1, pair.step = 0.2;
+    CHECK(entry.find(pair, f).exit == FinderExit::not_a_number);
+  }
+}
+
+TEST_CASE("linear-full finds ordinary contacts at a small step") {
+  const Frequencies f{1.0, 1.0};
+  RandomStream random(5, RandomPurpose::position, 0);
+  int found = 0, all = 0; // times to |d² − R²| < 1e-8 R² over its slope of about 50
+  for (int k = 0; k < 1000; ++k) {
+    const Pair pair = grazing_pair(random, f, two_pi * 1e-2, 0.1, 30.0 + random.uniform());
+    const FinderResult exact = finder_named("certified")(pair, f);
+    if (exact.exit != FinderExit::hit)
+      continue;
+    ++all;
+    const FinderResult linear = finder_named("linear-full")(pair, f);
+    found += linear.contact() && std::fabs(linear.time - exact.time) < 1e-8;
+  }
+  CHECK(all > 200);
+  CHECK(found == all);
+}
+
+TEST_CASE("restitution laws") {
+  CHECK(RestitutionLaw{RestitutionLaw::Kind::constant, 0.4, 0.34}.coefficient(123.0) == 0.4);
+  const RestitutionLaw bridges{RestitutionLaw::Kind::bridges, 0.5, 0.34};
+  CHECK(bridges.coefficient(0.01) == doctest::Approx(0.34)); // at 1 cm/s, Bridges et al. 1984
+  CHECK(bridges.coefficient(0.1) == doctest::Approx(0.34 * std::pow(10.0, -0.234)));
+  CHECK(bridges.coefficient(1e-9) == 1.0);
+  CHECK(bridges.coefficient(0.0) == 1.0);
+}

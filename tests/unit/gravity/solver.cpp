@@ -1,0 +1,159 @@
+// What every solver behind the interface promises, each one checked the same way.
+#include <keeler/gravity/solver.hpp>
+
+#include <keeler/core/threads.hpp>
+#include <keeler/gravity/direct.hpp>
+#include <keeler/gravity/tree.hpp>
+
+#include "clumped_state.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+using namespace keeler;
+using namespace keeler_test;
+
+namespace {
+
+constexpr GravitySettings::Solver all_solvers[] = {GravitySettings::Solver::direct, GravitySettings::Solver::tree};
+
+std::vector<Vec3> solve(GravitySettings::Solver solver, const ClumpedState& state, int rings = 1) {
+  const auto gravity = make_gravity_solver({solver, 0.6, rings, 1});
+  return accelerations(*gravity, state.problem());
+}
+
+// The same state in another memory order; order[k] is where particle k of the new state stood.
+ClumpedState reordered(const ClumpedState& state, const std::vector<std::size_t>& order) {
+  ClumpedState other = state;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    other.positions[k] = state.positions[order[k]];
+    other.masses[k] = state.masses[order[k]];
+    other.ids[k] = state.ids[order[k]];
+  }
+  return other;
+}
+
+std::vector<std::size_t> shuffled(std::size_t count) {
+  std::vector<std::size_t> order(count);
+  for (std::size_t k = 0; k < count; ++k)
+    order[k] = (k * 7919 + 13) % count; // 7919 is prime
+  return order;
+}
+
+} // namespace
+
+TEST_CASE("solvers go by their names") {
+  CHECK(make_gravity_solver({GravitySettings::Solver::direct, 0.6, 1, 1})->name() == "direct");
+  CHECK(make_gravity_solver({})->name() == "tree");
+}
+
+TEST_CASE("none, one and two particles are problems like any other") {
+  for (const auto solver : all_solvers)
+    for (const std::size_t count : {0u, 1u, 2u}) {
+      const std::vector<Vec3> a = solve(solver, clumped_state(count, 1));
+      REQUIRE(a.size() == count);
+      for (const Vec3& v : a)
+        CHECK(v.allFinite());
+    }
+}
+
+TEST_CASE("memory order and a solver's past change no bit") {
+  const ClumpedState state = clumped_state(2003, 11, 10.0);
+  const std::vector<std::size_t> order = shuffled(2003);
+  const ClumpedState other = reordered(state, order);
+  for (const auto solver : all_solvers) {
+    const auto gravity = make_gravity_solver({solver, 0.6, 1, 1});
+    const std::vector<Vec3> fresh = accelerations(*gravity, state.problem());
+    accelerations(*gravity, clumped_state(2003, 12).problem());
+    accelerations(*gravity, clumped_state(50, 12).problem());
+    const std::vector<Vec3> later = accelerations(*gravity, other.problem());
+    for (std::size_t k = 0; k < order.size(); ++k)
+      CHECK(later[k] == fresh[order[k]]);
+  }
+}
+
+TEST_CASE("the number of threads changes no bit") {
+  const ClumpedState state = clumped_state(3000, 13);
+  const int before = threads();
+  for (const auto solver : all_solvers) {
+    set_threads(1);
+    const std::vector<Vec3> one = solve(solver, state);
+    for (const int count : {2, 3}) {
+      set_threads(count);
+      CHECK(solve(solver, state) == one);
+    }
+  }
+  set_threads(before);
+}
+
+TEST_CASE("the instruction set changes no bit") {
+  const ClumpedState state = clumped_state(1500, 14, 10.0);
+  const GravityProblem problem = state.problem();
+  DirectSolver direct(1, InstructionSet::portable);
+  TreeSolver tree(0.6, 1, InstructionSet::portable);
+  const std::vector<Vec3> direct_bits = accelerations(direct, problem), tree_bits = accelerations(tree, problem);
+  for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512}) {
+    if (!supports(set))
+      continue;
+    DirectSolver wide_direct(1, set);
+    TreeSolver wide_tree(0.6, 1, set);
+    CHECK(accelerations(wide_direct, problem) == direct_bits);
+    CHECK(accelerations(wide_tree, problem) == tree_bits);
+  }
+}
+
+TEST_CASE("offsets a whole box length apart are the same problem") {
+  ClumpedState state = clumped_state(500, 15);
+  state.box = {64.0, 64.0, 1.5, 0.0};
+  for (Vec3& p : state.positions)
+    p.head<2>() *= 0.9;
+  for (const auto solver : all_solvers) {
+    state.offset = 11.25; // few bits: every sum of it with box lengths is exact
+    const std::vector<Vec3> a = solve(solver, state);
+    for (const double other : {75.25, -52.75, 1035.25}) {
+      state.offset = other;
+      CHECK(solve(solver, state) == a);
+    }
+  }
+}
+
+TEST_CASE("which image of a particle is handed in does not matter") {
+  const ClumpedState state = clumped_state(500, 16);
+  ClumpedState moved = state;
+  for (std::size_t k = 0; k < moved.positions.size(); ++k)
+    moved.positions[k] +=
+        state.box.displacement({static_cast<int>(k % 5) - 2, static_cast<int>(k % 3) - 1}, state.offset);
+  for (const auto solver : all_solvers) // the round trip costs a rounding of places up to 150 m
+    CHECK(rms_error(solve(solver, moved), solve(solver, state)) < 1e-12);
+}
+
+TEST_CASE("crossing the edge of the cell changes forces by no more than the missing far images") {
+  // A particle that steps over the edge sees the cell from its other side: with few rings its force jumps by what the
+  // far columns lack (docs/dev/gravity.md), the same for both solvers, and less with every ring. Others feel one far
+  // image change its side.
+  const ClumpedState state = clumped_state(1500, 17);
+  const std::size_t crosser = 40;
+  const double sheet = state.problem().newton_g * 600.0 * 4.0 / 3.0 * pi * 1500 / state.box.area(); // G Σ
+  const auto jump_of = [&](GravitySettings::Solver solver, int rings, double& others) {
+    ClumpedState inside = state, outside = state;
+    inside.positions[crosser] = Vec3(0.5 * state.box.size_x - 1e-9, 3.0, 9.0);
+    outside.positions[crosser] = Vec3(0.5 * state.box.size_x + 1e-9, 3.0, 9.0);
+    const std::vector<Vec3> before = solve(solver, inside, rings), after = solve(solver, outside, rings);
+    others = 0.0;
+    for (std::size_t k = 0; k < before.size(); ++k)
+      if (k != crosser)
+        others = std::max(others, (after[k] - before[k]).norm());
+    return Vec3(after[crosser] - before[crosser]);
+  };
+  double others = 0.0, others_tree = 0.0;
+  const Vec3 one = jump_of(GravitySettings::Solver::direct, 1, others);
+  const Vec3 tree = jump_of(GravitySettings::Solver::tree, 1, others_tree);
+  const double far_image = state.problem().newton_g * state.masses[0] / (state.box.size_x * state.box.size_x);
+  MESSAGE("jump / G Sigma: direct " << one.norm() / sheet << ", tree - direct " << (tree - one).norm() / sheet);
+  CHECK(others < 6 * far_image); // a column of three images leaves at 1.5 L_x and one comes
+  CHECK(one.norm() < 3.0 * sheet);
+  CHECK((tree - one).norm() < 0.05 * sheet);
+  CHECK(others_tree < 0.05 * sheet);
+  CHECK(jump_of(GravitySettings::Solver::direct, 8, others).norm() < 0.3 * one.norm());
+}

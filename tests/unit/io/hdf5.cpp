@@ -1,0 +1,82 @@
+#include <keeler/io/hdf5.hpp>
+
+#include <keeler/core/error.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cstring>
+
+using namespace keeler;
+
+TEST_CASE("what goes into a file in memory comes out of its image") {
+  const hdf5::Handle file = hdf5::create_image();
+  const hdf5::Handle group = hdf5::create_group(file, "group");
+  const std::vector<double> values{1.0, -0.0, 1e-310, 0.1};
+  hdf5::write_dataset(group, "plain", values);
+  hdf5::write_dataset(group, "packed", values, hdf5::Packing::compressed);
+  hdf5::write_dataset(group, "empty", std::vector<std::int64_t>{}, hdf5::Packing::compressed);
+  hdf5::write_attribute(group, "number", std::int64_t{-7});
+  hdf5::write_attribute(group, "list", std::vector<std::uint32_t>{1, 2, 3});
+  hdf5::write_attribute(group, "none", std::string_view(""));
+  const std::string long_text(100000, 'x'); // more than the 64 KiB of older attributes
+  hdf5::write_attribute(group, "text", long_text);
+  hdf5::write_text_dataset(file, "words", "κ = 1\n");
+
+  const std::vector<std::byte> image = hdf5::image_of(file);
+  const hdf5::Handle back = hdf5::open_image(image);
+  CHECK(hdf5::used_size(back) == image.size());
+  const hdf5::Handle read = hdf5::open_group(back, "group");
+  CHECK(hdf5::names_in(read) == std::vector<std::string>{"empty", "packed", "plain"});
+  for (const char* name : {"plain", "packed"}) {
+    const hdf5::Handle dataset = hdf5::open_dataset(read, name);
+    CHECK(hdf5::layout_of_dataset(dataset).type == "float64");
+    CHECK(hdf5::layout_of_dataset(dataset).shape == hdf5::Shape{4});
+    std::vector<double> found(4);
+    hdf5::read_dataset(dataset, hdf5::native_type<double>(), found.data());
+    CHECK(std::memcmp(found.data(), values.data(), sizeof(double) * 4) == 0);
+  }
+  CHECK(hdf5::layout_of_dataset(hdf5::open_dataset(read, "empty")).count() == 0);
+  CHECK(hdf5::read_attribute<std::int64_t>(read, "number") == -7);
+  CHECK(hdf5::read_attribute_values<std::uint32_t>(read, "list") == std::vector<std::uint32_t>{1, 2, 3});
+  CHECK(hdf5::read_text_attribute(read, "none").empty());
+  CHECK(hdf5::read_text_attribute(read, "text") == long_text);
+  CHECK(hdf5::read_text_dataset(back, "words") == "κ = 1\n");
+  CHECK(hdf5::attribute_names(read) == std::vector<std::string>{"list", "none", "number", "text"});
+}
+
+TEST_CASE("equal content gives equal bytes, and files in memory do not mix") {
+  const hdf5::Handle one = hdf5::create_image(), two = hdf5::create_image();
+  hdf5::write_attribute(one, "number", 1.0);
+  hdf5::write_attribute(two, "number", 2.0);
+  const std::vector<std::byte> first = hdf5::image_of(one);
+  const hdf5::Handle three = hdf5::create_image();
+  hdf5::write_attribute(three, "number", 1.0);
+  CHECK(hdf5::image_of(three) == first);
+  CHECK(hdf5::image_of(two) != first);
+  const hdf5::Handle one_read = hdf5::open_image(first), two_read = hdf5::open_image(hdf5::image_of(two));
+  CHECK(hdf5::read_attribute<double>(one_read, "number") == 1.0);
+  CHECK(hdf5::read_attribute<double>(two_read, "number") == 2.0);
+}
+
+TEST_CASE("a second name is the same object") {
+  const hdf5::Handle file = hdf5::create_image();
+  const hdf5::Handle a = hdf5::create_group(file, "a"), b = hdf5::create_group(file, "b");
+  const hdf5::Handle dataset = hdf5::write_dataset(a, "data", std::vector<double>{1.0, 2.0});
+  hdf5::link_again(a, "data", b, "other");
+  hdf5::write_attribute(dataset, "unit", std::string_view("m"));
+  CHECK(hdf5::read_text_attribute(hdf5::open_dataset(b, "other"), "unit") == "m");
+}
+
+TEST_CASE("failures of HDF5 are errors with its reason, and it prints nothing itself") {
+  const hdf5::Handle file = hdf5::create_image();
+  hdf5::write_dataset(file, "data", std::vector<double>{1.0});
+  CHECK_THROWS_WITH_AS(hdf5::open_group(file, "absent"), doctest::Contains("cannot open group 'absent': "), IoError);
+  CHECK_THROWS_AS(hdf5::write_dataset(file, "data", std::vector<double>{1.0}), IoError);
+  CHECK_THROWS_AS(hdf5::read_attribute<double>(file, "absent"), IoError);
+  hdf5::write_attribute(file, "text", std::string_view("no number"));
+  CHECK_THROWS_AS(hdf5::read_attribute<double>(file, "text"), IoError);
+  hdf5::write_attribute(file, "list", std::vector<double>{1.0, 2.0});
+  CHECK_THROWS_AS(hdf5::read_attribute<double>(file, "list"), IoError);
+  CHECK_THROWS_AS(hdf5::read_text_attribute(file, "list"), IoError);
+  CHECK_THROWS_AS(hdf5::open_image(std::vector<std::byte>(1000)), IoError);
+}

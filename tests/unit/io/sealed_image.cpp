@@ -1,0 +1,59 @@
+#include <keeler/io/sealed_image.hpp>
+
+#include "disk.hpp"
+
+#include <keeler/core/error.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace keeler;
+using namespace keeler::test;
+
+namespace {
+
+void write_number(const std::filesystem::path& file, double number) {
+  const hdf5::Handle image = hdf5::create_image();
+  hdf5::write_attribute(image, "number", number);
+  write_sealed(file, image);
+}
+
+} // namespace
+
+TEST_CASE("a sealed file opens here, and for readers that know no seal") {
+  const TemporaryFolder folder;
+  const auto file = folder / "a.h5";
+  write_number(file, 42.0);
+  for (const Seal seal : {Seal::required, Seal::optional})
+    CHECK(hdf5::read_attribute<double>(open_sealed(file, seal), "number") == 42.0);
+  const hdf5::Handle plain(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  REQUIRE(plain.id() >= 0);
+  CHECK(hdf5::read_attribute<double>(plain, "number") == 42.0);
+}
+
+TEST_CASE("another tool may change a file in place; it then has no seal") {
+  const TemporaryFolder folder;
+  const auto file = folder / "a.h5";
+  write_number(file, 42.0);
+  {
+    const hdf5::Handle changed(H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+    REQUIRE(changed.id() >= 0);
+    hdf5::write_attribute(changed, "added", 1.0);
+  }
+  CHECK(hdf5::read_attribute<double>(open_sealed(file, Seal::optional), "added") == 1.0);
+  CHECK_THROWS_WITH_AS(open_sealed(file, Seal::required), doctest::Contains("a.h5' is damaged"), IoError);
+}
+
+TEST_CASE("no damage to a sealed file goes unnoticed") {
+  const TemporaryFolder folder;
+  const auto file = folder / "a.h5";
+  write_number(file, 42.0);
+  const std::size_t content = std::filesystem::file_size(file) - 64;
+  for_each_damage(file, 1, [&](const std::string& damage) {
+    CAPTURE(damage);
+    CHECK_THROWS_AS(open_sealed(file, Seal::required), IoError);
+    if (damage == "cut at " + std::to_string(content)) // exactly the seal is gone, the content is whole
+      CHECK(hdf5::read_attribute<double>(open_sealed(file, Seal::optional), "number") == 42.0);
+    else
+      CHECK_THROWS_AS(open_sealed(file, Seal::optional), IoError);
+  });
+}

@@ -1,0 +1,87 @@
+#include <keeler/io/series.hpp>
+
+#include "disk.hpp"
+
+#include <keeler/core/error.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace keeler;
+using namespace keeler::test;
+
+namespace {
+
+const std::vector<std::string> columns{"time_orbits", "energy"};
+
+void append(Series& series, std::int64_t step) {
+  series.append(step, std::vector<double>{0.001 * static_cast<double>(step), 1.0 / 3.0});
+}
+
+} // namespace
+
+TEST_CASE("rows are in the file at once and read back to the same bits") {
+  const TemporaryFolder folder;
+  Series series = Series::begin(folder / "series.csv", columns);
+  series.append(0, std::vector<double>{0.0, 0.1 + 0.2});
+  series.append(10, std::vector<double>{1e-300, -1.0 / 0.0});
+  CHECK(read_text(folder / "series.csv") == "step,time_orbits,energy\n0,0,0.30000000000000004\n10,1e-300,-inf\n");
+}
+
+TEST_CASE("after a restart the series is what it would have been without") {
+  const TemporaryFolder folder;
+  const auto once = folder / "once.csv", twice = folder / "twice.csv";
+  Series whole = Series::begin(once, columns);
+  for (int step = 0; step <= 100; step += 5)
+    append(whole, step);
+  {
+    Series first = Series::begin(twice, columns);
+    for (int step = 0; step <= 70; step += 5)
+      append(first, step);
+  }
+  write_text(twice, read_text(twice) + "75,0.0"); // the kill came in the middle of a row
+  Series second = Series::resume(twice, columns, 50);
+  for (int step = 55; step <= 100; step += 5)
+    append(second, step);
+  CHECK(read_text(twice) == read_text(once));
+}
+
+TEST_CASE("a restart keeps what is before the checkpoint, whatever that is") {
+  const TemporaryFolder folder;
+  const auto file = folder / "series.csv";
+  Series series = Series::begin(file, columns);
+  append(series, 0);
+  append(series, 5);
+  const std::string both = read_text(file);
+  Series::resume(file, columns, 7);
+  CHECK(read_text(file) == both);
+  Series::resume(file, columns, -1);
+  CHECK(read_text(file) == "step,time_orbits,energy\n");
+  std::filesystem::remove(file);
+  Series::resume(file, columns, 7);
+  CHECK(read_text(file) == "step,time_orbits,energy\n");
+}
+
+TEST_CASE("a file that is not this series is an error and stays as it is") {
+  const TemporaryFolder folder;
+  const auto file = folder / "series.csv";
+  for (const std::string text : {"step,time_orbits\n1,2\n", "step,time_orbits,energy\n1,2,3\nwhat,2,3\n", ""}) {
+    write_text(file, text);
+    CHECK_THROWS_WITH_AS(Series::resume(file, columns, 10), doctest::Contains("series.csv"), IoError);
+    CHECK(read_text(file) == text);
+  }
+}
+
+TEST_CASE("a full disk is noticed at the row that does not fit, which leaves nothing behind") {
+  const TemporaryFolder folder;
+  const auto file = folder / "series.csv";
+  Series series = Series::begin(file, columns);
+  append(series, 0);
+  const std::string before = read_text(file);
+  {
+    const SmallDisk disk(before.size() + 8);
+    CHECK_THROWS_AS(append(series, 5), IoError);
+    CHECK(read_text(file) == before);
+  }
+  append(series, 5);
+  CHECK(read_text(file) == before + "5,0.005,0.3333333333333333\n");
+}

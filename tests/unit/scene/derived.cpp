@@ -1,0 +1,86 @@
+#include "scenes.hpp"
+
+#include <keeler/core/units.hpp>
+#include <keeler/scene/derived.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+using namespace keeler;
+using namespace keeler::test;
+
+namespace {
+
+Scene preset_scene(const std::string& preset) {
+  return parse_scene(changed(least, "orbital_frequency = 2e-4", "preset = \"" + preset + "\""), "s.toml");
+}
+
+} // namespace
+
+TEST_CASE("the presets stand at their places") {
+  // Distances for which the frequencies were computed. 3e-4: five digits of the frequencies, and J4, which the formula
+  // leaves out and which is largest for the C ring.
+  const std::vector<std::pair<std::string, double>> places = {{"saturn-c-ring", 84.0e6},
+                                                              {"saturn-b-ring", 100.0e6},
+                                                              {"saturn-b-ring-outer", 105.0e6},
+                                                              {"saturn-a-ring", 130.0e6},
+                                                              {"saturn-f-ring", 140.221e6}};
+  for (const auto& [name, distance] : places) {
+    const PlanetSettings planet = preset_scene(name).planet;
+    CAPTURE(planet.orbital_frequency);
+    CHECK(distance_from_saturn(planet) == doctest::Approx(distance).epsilon(3e-4));
+    // an axisymmetric planet without density at the ring: κ² + ν² = 2Ω² (Laplace), to the digits given
+    const Frequencies& f = planet.frequencies;
+    CHECK(f.kappa * f.kappa + f.nu * f.nu == doctest::Approx(2.0).epsilon(2e-5));
+  }
+}
+
+TEST_CASE("the A-ring example has the numbers that the design gives for it") {
+  const Scene scene = load_scene(KEELER_SOURCE_DIR "/examples/a-ring-wakes/scene.toml");
+  const Derived d = derive(scene);
+  CHECK(scene.notices.empty());
+  CHECK(d.particle_count == doctest::Approx(9600).epsilon(0.002)); // "about 9600"
+  CHECK(d.lambda_cr == doctest::Approx(61.4).epsilon(0.002));      // "61 m"
+  CHECK(d.surface_density == doctest::Approx(400).epsilon(1e-4));  // half a particle of 9600
+  CHECK(d.optical_depth == doctest::Approx(0.5).epsilon(1e-4));
+  CHECK(d.hill_parameter == doctest::Approx(0.82 * std::cbrt(600.0 / 900) * 1.3).epsilon(3e-4));
+  CHECK(d.steps == 3000);
+  CHECK(d.memory_mb > 0.0);
+  CHECK(d.estimated_s > 0.0);
+}
+
+TEST_CASE("the equilibrium example has about 1500 particles and no gravity") {
+  const Scene scene = load_scene(KEELER_SOURCE_DIR "/examples/equilibrium/scene.toml");
+  CHECK(std::fabs(static_cast<double>(scene.particles.count) - 1500) < 20);
+  CHECK(!scene.gravity);
+  CHECK(scene.time.end_step == 15000);
+}
+
+TEST_CASE("Toomre's Q and wavelength belong together") {
+  // c_x = Q × 3.36 G Σ / κ and λ = 4π²GΣ/κ²: at Q = 1 the ratio c_x / (κ λ) is 3.36 / 4π²
+  const PlanetSettings planet = preset_scene("saturn-a-ring").planet;
+  const double kappa = planet.orbital_frequency * planet.frequencies.kappa;
+  const double speed = 3.36 / (4 * pi * pi) * kappa * critical_wavelength(400, planet);
+  CHECK(toomre_q(400, speed, planet) == doctest::Approx(1.0).epsilon(1e-12));
+}
+
+TEST_CASE("the mid-plane filling is that of sampled particles") {
+  // the slow twin: particles of a power law in a Gaussian layer, the volume of the slices of each at z = 0
+  const SizeLaw sizes{SizeLaw::Kind::power, 3.0, 0.5, 3.0, {}, {}};
+  const double depth = 0.4, dispersion = 20.0, nu = 1.3; // thick compared with a particle, as the formula has it
+  const std::vector<double> radii = draw_radii(sizes, 20000, 3);
+  const double height = 0.65 * dispersion * sizes.mean_power(1) / nu;
+  double area_sum = 0.0, sliced = 0.0;
+  for (const double r : radii) {
+    area_sum += pi * r * r;
+    constexpr int slices = 200; // centres at z within r of the mid-plane, each cutting a disc π (r² − z²) out of it
+    for (int k = 0; k < slices; ++k) {
+      const double z = r * (2.0 * (k + 0.5) / slices - 1.0);
+      const double density = std::exp(-0.5 * z * z / (height * height)) / (std::sqrt(two_pi) * height);
+      sliced += density * pi * (r * r - z * z) * 2.0 * r / slices;
+    }
+  }
+  // 1 %: the particles' own size, (r/H)²/10 with H = 9.6 m, and the sampling of the moments
+  CHECK(midplane_filling(depth, sizes, dispersion, nu) == doctest::Approx(depth * sliced / area_sum).epsilon(0.01));
+}

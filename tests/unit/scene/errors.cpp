@@ -1,0 +1,179 @@
+#include "scenes.hpp"
+
+#include <keeler/scene/keys.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace keeler;
+using namespace keeler::test;
+
+namespace {
+
+std::string with(const std::string& part, const std::string& by) {
+  return fault(changed(least, part, by));
+}
+
+} // namespace
+
+TEST_CASE("unknown names are told with a suggestion") {
+  CHECK(with("density", "densty") ==
+        "s.toml:7:1: unknown key particles.densty (no scene has it); did you mean \"density\"?");
+  CHECK(with("density", "dnesity") ==
+        "s.toml:7:1: unknown key particles.dnesity (no scene has it); did you mean \"density\"?");
+  CHECK(with("[particles]", "[particle]") ==
+        "s.toml:5:2: unknown table particle (no scene has it); did you mean \"particles\"?");
+  CHECK(with("radius", "raduis") ==
+        "s.toml:8:26: unknown key particles.sizes.raduis (no scene has it); did you mean \"radius\"?");
+  CHECK(with("end = 2", "end = 2\nsolver = \"tree\"") ==
+        "s.toml:11:1: unknown key time.solver (no scene has it); did you mean \"gravity.solver\"?");
+  CHECK(with("end = 2", "end = 2\nwibble = 1") ==
+        "s.toml:11:1: unknown key time.wibble (no scene has it); \"keeler check --defaults\" lists every key");
+  CHECK(with("[planet]", "\"box.size\" = 1\n[planet]") ==
+        "s.toml:1:1: unknown key \"box.size\" (no scene has it); did you mean \"box.size\"?");
+}
+
+TEST_CASE("wrong types are told with what is needed") {
+  CHECK(with("900", "\"900\"") ==
+        "s.toml:7:11: particles.density is a string, but must be a number above 0 (density of the "
+        "particles' material, in kg/m^3); write for example density = 600.0");
+  CHECK(with("300", "300.0") ==
+        "s.toml:6:9: particles.count is a number with a fraction, but must be a whole number from "
+        "1 to 1e+09 (number of particles); write for example count = 10000");
+  CHECK(with("[100, 50.0]", "[100]") ==
+        "s.toml:4:8: box.size is a list of 1 number, but must be two numbers above 0 (radial and azimuthal size of the "
+        "patch, in m); write for example size = [245.0, 245.0]");
+  CHECK(with("{ law = \"equal\", radius = 1.0 }", "1.0") ==
+        "s.toml:8:9: particles.sizes is a number with a fraction, but must be a table (it holds several keys); write "
+        "[particles.sizes] and its keys below");
+  CHECK(with("[time]", "[[time]]").rfind("s.toml:9:1: time is a list of tables, but must be a table", 0) == 0);
+  CHECK(with("end = 2", "end = 2021-01-01").rfind("s.toml:10:7: time.end is a date or time, but must be", 0) == 0);
+  CHECK(with("300", "{ a = 1 }").rfind("s.toml:6:9: particles.count is a table, but must be", 0) == 0);
+}
+
+TEST_CASE("values out of range are told with the range") {
+  CHECK(with("radius = 1.0", "radius = -1.0") ==
+        "s.toml:8:35: particles.sizes.radius is -1.0, but must be a number above 0 (radius of every particle, in m); "
+        "write for example radius = 1.0");
+  CHECK(with("radius = 1.0", "radius = nan").find("radius is nan, but must be a number above 0") != std::string::npos);
+  CHECK(with("radius = 1.0", "radius = inf").find("radius is inf, but must be") != std::string::npos);
+  CHECK(with("[100, 50.0]", "[100, -50.0]").find("box.size is [100.0, -50.0], but must be") != std::string::npos);
+  CHECK(with("2e-4", "2e-4\nepicyclic_ratio = 2").find("must be a number above 0 and below 2") != std::string::npos);
+  CHECK(fault(least + "[gravity]\nsolver = \"trea\"\n") ==
+        "s.toml:12:10: gravity.solver is \"trea\", but must be one of \"direct\", \"tree\" (how accelerations are "
+        "computed); did you mean \"tree\"?");
+  CHECK(fault(least + "[gravity]\nsolver = \"quantum\"\n") ==
+        "s.toml:12:10: gravity.solver is \"quantum\", but must be one of \"direct\", \"tree\" (how accelerations are "
+        "computed); write for example solver = \"tree\"");
+  CHECK(fault(least + "[start]\nfrom = \"\"\n").find("must be the path of a file") != std::string::npos);
+}
+
+TEST_CASE("what is missing is told with an example") {
+  CHECK(with("[time]\nend = 2\n", "") ==
+        "s.toml:1:1: [time] is missing (it says how long the run is); add a table [time]");
+  CHECK(with("end = 2\n", "") ==
+        "s.toml:9:2: time.end is missing (length of the run, rounded to whole kicks, in orbits); "
+        "add for example end = 3.0");
+  CHECK(with("count = 300\n", "") ==
+        "s.toml:5:2: particles.optical_depth is missing (geometric optical depth, which sets the number of particles); "
+        "add for example optical_depth = 0.5 or surface_density or count");
+  CHECK(with("law = \"equal\", radius = 1.0", "").find("particles.sizes.law is missing") != std::string::npos);
+  CHECK(with("law = \"equal\", ", "").find("or give particles.sizes.law = \"equal\"") != std::string::npos);
+  CHECK(with("law = \"equal\", radius = 1.0", "law = \"power\", exponent = 3, min = 1")
+            .find("particles.sizes.max is missing") != std::string::npos);
+  CHECK(with("sizes = { law = \"equal\", radius = 1.0 }\n", "") ==
+        "s.toml:5:2: [particles.sizes] is missing (it says how large they are); add a table [particles.sizes]");
+  CHECK(fault("") == "s.toml:1:1: [planet] is missing (it says where the patch orbits); add a table [planet]");
+  CHECK(fault(least + "[collisions]\nrestitution = { law = \"constant\" }\n").find("restitution.value is missing") !=
+        std::string::npos);
+}
+
+TEST_CASE("contradictions are told") {
+  CHECK(with("count = 300", "count = 300\noptical_depth = 0.5") ==
+        "s.toml:7:1: particles.optical_depth cannot stand beside particles.count (either gives the other); keep one of "
+        "the two");
+  CHECK(with("orbital_frequency = 2e-4", "preset = \"saturn-a-ring\"\nvertical_ratio = 3.6") ==
+        "s.toml:3:1: planet.vertical_ratio has no meaning here (it belongs to planet.orbital_frequency); remove it or "
+        "give planet.orbital_frequency");
+  CHECK(
+      with("radius = 1.0", "radius = 1.0, min = 0.1") ==
+      "s.toml:8:40: particles.sizes.min has no meaning here (it belongs to particles.sizes.law = \"power\"); remove it "
+      "or give particles.sizes.law = \"power\"");
+  CHECK(fault(least + "[start]\nfrom = \"wakes.hdf\"\n") ==
+        "s.toml:3:2: [box] cannot stand beside start.from (the start file holds the box and its particles); remove one "
+        "of the two");
+}
+
+TEST_CASE("impossible requests are told") {
+  CHECK(
+      with("[100, 50.0]", "[100, 1.5]") ==
+      "s.toml:4:8: the box of 100 m x 1.5 m is smaller than a particle (the largest is 2 m across); enlarge the box or "
+      "lower the radius");
+  CHECK(with("size = ", "size_in_wavelengths = ") ==
+        "s.toml:4:23: box.size_in_wavelengths cannot stand beside particles.count (the wavelength follows from the "
+        "surface density, and with a count this follows from the box); give box.size or particles.optical_depth");
+  // (4/3) 1.2 / (√(2π) 0.65 × 2) = 0.491; 2 × 0.491 / 0.4 = 2.455, rounded up
+  CHECK(with("count = 300", "optical_depth = 1.2") ==
+        "s.toml:6:17: too dense (the mid-plane would be filled to 0.49, and 0.4 is the most that can be placed without "
+        "overlap); raise velocity_dispersion to at least 2.46 or lower the optical depth of 1.2");
+  CHECK(with("count = 300", "optical_depth = 1.2\nvelocity_dispersion = 2.46") == "");
+  CHECK(with("count = 300", "optical_depth = 1e-6").find("makes 0 particles") != std::string::npos);
+  CHECK(with("count = 300", "optical_depth = 0.1\nseed = 3").empty());
+  CHECK(
+      with("[100, 50.0]\n[particles]\ncount = 300", "[1e9, 1e9]\n[particles]\noptical_depth = 0.1") ==
+      "s.toml:6:17: particles.optical_depth with this box makes 3.18e+16 particles (a run takes 1 to 1e9); change the "
+      "box or particles.optical_depth");
+  CHECK(with("law = \"equal\", radius = 1.0", "law = \"power\", exponent = 3, min = 2, max = 1")
+            .find("particles.sizes.min = 2 is not below max = 1") != std::string::npos);
+  CHECK(with("end = 2", "end = 1e300").find("time.end = 1e+300 is too long") != std::string::npos);
+}
+
+TEST_CASE("a text that is not TOML, and a file that is not there") {
+  CHECK(with("size = [100, 50.0]", "size = [100, 50.0").rfind("s.toml:5:", 0) == 0);
+  CHECK(with("size = [100, 50.0]", "size = [100, 50.0").find("not TOML (") != std::string::npos);
+  CHECK(with("density = 900", "density 900").rfind("s.toml:7:9: not TOML (", 0) == 0);
+  CHECK(with("count = 300", "count = 300\ncount = 301").find("not TOML (") != std::string::npos);
+  CHECK_THROWS_WITH_AS(load_scene("absent/s.toml"),
+                       "absent/s.toml: cannot be read (No such file or directory); check the path and its permissions",
+                       UsageError);
+  CHECK_THROWS_AS(load_scene("."), UsageError);
+}
+
+TEST_CASE("the first fault of the file is the one that is told") {
+  CHECK(fault("[time]\nend = \"x\"\n[box]\nsiz = 1\n").rfind("s.toml:2:7: time.end", 0) == 0);
+  CHECK(fault("[box]\nsiz = 1\n[time]\nend = \"x\"\n").rfind("s.toml:2:1: unknown key box.siz", 0) == 0);
+}
+
+TEST_CASE("every key refuses every wrong type, with one line that names the key") {
+  const std::vector<std::pair<KeyType, std::string>> samples = {
+      {KeyType::text, "\"word\""},    {KeyType::number, "0.5"},       {KeyType::integer, "5"},
+      {KeyType::pair, "[1.0, 2.0]"},  {KeyType::choice, "true"},      {KeyType::choice, "[[1, 2], 3]"},
+      {KeyType::choice, "[1, 2, 3]"}, {KeyType::choice, "{ x = 1 }"}, {KeyType::choice, "1979-05-27"},
+  };
+  for (const Key& key : scene_keys())
+    for (const auto& [type, sample] : samples) {
+      const bool is_text = key.type == KeyType::text || key.type == KeyType::path || key.type == KeyType::choice;
+      const bool fits = (type == KeyType::text && is_text) ||
+                        (type == KeyType::number && key.type == KeyType::number) ||
+                        (type == KeyType::integer && (key.type == KeyType::number || key.type == KeyType::integer)) ||
+                        (type == KeyType::pair && key.type == KeyType::pair);
+      if (fits)
+        continue;
+      CAPTURE(key.path);
+      const std::string message = fault(key.path + " = " + sample + "\n");
+      CHECK(message.rfind("s.toml:1:", 0) == 0);
+      CHECK(message.find(": " + key.path + " is ") != std::string::npos);
+      CHECK(message.find('\n') == std::string::npos);
+    }
+}
+
+TEST_CASE("whatever is cut from a scene, it is refused or read, never anything else") {
+  // every prefix of a text, and every text with one character changed: parse_scene may throw nothing but UsageError
+  for (std::size_t k = 0; k < least.size(); ++k) {
+    CHECK(fault(least.substr(0, k)).find('\n') == std::string::npos);
+    for (const char c : {'=', '[', '"', '\n', '\0', '.', '9'}) {
+      std::string text = least;
+      text[k] = c;
+      CHECK(fault(text).find('\n') == std::string::npos);
+    }
+  }
+}

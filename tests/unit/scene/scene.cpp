@@ -1,0 +1,261 @@
+#include "scenes.hpp"
+
+#include <keeler/core/units.hpp>
+#include <keeler/scene/derived.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+using namespace keeler;
+using namespace keeler::test;
+
+TEST_CASE("the least scene has the documented defaults") {
+  const Scene scene = parse_scene(least, "s.toml");
+  CHECK(scene.title == "");
+  CHECK(scene.planet.preset == "");
+  CHECK(scene.planet.orbital_frequency == 2e-4);
+  CHECK(scene.planet.frequencies.kappa == 1.0);
+  CHECK(scene.planet.frequencies.nu == 1.0);
+  CHECK(scene.size_x == 100.0);
+  CHECK(scene.size_y == 50.0);
+  CHECK(scene.particles.count == 300);
+  CHECK(scene.particles.density == 900.0);
+  CHECK(scene.particles.sizes.kind == SizeLaw::Kind::equal);
+  CHECK(scene.particles.sizes.min == 1.0);
+  CHECK(scene.particles.sizes.max == 1.0);
+  CHECK(scene.particles.velocity_dispersion == 2.0);
+  CHECK(scene.particles.seed == 1);
+  CHECK(scene.collisions.finder == "certified");
+  CHECK(scene.collisions.elastic_below == 1e-2);
+  CHECK(scene.collisions.restitution.kind == RestitutionLaw::Kind::bridges);
+  CHECK(scene.collisions.restitution.scale == 0.34);
+  CHECK(!scene.gravity);
+  CHECK(!scene.start_from);
+  CHECK(scene.time.step == 1e-3);
+  CHECK(scene.time.end_step == 2000);
+  CHECK(scene.output.snapshot_every == 0);
+  CHECK(scene.output.checkpoint_every == 0);
+  CHECK(scene.notices.empty());
+  CHECK(scene.step_length() == doctest::Approx(two_pi * 1e-3).epsilon(1e-15));
+  CHECK(scene.optical_depth() == doctest::Approx(300 * pi / 5000).epsilon(1e-14));
+  CHECK(scene.surface_density() == doctest::Approx(300 * 900 * (4.0 / 3) * pi / 5000).epsilon(1e-14));
+}
+
+TEST_CASE("every key reaches its place") {
+  const Scene scene = parse_scene(R"(
+title = "all \"keys\""
+[planet]
+orbital_frequency = 1e-4
+epicyclic_ratio = 0.9
+vertical_ratio = 3.6
+[box]
+size_in_wavelengths = [4, 2]
+[particles]
+surface_density = 100
+density = 500
+velocity_dispersion = 12.5
+seed = 42
+sizes = { law = "power", exponent = 2.5, min = 0.5, max = 5 }
+[collisions]
+finder = "linear-full"
+elastic_below = 0
+restitution = { law = "constant", value = 0.25 }
+[gravity]
+solver = "direct"
+image_rings = 2
+kick_every = 5
+[time]
+step = 0.01
+end = 1.5
+[output]
+snapshot_every = 0.5
+checkpoint_every = 0.25
+)",
+                                  "s.toml");
+  CHECK(scene.title == "all \"keys\"");
+  CHECK(scene.planet.orbital_frequency == 1e-4);
+  CHECK(scene.planet.frequencies.kappa == 0.9);
+  CHECK(scene.planet.frequencies.nu == 3.6);
+  const double wavelength = 4 * pi * pi * newton_g_si * 100 / (0.9e-4 * 0.9e-4);
+  CHECK(scene.size_x == doctest::Approx(4 * wavelength).epsilon(1e-14));
+  CHECK(scene.size_y == doctest::Approx(2 * wavelength).epsilon(1e-14));
+  CHECK(scene.particles.sizes.kind == SizeLaw::Kind::power);
+  CHECK(scene.particles.sizes.exponent == 2.5);
+  CHECK(scene.particles.sizes.min == 0.5);
+  CHECK(scene.particles.sizes.max == 5.0);
+  // N is whole: the surface density that results is within half a particle of what was asked
+  CHECK(std::fabs(scene.surface_density() / 100 - 1) <= 0.5 / static_cast<double>(scene.particles.count));
+  CHECK(scene.particles.velocity_dispersion == 12.5);
+  CHECK(scene.particles.seed == 42);
+  CHECK(scene.collisions.finder == "linear-full");
+  CHECK(scene.collisions.elastic_below == 0.0);
+  CHECK(scene.collisions.restitution.kind == RestitutionLaw::Kind::constant);
+  CHECK(scene.collisions.restitution.value == 0.25);
+  REQUIRE(scene.gravity);
+  CHECK(scene.gravity->solver == GravitySettings::Solver::direct);
+  CHECK(scene.gravity->image_rings == 2);
+  CHECK(scene.gravity->kick_every == 5);
+  CHECK(scene.time.step == 0.01);
+  CHECK(scene.time.end_step == 150);
+  CHECK(scene.output.snapshot_every == 50);
+  CHECK(scene.output.checkpoint_every == 25);
+}
+
+TEST_CASE("an empty gravity section means gravity with its defaults") {
+  const Scene scene = parse_scene(least + "[gravity]\n", "s.toml");
+  REQUIRE(scene.gravity);
+  CHECK(scene.gravity->solver == GravitySettings::Solver::tree);
+  CHECK(scene.gravity->opening_angle == 0.6);
+  CHECK(scene.gravity->image_rings == 1);
+  CHECK(scene.gravity->kick_every == 1);
+}
+
+TEST_CASE("the count follows from the optical depth, to the nearest particle") {
+  const Scene scene = parse_scene(changed(least, "count = 300", "optical_depth = 0.5"), "s.toml");
+  CHECK(scene.particles.count == 796); // 0.5 × 5000 / π = 795.8
+  CHECK(scene.size_x == 100.0);
+}
+
+TEST_CASE("a preset brings its three frequencies") {
+  const Scene scene = parse_scene(changed(least, "orbital_frequency = 2e-4", "preset = \"saturn-a-ring\""), "s.toml");
+  CHECK(scene.planet.preset == "saturn-a-ring");
+  CHECK(scene.planet.orbital_frequency == 1.3175e-4);
+  CHECK(scene.planet.frequencies.kappa == 0.99458);
+  CHECK(scene.planet.frequencies.nu == 1.00539);
+}
+
+TEST_CASE("a start file takes the place of box and particles") {
+  const std::string text = "planet.preset = \"saturn-b-ring\"\ntime.end = 1\nstart.from = \"../wakes.hdf\"\n";
+  const Scene scene = parse_scene(text, "/some/where/s.toml");
+  REQUIRE(scene.start_from);
+  CHECK(*scene.start_from == "/some/wakes.hdf");
+  CHECK(scene.particles.count == 0);
+  CHECK(scene.size_x == 0.0);
+  CHECK(scene.optical_depth() == 0.0);
+  CHECK(scene.surface_density() == 0.0);
+  CHECK(!derive(scene).particles_known);
+  CHECK(parse_scene(scene.resolved, "elsewhere/r.toml").start_from == scene.start_from);
+}
+
+TEST_CASE("radii come from a file beside the scene") {
+  const auto folder = std::filesystem::temp_directory_path() / "keeler_test_scene_radii";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "radii.txt") << "# metres\n1.0\n  2.5 # the largest\r\n\n0.5\n";
+  std::ofstream(folder / "bad.txt") << "1.0\n-2\n";
+  std::ofstream(folder / "empty.txt") << "# nothing\n";
+  const auto with = [&](const std::string& file) {
+    const std::string sizes = "{ law = \"file\", path = \"" + file + "\" }";
+    std::ofstream(folder / "s.toml") << changed(least, "{ law = \"equal\", radius = 1.0 }", sizes);
+    return load_scene((folder / "s.toml").string());
+  };
+  const Scene scene = with("radii.txt");
+  CHECK(scene.particles.sizes.kind == SizeLaw::Kind::file);
+  CHECK(scene.particles.sizes.listed == std::vector<double>{1.0, 2.5, 0.5});
+  CHECK(scene.particles.sizes.path == (folder / "radii.txt").string());
+
+  const std::string here = folder.string();
+  CHECK_THROWS_WITH_AS(
+      with("bad.txt"),
+      (here + "/bad.txt:2:1: not a radius (every line is one number above 0, in m); correct this line").c_str(),
+      UsageError);
+  CHECK_THROWS_WITH_AS(with("empty.txt"),
+                       (here + "/s.toml:8:32: " + here +
+                        "/empty.txt has no radius in it (it is empty or all comments); write one a line")
+                           .c_str(),
+                       UsageError);
+  CHECK_THROWS_WITH_AS(with("absent.txt"),
+                       (here + "/s.toml:8:32: " + here +
+                        "/absent.txt cannot be read (No such file or directory); check the path and its permissions")
+                           .c_str(),
+                       UsageError);
+  std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("times are rounded to whole kicks, and a change is reported") {
+  const Scene scene = parse_scene(least + "[output]\nsnapshot_every = 0.1\ncheckpoint_every = 1e-9\n"
+                                          "[gravity]\nkick_every = 8\n",
+                                  "s.toml");
+  CHECK(scene.time.end_step == 2000);
+  CHECK(scene.output.snapshot_every == 104); // 12.5 intervals: the half goes up
+  CHECK(scene.output.checkpoint_every == 8);
+  CHECK(
+      scene.notices ==
+      std::vector<std::string>{
+          "output.snapshot_every = 0.1 is rounded to 0.104 orbits (whole kicks, one every 8 steps of 0.001 orbits)",
+          "output.checkpoint_every = 1e-09 is rounded to 0.008 orbits (whole kicks, one every 8 steps of 0.001 orbits)",
+      });
+  // rounding of the decimal fractions themselves is no change: 0.7 / 1e-3 is not 700 in binary
+  CHECK(parse_scene(changed(least, "end = 2", "end = 0.7"), "s.toml").notices.empty());
+  CHECK(parse_scene(changed(least, "end = 2", "end = 0.0042"), "s.toml").notices ==
+        std::vector<std::string>{"time.end = 0.0042 is rounded to 0.004 orbits (whole steps of 0.001 orbits)"});
+}
+
+TEST_CASE("the resolved scene has every key in force and reads back to the same scene") {
+  const std::string text = R"(
+title = "line\nbreak"
+planet.preset = "saturn-c-ring"
+box.size_in_wavelengths = [40, 41]
+[particles]
+optical_depth = 0.1
+density = 700
+sizes = { law = "power", exponent = 3.1, min = 0.3, max = 3 }
+[gravity]
+kick_every = 3
+[time]
+end = 0.5
+)";
+  const Scene scene = parse_scene(text, "s.toml");
+  const Scene again = parse_scene(scene.resolved, "r.toml");
+  CHECK(again.resolved == scene.resolved);
+  CHECK(again.notices.empty());
+  CHECK(again.title == "line\nbreak");
+  CHECK(again.planet.orbital_frequency == scene.planet.orbital_frequency);
+  CHECK(again.planet.frequencies.kappa == scene.planet.frequencies.kappa);
+  CHECK(again.planet.frequencies.nu == scene.planet.frequencies.nu);
+  CHECK(again.size_x == scene.size_x);
+  CHECK(again.size_y == scene.size_y);
+  CHECK(again.particles.count == scene.particles.count);
+  CHECK(again.time.end_step == scene.time.end_step);
+  CHECK(again.time.end_step == 501);
+
+  const Scene least_scene = parse_scene(least, "s.toml");
+  CHECK(least_scene.resolved == R"(title = ""
+
+[planet]
+orbital_frequency = 0.0002
+epicyclic_ratio = 1.0
+vertical_ratio = 1.0
+
+[box]
+size = [100.0, 50.0]
+
+[particles]
+count = 300
+density = 900.0
+velocity_dispersion = 2.0
+seed = 1
+
+[particles.sizes]
+law = "equal"
+radius = 1.0
+
+[collisions]
+finder = "certified"
+elastic_below = 0.01
+
+[collisions.restitution]
+law = "bridges"
+scale = 0.34
+
+[time]
+step = 0.001
+end = 2.0
+
+[output]
+snapshot_every = 0.0
+checkpoint_every = 0.0
+)");
+}
