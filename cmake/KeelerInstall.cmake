@@ -1,12 +1,9 @@
-# Install the program, the headers, the libraries and a package that find_package(keeler) finds.
+# Install the headers, the libraries (src/cli installs the program) and a package that find_package(keeler) finds.
 include(CMakePackageConfigHelpers)
 get_property(KEELER_TARGETS GLOBAL PROPERTY KEELER_TARGETS)
 set(KEELER_PACKAGE_DIR "${CMAKE_INSTALL_LIBDIR}/cmake/keeler")
 
 install(TARGETS ${KEELER_TARGETS} EXPORT keeler ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}/keeler")
-if(TARGET keeler)
-  install(TARGETS keeler)
-endif()
 install(DIRECTORY include/keeler DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 install(EXPORT keeler NAMESPACE keeler:: FILE keeler-targets.cmake DESTINATION "${KEELER_PACKAGE_DIR}")
 configure_package_config_file(cmake/keeler-config.cmake.in keeler-config.cmake
