@@ -6,13 +6,22 @@
 #include <CLI/CLI.hpp>
 
 #include <functional>
+#include <string>
+#include <vector>
 
 namespace keeler {
 
 /// What the chosen subcommand does; the program ends with the code it returns.
 using Action = std::function<ExitCode()>;
 
-/// Each adds its subcommand to the program; when the command line names it, it sets the action.
+/// Each adds its subcommand to the program; when the command line names it, it sets the action. `arguments` is the
+/// whole command line, for the provenance of what is written.
 void add_check(CLI::App& program, Action& action);
+void add_generate(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
+void add_run(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
+void add_resume(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
+void add_info(CLI::App& program, Action& action);
+void add_analyze(CLI::App& program, Action& action);
+void add_render(CLI::App& program, Action& action);
 
 } // namespace keeler

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 
@@ -22,7 +23,14 @@ int run(int argc, char** argv) {
   program.set_version_flag("--version", "keeler " + program_version());
   program.require_subcommand(1);
   Action action;
+  const std::vector<std::string> arguments(argv, argv + argc);
   add_check(program, action);
+  add_generate(program, action, arguments);
+  add_run(program, action, arguments);
+  add_resume(program, action, arguments);
+  add_info(program, action);
+  add_analyze(program, action);
+  add_render(program, action);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& asked) { // --help and --version
@@ -36,6 +44,7 @@ int run(int argc, char** argv) {
 } // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN); // a file-size limit is then an error of the write
   try {
     return run(argc, argv);
   } catch (const Error& error) {

@@ -64,13 +64,14 @@ std::vector<double> smooth(const std::vector<double>& profile, double sigma) {
   return smoothed;
 }
 
-// The first maximum beyond zero lag that stands above its valleys on both sides by `prominence`, in entries.
+// The first maximum beyond zero lag, in entries: more crowded than at random (ξ > 0: a shoulder in the empty lane
+// beside a wake is not the next wake) and above its valleys on both sides by `prominence`.
 std::optional<double> first_side_maximum(const std::vector<double>& profile, double prominence) {
   double lowest = profile[0];
   std::size_t top = 0; // 0: no rise seen yet
   for (std::size_t k = 1; k < profile.size(); ++k) {
     lowest = std::min(lowest, profile[k]);
-    if (top == 0 ? profile[k] > lowest + prominence : profile[k] > profile[top])
+    if (top == 0 ? profile[k] > std::max(0.0, lowest + prominence) : profile[k] > profile[top])
       top = k;
     else if (top != 0 && profile[k] < profile[top] - prominence)
       return static_cast<double>(top) + parabola_top(profile[top - 1], profile[top], profile[top + 1]);

@@ -3,7 +3,7 @@
 // Pitch: the direction from the y axis along which the mean of ξ over a line through zero lag is largest; positive when
 // trailing, that is when the outer part of a wake (x > 0) lags behind (y < 0).
 // Spacing: ξ is averaged along that direction into a function of the radial lag Δx (at Δy = 0); the spacing is its
-// first side maximum.
+// first side maximum with ξ > 0.
 #pragma once
 
 #include <keeler/diagnostics/autocorrelation.hpp>

@@ -36,10 +36,11 @@ struct GravitySettings {
   enum class Solver { direct, tree };
   Solver solver = Solver::tree;
   double opening_angle = 0.6; ///< tree: a cell is opened when its size exceeds this times its distance
-  int image_rings = 1;        ///< rings of periodic images around the cell: 1 is 9 boxes, 2 is 25
+  int image_rings = 1;        ///< rings of periodic images around the cell: 1 is 9 boxes, 2 is 25 (images.hpp)
   int kick_every = 1;         ///< drifts per kick
 };
 
+/// Throws UsageError when the environment variable KEELER_SIMD names instructions that are not to be had (simd.hpp).
 std::unique_ptr<GravitySolver> make_gravity_solver(const GravitySettings& settings);
 
 } // namespace keeler

@@ -7,6 +7,7 @@
 #include <keeler/gravity/images.hpp>
 #include <keeler/gravity/solver.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -59,11 +60,19 @@ private:
   std::vector<std::vector<std::size_t>> columns_;
 };
 
+// Anywhere in a square, in the plane.
+inline Vec3 place_evenly(RandomStream& random, double side) {
+  Vec3 p = Vec3::Zero();
+  p.x() = (random.uniform() - 0.5) * side;
+  p.y() = (random.uniform() - 0.5) * side;
+  return p;
+}
+
 /// Optical depth about 0.6 for spheres of 1 m; contacts across the edge are not avoided. Radii are drawn evenly in
 /// their logarithm between 1 m / size_range and 1 m.
 inline ClumpedState clumped_state(std::size_t count, std::uint64_t seed, double size_range = 1.0) {
   constexpr double pitch = 20.0 / 180.0 * pi, length = 25.0, width = 5.0, height = 2.5; // m
-  const double side = std::sqrt(static_cast<double>(count) * pi / 0.6);
+  const double side = std::sqrt(static_cast<double>(std::max<std::size_t>(count, 10)) * pi / 0.6);
   ClumpedState state;
   state.box = {side, 0.9 * side, 1.5, 0.0};
   state.offset = 0.37 * state.box.size_y;
@@ -75,13 +84,14 @@ inline ClumpedState clumped_state(std::size_t count, std::uint64_t seed, double 
     Vec3 p;
     do {
       if (k % 4 == 0) {
-        p = Vec3((random.uniform() - 0.5) * side, (random.uniform() - 0.5) * side, 3.0 * random.normal());
+        p = place_evenly(random, side);
+        p.z() = 3.0 * random.normal();
       } else {
         RandomStream clump(seed, RandomPurpose::relaxation, k % clumps);
-        const Vec3 centre((clump.uniform() - 0.5) * side, (clump.uniform() - 0.5) * side, 0.0);
         const double along = length * random.normal(), across = width * random.normal();
-        p = centre + Vec3(across * std::cos(pitch) - along * std::sin(pitch),
-                          across * std::sin(pitch) + along * std::cos(pitch), height * random.normal());
+        p = place_evenly(clump, side) + Vec3(across * std::cos(pitch) - along * std::sin(pitch),
+                                             across * std::sin(pitch) + along * std::cos(pitch), 0.0);
+        p.z() = height * random.normal();
       }
       p = into_cell(state.box, state.offset, p);
     } while (!grid.free(p, radius, state));

@@ -38,6 +38,21 @@ TEST_CASE("the tree's error in a clumped state is what its opening angle promise
   }
 }
 
+TEST_CASE("the tree nearly keeps the momentum") {
+  const ClumpedState state = clumped_state(4000, 1);
+  for (const double angle : {0.7, 0.5}) {
+    const std::vector<Vec3> a = by_tree(state, angle);
+    Vec3 sum = Vec3::Zero();
+    double whole = 0.0;
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      sum += state.masses[k] * a[k];
+      whole += state.masses[k] * a[k].norm();
+    }
+    MESSAGE("angle " << angle << ", sum of m a / sum of |m a|: " << sum.norm() / whole);
+    CHECK(sum.norm() < (angle > 0.6 ? 1e-3 : 3e-4) * whole); // well below the rms error: errors cancel
+  }
+}
+
 TEST_CASE("with more rings and at other offsets the tree still follows the direct sum") {
   ClumpedState state = clumped_state(1000, 4);
   for (const double part : {0.0, 0.5, 0.9})
@@ -55,7 +70,7 @@ TEST_CASE("a closed opening angle gives the direct sum to rounding") {
 }
 
 TEST_CASE("an angle of any size never opens a cell onto itself") {
-  // Two tight pairs: with a huge angle only the overlap rule forbids taking the own cell as a whole.
+  // With a huge angle only the rule on overlapping boxes forbids taking the own cell as a whole.
   const ClumpedState state = clumped_state(300, 8);
   for (const Vec3& a : by_tree(state, 1e9))
     CHECK(a.allFinite());

@@ -1,0 +1,105 @@
+// keeler analyze: numbers from a snapshot, or averaged over the last orbit of a run.
+#include "command.hpp"
+#include "common_options.hpp"
+
+#include <keeler/cells/overlap.hpp>
+#include <keeler/diagnostics/analysis.hpp>
+#include <keeler/runs/stored_patches.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <memory>
+
+namespace keeler {
+namespace {
+
+constexpr double averaged_orbits = 1.0;
+
+struct AnalyzeOptions {
+  std::string path;
+  bool json = false;
+  ThreadOption threads;
+};
+
+nlohmann::ordered_json as_json(const Analysis& a, double overlap) {
+  const auto maybe = [](const std::optional<double>& value) {
+    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+  };
+  nlohmann::ordered_json json;
+  json["snapshots"] = a.snapshots;
+  json["time_orbits"] = a.time_orbits;
+  json["particle_count"] = a.particle_count;
+  json["mean_radius_m"] = a.mean_radius_m;
+  json["optical_depth"] = a.optical_depth;
+  json["surface_density_kg_m2"] = a.surface_density_kg_m2;
+  json["critical_wavelength_m"] = a.critical_wavelength_m;
+  json["toomre_q"] = a.toomre_q;
+  json["dispersion_m_s"] = a.dispersion_m_s;
+  json["dispersion_r_omega"] = a.dispersion_r_omega;
+  json["scale_height_m"] = a.scale_height_m;
+  json["mean_eccentricity_m"] = a.mean_eccentricity_m;
+  json["mean_inclination_m"] = a.mean_inclination_m;
+  json["filling_factor"] = a.filling_factor;
+  json["translational_viscosity_m2_s"] = a.translational_viscosity_m2_s;
+  json["random_energy_m2_s2"] = a.random_energy_m2_s2;
+  json["largest_overlap"] = overlap;
+  json["wake_pitch_degrees"] = maybe(a.wake_pitch_degrees);
+  json["wake_spacing_m"] = maybe(a.wake_spacing_m);
+  json["wake_amplitude"] = a.wake_amplitude;
+  return json;
+}
+
+void print_text(const Analysis& a, double overlap) {
+  const auto& c = a.dispersion_r_omega;
+  const auto& v = a.dispersion_m_s;
+  fmt::print("snapshots            {} up to orbit {:.4g}, {} particles\n", a.snapshots, a.time_orbits,
+             a.particle_count);
+  fmt::print("optical depth        {:.4g}\n", a.optical_depth);
+  fmt::print("surface density      {:.4g} kg/m^2, lambda_cr {:.4g} m\n", a.surface_density_kg_m2,
+             a.critical_wavelength_m);
+  fmt::print("Toomre Q             {:.3g}\n", a.toomre_q);
+  fmt::print("velocity dispersion  {:.3g} {:.3g} {:.3g} r Omega = {:.3g} {:.3g} {:.3g} m/s\n", c[0], c[1], c[2], v[0],
+             v[1], v[2]);
+  fmt::print("scale height         {:.3g} m, filling factor {:.3g} in the mid-plane\n", a.scale_height_m,
+             a.filling_factor);
+  fmt::print("viscosity            {:.3g} m^2/s translational\n", a.translational_viscosity_m2_s);
+  fmt::print("largest overlap      {:.1e} of a radius sum\n", overlap);
+  if (!a.wake_pitch_degrees) {
+    fmt::print("wakes                none\n");
+    return;
+  }
+  fmt::print("wake pitch           {:.1f} degrees, trailing\n", *a.wake_pitch_degrees);
+  if (a.wake_spacing_m)
+    fmt::print("wake spacing         {:.3g} m radially = {:.2f} lambda_cr\n", *a.wake_spacing_m,
+               *a.wake_spacing_m / a.critical_wavelength_m);
+  fmt::print("wake amplitude       {:.3g} in the autocorrelation\n", a.wake_amplitude);
+}
+
+ExitCode run(const AnalyzeOptions& options) {
+  options.threads.apply();
+  const StoredPatches stored = load_patches(options.path, averaged_orbits);
+  double overlap = 0.0;
+  for (const Patch& patch : stored.patches)
+    overlap = std::max(overlap, largest_overlap(patch).depth);
+  const Analysis analysis = analyze(stored.patches);
+  if (options.json)
+    fmt::print("{}\n", as_json(analysis, overlap).dump(2));
+  else
+    print_text(analysis, overlap);
+  return ExitCode::done;
+}
+
+} // namespace
+
+void add_analyze(CLI::App& program, Action& action) {
+  const auto options = std::make_shared<AnalyzeOptions>();
+  CLI::App& command = *program.add_subcommand("analyze", "measure a snapshot, or the last orbit of a run");
+  command.add_option("path", options->path, "a snapshot, or the folder of a run")->required()->option_text("FILE|DIR");
+  command.add_flag("--json", options->json, "print the numbers as JSON");
+  options->threads.add_to(command);
+  command.callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+} // namespace keeler

@@ -1,0 +1,84 @@
+// keeler info: what is in a snapshot or a checkpoint.
+#include "command.hpp"
+
+#include <keeler/io/describe.hpp>
+#include <keeler/io/snapshot.hpp>
+#include <keeler/runs/run.hpp>
+#include <keeler/runs/state_hash.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <memory>
+
+namespace keeler {
+namespace {
+
+nlohmann::ordered_json describe(const std::string& path) {
+  const FileDescription file = describe_file(path);
+  nlohmann::ordered_json json;
+  json["file"] = path;
+  json["kind"] = file.kind == FileKind::checkpoint ? "checkpoint" : "snapshot";
+  json["format_version"] = file.format_version;
+  if (file.kind == FileKind::checkpoint) {
+    const StoredRun run = load_checkpoint(path);
+    json["state_hash"] = state_hash(run.state, run.scene);
+    json["time_orbits"] = static_cast<double>(run.state.step) * run.scene.time.step;
+    json["particle_count"] = run.state.particles.size();
+  } else {
+    const Patch patch = read_snapshot(path).patch;
+    json["time_orbits"] = patch.time_orbits;
+    json["particle_count"] = patch.size();
+  }
+  for (const FieldDescription& field : file.fields) {
+    nlohmann::ordered_json entry = {
+        {"type", field.type}, {"shape", field.shape}, {"unit", field.unit}, {"about", field.about}};
+    if (!field.value.empty())
+      entry["value"] = field.value;
+    json["fields"][field.name] = entry;
+  }
+  json["attributes"] = file.attributes;
+  json["scene"] = file.scene;
+  return json;
+}
+
+void print_text(const nlohmann::ordered_json& json) {
+  for (const char* key : {"file", "kind", "format_version", "state_hash", "time_orbits", "particle_count"})
+    if (json.contains(key))
+      fmt::print("{:15} {}\n", key, json[key].is_string() ? json[key].get<std::string>() : json[key].dump());
+  fmt::print("\n");
+  for (const auto& [name, field] : json["fields"].items()) {
+    const std::string shape =
+        field.contains("value") ? "= " + field["value"].get<std::string>() : field["shape"].dump();
+    fmt::print("{:28} {:8} {:24} {}\n", name, field["type"].get<std::string>(), shape,
+               field["unit"].get<std::string>());
+  }
+  fmt::print("\n");
+  for (const auto& [name, value] : json["attributes"].items())
+    fmt::print("{:28} {}\n", name, value.get<std::string>());
+}
+
+} // namespace
+
+void add_info(CLI::App& program, Action& action) {
+  struct Options {
+    std::string file;
+    bool json = false;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App& command = *program.add_subcommand("info", "show what is in a snapshot or a checkpoint");
+  command.add_option("file", options->file, "a snapshot or a checkpoint")->required()->option_text("FILE");
+  command.add_flag("--json", options->json, "print it as JSON");
+  command.callback([options, &action] {
+    action = [options] {
+      const nlohmann::ordered_json json = describe(options->file);
+      if (options->json)
+        fmt::print("{}\n", json.dump(2));
+      else
+        print_text(json);
+      return ExitCode::done;
+    };
+  });
+}
+
+} // namespace keeler

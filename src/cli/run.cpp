@@ -1,0 +1,135 @@
+// keeler run and keeler resume: the main job.
+#include "command.hpp"
+#include "common_options.hpp"
+#include "progress_line.hpp"
+#include "scene_arguments.hpp"
+#include "signals.hpp"
+
+#include <keeler/io/files.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <memory>
+
+namespace keeler {
+namespace {
+
+struct JobOptions {
+  SceneArguments scene;
+  std::string folder, from;
+  double until = 0.0, wall_time = 0.0;
+  bool force = false, json = false;
+  ThreadOption threads;
+};
+
+void say(const std::string& line) {
+  fmt::print(stderr, "keeler: {}\n", line);
+}
+
+RunOptions run_options(const JobOptions& job, const std::vector<std::string>& arguments, ProgressLine& line) {
+  RunOptions options;
+  options.folder = job.folder;
+  options.force = job.force;
+  if (job.wall_time > 0.0)
+    options.wall_time_s = job.wall_time;
+  if (job.until > 0.0)
+    options.until_orbits = job.until;
+  options.arguments = arguments;
+  options.progress = [&line](const RunProgress& progress) { line.show(progress); };
+  options.notice = say;
+  return options;
+}
+
+void print_summary(const std::string& folder, const nlohmann::json& s) {
+  const auto number = [&](const char* key) { return s[key].get<double>(); };
+  fmt::print("{} orbits, {} steps, {} particles, {} threads\n", number("time_orbits"), s["steps"].get<long>(),
+             s["particle_count"].get<long>(), s["threads"].get<int>());
+  fmt::print("collisions per particle and orbit   {:.3g} faster than v_cut, {:.3g} slow contacts\n",
+             number("collisions_per_particle_orbit"), number("slow_contacts_per_particle_orbit"));
+  fmt::print("largest overlap                     {:.1e} of a radius sum\n", number("largest_overlap"));
+  const nlohmann::json& e = s["energy_j"];
+  const auto energy = [&](const char* key) { return e[key].get<double>(); };
+  fmt::print("energy budget (J)                   change {:.4g} = kicks {:.4g} + edges {:.4g} - collisions {:.4g}, "
+             "residual {:.1e}\n",
+             energy("now") - energy("start"), energy("kick_work"), energy("edge_work"), energy("lost_in_collisions"),
+             energy("residual"));
+  const nlohmann::json& split = s["split"];
+  fmt::print("time                                {:.1f} s wall, {:.1f} s processor: drift {:.1f} s, gravity {:.1f} s, "
+             "output {:.1f} s\n",
+             number("wall_s"), number("cpu_s"), split["drift_s"].get<double>(), split["gravity_s"].get<double>(),
+             split["output_s"].get<double>());
+  const nlohmann::json& cost = s["ns_per_particle_step"];
+  fmt::print("ns per particle and step            drift {:.0f}, gravity {:.0f}, output {:.0f}\n",
+             cost["drift"].get<double>(), cost["gravity"].get<double>(), cost["output"].get<double>());
+  fmt::print("state                               {}\n", s["state_hash"].get<std::string>());
+  fmt::print("folder                              {}\n", folder);
+}
+
+ExitCode report(const JobOptions& job, const RunResult& result) {
+  const std::string text = read_text(std::filesystem::path(job.folder) / "summary.json");
+  if (job.json)
+    fmt::print("{}", text);
+  else
+    print_summary(job.folder, nlohmann::json::parse(text));
+  if (result.finished)
+    return ExitCode::done;
+  say(fmt::format("stopped at step {} with a checkpoint; continue with \"keeler resume {}\"", result.step, job.folder));
+  return ExitCode::stopped;
+}
+
+void add_common(CLI::App& command, JobOptions& job) {
+  command.add_option("--wall-time", job.wall_time, "stop with a checkpoint before this many seconds have passed")
+      ->check(CLI::PositiveNumber);
+  command.add_flag("--json", job.json, "print the summary as JSON");
+  job.threads.add_to(command);
+}
+
+} // namespace
+
+void add_run(CLI::App& program, Action& action, const std::vector<std::string>& arguments) {
+  const auto job = std::make_shared<JobOptions>();
+  CLI::App& command = *program.add_subcommand("run", "evolve a scene into a folder of results");
+  job->scene.add_to(command)->required();
+  command.add_option("-o,--output", job->folder, "the folder for the results; made if absent")->required();
+  command.add_option("--from", job->from, "start from the particles and the box of this snapshot");
+  command.add_flag("--force", job->force, "replace the run that the folder holds");
+  add_common(command, *job);
+  command.callback([job, arguments, &action] {
+    action = [job, arguments] {
+      job->threads.apply();
+      if (!job->from.empty())
+        job->scene.overrides.push_back("start.from=" + job->from);
+      const Scene scene = job->scene.load();
+      for (const std::string& notice : scene.notices)
+        say(notice);
+      RunResult result;
+      {
+        ProgressLine line;
+        result = start_run(scene, run_options(*job, arguments, line), requests_from_signals());
+      }
+      return report(*job, result);
+    };
+  });
+}
+
+void add_resume(CLI::App& program, Action& action, const std::vector<std::string>& arguments) {
+  const auto job = std::make_shared<JobOptions>();
+  CLI::App& command = *program.add_subcommand("resume", "continue a run from its newest whole checkpoint");
+  command.add_option("folder", job->folder, "the folder of the run")->required()->option_text("DIR");
+  command.add_option("--until", job->until, "another end, in orbits since the run began")->check(CLI::PositiveNumber);
+  add_common(command, *job);
+  command.callback([job, arguments, &action] {
+    action = [job, arguments] {
+      job->threads.apply();
+      RunResult result;
+      {
+        ProgressLine line;
+        result = resume_run(run_options(*job, arguments, line), requests_from_signals());
+      }
+      return report(*job, result);
+    };
+  });
+}
+
+} // namespace keeler

@@ -1,0 +1,31 @@
+// Colours and colour ramps, in sRGB from 0 to 1.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace keeler {
+
+struct Colour {
+  double r = 0, g = 0, b = 0;
+};
+
+inline Colour mix(const Colour& from, const Colour& to, double share) {
+  return {from.r + share * (to.r - from.r), from.g + share * (to.g - from.g), from.b + share * (to.b - from.b)};
+}
+
+/// Evenly spaced colours, straight lines between them; t is clamped to [0, 1].
+template<std::size_t n> Colour ramp(const std::array<Colour, n>& stops, double t) {
+  const double u = std::clamp(t, 0.0, 1.0) * static_cast<double>(n - 1);
+  const std::size_t k = std::min(static_cast<std::size_t>(u), n - 2);
+  return mix(stops[k], stops[k + 1], u - static_cast<double>(k));
+}
+
+inline constexpr Colour page_colour{0.047, 0.051, 0.066};
+inline constexpr Colour space_colour{0.012, 0.014, 0.024};
+inline constexpr Colour ink{0.93, 0.91, 0.86};
+inline constexpr Colour faint_ink{0.62, 0.61, 0.60};
+inline constexpr Colour accent{0.45, 0.80, 0.95};
+
+} // namespace keeler

@@ -1,0 +1,162 @@
+#include "page.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/units.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+
+namespace keeler {
+namespace {
+
+void set_colour(cairo_t* cairo, const Colour& colour, double opacity = 1.0) {
+  cairo_set_source_rgba(cairo, colour.r, colour.g, colour.b, opacity);
+}
+
+std::uint32_t packed(const Colour& colour) {
+  const auto byte = [](double value) { return static_cast<std::uint32_t>(std::clamp(value, 0.0, 1.0) * 255.0 + 0.5); };
+  return 0xff000000u | byte(colour.r) << 16 | byte(colour.g) << 8 | byte(colour.b);
+}
+
+} // namespace
+
+Page::Page(int width, int height, const Colour& background)
+    : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height)), cairo_(cairo_create(surface_)) {
+  set_colour(cairo_, background);
+  cairo_paint(cairo_);
+}
+
+Page::~Page() {
+  cairo_destroy(cairo_);
+  cairo_surface_destroy(surface_);
+}
+
+void Page::place(const Raster& raster, int left, int top) {
+  cairo_surface_flush(surface_);
+  unsigned char* data = cairo_image_surface_get_data(surface_);
+  if (data == nullptr)
+    return; // the surface failed; save() says so
+  const std::ptrdiff_t stride = cairo_image_surface_get_stride(surface_);
+  for (int y = 0; y < raster.height(); ++y) {
+    auto* row = reinterpret_cast<std::uint32_t*>(data + (top + y) * stride) + left;
+    for (int x = 0; x < raster.width(); ++x)
+      row[x] = packed(raster.pixel(x, y));
+  }
+  cairo_surface_mark_dirty(surface_);
+}
+
+void Page::line(PagePoint from, PagePoint to, const Colour& colour, double width, bool dashed) {
+  const double dashes[] = {4.0 * width, 3.0 * width};
+  cairo_set_dash(cairo_, dashes, dashed ? 2 : 0, 0.0);
+  curve({from, to}, colour, width);
+  cairo_set_dash(cairo_, nullptr, 0, 0.0);
+}
+
+void Page::curve(const std::vector<PagePoint>& points, const Colour& colour, double width) {
+  set_colour(cairo_, colour);
+  cairo_set_line_width(cairo_, width);
+  cairo_set_line_join(cairo_, CAIRO_LINE_JOIN_ROUND);
+  for (const PagePoint& point : points)
+    cairo_line_to(cairo_, point.x, point.y);
+  cairo_stroke(cairo_);
+}
+
+void Page::arrow(PagePoint from, PagePoint to, const Colour& colour, double width) {
+  const double length = std::hypot(to.x - from.x, to.y - from.y);
+  const double ux = (to.x - from.x) / length, uy = (to.y - from.y) / length, head = 5.0 * width;
+  line(from, {to.x - ux * head, to.y - uy * head}, colour, width);
+  set_colour(cairo_, colour);
+  cairo_move_to(cairo_, to.x, to.y);
+  cairo_line_to(cairo_, to.x - head * (1.4 * ux + 0.55 * uy), to.y - head * (1.4 * uy - 0.55 * ux));
+  cairo_line_to(cairo_, to.x - head * (1.4 * ux - 0.55 * uy), to.y - head * (1.4 * uy + 0.55 * ux));
+  cairo_close_path(cairo_);
+  cairo_fill(cairo_);
+}
+
+void Page::frame(double left, double top, double width, double height, const Colour& colour) {
+  set_colour(cairo_, colour);
+  cairo_set_line_width(cairo_, 1.0);
+  cairo_rectangle(cairo_, left - 0.5, top - 0.5, width + 1.0, height + 1.0); // on the pixels just outside
+  cairo_stroke(cairo_);
+}
+
+void Page::shade(double left, double top, double width, double height, const Colour& colour, double opacity) {
+  set_colour(cairo_, colour, opacity);
+  cairo_rectangle(cairo_, left, top, width, height);
+  cairo_fill(cairo_);
+}
+
+void Page::dot(PagePoint at, double radius, const Colour& colour) {
+  set_colour(cairo_, colour);
+  cairo_new_sub_path(cairo_);
+  cairo_arc(cairo_, at.x, at.y, radius, 0.0, two_pi);
+  cairo_fill(cairo_);
+}
+
+void Page::begin_clip(double left, double top, double width, double height) {
+  cairo_save(cairo_);
+  cairo_rectangle(cairo_, left, top, width, height);
+  cairo_clip(cairo_);
+}
+
+void Page::end_clip() {
+  cairo_restore(cairo_);
+}
+
+double Page::text(PagePoint base, const std::string& text, const TextStyle& style, bool upward) {
+  const double width = text_width(text, style);
+  const double back = style.align == Align::left ? 0.0 : style.align == Align::right ? width : 0.5 * width;
+  cairo_save(cairo_);
+  cairo_translate(cairo_, base.x, base.y);
+  if (upward)
+    cairo_rotate(cairo_, -0.5 * pi);
+  cairo_translate(cairo_, -back, 0.0);
+  show(text, style, true);
+  cairo_restore(cairo_);
+  return width;
+}
+
+double Page::text_width(const std::string& text, const TextStyle& style) {
+  return show(text, style, false);
+}
+
+double Page::show(const std::string& text, const TextStyle& style, bool draw) {
+  // Cairo's plain text calls; fontconfig offers its closest face when this one is not installed.
+  cairo_select_font_face(cairo_, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
+                         style.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  set_colour(cairo_, style.colour);
+  double x = 0.0;
+  std::size_t at = 0;
+  bool lowered = false;
+  while (at < text.size()) {
+    const std::string mark = lowered ? "}" : "_{";
+    const std::size_t end = std::min(text.find(mark, at), text.size());
+    const std::string piece = text.substr(at, end - at);
+    cairo_set_font_size(cairo_, lowered ? 0.7 * style.size : style.size);
+    if (draw) {
+      cairo_move_to(cairo_, x, lowered ? 0.2 * style.size : 0.0);
+      cairo_show_text(cairo_, piece.c_str());
+    }
+    cairo_text_extents_t extents;
+    cairo_text_extents(cairo_, piece.c_str(), &extents);
+    x += extents.x_advance;
+    at = end + mark.size();
+    lowered = !lowered;
+  }
+  cairo_new_path(cairo_);
+  return x;
+}
+
+void Page::save(const std::string& path) {
+  cairo_status_t status = cairo_status(cairo_);
+  if (status == CAIRO_STATUS_SUCCESS)
+    status = cairo_surface_write_to_png(surface_, path.c_str());
+  if (status != CAIRO_STATUS_SUCCESS)
+    throw IoError(
+        fmt::format("cannot write the picture '{}': {}; choose a directory that exists, is writable and has room", path,
+                    cairo_status_to_string(status)));
+}
+
+} // namespace keeler

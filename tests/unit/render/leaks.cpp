@@ -1,0 +1,5 @@
+// Fontconfig keeps its font cache until the process ends, by design; the leak sanitizer need not report it.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() {
+  return "leak:libfontconfig";
+}

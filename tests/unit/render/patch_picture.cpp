@@ -1,0 +1,129 @@
+#include <keeler/render/patch_picture.hpp>
+
+#include "picture.hpp"
+
+#include <keeler/core/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace keeler;
+using keeler::test::Picture;
+using keeler::test::TemporaryPng;
+
+namespace {
+
+// Spheres of radius 2 m at rest in a box of 100 × 60 m whose columns are 20 m behind each other.
+Patch spheres(const std::vector<Vec3>& places) {
+  Patch patch;
+  patch.box = {100.0, 60.0, 1.5, 0.0};
+  patch.offset = 20.0;
+  patch.orbital_frequency = 1.3175e-4;
+  for (const Vec3& place : places) {
+    patch.ids.push_back(patch.size());
+    patch.positions.push_back(place);
+    patch.velocities.emplace_back(0.0, -1.5 * place.x(), 0.0);
+    patch.radii.push_back(2.0);
+    patch.masses.push_back(2e4);
+  }
+  return patch;
+}
+
+constexpr double bright = 90.0, dark = 10.0;
+
+// Brightness where (x, y) of the top view or (x, z) of the edge view is.
+double shown(const Picture& picture, const PixelFrame& f, const PictureLayout& layout, double x, double up) {
+  const int column = f.left + static_cast<int>(0.5 * f.width + layout.pixels_per_metre * x);
+  const int row = f.top + static_cast<int>(0.5 * f.height - layout.pixels_per_metre * up);
+  return picture.brightness(column, row);
+}
+
+} // namespace
+
+TEST_CASE("a picture shows the particles where they are, before a dark sky") {
+  const TemporaryPng file("patch");
+  const Patch patch = spheres({{-20.0, 12.0, 1.0}, {30.0, -10.0, -3.0}});
+  const PictureOptions options{"Two spheres", 800};
+  render_patch(patch, file.path(), options);
+  const Picture picture(file.path());
+  const PictureLayout layout = layout_of(patch, options);
+  CHECK(picture.width() == 800);
+  CHECK(picture.height() == layout.height);
+  CHECK(layout.top_view.width == std::lround(100.0 * layout.pixels_per_metre));
+  CHECK(layout.top_view.height == std::lround(60.0 * layout.pixels_per_metre));
+  CHECK(layout.edge_view.left == layout.top_view.left);
+  CHECK(layout.edge_view.width == layout.top_view.width);
+
+  CHECK(shown(picture, layout.top_view, layout, -20.0, 12.0) > bright);
+  CHECK(shown(picture, layout.top_view, layout, -21.7, 12.0) > 20.0); // still inside the sphere
+  CHECK(shown(picture, layout.top_view, layout, 30.0, -10.0) > 40.0); // low ones are darker
+  for (const Vec3& empty : {Vec3(0, 0, 0), Vec3(-17.0, 12.0, 0), Vec3(30.0, 10.0, 0), Vec3(-49.0, -29.0, 0)})
+    CHECK(shown(picture, layout.top_view, layout, empty.x(), empty.y()) < dark);
+  CHECK(shown(picture, layout.edge_view, layout, -20.0, 1.0) > 40.0);
+  CHECK(shown(picture, layout.edge_view, layout, 30.0, -3.0) > 40.0);
+  CHECK(shown(picture, layout.edge_view, layout, 0.0, 0.0) < dark);
+}
+
+TEST_CASE("images fill the edges, across the shear as well") {
+  const TemporaryPng file("images");
+  // The first reaches over the outer edge, 20 m farther back there; the second over the upper edge; the third stands
+  // outside the cell by its eccentricity and shows as the image that is inside.
+  const Patch patch = spheres({{49.5, -5.0, 0.0}, {10.0, 29.5, 0.0}, {-60.0, 0.0, 0.0}});
+  const PictureOptions options{"Images", 1600};
+  render_patch(patch, file.path(), options);
+  const Picture picture(file.path());
+  const PictureLayout layout = layout_of(patch, options);
+  const auto seen = [&](double x, double y) { return shown(picture, layout.top_view, layout, x, y); };
+  CHECK(seen(49.5, -5.0) > bright);
+  CHECK(seen(-49.5, 15.0) > 40.0); // its image: x − 100, y + 20
+  CHECK(seen(-49.5, -5.0) < dark); // where it would be without the shear
+  CHECK(seen(10.0, 29.5) > bright);
+  CHECK(seen(10.0, -29.5) > 40.0);
+  CHECK(seen(40.0, -20.0) > bright); // x + 100, y − 20
+}
+
+TEST_CASE("the higher particle lies in front, whatever the order in memory") {
+  const TemporaryPng one("front"), two("back");
+  Patch patch = spheres({{0.0, 0.0, 5.0}, {1.0, 0.0, -5.0}});
+  const PictureOptions options{"Order", 800};
+  render_patch(patch, one.path(), options);
+  std::swap(patch.positions[0], patch.positions[1]);
+  std::swap(patch.ids[0], patch.ids[1]);
+  render_patch(patch, two.path(), options);
+  CHECK(test::bytes_of(one.path()) == test::bytes_of(two.path()));
+  const Picture picture(one.path());
+  const PictureLayout layout = layout_of(patch, options);
+  CHECK(shown(picture, layout.top_view, layout, 0.7, 0.0) > bright); // both are here: the high one is bright
+}
+
+TEST_CASE("many particles smaller than a pixel keep their light") {
+  const TemporaryPng file("small");
+  Patch patch = spheres({});
+  for (int k = 0; k < 20'000; ++k) { // on a lattice, covering 10 % of the sky
+    patch.ids.push_back(patch.size());
+    patch.positions.emplace_back(-50.0 + 0.5 * (k % 200) + 0.25, -30.0 + 0.6 * (k / 200) + 0.3, 0.0);
+    patch.velocities.emplace_back(0.0, 0.0, 0.0);
+    patch.radii.push_back(0.098);
+    patch.masses.push_back(2.0);
+  }
+  const PictureOptions options{"Dust", 400};
+  render_patch(patch, file.path(), options);
+  const Picture picture(file.path());
+  const PixelFrame f = layout_of(patch, options).top_view;
+  double sum = 0.0;
+  for (int y = 0; y < f.height; ++y)
+    for (int x = 0; x < f.width; ++x)
+      sum += picture.brightness(f.left + x, f.top + y);
+  const double mean = sum / (f.width * f.height);
+  CHECK(mean > 8.0);  // a tenth of a lit sphere's mean of about 130, less shadows
+  CHECK(mean < 25.0); // a radius rounded up to a pixel would cover ten times as much
+}
+
+TEST_CASE("a picture that cannot be written is an input/output error, an empty patch a usage error") {
+  const Patch patch = spheres({{0.0, 0.0, 0.0}});
+  for (const char* path : {"/nowhere/at/all.png", "/dev/full"}) {
+    CAPTURE(path);
+    CHECK_THROWS_AS(render_patch(patch, path, {"No room", 400}), IoError);
+  }
+  CHECK_THROWS_AS(render_patch(spheres({}), "never.png"), UsageError);
+}
