@@ -11,16 +11,19 @@ namespace {
 constexpr double least_amplitude = 0.02; // relative density waves of 20 %: no published wake is weaker
 constexpr double least_significance = 5.0;
 
-// Mean of ξ over a line of half-length `reach` through (dx, 0), turned by `pitch` (rad) from the y axis.
-double line_mean(const AutocorrelationMap& map, double dx, double pitch, double reach) {
+constexpr double core = 0.3; // of the reach: shorter lags show the shape of single clumps
+
+// Mean of ξ over a line through (dx, 0), turned by `pitch` (rad) from the y axis, at distances from `from` to `reach` on
+// both sides of that point.
+double line_mean(const AutocorrelationMap& map, double dx, double pitch, double from, double reach) {
   const double step = 0.5 * std::min(map.spacing_x, map.spacing_y);
-  const int half = static_cast<int>(std::ceil(reach / step));
+  const int half = static_cast<int>(std::ceil(reach / step)), first = static_cast<int>(from / reach * half);
   double sum = 0.0;
-  for (int k = -half; k <= half; ++k) {
-    const double s = reach * k / half;
-    sum += map.at(dx + s * std::sin(pitch), -s * std::cos(pitch));
+  for (int k = first; k <= half; ++k) {
+    const double s = reach * k / half, dy = s * std::cos(pitch);
+    sum += map.at(dx + s * std::sin(pitch), -dy) + map.at(dx - s * std::sin(pitch), dy);
   }
-  return sum / (2 * half + 1);
+  return 0.5 * sum / (half - first + 1);
 }
 
 // Where a parabola through three equally spaced values has its top, in steps from the middle one.
@@ -38,7 +41,7 @@ Ridge find_ridge(const AutocorrelationMap& map, double reach) {
   std::vector<double> means(steps);
   double all = 0.0;
   for (int k = 0; k < steps; ++k) {
-    means[static_cast<std::size_t>(k)] = line_mean(map, 0.0, (k - 89) * pi / steps, reach);
+    means[static_cast<std::size_t>(k)] = line_mean(map, 0.0, (k - 89) * pi / steps, core * reach, reach);
     all += means[static_cast<std::size_t>(k)] / steps;
   }
   const auto top = static_cast<int>(std::max_element(means.begin(), means.end()) - means.begin());
@@ -85,7 +88,7 @@ Wakes find_wakes(const AutocorrelationMap& map, double critical_wavelength) {
   Wakes wakes;
   const double spacing = std::max(map.spacing_x, map.spacing_y);
   // A line that starts at half a box must stay on the map, which ends at three quarters of it.
-  wakes.reach = std::min({0.75 * critical_wavelength, map.half_height(), map.half_width() / 3.0});
+  wakes.reach = std::min({1.5 * critical_wavelength, map.half_height(), map.half_width() / 2.0});
   wakes.profile_spacing = 0.5 * map.spacing_x;
   if (!(critical_wavelength > 4.0 * spacing && wakes.reach > 2.0 * spacing))
     return wakes;
@@ -96,7 +99,7 @@ Wakes find_wakes(const AutocorrelationMap& map, double critical_wavelength) {
   const double pitch = ridge.pitch_degrees * pi / 180.0;
   const int count = static_cast<int>(map.half_width() * (2.0 / 3.0) / wakes.profile_spacing) + 1;
   for (int k = 0; k < count; ++k)
-    wakes.profile.push_back(line_mean(map, k * wakes.profile_spacing, pitch, wakes.reach));
+    wakes.profile.push_back(line_mean(map, k * wakes.profile_spacing, pitch, 0.0, wakes.reach));
   if (ridge.amplitude < std::max(least_amplitude, least_significance * line_noise))
     return wakes;
 

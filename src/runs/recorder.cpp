@@ -79,7 +79,7 @@ void Recorder::sample(const Simulation& simulation) {
   series_.append(state.step, values);
 }
 
-void Recorder::log(const std::string& event, nlohmann::ordered_json details) {
+void Recorder::log(const std::string& event, const nlohmann::ordered_json& details) {
   nlohmann::ordered_json line;
   line["event"] = event;
   line.update(details);

@@ -30,7 +30,7 @@ public:
   void snapshot(const Simulation& simulation);
   void checkpoint(const Simulation& simulation);
   void sample(const Simulation& simulation);
-  void log(const std::string& event, nlohmann::ordered_json details);
+  void log(const std::string& event, const nlohmann::ordered_json& details);
   double seconds() const { return seconds_; } ///< wall time spent writing
 
 private:

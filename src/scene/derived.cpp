@@ -78,10 +78,31 @@ double hill_parameter(double density, double distance) {
   return 0.82 * std::cbrt(density / 900.0) * distance / 1e8;
 }
 
+namespace {
+
+constexpr double own_room = 1.7; // of H² per τ R²
+
+double mass_radius(const SizeLaw& sizes) {
+  return sizes.mean_power(3) / sizes.mean_power(2);
+}
+
+} // namespace
+
+double layer_height(double optical_depth, const SizeLaw& sizes, double velocity_dispersion, double nu) {
+  const double motion = vertical_share * velocity_dispersion * sizes.mean_power(1) / nu, radius = mass_radius(sizes);
+  return std::sqrt(motion * motion + own_room * optical_depth * radius * radius);
+}
+
 double midplane_filling(double optical_depth, const SizeLaw& sizes, double velocity_dispersion, double nu) {
-  const double vertical = vertical_share * velocity_dispersion * sizes.mean_power(1);
-  const double height = vertical / nu;
-  return (4.0 / 3.0) * optical_depth * sizes.mean_power(3) / sizes.mean_power(2) / (std::sqrt(two_pi) * height);
+  const double height = layer_height(optical_depth, sizes, velocity_dispersion, nu);
+  return (4.0 / 3.0) * optical_depth * mass_radius(sizes) / (std::sqrt(two_pi) * height);
+}
+
+double dispersion_for_filling(double optical_depth, const SizeLaw& sizes, double nu, double filling) {
+  const double radius = mass_radius(sizes);
+  const double height = (4.0 / 3.0) * optical_depth * radius / (std::sqrt(two_pi) * filling);
+  const double motion2 = height * height - own_room * optical_depth * radius * radius;
+  return motion2 > 0.0 ? nu * std::sqrt(motion2) / (vertical_share * sizes.mean_power(1)) : 0.0;
 }
 
 Derived derive(const Scene& scene) {

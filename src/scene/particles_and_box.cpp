@@ -101,7 +101,8 @@ void read_count(Scene& scene, Settings& settings, const Amount& amount) {
   const double filling = midplane_filling(scene.optical_depth(), particles.sizes, particles.velocity_dispersion,
                                           scene.planet.frequencies.nu);
   if (!(filling <= largest_filling)) {
-    const double enough = particles.velocity_dispersion * filling / largest_filling;
+    const double enough =
+        dispersion_for_filling(scene.optical_depth(), particles.sizes, scene.planet.frequencies.nu, largest_filling);
     fail_at(place, fmt::format("too dense (the mid-plane would be filled to {:.2f}, and {:.1f} is the most that can be "
                                "placed without overlap); raise velocity_dispersion to at least {:.2f} or lower the "
                                "optical depth of {:.3g}",

@@ -28,10 +28,16 @@ double hill_parameter(double density, double distance);
 /// c_z / c_x of a fresh patch: equilibria without self-gravity have 0.64 to 0.72.
 inline constexpr double vertical_share = 0.65;
 
-/// Mid-plane filling factor of a Gaussian layer, (4/3) τ ⟨r³⟩/⟨r²⟩ / (√(2π) H) with H = c_z/ν, for a radial velocity
-/// dispersion in ⟨r⟩ Ω, c_z = vertical_share c_x.
-/// The layer is thicker by the particles' own size once they collide, so this is an upper estimate.
+/// Scale height √⟨z²⟩ of a layer in m, for a radial velocity dispersion in ⟨r⟩ Ω: H² = (c_z/ν)² + 1.7 τ R², where
+/// c_z = vertical_share c_x, R = ⟨r³⟩/⟨r²⟩. The second term is the room that the particles themselves take: equilibria
+/// of equal spheres without self-gravity have H² − c_z²/ν² = 0.22, 0.89 and 1.66 r² at τ = 0.1, 0.5 and 1.
+double layer_height(double optical_depth, const SizeLaw& sizes, double velocity_dispersion, double nu);
+
+/// Mid-plane filling factor (4/3) τ R / (√(2π) H) of a Gaussian layer of that height.
 double midplane_filling(double optical_depth, const SizeLaw& sizes, double velocity_dispersion, double nu);
+
+/// The velocity dispersion (⟨r⟩ Ω) at which the mid-plane is filled to `filling`; 0 when it is never that full.
+double dispersion_for_filling(double optical_depth, const SizeLaw& sizes, double nu, double filling);
 
 /// The fullest mid-plane that a start without overlap is made for.
 inline constexpr double largest_filling = 0.4;

@@ -1,7 +1,7 @@
 #include <keeler/render/autocorrelation_picture.hpp>
 
-#include "../diagnostics/states.hpp"
 #include "picture.hpp"
+#include "unit/diagnostics/states.hpp"
 
 #include <keeler/core/error.hpp>
 

@@ -70,7 +70,7 @@ TEST_CASE("the mid-plane filling is that of sampled particles") {
   const SizeLaw sizes{SizeLaw::Kind::power, 3.0, 0.5, 3.0, {}, {}};
   const double depth = 0.4, dispersion = 20.0, nu = 1.3; // thick compared with a particle, as the formula has it
   const std::vector<double> radii = draw_radii(sizes, 20000, 3);
-  const double height = 0.65 * dispersion * sizes.mean_power(1) / nu;
+  const double height = layer_height(depth, sizes, dispersion, nu);
   double area_sum = 0.0, sliced = 0.0;
   for (const double r : radii) {
     area_sum += pi * r * r;
@@ -83,4 +83,17 @@ TEST_CASE("the mid-plane filling is that of sampled particles") {
   }
   // 1 %: the particles' own size, (r/H)²/10 with H = 9.6 m, and the sampling of the moments
   CHECK(midplane_filling(depth, sizes, dispersion, nu) == doctest::Approx(depth * sliced / area_sum).epsilon(0.01));
+}
+
+TEST_CASE("the layer's height is that of the reference equilibria, and the filling can be inverted") {
+  // REBOUND 6c44115f, equal spheres of 1 m without self-gravity: c_z and H; 5 %
+  const SizeLaw equal{SizeLaw::Kind::equal, 3.0, 1.0, 1.0, {}, {}};
+  const double reference[][3] = {{0.1, 1.80, 1.86}, {0.5, 1.45, 1.73}, {1.0, 1.17, 1.74}};
+  for (const auto& [depth, c_z, height] : reference)
+    CHECK(layer_height(depth, equal, c_z / vertical_share, 1.0) == doctest::Approx(height).epsilon(0.05));
+  for (const double dispersion : {1.0, 2.0, 7.0}) {
+    const double filling = midplane_filling(0.8, equal, dispersion, 1.1);
+    CHECK(dispersion_for_filling(0.8, equal, 1.1, filling) == doctest::Approx(dispersion).epsilon(1e-12));
+  }
+  CHECK(dispersion_for_filling(0.1, equal, 1.0, 0.4) == 0.0);
 }

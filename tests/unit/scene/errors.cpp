@@ -111,11 +111,11 @@ TEST_CASE("impossible requests are told") {
   CHECK(with("size = ", "size_in_wavelengths = ") ==
         "s.toml:4:23: box.size_in_wavelengths cannot stand beside particles.count (the wavelength follows from the "
         "surface density, and with a count this follows from the box); give box.size or particles.optical_depth");
-  // (4/3) 1.2 / (√(2π) 0.65 × 2) = 0.491; 2 × 0.491 / 0.4 = 2.455, rounded up
-  CHECK(with("count = 300", "optical_depth = 1.2") ==
-        "s.toml:6:17: too dense (the mid-plane would be filled to 0.49, and 0.4 is the most that can be placed without "
-        "overlap); raise velocity_dispersion to at least 2.46 or lower the optical depth of 1.2");
-  CHECK(with("count = 300", "optical_depth = 1.2\nvelocity_dispersion = 2.46") == "");
+  // H² = (0.65 × 2)² + 1.7 × 1.8 = 4.75, (4/3) 1.8 / (√(2π) H) = 0.439; 0.4 needs H² = 5.73, so c_x = 2.514, rounded up
+  CHECK(with("count = 300", "optical_depth = 1.8") ==
+        "s.toml:6:17: too dense (the mid-plane would be filled to 0.44, and 0.4 is the most that can be placed without "
+        "overlap); raise velocity_dispersion to at least 2.52 or lower the optical depth of 1.8");
+  CHECK(with("count = 300", "optical_depth = 1.8\nvelocity_dispersion = 2.52") == "");
   CHECK(with("count = 300", "optical_depth = 1e-6").find("makes 0 particles") != std::string::npos);
   CHECK(with("count = 300", "optical_depth = 0.1\nseed = 3").empty());
   CHECK(
