@@ -11,19 +11,16 @@ namespace {
 constexpr double least_amplitude = 0.02; // relative density waves of 20 %: no published wake is weaker
 constexpr double least_significance = 5.0;
 
-constexpr double core = 0.3; // of the reach: shorter lags show the shape of single clumps
-
-// Mean of ξ over a line through (dx, 0), turned by `pitch` (rad) from the y axis, at distances from `from` to `reach` on
-// both sides of that point.
-double line_mean(const AutocorrelationMap& map, double dx, double pitch, double from, double reach) {
+// Mean of ξ over a line of half-length `reach` through (dx, 0), turned by `pitch` (rad) from the y axis.
+double line_mean(const AutocorrelationMap& map, double dx, double pitch, double reach) {
   const double step = 0.5 * std::min(map.spacing_x, map.spacing_y);
-  const int half = static_cast<int>(std::ceil(reach / step)), first = static_cast<int>(from / reach * half);
+  const int half = static_cast<int>(std::ceil(reach / step));
   double sum = 0.0;
-  for (int k = first; k <= half; ++k) {
-    const double s = reach * k / half, dy = s * std::cos(pitch);
-    sum += map.at(dx + s * std::sin(pitch), -dy) + map.at(dx - s * std::sin(pitch), dy);
+  for (int k = -half; k <= half; ++k) {
+    const double s = reach * k / half;
+    sum += map.at(dx + s * std::sin(pitch), -s * std::cos(pitch));
   }
-  return 0.5 * sum / (half - first + 1);
+  return sum / (2 * half + 1);
 }
 
 // Where a parabola through three equally spaced values has its top, in steps from the middle one.
@@ -41,12 +38,35 @@ Ridge find_ridge(const AutocorrelationMap& map, double reach) {
   std::vector<double> means(steps);
   double all = 0.0;
   for (int k = 0; k < steps; ++k) {
-    means[static_cast<std::size_t>(k)] = line_mean(map, 0.0, (k - 89) * pi / steps, core * reach, reach);
+    means[static_cast<std::size_t>(k)] = line_mean(map, 0.0, (k - 89) * pi / steps, reach);
     all += means[static_cast<std::size_t>(k)] / steps;
   }
   const auto top = static_cast<int>(std::max_element(means.begin(), means.end()) - means.begin());
   const auto mean = [&](int k) { return means[static_cast<std::size_t>((k + steps) % steps)]; };
   return {top - 89 + parabola_top(mean(top - 1), mean(top), mean(top + 1)), mean(top) - all};
+}
+
+// Follows the crest outward, row by row of Δy, from the direction in which it leaves zero lag to where it drowns in the
+// noise, and fits a line through the origin. A row counts as its ξ times Δy², as in a fit of Δx: the far part of the
+// ridge decides, and not the clumps at its centre, which lean more than the wake does.
+double crest_pitch(const AutocorrelationMap& map, double first_guess, double reach) {
+  const double step = 0.25 * map.spacing_x;
+  double crest = 0.0, xy = 0.0, yy = 0.0;
+  const double lean = -std::tan(first_guess) * map.spacing_y; // of the crest from one row to the next
+  for (double dy = map.spacing_y; dy <= reach; dy += map.spacing_y) {
+    const double expected = yy > 0.0 ? crest + crest / (dy - map.spacing_y) * map.spacing_y : lean;
+    double best = -HUGE_VAL;
+    for (int k = -8; k <= 8; ++k)
+      if (const double dx = expected + k * step; map.at(dx, dy) > best) {
+        best = map.at(dx, dy);
+        crest = dx;
+      }
+    if (best <= 3.0 * map.noise)
+      break;
+    xy += best * crest * dy;
+    yy += best * dy * dy;
+  }
+  return yy > 0.0 ? -std::atan(xy / yy) : first_guess;
 }
 
 // Gaussian smoothing of a profile that is even about its first entry.
@@ -88,7 +108,7 @@ Wakes find_wakes(const AutocorrelationMap& map, double critical_wavelength) {
   Wakes wakes;
   const double spacing = std::max(map.spacing_x, map.spacing_y);
   // A line that starts at half a box must stay on the map, which ends at three quarters of it.
-  wakes.reach = std::min({1.5 * critical_wavelength, map.half_height(), map.half_width() / 2.0});
+  wakes.reach = std::min({0.75 * critical_wavelength, map.half_height(), map.half_width() / 3.0});
   wakes.profile_spacing = 0.5 * map.spacing_x;
   if (!(critical_wavelength > 4.0 * spacing && wakes.reach > 2.0 * spacing))
     return wakes;
@@ -96,14 +116,16 @@ Wakes find_wakes(const AutocorrelationMap& map, double critical_wavelength) {
   const Ridge ridge = find_ridge(map, wakes.reach);
   wakes.amplitude = ridge.amplitude;
   const double line_noise = map.noise / std::sqrt(wakes.reach / spacing); // ξ is even: half a line is independent
-  const double pitch = ridge.pitch_degrees * pi / 180.0;
+  double pitch = ridge.pitch_degrees * pi / 180.0;
+  if (std::fabs(pitch) < pi / 4.0) // else rows of Δy do not cross the ridge but run along it
+    pitch = crest_pitch(map, pitch, std::min(critical_wavelength, map.half_height()));
   const int count = static_cast<int>(map.half_width() * (2.0 / 3.0) / wakes.profile_spacing) + 1;
   for (int k = 0; k < count; ++k)
-    wakes.profile.push_back(line_mean(map, k * wakes.profile_spacing, pitch, 0.0, wakes.reach));
+    wakes.profile.push_back(line_mean(map, k * wakes.profile_spacing, pitch, wakes.reach));
   if (ridge.amplitude < std::max(least_amplitude, least_significance * line_noise))
     return wakes;
 
-  wakes.pitch_degrees = ridge.pitch_degrees;
+  wakes.pitch_degrees = pitch * 180.0 / pi;
   const std::vector<double> smoothed = smooth(wakes.profile, critical_wavelength / 20.0 / wakes.profile_spacing);
   const double depth = smoothed[0] - *std::min_element(smoothed.begin(), smoothed.end());
   if (const auto entry = first_side_maximum(smoothed, std::max(0.03 * depth, 3.0 * line_noise)))

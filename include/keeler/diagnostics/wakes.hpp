@@ -1,7 +1,8 @@
 // Self-gravity wakes as the autocorrelation shows them: direction of the central ridge, distance to the next wake.
 //
-// Pitch: the direction from the y axis along which the mean of ξ over a line through zero lag is largest; positive when
-// trailing, that is when the outer part of a wake (x > 0) lags behind (y < 0).
+// Pitch: the angle from the y axis of the central ridge, a line fitted to its crest (the largest ξ at each Δy) out to one
+// λ_cr; positive when trailing, that is when the outer part of a wake (x > 0) lags behind (y < 0). The crest starts in the
+// direction along which the mean of ξ over a line through zero lag is largest.
 // Spacing: ξ is averaged along that direction into a function of the radial lag Δx (at Δy = 0); the spacing is its
 // first side maximum with ξ > 0.
 #pragma once
@@ -16,14 +17,14 @@ namespace keeler {
 struct Wakes {
   std::optional<double> pitch_degrees; ///< in (−90, 90]; none when no direction stands out
   std::optional<double> spacing;       ///< m; none without wakes or without a side maximum within half a box
-  double amplitude = 0.0;              ///< mean of ξ along the ridge minus its mean over all directions
+  double amplitude = 0.0;              ///< largest mean of ξ over such a line minus the mean over all directions
 
   double reach = 0.0;           ///< half the length of the lines averaged over, m
   double profile_spacing = 0.0; ///< m
   std::vector<double> profile;  ///< ξ averaged along the ridge, at radial lags 0, 1, 2 … × profile_spacing
 };
 
-/// Lines reach 3/4 λ_cr (less in a small box). There are no wakes when λ_cr is not resolved by the map, or when the
+/// Lines reach 3/4 λ_cr to each side (less in a small box). There are no wakes when λ_cr is not resolved by the map, or when the
 /// amplitude is below 0.02 or below five times the noise of particles at random.
 Wakes find_wakes(const AutocorrelationMap& map, double critical_wavelength);
 
