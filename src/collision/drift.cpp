@@ -173,28 +173,27 @@ void DriftPhase::predict(std::size_t i, std::size_t j, const Image& image) {
   gave_up_ += result.exit == FinderExit::gave_up;
 }
 
-// The impulse along the line of centres: the normal velocity is reversed and multiplied by the restitution.
+// The impulse along the line of centres turns the normal approach speed into the rebound's.
 void DriftPhase::carry_out(const Event& event, CollisionTally& tally) {
   Body &a = particles_->bodies[event.low], &b = particles_->bodies[event.high];
   const Rotation rotation(frequencies_, event.time);
   const State relative = state_at(box_.image_of(b.elements, event.image, offset_) - a.elements, frequencies_, rotation);
   const Vec3 normal = relative.position.normalized();
   const double speed = -relative.velocity.dot(normal);
-  if (!(speed > 0.0))
-    return; // an inexact finder may call a pair that no longer approaches
-  const bool fast = speed >= settings_.elastic_below * 0.5 * (a.radius + b.radius);
-  const double restitution = fast ? settings_.restitution.coefficient(speed * orbital_frequency_) : 1.0;
+  const Rebound after = rebound(settings_, speed, a.radius + b.radius, orbital_frequency_);
+  if (!(speed > -after.speed))
+    return; // an inexact finder may call a pair that moves apart
   const double reduced_mass = a.mass * b.mass / (a.mass + b.mass);
-  const Vec3 impulse = (1.0 + restitution) * reduced_mass * speed * normal; // on b; a gets the opposite
+  const Vec3 impulse = reduced_mass * (speed + after.speed) * normal; // on b; a gets the opposite
   kick(a.elements, -impulse / a.mass, frequencies_, rotation);
   kick(b.elements, impulse / b.mass, frequencies_, rotation);
 
-  ++(fast ? tally.fast : tally.slow);
-  tally.energy_lost += 0.5 * reduced_mass * (1.0 - restitution * restitution) * speed * speed;
+  ++(after.fast ? tally.fast : tally.slow);
+  tally.energy_lost += 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
   tally.edge_work += event.image.nx * box_.shear * box_.size_x * impulse.y();
   tally.momentum_flux += relative.position.x() * impulse.y();
   if (observer)
-    observer({event.time, event.low_id, event.high_id, event.image, speed, fast});
+    observer({event.time, event.low_id, event.high_id, event.image, speed, after.fast});
 
   changed(event.low, event.time);
   changed(event.high, event.time);

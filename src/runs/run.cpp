@@ -30,9 +30,9 @@ std::int64_t whole_kicks(const Scene& scene, double steps) {
 class Runner {
 public:
   Runner(const Scene& scene, const RunOptions& options, RunRequests& requests, Simulation& simulation,
-         Recorder& recorder)
+         Recorder& recorder, bool resumed)
       : scene_(scene), options_(options), requests_(requests), simulation_(simulation), recorder_(recorder),
-        first_step_(simulation.state().step),
+        first_step_(simulation.state().step), last_snapshot_(first_step_), last_checkpoint_(resumed ? first_step_ : -1),
         first_collisions_(simulation.state().collisions.fast + simulation.state().collisions.slow),
         sample_every_(whole_kicks(scene, 1.0 / (samples_per_orbit * scene.time.step))) {}
 
@@ -107,7 +107,7 @@ private:
   Recorder& recorder_;
   double unused_ = 0.0;
   Stopwatch watch_{unused_};
-  std::int64_t first_step_, last_snapshot_ = -1, last_checkpoint_ = -1;
+  std::int64_t first_step_, last_snapshot_, last_checkpoint_; // steps; a resumed run has both behind it
   std::uint64_t first_collisions_;
   std::int64_t sample_every_;
   double last_time_ = 0.0, longest_pass_ = 0.0;
@@ -149,9 +149,9 @@ nlohmann::ordered_json summary_of(const Simulation& simulation, const Scene& sce
 }
 
 RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& requests, const RunFolder& folder,
-                   Simulation& simulation, Recorder& recorder, double cpu_start) {
+                   Simulation& simulation, Recorder& recorder, double cpu_start, bool resumed) {
   const std::int64_t first_step = simulation.state().step;
-  Runner runner(scene, options, requests, simulation, recorder);
+  Runner runner(scene, options, requests, simulation, recorder, resumed);
   const RunResult result = runner.run();
   const nlohmann::ordered_json summary = summary_of(simulation, scene, result, first_step, runner.elapsed(),
                                                     cpu_seconds() - cpu_start, recorder.seconds());
@@ -196,7 +196,7 @@ RunResult start_run(const Scene& scene, const RunOptions& options, RunRequests& 
   recorder.log("started", {{"particles", simulation.state().particles.size()}, {"threads", threads()}});
   recorder.snapshot(simulation);
   recorder.sample(simulation);
-  return carry_on(scene, options, requests, folder, simulation, recorder, cpu_start);
+  return carry_on(scene, options, requests, folder, simulation, recorder, cpu_start, false);
 }
 
 RunResult resume_run(const RunOptions& options, RunRequests& requests) {
@@ -213,7 +213,7 @@ RunResult resume_run(const RunOptions& options, RunRequests& requests) {
   folder.cut_snapshots(loaded.counters.snapshots);
   Recorder recorder(folder, scene, options.arguments, loaded.counters, step);
   recorder.log("resumed", {{"checkpoint", newest.path.filename().string()}, {"step", step}, {"threads", threads()}});
-  return carry_on(scene, options, requests, folder, simulation, recorder, cpu_start);
+  return carry_on(scene, options, requests, folder, simulation, recorder, cpu_start, true);
 }
 
 } // namespace keeler

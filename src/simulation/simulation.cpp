@@ -8,10 +8,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace keeler {
 namespace {
 
-constexpr double allowed_overlap = 1e-9; // of a radius sum: rounding of positions that were stored in SI
+constexpr double allowed_overlap = 1e-8; // of a radius sum: what the least exact finder, linear-full, leaves behind
 
 SimulationState first_state(const Scene& scene, const Patch& start) {
   const Overlap overlap = largest_overlap(start);
@@ -19,6 +21,12 @@ SimulationState first_state(const Scene& scene, const Patch& start) {
     throw InvariantError(fmt::format("particles {} and {} of the initial state overlap by {:.2e} of their radius sum; "
                                      "start from a state without overlaps",
                                      overlap.id_i, overlap.id_j, overlap.depth));
+  const double largest = start.size() ? *std::max_element(start.radii.begin(), start.radii.end()) : 0.0;
+  if (!(std::min(start.box.size_x, start.box.size_y) >= 2.0 * largest))
+    throw UsageError(
+        fmt::format("the box of the initial state, {:.4g} m x {:.4g} m, is smaller than its largest particle "
+                    "({:.4g} m across); start from another state",
+                    start.box.size_x, start.box.size_y, 2.0 * largest));
   SimulationState state;
   state.step_length = scene.step_length();
   state.box = start.box;

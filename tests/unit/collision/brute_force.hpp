@@ -123,9 +123,10 @@ private:
     const State sa = state_at(a.elements, f_, r), sb = state_at(box_.image_of(b.elements, image, offset_), f_, r);
     const Vec3 n = (sb.position - sa.position).normalized();
     const double speed = -(sb.velocity - sa.velocity).dot(n);
-    const bool fast = speed >= settings_.elastic_below * 0.5 * (a.radius + b.radius);
+    const double cut = settings_.elastic_below * 0.5 * (a.radius + b.radius);
+    const bool fast = speed >= cut;
     const double e = fast ? settings_.restitution.coefficient(speed * omega_) : 1.0;
-    const Vec3 impulse = (1 + e) * speed * a.mass * b.mass / (a.mass + b.mass) * n;
+    const Vec3 impulse = (speed + std::max(e * speed, 1e-3 * cut)) * a.mass * b.mass / (a.mass + b.mass) * n;
     kick(a.elements, -impulse / a.mass, f_, r);
     kick(b.elements, impulse / b.mass, f_, r);
     last_[i] = last_[j] = t;

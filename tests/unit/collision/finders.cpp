@@ -100,14 +100,16 @@ TEST_CASE("the certified finder finds every first contact, grazing ones too, and
           const Twin twin(pair, f);
           REQUIRE(result.exit != FinderExit::gave_up);
           most_passes = std::max(most_passes, result.iterations);
+          // what the search itself allows a contact to sink unseen, doubled: see search/certified.hpp
+          const auto allowed = twin.rounding() * (1 + result.iterations / 1024);
           if (result.contact()) {
             ++hits;
-            CHECK(twin.gap(result.time) <= twin.rounding());
+            CHECK(twin.gap(result.time) <= allowed);
             CHECK(twin.closing(result.time) <= 1e-12L);
-            CHECK(twin.deepest(result.time, 100) >= (result.exit == FinderExit::hit ? -twin.rounding() : -HUGE_VALL));
+            CHECK(twin.deepest(result.time, 100) >= (result.exit == FinderExit::hit ? -allowed : -HUGE_VALL));
           } else {
             ++misses;
-            CHECK(twin.deepest(pair.end, 100) >= -twin.rounding());
+            CHECK(twin.deepest(pair.end, 100) >= -allowed);
           }
         }
   CHECK(hits > 500);
@@ -137,6 +139,23 @@ TEST_CASE("after a bounce the pair is not found again at once, and its later con
     CHECK(second.exit != FinderExit::gave_up);
   }
   CHECK(bounces > 500);
+}
+
+TEST_CASE("pairs that stay at contact within rounding end their search") {
+  const Finder certified = finder_named("certified");
+  const Frequencies f{1.0, 1.0};
+  Pair pair;
+  pair.step = 0.1, pair.start = -0.05, pair.end = 0.05;
+  // |d|² = e² cos² + 4 e² sin² + i² sin²(…) is constant for i = √3 e in phase
+  pair.hi.e_cos = 2.0;
+  pair.hi.i_sin = std::sqrt(3.0) * 2.0;
+  pair.reach = std::sqrt(pair.hi.e_cos * pair.hi.e_cos + pair.hi.i_sin * pair.hi.i_sin);
+  CHECK(certified(pair, f).iterations < 100000);
+  // slope exactly zero at time zero
+  pair.hi = elements_from({{3.0, 4.0, 0.0}, {0.5, -0.375, 0.0}}, f, Rotation(f, 0.0));
+  pair.reach = 5.0;
+  pair.start = 0.0;
+  CHECK(certified(pair, f).iterations < 100000);
 }
 
 TEST_CASE("a number that is not finite never reads as a miss") {

@@ -17,7 +17,7 @@ public:
     constexpr double up = 1.0 + 1e-14; // the bounds must hold after their own rounding
     speed_ = up * std::sqrt(horizontal * horizontal + f.nu * f.nu * i * i);
     acceleration_ = up * std::hypot(2.0 * f.kappa * e, f.nu * f.nu * i);
-    scale_ = std::max({std::fabs(elements_.guiding_x), std::fabs(elements_.guiding_y), 2.0 * e, i});
+    scale_ = std::max({std::fabs(elements_.guiding_x), std::fabs(elements_.guiding_y), 2.0 * e / f.kappa, i});
   }
 
   Separation at(double time) const {
@@ -37,7 +37,7 @@ public:
   /// Bound on the rounding of 2 d·v.
   double closing_error(double distance, double speed) const {
     constexpr double ulp = std::numeric_limits<double>::epsilon();
-    return 8.0 * ulp * (distance * speed + distance * speed_ + speed * scale_);
+    return 32.0 * ulp * (distance * speed + distance * speed_ + speed * scale_);
   }
 
 private:

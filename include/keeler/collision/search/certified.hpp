@@ -6,6 +6,10 @@
 // converges quadratically on simple roots. Where f stands within its own rounding error of zero the pair is in contact:
 // approaching, the event is now; receding, the first possible turning point −f'/m is the next safe step.
 // All roundings are taken to the safe side: f, f' and m down, V and A up, the step down.
+//
+// Within rounding of contact the steps would shrink to noise (a pair at constant distance never leaves it). There a step
+// may let f sink by one rounding error, and by one more for every 1024 passes. So no contact deeper than a few rounding
+// errors of |d|² − R² is missed, and every search ends.
 #pragma once
 
 #include <keeler/collision/pair.hpp>
@@ -46,13 +50,14 @@ template<class Motion> FinderResult certified_search(const Motion& motion, const
     const double slower = std::max(0.0, speed * down - acceleration_bound * s);
     const double positive = 2.0 * slower * slower, negative = 2.0 * (distance + speed_bound * s) * acceleration_bound;
     const double m = positive * down - negative / down; // f'' >= m over the next s
+    const double slack = error * (1.0 + result.iterations / 1024);
     const double low_slope = slope - motion.closing_error(distance, speed);
 
     double step; // no contact before t + step; infinite when there is none within s
     if (f <= error) {
-      step = m >= 0.0 ? HUGE_VAL : std::max(0.0, slope) / -m;
+      step = m >= 0.0 ? HUGE_VAL : std::max(0.0, slope) / -m + std::sqrt(2.0 * slack / -m);
     } else {
-      const double low_f = f - error;
+      const double low_f = std::max(f - error, slack);
       const double discriminant = low_slope * low_slope - 2.0 * m * low_f;
       if (m >= 0.0 && (low_slope >= 0.0 || discriminant < 0.0))
         step = HUGE_VAL;
