@@ -2,6 +2,7 @@
 
 #include <keeler/core/threads.hpp>
 #include <keeler/gravity/images.hpp>
+#include <keeler/gravity/mean_sheet.hpp>
 
 #include <algorithm>
 #include <numeric>
@@ -26,12 +27,16 @@ void DirectSolver::accelerate(const GravityProblem& problem, std::span<Vec3> acc
   const double offset = folded_offset(problem.box, problem.offset);
   const std::vector<Vec3> shifts = image_shifts(problem.box, offset, image_rings_);
   const std::vector<std::size_t> order = order_by_id(problem.ids);
+  const MeanSheet sheet(problem.box, offset, image_rings_);
   std::vector<PointSource> sources;
+  double mass = 0.0;
   sources.reserve(order.size());
   for (const std::size_t k : order) {
     const Vec3 position = into_cell(problem.box, offset, problem.positions[k]);
     sources.push_back({position.x(), position.y(), position.z(), problem.masses[k]});
+    mass += problem.masses[k];
   }
+  const double g_sigma = problem.newton_g * mass / problem.box.area();
 
   const std::size_t block_count = (order.size() + TargetBlock::capacity - 1) / TargetBlock::capacity;
   parallel_for(
@@ -48,8 +53,11 @@ void DirectSolver::accelerate(const GravityProblem& problem, std::span<Vec3> acc
           }
           kernels_.points(targets, count, sources.data(), sources.size());
         }
-        for (std::size_t k = 0; k < count; ++k)
-          accelerations[order[first + k]] = problem.newton_g * Vec3(targets.ax[k], targets.ay[k], targets.az[k]);
+        for (std::size_t k = 0; k < count; ++k) {
+          const PointSource& p = sources[first + k];
+          accelerations[order[first + k]] = problem.newton_g * Vec3(targets.ax[k], targets.ay[k], targets.az[k]) +
+                                            sheet.acceleration({p.x, p.y, p.z}, g_sigma);
+        }
       },
       1);
 }

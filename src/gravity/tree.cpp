@@ -2,6 +2,7 @@
 
 #include <keeler/core/threads.hpp>
 #include <keeler/gravity/images.hpp>
+#include <keeler/gravity/mean_sheet.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -147,6 +148,9 @@ void TreeSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accel
 
   const std::vector<Group> groups = make_groups(tree_.cells());
   const std::vector<double> opening = opening_distances(tree_.cells(), opening_angle_);
+  const MeanSheet sheet(problem.box, offset, image_rings_);
+  const double mass = groups.empty() ? 0.0 : tree_.cells().front().mass;
+  const double g_sigma = problem.newton_g * mass / problem.box.area();
   parallel_for(
       groups.size(),
       [&](std::size_t g) {
@@ -154,9 +158,11 @@ void TreeSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accel
         for (const Vec3& shift : shifts)
           walk.add_image(shift);
         const TargetBlock& sum = walk.result();
-        for (std::uint32_t k = 0; k < groups[g].count; ++k)
-          accelerations[tree_.particles()[groups[g].begin + k].index] =
-              problem.newton_g * Vec3(sum.ax[k], sum.ay[k], sum.az[k]);
+        for (std::uint32_t k = 0; k < groups[g].count; ++k) {
+          const TreeParticle& p = tree_.particles()[groups[g].begin + k];
+          accelerations[p.index] =
+              problem.newton_g * Vec3(sum.ax[k], sum.ay[k], sum.az[k]) + sheet.acceleration({p.x, p.y, p.z}, g_sigma);
+        }
       },
       4);
 }
