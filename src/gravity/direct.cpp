@@ -27,16 +27,13 @@ void DirectSolver::accelerate(const GravityProblem& problem, std::span<Vec3> acc
   const double offset = folded_offset(problem.box, problem.offset);
   const std::vector<Vec3> shifts = image_shifts(problem.box, offset, image_rings_);
   const std::vector<std::size_t> order = order_by_id(problem.ids);
-  const MeanSheet sheet(problem.box, offset, image_rings_);
   std::vector<PointSource> sources;
-  double mass = 0.0;
   sources.reserve(order.size());
   for (const std::size_t k : order) {
     const Vec3 position = into_cell(problem.box, offset, problem.positions[k]);
     sources.push_back({position.x(), position.y(), position.z(), problem.masses[k]});
-    mass += problem.masses[k];
   }
-  const double g_sigma = problem.newton_g * mass / problem.box.area();
+  const std::vector<Vec3> from_sheet = sheet_accelerations(problem, offset, image_rings_, sources);
 
   const std::size_t block_count = (order.size() + TargetBlock::capacity - 1) / TargetBlock::capacity;
   parallel_for(
@@ -53,11 +50,9 @@ void DirectSolver::accelerate(const GravityProblem& problem, std::span<Vec3> acc
           }
           kernels_.points(targets, count, sources.data(), sources.size());
         }
-        for (std::size_t k = 0; k < count; ++k) {
-          const PointSource& p = sources[first + k];
-          accelerations[order[first + k]] = problem.newton_g * Vec3(targets.ax[k], targets.ay[k], targets.az[k]) +
-                                            sheet.acceleration({p.x, p.y, p.z}, g_sigma);
-        }
+        for (std::size_t k = 0; k < count; ++k)
+          accelerations[order[first + k]] =
+              problem.newton_g * Vec3(targets.ax[k], targets.ay[k], targets.az[k]) + from_sheet[first + k];
       },
       1);
 }

@@ -82,6 +82,12 @@ SheetField MeanSheet::closed_form(double x, double y) const {
   return {-covered_x(x, y), -covered_y(x, y), uncovered_stiffness(x, y)};
 }
 
+Vec3 MeanSheet::acceleration(const Vec3& place, double g_sigma) const {
+  const SheetField field = tabulated(place.x(), place.y());
+  const double slope = field.stiffness * place.z() / (2.0 * pi);
+  return g_sigma * Vec3(field.x, field.y, -2.0 * pi * slope / std::sqrt(1.0 + slope * slope));
+}
+
 // With u, v the distances to an edge in x and y, a rectangle attracts by ∫ dv (1/√(u₁² + v²) − 1/√(u₂² + v²)), that is
 // by F(u₁) − F(u₂), F = ln (v₂ + √(u² + v₂²)) (|v₁| + √(u² + v₁²)) − ln u². A particle may stand where two columns
 // meet, at u = 0: their ln u² cancel and are left out here, except those of the outermost edges.

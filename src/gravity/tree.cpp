@@ -148,9 +148,7 @@ void TreeSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accel
 
   const std::vector<Group> groups = make_groups(tree_.cells());
   const std::vector<double> opening = opening_distances(tree_.cells(), opening_angle_);
-  const MeanSheet sheet(problem.box, offset, image_rings_);
-  const double mass = groups.empty() ? 0.0 : tree_.cells().front().mass;
-  const double g_sigma = problem.newton_g * mass / problem.box.area();
+  const std::vector<Vec3> from_sheet = sheet_accelerations(problem, offset, image_rings_, tree_.particles());
   parallel_for(
       groups.size(),
       [&](std::size_t g) {
@@ -159,9 +157,9 @@ void TreeSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accel
           walk.add_image(shift);
         const TargetBlock& sum = walk.result();
         for (std::uint32_t k = 0; k < groups[g].count; ++k) {
-          const TreeParticle& p = tree_.particles()[groups[g].begin + k];
-          accelerations[p.index] =
-              problem.newton_g * Vec3(sum.ax[k], sum.ay[k], sum.az[k]) + sheet.acceleration({p.x, p.y, p.z}, g_sigma);
+          const std::size_t p = groups[g].begin + k;
+          accelerations[tree_.particles()[p].index] =
+              problem.newton_g * Vec3(sum.ax[k], sum.ay[k], sum.az[k]) + from_sheet[p];
         }
       },
       4);
