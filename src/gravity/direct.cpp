@@ -2,6 +2,7 @@
 
 #include <keeler/core/threads.hpp>
 #include <keeler/gravity/images.hpp>
+#include <keeler/gravity/mean_sheet.hpp>
 
 #include <algorithm>
 #include <numeric>
@@ -32,6 +33,7 @@ void DirectSolver::accelerate(const GravityProblem& problem, std::span<Vec3> acc
     const Vec3 position = into_cell(problem.box, offset, problem.positions[k]);
     sources.push_back({position.x(), position.y(), position.z(), problem.masses[k]});
   }
+  const std::vector<Vec3> from_sheet = sheet_accelerations(problem, offset, image_rings_, sources);
 
   const std::size_t block_count = (order.size() + TargetBlock::capacity - 1) / TargetBlock::capacity;
   parallel_for(
@@ -49,7 +51,8 @@ void DirectSolver::accelerate(const GravityProblem& problem, std::span<Vec3> acc
           kernels_.points(targets, count, sources.data(), sources.size());
         }
         for (std::size_t k = 0; k < count; ++k)
-          accelerations[order[first + k]] = problem.newton_g * Vec3(targets.ax[k], targets.ay[k], targets.az[k]);
+          accelerations[order[first + k]] =
+              problem.newton_g * Vec3(targets.ax[k], targets.ay[k], targets.az[k]) + from_sheet[first + k];
       },
       1);
 }

@@ -2,6 +2,7 @@
 
 #include <keeler/core/threads.hpp>
 #include <keeler/gravity/images.hpp>
+#include <keeler/gravity/mean_sheet.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -147,6 +148,7 @@ void TreeSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accel
 
   const std::vector<Group> groups = make_groups(tree_.cells());
   const std::vector<double> opening = opening_distances(tree_.cells(), opening_angle_);
+  const std::vector<Vec3> from_sheet = sheet_accelerations(problem, offset, image_rings_, tree_.particles());
   parallel_for(
       groups.size(),
       [&](std::size_t g) {
@@ -154,9 +156,11 @@ void TreeSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accel
         for (const Vec3& shift : shifts)
           walk.add_image(shift);
         const TargetBlock& sum = walk.result();
-        for (std::uint32_t k = 0; k < groups[g].count; ++k)
-          accelerations[tree_.particles()[groups[g].begin + k].index] =
-              problem.newton_g * Vec3(sum.ax[k], sum.ay[k], sum.az[k]);
+        for (std::uint32_t k = 0; k < groups[g].count; ++k) {
+          const std::size_t p = groups[g].begin + k;
+          accelerations[tree_.particles()[p].index] =
+              problem.newton_g * Vec3(sum.ax[k], sum.ay[k], sum.az[k]) + from_sheet[p];
+        }
       },
       4);
 }

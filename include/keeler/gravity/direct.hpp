@@ -1,4 +1,5 @@
-// Gravity as the exact sum over all pairs and images: the reference, and the best choice for a few hundred particles.
+// Gravity as the exact sum over all pairs and images (and the sheet beyond them): the reference, and the best choice
+// for a few hundred particles.
 #pragma once
 
 #include <keeler/gravity/kernels.hpp>

@@ -1,4 +1,4 @@
-// Which periodic images attract: rings of boxes around the cell.
+// Which periodic images attract one by one: rings of boxes around the cell. What lies farther out: mean_sheet.hpp.
 //
 // With a shear offset a whole column of boxes slides along y. The images of a column are numbered so that its middle
 // box is the one nearest to y = 0: the set of boxes then depends on the offset modulo L_y only, holds (−s) with every

@@ -1,4 +1,7 @@
 // Self-gravity behind one interface: positions and masses in, accelerations out. The step turns them into kicks.
+//
+// A particle feels the n rings of images around the cell as they are, and beyond them a uniform sheet with the mean
+// surface density of the patch (mean_sheet.hpp).
 #pragma once
 
 #include <keeler/box/shearing_box.hpp>
@@ -36,7 +39,7 @@ struct GravitySettings {
   enum class Solver { direct, tree };
   Solver solver = Solver::tree;
   double opening_angle = 0.6; ///< tree: a cell is opened when its size exceeds this times its distance
-  int image_rings = 1;        ///< rings of periodic images around the cell: 1 is 9 boxes, 2 is 25 (images.hpp)
+  int image_rings = 1;        ///< rings of images around the cell: 1 is 9 boxes, 2 is 25; beyond them the mean sheet
   int kick_every = 1;         ///< drifts per kick
 };
 
