@@ -200,7 +200,7 @@ std::vector<Key> make_keys() {
        .type = integer,
        .fallback = "1",
        .unit = "1",
-       .meaning = "rings of periodic images around the box: 1 is 9 boxes, 2 is 25",
+       .meaning = "rings of periodic images around the box (1 is 9 boxes, 2 is 25); beyond them the mean sheet",
        .range = {.low = 0, .high = 10}},
       {.path = "gravity.kick_every",
        .type = integer,
