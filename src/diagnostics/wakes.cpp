@@ -87,14 +87,15 @@ std::vector<double> smooth(const std::vector<double>& profile, double sigma) {
   return smoothed;
 }
 
-// The first maximum beyond zero lag, in entries: more crowded than at random (ξ > 0: a shoulder in the empty lane
-// beside a wake is not the next wake) and above its valleys on both sides by `prominence`.
+// The first maximum beyond the first valley, in entries: above its valleys on both sides by `prominence`, and risen at
+// least half way from the deepest valley to the mean density, since a shoulder in the empty lane is not the next wake.
 std::optional<double> first_side_maximum(const std::vector<double>& profile, double prominence) {
+  const double risen = 0.5 * std::min(0.0, *std::min_element(profile.begin(), profile.end()));
   double lowest = profile[0];
   std::size_t top = 0; // 0: no rise seen yet
   for (std::size_t k = 1; k < profile.size(); ++k) {
     lowest = std::min(lowest, profile[k]);
-    if (top == 0 ? profile[k] > std::max(0.0, lowest + prominence) : profile[k] > profile[top])
+    if (top == 0 ? profile[k] > std::max(risen, lowest + prominence) : profile[k] > profile[top])
       top = k;
     else if (top != 0 && profile[k] < profile[top] - prominence)
       return static_cast<double>(top) + parabola_top(profile[top - 1], profile[top], profile[top + 1]);
@@ -128,7 +129,7 @@ Wakes find_wakes(const AutocorrelationMap& map, double critical_wavelength) {
   wakes.pitch_degrees = pitch * 180.0 / pi;
   const std::vector<double> smoothed = smooth(wakes.profile, critical_wavelength / 20.0 / wakes.profile_spacing);
   const double depth = smoothed[0] - *std::min_element(smoothed.begin(), smoothed.end());
-  if (const auto entry = first_side_maximum(smoothed, std::max(0.03 * depth, 3.0 * line_noise)))
+  if (const auto entry = first_side_maximum(smoothed, std::max(0.01 * depth, 3.0 * line_noise)))
     wakes.spacing = *entry * wakes.profile_spacing;
   return wakes;
 }

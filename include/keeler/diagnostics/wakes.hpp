@@ -4,7 +4,7 @@
 // λ_cr; positive when trailing, that is when the outer part of a wake (x > 0) lags behind (y < 0). The crest starts in the
 // direction along which the mean of ξ over a line through zero lag is largest.
 // Spacing: ξ is averaged along that direction into a function of the radial lag Δx (at Δy = 0); the spacing is its
-// first side maximum with ξ > 0.
+// first side maximum.
 #pragma once
 
 #include <keeler/diagnostics/autocorrelation.hpp>
