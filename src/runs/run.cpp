@@ -173,7 +173,7 @@ struct Loaded {
 Loaded load(const std::filesystem::path& file) {
   Loaded loaded;
   const CheckpointHeader header = read_checkpoint_header(file);
-  loaded.run.scene = parse_scene(header.scene, file.string());
+  loaded.run.scene = parse_stored_scene(header.scene, file.string());
   FieldTable table = loaded.run.state.fields();
   loaded.counters.list_fields(table);
   read_checkpoint(file, table);
