@@ -96,7 +96,7 @@ ExitCode run(const AnalyzeOptions& options) {
 void add_analyze(CLI::App& program, Action& action) {
   const auto options = std::make_shared<AnalyzeOptions>();
   CLI::App& command = *program.add_subcommand("analyze", "measure a snapshot, or the last orbit of a run");
-  command.add_option("path", options->path, "a snapshot, or the folder of a run")->required()->option_text("FILE|DIR");
+  command.add_option("FILE|DIR", options->path, "a snapshot, or the folder of a run")->required()->type_name("");
   command.add_flag("--json", options->json, "print the numbers as JSON");
   options->threads.add_to(command);
   command.callback([options, &action] { action = [options] { return run(*options); }; });

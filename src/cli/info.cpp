@@ -67,7 +67,7 @@ void add_info(CLI::App& program, Action& action) {
   };
   const auto options = std::make_shared<Options>();
   CLI::App& command = *program.add_subcommand("info", "show what is in a snapshot or a checkpoint");
-  command.add_option("file", options->file, "a snapshot or a checkpoint")->required()->option_text("FILE");
+  command.add_option("FILE", options->file, "a snapshot or a checkpoint")->required()->type_name("");
   command.add_flag("--json", options->json, "print it as JSON");
   command.callback([options, &action] {
     action = [options] {

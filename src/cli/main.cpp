@@ -5,8 +5,10 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 
 using namespace keeler;
@@ -38,7 +40,10 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     throw UsageError(fmt::format("{}; \"keeler --help\" lists what can be asked", error.what()));
   }
-  return static_cast<int>(action());
+  const ExitCode code = action();
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) // a full disk must not look like success
+    throw IoError(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
+  return static_cast<int>(code);
 }
 
 } // namespace

@@ -56,7 +56,7 @@ void add_render(CLI::App& program, Action& action) {
   const auto options = std::make_shared<RenderOptions>();
   CLI::App& command =
       *program.add_subcommand("render", "draw a snapshot, or the last state of a run, and its autocorrelation");
-  command.add_option("path", options->path, "a snapshot, or the folder of a run")->required()->option_text("FILE|DIR");
+  command.add_option("FILE|DIR", options->path, "a snapshot, or the folder of a run")->required()->type_name("");
   command.add_option("-o,--output", options->output,
                      "the PNG to write (default: picture.png in the folder, or beside the file)");
   command.callback([options, &action] { action = [options] { return render(*options); }; });

@@ -74,7 +74,9 @@ ExitCode report(const JobOptions& job, const RunResult& result) {
     print_summary(job.folder, nlohmann::json::parse(text));
   if (result.finished)
     return ExitCode::done;
-  say(fmt::format("stopped at step {} with a checkpoint; continue with \"keeler resume {}\"", result.step, job.folder));
+  const std::string until = job.until > 0.0 ? fmt::format(" --until {}", job.until) : "";
+  say(fmt::format("stopped at step {} with a checkpoint; continue with \"keeler resume {}{}\"", result.step, job.folder,
+                  until));
   return ExitCode::stopped;
 }
 
@@ -99,7 +101,7 @@ void add_run(CLI::App& program, Action& action, const std::vector<std::string>& 
     action = [job, arguments] {
       job->threads.apply();
       if (!job->from.empty())
-        job->scene.overrides.push_back("start.from=" + job->from);
+        job->scene.overrides.push_back("start.from=" + nlohmann::json(job->from).dump()); // quoted, as in TOML
       const Scene scene = job->scene.load();
       for (const std::string& notice : scene.notices)
         say(notice);
@@ -116,7 +118,7 @@ void add_run(CLI::App& program, Action& action, const std::vector<std::string>& 
 void add_resume(CLI::App& program, Action& action, const std::vector<std::string>& arguments) {
   const auto job = std::make_shared<JobOptions>();
   CLI::App& command = *program.add_subcommand("resume", "continue a run from its newest whole checkpoint");
-  command.add_option("folder", job->folder, "the folder of the run")->required()->option_text("DIR");
+  command.add_option("DIR", job->folder, "the folder of the run")->required()->type_name("");
   command.add_option("--until", job->until, "another end, in orbits since the run began")->check(CLI::PositiveNumber);
   add_common(command, *job);
   command.callback([job, arguments, &action] {

@@ -28,6 +28,7 @@ Series open_series(const RunFolder& folder, std::optional<std::int64_t> resumed_
 void OutputCounters::list_fields(FieldTable& table) {
   table.scalar("snapshots_written", snapshots, "1", "number of the next snapshot");
   table.scalar("checkpoints_written", checkpoints, "1", "number of the next checkpoint");
+  table.scalar("last_snapshot_step", last_snapshot_step, "1", "step of the newest snapshot");
 }
 
 Recorder::Recorder(const RunFolder& folder, const Scene& scene, const std::vector<std::string>& arguments,
@@ -41,6 +42,7 @@ void Recorder::snapshot(const Simulation& simulation) {
   const Stopwatch watch(seconds_);
   write_snapshot(folder_.snapshot(counters_.snapshots), simulation.patch(), {scene_text_, provenance_});
   ++counters_.snapshots;
+  counters_.last_snapshot_step = simulation.state().step;
 }
 
 void Recorder::checkpoint(const Simulation& simulation) {

@@ -17,6 +17,7 @@ namespace keeler {
 struct OutputCounters {
   std::int64_t snapshots = 0;
   std::int64_t checkpoints = 0;
+  std::int64_t last_snapshot_step = -1; ///< -1: none yet
 
   void list_fields(FieldTable& table);
 };
@@ -31,6 +32,7 @@ public:
   void checkpoint(const Simulation& simulation);
   void sample(const Simulation& simulation);
   void log(const std::string& event, const nlohmann::ordered_json& details);
+  const OutputCounters& counters() const { return counters_; }
   double seconds() const { return seconds_; } ///< wall time spent writing
 
 private:

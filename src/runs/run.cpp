@@ -30,9 +30,9 @@ std::int64_t whole_kicks(const Scene& scene, double steps) {
 class Runner {
 public:
   Runner(const Scene& scene, const RunOptions& options, RunRequests& requests, Simulation& simulation,
-         Recorder& recorder, bool resumed)
+         Recorder& recorder, const Stopwatch& watch, std::int64_t last_checkpoint)
       : scene_(scene), options_(options), requests_(requests), simulation_(simulation), recorder_(recorder),
-        first_step_(simulation.state().step), last_snapshot_(first_step_), last_checkpoint_(resumed ? first_step_ : -1),
+        watch_(watch), first_step_(simulation.state().step), last_checkpoint_(last_checkpoint),
         first_collisions_(simulation.state().collisions.fast + simulation.state().collisions.slow),
         sample_every_(whole_kicks(scene, 1.0 / (samples_per_orbit * scene.time.step))) {}
 
@@ -45,7 +45,7 @@ public:
     }
     RunResult result;
     result.finished = state.step >= scene_.time.end_step;
-    if (result.finished && state.step != last_snapshot_)
+    if (result.finished && state.step != recorder_.counters().last_snapshot_step)
       recorder_.snapshot(simulation_);
     if (state.step != last_checkpoint_)
       recorder_.checkpoint(simulation_);
@@ -54,8 +54,6 @@ public:
     return result;
   }
 
-  double elapsed() const { return watch_.elapsed(); }
-
 private:
   bool due(std::int64_t every) const { return every > 0 && simulation_.state().step % every == 0; }
 
@@ -63,8 +61,11 @@ private:
   bool between_kicks() const { return !scene_.gravity || due(scene_.gravity->kick_every); }
 
   bool must_stop() const {
-    const bool out_of_time = options_.wall_time_s && watch_.elapsed() + 3.0 * longest_pass_ > *options_.wall_time_s;
-    return between_kicks() && (requests_.stop || out_of_time);
+    if (!between_kicks())
+      return false;
+    const int passes = scene_.gravity ? scene_.gravity->kick_every : 1; // until the next chance
+    const double reserve = (passes + 2) * longest_pass_;                // two more for the last checkpoint
+    return requests_.stop || (options_.wall_time_s && watch_.elapsed() + reserve > *options_.wall_time_s);
   }
 
   void record() {
@@ -72,10 +73,8 @@ private:
     if (due(sample_every_))
       recorder_.sample(simulation_);
     const bool asked = between_kicks() && requests_.snapshot.exchange(false);
-    if (due(scene_.output.snapshot_every) || asked) {
+    if (due(scene_.output.snapshot_every) || asked)
       recorder_.snapshot(simulation_);
-      last_snapshot_ = step;
-    }
     if (due(scene_.output.checkpoint_every)) {
       recorder_.checkpoint(simulation_);
       last_checkpoint_ = step;
@@ -94,9 +93,9 @@ private:
     p.step = state.step, p.first_step = first_step_, p.end_step = scene_.time.end_step;
     p.orbits = simulation_.orbits(), p.end_orbits = static_cast<double>(p.end_step) * scene_.time.step;
     p.elapsed_s = now;
-    p.remaining_s = now / done * static_cast<double>(p.end_step - p.step);
+    p.remaining_s = (now - start_) / done * static_cast<double>(p.end_step - p.step);
     p.collisions_per_second =
-        static_cast<double>(state.collisions.fast + state.collisions.slow - first_collisions_) / now;
+        static_cast<double>(state.collisions.fast + state.collisions.slow - first_collisions_) / (now - start_);
     options_.progress(p);
   }
 
@@ -105,12 +104,11 @@ private:
   RunRequests& requests_;
   Simulation& simulation_;
   Recorder& recorder_;
-  double unused_ = 0.0;
-  Stopwatch watch_{unused_};
-  std::int64_t first_step_, last_snapshot_, last_checkpoint_; // steps; a resumed run has both behind it
+  const Stopwatch& watch_; // since the command began, as a queue counts
+  std::int64_t first_step_, last_checkpoint_;
   std::uint64_t first_collisions_;
   std::int64_t sample_every_;
-  double last_time_ = 0.0, longest_pass_ = 0.0;
+  double start_ = watch_.elapsed(), last_time_ = start_, longest_pass_ = 0.0;
 };
 
 nlohmann::ordered_json summary_of(const Simulation& simulation, const Scene& scene, const RunResult& result,
@@ -148,13 +146,20 @@ nlohmann::ordered_json summary_of(const Simulation& simulation, const Scene& sce
   return json;
 }
 
+// When the command began, and the step whose checkpoint it found.
+struct Start {
+  double cpu = cpu_seconds(), wall = 0.0;
+  Stopwatch watch{wall};
+  std::int64_t checkpoint_step = -1;
+};
+
 RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& requests, const RunFolder& folder,
-                   Simulation& simulation, Recorder& recorder, double cpu_start, bool resumed) {
+                   Simulation& simulation, Recorder& recorder, const Start& start) {
   const std::int64_t first_step = simulation.state().step;
-  Runner runner(scene, options, requests, simulation, recorder, resumed);
+  Runner runner(scene, options, requests, simulation, recorder, start.watch, start.checkpoint_step);
   const RunResult result = runner.run();
-  const nlohmann::ordered_json summary = summary_of(simulation, scene, result, first_step, runner.elapsed(),
-                                                    cpu_seconds() - cpu_start, recorder.seconds());
+  const nlohmann::ordered_json summary = summary_of(simulation, scene, result, first_step, start.watch.elapsed(),
+                                                    cpu_seconds() - start.cpu, recorder.seconds());
   write_text(folder.summary(), summary.dump(2) + "\n");
   recorder.log(result.finished ? "finished" : "stopped", {{"step", result.step}, {"state_hash", result.state_hash}});
   return result;
@@ -168,16 +173,25 @@ struct Loaded {
 Loaded load(const std::filesystem::path& file) {
   Loaded loaded;
   const CheckpointHeader header = read_checkpoint_header(file);
-  loaded.run.scene = parse_scene(header.scene, file.string());
+  loaded.run.scene = parse_stored_scene(header.scene, file.string());
   FieldTable table = loaded.run.state.fields();
   loaded.counters.list_fields(table);
   read_checkpoint(file, table);
   return loaded;
 }
 
-Scene until(Scene scene, const RunOptions& options) {
-  if (options.until_orbits)
-    scene.time.end_step = whole_kicks(scene, *options.until_orbits / scene.time.step);
+Scene until(Scene scene, const RunOptions& options, std::int64_t step) {
+  if (!options.until_orbits)
+    return scene;
+  const double asked = *options.until_orbits, now = static_cast<double>(step) * scene.time.step;
+  scene.time.end_step = whole_kicks(scene, asked / scene.time.step);
+  const double end = static_cast<double>(scene.time.end_step) * scene.time.step;
+  if (scene.time.end_step < step)
+    throw UsageError(fmt::format("the run in '{}' is at orbit {:.6g} already (until orbit {:.6g} it cannot go); give a "
+                                 "later end",
+                                 options.folder.string(), now, asked));
+  if (options.notice && std::abs(end - asked) > 1e-9 * asked)
+    options.notice(fmt::format("the end is rounded to whole kicks: orbit {:.6g} instead of {:.6g}", end, asked));
   return scene;
 }
 
@@ -188,32 +202,34 @@ StoredRun load_checkpoint(const std::filesystem::path& file) {
 }
 
 RunResult start_run(const Scene& scene, const RunOptions& options, RunRequests& requests) {
-  const double cpu_start = cpu_seconds();
+  const Start start;
   const RunFolder folder(options.folder);
+  if (!options.force)
+    folder.refuse_if_occupied(); // before the work of an initial state
   Simulation simulation(scene, initial_patch(scene));
   folder.claim(options.force);
   Recorder recorder(folder, scene, options.arguments, {}, std::nullopt);
   recorder.log("started", {{"particles", simulation.state().particles.size()}, {"threads", threads()}});
   recorder.snapshot(simulation);
   recorder.sample(simulation);
-  return carry_on(scene, options, requests, folder, simulation, recorder, cpu_start, false);
+  return carry_on(scene, options, requests, folder, simulation, recorder, start);
 }
 
 RunResult resume_run(const RunOptions& options, RunRequests& requests) {
-  const double cpu_start = cpu_seconds();
+  Start start;
   const RunFolder folder(options.folder);
   const NewestCheckpoint newest = newest_valid_checkpoint(folder.path());
   if (options.notice)
     for (const std::string& warning : newest.warnings)
       options.notice(warning);
   Loaded loaded = load(newest.path);
-  const Scene scene = until(std::move(loaded.run.scene), options);
-  const std::int64_t step = loaded.run.state.step;
+  const std::int64_t step = start.checkpoint_step = loaded.run.state.step;
+  const Scene scene = until(std::move(loaded.run.scene), options, step);
   Simulation simulation(scene, std::move(loaded.run.state));
   folder.cut_snapshots(loaded.counters.snapshots);
   Recorder recorder(folder, scene, options.arguments, loaded.counters, step);
   recorder.log("resumed", {{"checkpoint", newest.path.filename().string()}, {"step", step}, {"threads", threads()}});
-  return carry_on(scene, options, requests, folder, simulation, recorder, cpu_start, true);
+  return carry_on(scene, options, requests, folder, simulation, recorder, start);
 }
 
 } // namespace keeler

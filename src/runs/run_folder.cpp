@@ -19,16 +19,23 @@ fs::path RunFolder::snapshot(std::int64_t number) const {
   return path_ / fmt::format("snap_{:06}.hdf", number);
 }
 
+void RunFolder::refuse_if_occupied() const {
+  std::error_code unknown; // what cannot be looked at will be reported when it is made
+  const fs::file_status status = fs::status(path_, unknown);
+  if (fs::exists(status) && !fs::is_directory(status))
+    throw UsageError(fmt::format("'{}' is a file (results go into a folder); name another", path_.string()));
+  if (fs::is_directory(status) && !fs::is_empty(path_, unknown) && !unknown)
+    throw UsageError(
+        fmt::format("'{}' is not empty (a run never overwrites another); name another folder, continue that "
+                    "run with \"keeler resume\", or add --force to replace it",
+                    path_.string()));
+}
+
 void RunFolder::claim(bool force) const {
+  if (!force)
+    refuse_if_occupied();
   try {
     fs::create_directories(path_);
-    if (fs::is_empty(path_))
-      return;
-    if (!force)
-      throw UsageError(
-          fmt::format("'{}' is not empty (a run never overwrites another); name another folder, continue that "
-                      "run with \"keeler resume\", or add --force to replace it",
-                      path_.string()));
     for (const fs::directory_entry& entry : fs::directory_iterator(path_))
       if (std::regex_match(entry.path().filename().string(), own_file))
         fs::remove(entry.path());

@@ -17,6 +17,9 @@ public:
   std::filesystem::path snapshot(std::int64_t number) const;
   const std::filesystem::path& path() const { return path_; }
 
+  /// Throws UsageError when the name is taken by a file, or by a folder that holds anything.
+  void refuse_if_occupied() const;
+
   /// Makes the folder for a new run. Throws UsageError when it holds anything and force is not given; with force, the
   /// files of the run that it holds are removed, nothing else. Throws IoError when it cannot be made.
   void claim(bool force) const;

@@ -42,7 +42,7 @@ StoredPatches load_patches(const fs::path& path, double orbits) {
   for (auto file = files.rbegin(); file != files.rend(); ++file) {
     Snapshot snapshot = read_snapshot(*file);
     if (stored.patches.empty())
-      stored.title = parse_scene(snapshot.meta.scene, file->string()).title;
+      stored.title = parse_stored_scene(snapshot.meta.scene, file->string()).title;
     else if (snapshot.patch.time_orbits < stored.patches.front().time_orbits - orbits * (1.0 + 1e-9))
       break;
     stored.patches.push_back(std::move(snapshot.patch));

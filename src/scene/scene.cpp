@@ -94,6 +94,28 @@ void read_times(Scene& scene, Settings& settings) {
   scene.output.checkpoint_every = whole_kicks(scene, settings, "output.checkpoint_every");
 }
 
+enum class Purpose { start, go_on };
+
+Scene read_scene(Document document, const std::string& name, Purpose purpose, std::vector<std::string> notices) {
+  check_document(document, name);
+  Settings settings(std::move(document));
+  Scene scene;
+  scene.notices = std::move(notices);
+  scene.title = settings.text("title");
+  scene.planet = read_planet(settings);
+  if (settings.has("start"))
+    scene.start_from = settings.file_path("start.from", name);
+  else if (purpose == Purpose::start)
+    read_particles_and_box(scene, settings, name);
+  else
+    scene.particles.seed = static_cast<std::uint64_t>(settings.integer("particles.seed"));
+  scene.collisions = read_collisions(settings);
+  scene.gravity = read_gravity(settings);
+  read_times(scene, settings);
+  scene.resolved = settings.resolved();
+  return scene;
+}
+
 } // namespace
 
 double Scene::step_length() const {
@@ -111,23 +133,14 @@ double Scene::optical_depth() const {
 }
 
 Scene parse_scene(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
-  Scene scene;
   Document document = parse_document(text, name);
-  apply_overrides(document, overrides, scene.notices);
-  check_document(document, name);
+  std::vector<std::string> notices;
+  apply_overrides(document, overrides, notices);
+  return read_scene(std::move(document), name, Purpose::start, std::move(notices));
+}
 
-  Settings settings(std::move(document));
-  scene.title = settings.text("title");
-  scene.planet = read_planet(settings);
-  if (settings.has("start"))
-    scene.start_from = settings.file_path("start.from", name);
-  else
-    read_particles_and_box(scene, settings, name);
-  scene.collisions = read_collisions(settings);
-  scene.gravity = read_gravity(settings);
-  read_times(scene, settings);
-  scene.resolved = settings.resolved();
-  return scene;
+Scene parse_stored_scene(const std::string& text, const std::string& name) {
+  return read_scene(parse_document(text, name), name, Purpose::go_on, {});
 }
 
 Scene load_scene(const std::string& path, const std::vector<std::string>& overrides) {

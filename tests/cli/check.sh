@@ -1,42 +1,8 @@
 #!/bin/bash
 # check.sh KEELER SOURCE_DIR: `keeler check` accepts the examples, and answers each bad scene with exit code 2 and exactly
 # one line on stderr that holds the expected words.
-set -u
-keeler=$1
-source_dir=$2
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-failures=0
-
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
-
-# accepts NAME ARGUMENT...: exit 0 and nothing on stderr
-accepts() {
-  local name=$1
-  shift
-  "$keeler" "$@" >"$work/out" 2>"$work/err" || fail "$name: exit $?"
-  [ -s "$work/err" ] && fail "$name: $(cat "$work/err")"
-}
-
-# prints NAME WORDS: the last accepted command printed the words
-prints() {
-  grep -qF -- "$2" "$work/out" || fail "$1: no '$2' in: $(cat "$work/out")"
-}
-
-# refuses NAME WORDS ARGUMENT...: exit 2, nothing on stdout, one line on stderr with the words
-refuses() {
-  local name=$1 words=$2 code=0
-  shift 2
-  "$keeler" "$@" >"$work/out" 2>"$work/err" || code=$?
-  [ "$code" -eq 2 ] || fail "$name: exit $code instead of 2"
-  [ -s "$work/out" ] && fail "$name: printed $(cat "$work/out")"
-  [ "$(wc -l <"$work/err")" -eq 1 ] || fail "$name: not one line: $(cat "$work/err")"
-  grep -q "^keeler: " "$work/err" || fail "$name: does not name the program: $(cat "$work/err")"
-  grep -qF -- "$words" "$work/err" || fail "$name: no '$words' in: $(cat "$work/err")"
-}
+# shellcheck source=tests/cli/helpers.sh
+source "$(dirname "$0")/helpers.sh"
 
 good=$source_dir/examples/a-ring-wakes/scene.toml
 
@@ -91,5 +57,4 @@ refuses "no command" "subcommand"
 refuses "unknown command" "" chekc
 refuses "unknown option" "--wibble" check --wibble
 
-echo "$failures failures"
-[ "$failures" -eq 0 ]
+report

@@ -69,6 +69,10 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& overri
 /// The same from text; `name` stands for the file in messages.
 Scene parse_scene(const std::string& text, const std::string& name, const std::vector<std::string>& overrides = {});
 
+/// The scene in a snapshot or checkpoint, for what exists already: the box, the sizes and whatever else only the start
+/// needed are neither read nor checked, so a file of radii or a start file may be gone.
+Scene parse_stored_scene(const std::string& text, const std::string& name);
+
 /// Every key with default, unit and meaning, as a table (text) or as the manual's Markdown table.
 std::string describe_keys(bool markdown);
 

@@ -140,6 +140,21 @@ TEST_CASE("a start file takes the place of box and particles") {
   CHECK(parse_scene(scene.resolved, "elsewhere/r.toml").start_from == scene.start_from);
 }
 
+TEST_CASE("a stored scene needs no file that only the start needed") {
+  const std::string radii =
+      changed(least, "{ law = \"equal\", radius = 1.0 }", "{ law = \"file\", path = \"/absent/radii.txt\" }");
+  CHECK_THROWS_AS(parse_scene(radii, "s.toml"), UsageError);
+  CHECK(parse_stored_scene(radii, "s.h5").time.end_step == parse_scene(least, "s.toml").time.end_step);
+
+  const Scene fresh = parse_scene(least + "[gravity]\n", "s.toml", {"particles.seed=7"});
+  const Scene stored = parse_stored_scene(fresh.resolved, "s.h5");
+  CHECK(stored.particles.seed == 7);
+  CHECK(stored.planet.frequencies.kappa == fresh.planet.frequencies.kappa);
+  CHECK(stored.gravity.has_value());
+  CHECK(stored.resolved == fresh.resolved);
+  CHECK_THROWS_AS(parse_stored_scene("[planet]\n", "s.h5"), UsageError);
+}
+
 TEST_CASE("radii come from a file beside the scene") {
   const auto folder = std::filesystem::temp_directory_path() / "keeler_test_scene_radii";
   std::filesystem::create_directories(folder);

@@ -1,0 +1,87 @@
+#!/bin/bash
+# errors.sh KEELER SOURCE_DIR: what cannot be done ends with one line and its exit code, and leaves nothing behind.
+# shellcheck source=tests/cli/helpers.sh
+source "$(dirname "$0")/helpers.sh"
+small_scene
+cp "$work/scene.toml" "$work/good.toml"
+none=$work/none
+
+nothing_left() {
+  [ -e "$none" ] && fail "$1: left $none behind"
+  rm -rf "$none"
+}
+
+# bad NAME WORDS SED-COMMAND: neither a run nor a state of the good scene, changed like this
+bad() {
+  sed "$3" "$work/good.toml" >"$work/scene.toml"
+  cmp -s "$work/scene.toml" "$work/good.toml" && fail "$1: the change does nothing"
+  refuses "$1" "$2" run "$work/scene.toml" -o "$none"
+  nothing_left "$1"
+  refuses "$1" "$2" generate "$work/scene.toml" -o "$none"
+  nothing_left "$1"
+}
+
+bad "unknown key" 'did you mean "density"?' 's/^density/densty/'
+bad "wrong type" "particles.count is a string" 's/count = 400/count = "many"/'
+bad "negative radius" "particles.sizes.radius is -1.0" 's/radius = 1.0/radius = -1.0/'
+bad "small box" "is smaller than a particle" 's/size = .*/size = [1.5, 100]/'
+bad "too dense" "too dense" 's/count = 400/count = 4000/'
+bad "missing section" "[box] is missing" '/^\[box\]/,/^size/d'
+bad "not TOML" "not TOML" 's/\[box\]/[box/'
+cp "$work/good.toml" "$work/scene.toml"
+
+for path in absent.toml .; do
+  refuses "unreadable $path" "cannot be read" run "$work/$path" -o "$none"
+  nothing_left "unreadable $path"
+done
+if [ "$(id -u)" -ne 0 ]; then # root may read everything
+  cp "$work/good.toml" "$work/locked.toml"
+  chmod 000 "$work/locked.toml"
+  refuses "locked scene" "Permission denied" run "$work/locked.toml" -o "$none"
+fi
+refuses "binary scene" "not TOML" run "$keeler" -o "$none"
+refuses "bad override" "particles.count" run "$work/scene.toml" -o "$none" --set particles.count=-1
+refuses "no output" "--output" run "$work/scene.toml"
+refuses "no threads" "--threads" run "$work/scene.toml" -o "$none" --threads 0
+refuses "no wall time" "--wall-time" run "$work/scene.toml" -o "$none" --wall-time -1
+nothing_left "bad options"
+
+runs 0 run "$work/scene.toml" -o "$work/taken" --set time.end=0.01
+cp -r "$work/taken" "$work/before"
+refuses "occupied folder" "--force" run "$work/scene.toml" -o "$work/taken"
+diff -r "$work/taken" "$work/before" >/dev/null || fail "a refused run changed the folder"
+refuses "an end behind" "later end" resume "$work/taken" --until 0.005
+diff -r "$work/taken" "$work/before" >/dev/null || fail "a refused resume changed the folder"
+echo mine >"$work/taken/notes.txt"
+runs 0 run "$work/scene.toml" -o "$work/taken" --set time.end=0.004 --force
+[ "$(cat "$work/taken/notes.txt")" = mine ] || fail "--force removed a file that is not the run's"
+[ "$(text steps "$work/taken/summary.json")" -eq 2 ] || fail "--force did not run"
+
+touch "$work/file"
+refuses "a file as folder" "is a file" run "$work/scene.toml" -o "$work/file"
+refuses_with 4 "a file as parent" "cannot make the folder" run "$work/scene.toml" -o "$work/file/run"
+refuses_with 4 "a state below a file" "file/state.hdf" generate "$work/scene.toml" -o "$work/file/state.hdf"
+refuses "a state that exists" "--force" generate "$work/scene.toml" -o "$work/file"
+[ -s "$work/file" ] && fail "a refused state was written"
+if [ "$(id -u)" -ne 0 ]; then
+  mkdir -m 555 "$work/locked"
+  refuses_with 4 "a locked parent" "Permission denied" run "$work/scene.toml" -o "$work/locked/run"
+fi
+
+for command in info analyze render; do
+  refuses_with 4 "$command, absent" "absent.hdf" $command "$work/absent.hdf"
+  refuses_with 4 "$command, not HDF5" "good.toml" $command "$work/good.toml"
+  refuses "$command of nothing" "required" $command
+done
+mkdir "$work/empty"
+for command in analyze render; do
+  refuses_with 4 "$command, no snapshot" "no snapshot" $command "$work/empty"
+  refuses_with 4 "$command of a checkpoint" "checkpoint_" $command "$(newest_checkpoint "$work/taken")"
+done
+refuses_with 4 "a picture below a file" "file/picture.png" render "$work/taken" -o "$work/file/picture.png"
+for start in absent.hdf good.toml taken/scene.toml; do
+  runs 4 run "$work/scene.toml" --from "$work/$start" -o "$none"
+  nothing_left "from $start"
+done
+
+report

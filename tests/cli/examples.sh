@@ -1,0 +1,18 @@
+#!/bin/bash
+# examples.sh KEELER SOURCE_DIR: the commands in the examples' READMEs work as they stand there; runs are cut to two steps.
+# shellcheck source=tests/cli/helpers.sh
+source "$(dirname "$0")/helpers.sh"
+ln -s "$source_dir/examples" "$work/examples"
+cd "$work" || exit 1
+for readme in examples/*/README.md; do
+  count=0
+  while read -r program command; do
+    [ "$program" = keeler ] || { fail "$readme: not a command of keeler: $program $command"; continue; }
+    [[ $command == run* ]] && command+=" --set time.end=0.002"
+    # shellcheck disable=SC2086 # several words
+    runs 0 $command
+    count=$((count + 1))
+  done < <(sed -n 's/^    //p' "$readme")
+  [ "$count" -ge 2 ] || fail "$readme: $count commands"
+done
+report

@@ -1,0 +1,162 @@
+#!/bin/bash
+# What the tests of the program from outside share: source it with KEELER and SOURCE_DIR, end with `report`.
+# shellcheck disable=SC2034 # used by the tests
+set -u
+keeler=$1
+source_dir=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failures=0
+export OMP_WAIT_POLICY=passive # threads that wait leave the processor to the tests beside them
+
+fail() {
+  echo "FAILED: $*"
+  failures=$((failures + 1))
+}
+
+report() {
+  echo "$failures failures"
+  [ "$failures" -eq 0 ]
+}
+
+# runs CODE ARGUMENT...: the program ends with this code; output in $work/out and $work/err
+runs() {
+  local expected=$1 code=0
+  shift
+  "$keeler" "$@" >"$work/out" 2>"$work/err" || code=$?
+  [ "$code" -eq "$expected" ] || fail "$*: exit $code instead of $expected: $(tail -n 3 "$work/err")"
+}
+
+# accepts NAME ARGUMENT...: exit 0 and nothing on stderr
+accepts() {
+  local name=$1
+  shift
+  runs 0 "$@"
+  [ -s "$work/err" ] && fail "$name: $(cat "$work/err")"
+}
+
+# prints NAME WORDS: the last command printed the words
+prints() {
+  grep -qF -- "$2" "$work/out" || fail "$1: no '$2' in: $(cat "$work/out")"
+}
+
+# one_line NAME WORDS: the last command said exactly one thing, the progress aside, and it holds the words
+one_line() {
+  grep -v ' orbits .* left ' "$work/err" >"$work/said"
+  [ "$(wc -l <"$work/said")" -eq 1 ] || fail "$1: not one line: $(cat "$work/said")"
+  grep -q "^keeler: " "$work/said" || fail "$1: does not name the program: $(cat "$work/said")"
+  grep -qF -- "$2" "$work/said" || fail "$1: no '$2' in: $(cat "$work/said")"
+}
+
+# refuses_with CODE NAME WORDS ARGUMENT...: this exit code, nothing on stdout, one line on stderr with the words
+refuses_with() {
+  local code=$1 name=$2 words=$3
+  shift 3
+  runs "$code" "$@"
+  [ -s "$work/out" ] && fail "$name: printed $(cat "$work/out")"
+  one_line "$name" "$words"
+}
+
+refuses() { refuses_with 2 "$@"; }
+
+# small_scene: a self-gravitating patch that runs for an orbit in a fraction of a second
+small_scene() {
+  cat >"$work/scene.toml" <<END
+title = "Small patch"
+[planet]
+preset = "saturn-a-ring"
+[box]
+size = [50, 50] # m
+[particles]
+count = 400
+density = 600.0
+sizes = { law = "equal", radius = 1.0 }
+[gravity]
+solver = "tree"
+[time]
+step = 2e-3
+end = 1.0
+[output]
+snapshot_every = 0.25
+checkpoint_every = 0.1
+END
+}
+
+# text KEY FILE: a text or number of a JSON file that has it once
+text() { sed -nE "s/^ *\"$1\": *\"?([^\",]*)\"?,?\$/\1/p" "$2" | head -n 1; }
+
+newest_checkpoint() { find "$1" -name 'checkpoint_*.h5' | sort | tail -n 1; }
+
+# state_hash FOLDER: of its newest checkpoint
+state_hash() {
+  "$keeler" info "$(newest_checkpoint "$1")" --json >"$work/info.json" 2>&1 || fail "info: $(cat "$work/info.json")"
+  text state_hash "$work/info.json"
+}
+
+# same_bytes NAME FILE FILE DATASET: equal to the last bit
+same_bytes() {
+  local file
+  rm -f "$work"/dump.*
+  for file in 1 2; do
+    h5dump -d "$4" -b LE -o "$work/dump.$file" "${@:$((file + 1)):1}" >/dev/null || fail "$1: h5dump $4"
+  done
+  [ -s "$work/dump.1" ] || fail "$1: $4 is empty"
+  cmp -s "$work/dump.1" "$work/dump.2" || fail "$1: $4 differs"
+}
+
+# same_state NAME FOLDER FOLDER: equal in every field of the newest checkpoints but the numbers of files written
+same_state() {
+  local a b fields field
+  a=$(newest_checkpoint "$2")
+  b=$(newest_checkpoint "$3")
+  [ "$(state_hash "$2")" = "$(state_hash "$3")" ] || fail "$1: state_hash differs"
+  fields=$(h5ls "$a/fields" | cut -d ' ' -f 1 | grep -vE '^(checkpoints_written|snapshots_written|last_snapshot_step)$')
+  [[ $fields == *bodies* ]] || fail "$1: no field 'bodies' in $a"
+  for field in $fields; do
+    same_bytes "$1" "$a" "$b" "/fields/$field"
+  done
+}
+
+same_series() {
+  cmp "$2/series.csv" "$3/series.csv" || fail "$1: series.csv differs"
+  [ -z "$(cut -d , -f 1 "$3/series.csv" | sort | uniq -d)" ] || fail "$1: doubled rows in series.csv"
+}
+
+same_snapshots() {
+  local file name dataset
+  [ "$(cd "$2" && echo snap_*)" = "$(cd "$3" && echo snap_*)" ] || fail "$1: other snapshots: $(cd "$3" && echo snap_*)"
+  for file in "$2"/snap_*.hdf; do
+    name=$(basename "$file")
+    for dataset in Coordinates Velocities ParticleIDs; do
+      same_bytes "$1, $name" "$file" "$3/$name" "/PartType1/$dataset"
+    done
+  done
+}
+
+# signalled SIGNAL FOLDER ARGUMENT...: starts `keeler ARGUMENT...`, sends the signal when FOLDER has a checkpoint, and
+# leaves the exit code in $signalled
+signalled() {
+  local signal=$1 folder=$2 process
+  shift 2
+  "$keeler" "$@" >"$work/out" 2>"$work/err" &
+  process=$!
+  until compgen -G "$folder/checkpoint_*.h5" >/dev/null || ! kill -0 "$process" 2>/dev/null; do
+    sleep 0.01
+  done
+  kill "-$signal" "$process" 2>/dev/null
+  signalled=0
+  wait "$process" 2>/dev/null || signalled=$?
+}
+
+# interrupted SIGNAL CODE FOLDER ARGUMENT...: a run of the small scene that ended with this code between its first
+# checkpoint and orbit 1; tried again when the signal came too late
+interrupted() {
+  local signal=$1 code=$2 folder=$3
+  shift 3
+  for _ in 1 2 3 4 5 6 7 8 9 10; do
+    rm -rf "$folder"
+    signalled "$signal" "$folder" run "$work/scene.toml" -o "$folder" "$@"
+    [ "$signalled" -eq "$code" ] && return
+  done
+  fail "SIG$signal: exit $signalled instead of $code: $(tail -n 3 "$work/err")"
+}

@@ -1,0 +1,51 @@
+#!/bin/bash
+# manual.sh KEELER SOURCE_DIR: help, README and manual name the same commands; the manual has every option, exit code and
+# JSON name.
+# shellcheck source=tests/cli/helpers.sh
+source "$(dirname "$0")/helpers.sh"
+small_scene
+manual=$source_dir/docs/manual/commands.md
+
+accepts "help" --help
+sed '1,/^Subcommands:/d' "$work/out" | sed -nE 's/^  ([a-z]+) .*/\1/p' | sort >"$work/commands"
+[ "$(wc -l <"$work/commands")" -ge 7 ] || fail "help: no commands in: $(cat "$work/out")"
+# shellcheck disable=SC2016 # backquotes of Markdown
+sed -nE 's/^\| `keeler ([a-z]+).*/\1/p' "$source_dir/README.md" | sort | diff "$work/commands" - ||
+  fail "the README has other commands than --help"
+sed -nE 's/^## keeler ([a-z]+)$/\1/p' "$manual" | sort | diff "$work/commands" - ||
+  fail "the manual has other commands than --help"
+
+# section COMMAND: what the manual says of it
+section() { sed -n "/^## keeler $1\$/,/^## /p" "$manual"; }
+
+while read -r command; do
+  accepts "help of $command" "$command" --help
+  prints "help of $command" "keeler $command"
+  grep -oE -- '--[a-z-]+' "$work/out" | sort -u | grep -v -- '^--help$' >"$work/options"
+  while read -r option; do
+    section "$command" | grep -qE -- "$option\b" || fail "the manual does not have $command $option"
+  done <"$work/options"
+  section "$command" | grep -oE -- '--[a-z-]+' | sort -u | while read -r option; do
+    grep -qxF -- "$option" "$work/options" || echo "$command has no $option"
+  done >"$work/unknown"
+  [ -s "$work/unknown" ] && fail "the manual is ahead: $(cat "$work/unknown")"
+done <"$work/commands"
+
+# names COMMAND: every name at the top of the JSON that was printed, and one below, stands in the manual's section
+names() {
+  local name
+  while read -r name; do
+    section "$1" | grep -qF "\`$name\`" || fail "the manual does not have the name $name of $1"
+  done < <(sed -nE 's/^ {2,4}"([a-z_0-9]+)":.*/\1/p' "$work/out" | sort -u)
+}
+runs 0 run "$work/scene.toml" -o "$work/run" --set time.end=0.004 --json
+names run
+accepts "check" check "$work/scene.toml" --json
+names check
+accepts "analyze" analyze "$work/run" --json
+names analyze
+accepts "info" info "$(newest_checkpoint "$work/run")" --json
+sed -i '/^  "fields"/,/^  }/{/^    /d}; /^  "attributes"/,/^  }/{/^    /d}' "$work/out" # names of the file, not of the program
+names info
+
+report

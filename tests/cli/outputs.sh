@@ -1,0 +1,100 @@
+#!/bin/bash
+# outputs.sh KEELER SOURCE_DIR: the names and figures that programs read, states as starts, and pictures.
+# shellcheck source=tests/cli/helpers.sh
+source "$(dirname "$0")/helpers.sh"
+small_scene
+sed -i 's/^end .*/end = 0.3/' "$work/scene.toml"
+number='-?[0-9.]+(e[-+]?[0-9]+)?'
+
+# has KEY PATTERN: the JSON that the last command printed, its spaces removed, has the key with such a value
+has() {
+  tr -d ' \n' <"$work/out" | grep -qE "[{,]\"$1\":$2[,}]" || fail "no $1 like $2 in: $(cat "$work/out")"
+}
+
+runs 0 run "$work/scene.toml" -o "$work/run" --json
+cmp "$work/out" "$work/run/summary.json" || fail "run --json does not print the summary"
+for key in collisions_per_particle_orbit slow_contacts_per_particle_orbit wall_s cpu_s largest_overlap; do
+  has $key "$number"
+done
+has split "\{\"drift_s\":$number,\"gravity_s\":$number,\"output_s\":$number\}"
+has finished true
+has state_hash '"[0-9a-f]{32}"'
+has time_orbits '0\.3(0000+[0-9]*)?'
+has steps 150
+has particle_count 400
+runs 0 run "$work/scene.toml" -o "$work/text"
+prints "run" "$(state_hash "$work/run")"
+for name in scene.toml series.csv summary.json log.jsonl snap_000000.hdf snap_000001.hdf snap_000002.hdf \
+  checkpoint_000001.h5 checkpoint_000002.h5; do
+  [ -s "$work/run/$name" ] || fail "no $name in the folder of a run"
+done
+[ "$(find "$work/run" -type f | wc -l)" -eq 9 ] || fail "other files than those: $(ls "$work/run")"
+accepts "the resolved scene" check "$work/run/scene.toml"
+
+accepts "info of a checkpoint" info "$(newest_checkpoint "$work/run")" --json
+has kind '"checkpoint"'
+has state_hash "\"$(text state_hash "$work/run/summary.json")\""
+has time_orbits '0\.3(0000+[0-9]*)?'
+has particle_count 400
+accepts "info of a snapshot" info "$work/run/snap_000001.hdf" --json
+has kind '"snapshot"'
+has time_orbits '0\.25'
+has particle_count 400
+accepts "info as text" info "$(newest_checkpoint "$work/run")"
+prints "info as text" "$(text state_hash "$work/run/summary.json")"
+
+for path in "$work/run" "$work/run/snap_000002.hdf"; do
+  accepts "analyze" analyze "$path" --json
+  for key in dispersion_m_s dispersion_r_omega; do
+    has $key "\[$number,$number,$number\]"
+  done
+  for key in toomre_q largest_overlap surface_density_kg_m2 critical_wavelength_m; do
+    has $key "$number"
+  done
+  for key in wake_pitch_degrees wake_spacing_m; do
+    has $key "($number|null)"
+  done
+  has optical_depth '0\.5026[0-9]*' # 400 pi / 50^2
+done
+accepts "analyze as text" analyze "$work/run"
+prints "analyze as text" "optical depth        0.5027"
+
+# A state, and a run from it; the same from the same seed whatever the threads.
+for threads in 1 2; do
+  accepts "generate" generate "$work/scene.toml" -o "$work/state-$threads.hdf" --threads $threads
+  accepts "analyze" analyze "$work/state-$threads.hdf" --json
+  grep -v '"file"' "$work/out" >"$work/state-$threads.json"
+done
+cmp "$work/state-1.json" "$work/state-2.json" || fail "the state depends on the threads"
+mkdir "$work/a folder"
+cp "$work/state-1.hdf" "$work/a folder/2024"
+runs 0 run "$work/scene.toml" --from "$work/a folder/2024" -o "$work/from" --set time.end=0.01 --json
+has particle_count 400
+(cd "$work/a folder" && "$keeler" run ../scene.toml --from 2024 -o here --set time.end=0.01 >/dev/null 2>&1) ||
+  fail "--from with a name that looks like a number"
+[ "$(state_hash "$work/a folder/here")" = "$(state_hash "$work/from")" ] || fail "--from: another state"
+
+is_png() {
+  [ "$(od -An -tx1 -N 8 "$1" | tr -d ' ')" = 89504e470d0a1a0a ] || fail "$1 is not a PNG"
+}
+accepts "render a folder" render "$work/run"
+prints "render a folder" "$work/run/picture.png"
+is_png "$work/run/picture.png"
+is_png "$work/run/picture-autocorrelation.png"
+accepts "render a file" render "$work/run/snap_000000.hdf"
+is_png "$work/run/snap_000000.png"
+accepts "render to a name" render "$work/run/snap_000000.hdf" -o "$work/mine.png"
+is_png "$work/mine.png"
+
+# A full standard output is not success.
+if [ -e /dev/full ]; then
+  for arguments in "check $work/scene.toml" "info $work/run/snap_000000.hdf" "analyze $work/run --json"; do
+    code=0
+    # shellcheck disable=SC2086 # several words
+    "$keeler" $arguments >/dev/full 2>"$work/err" || code=$?
+    [ "$code" -eq 4 ] || fail "$arguments into a full device: exit $code"
+    one_line "$arguments into a full device" "cannot write to standard output"
+  done
+fi
+
+report

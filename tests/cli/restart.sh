@@ -1,0 +1,85 @@
+#!/bin/bash
+# restart.sh KEELER SOURCE_DIR: however a run was cut into pieces, and with any number of threads, it ends in the same
+# bits: the state, the time series and the snapshots.
+# shellcheck source=tests/cli/helpers.sh
+source "$(dirname "$0")/helpers.sh"
+for tool in h5dump h5ls; do
+  command -v "$tool" >/dev/null || { echo "'$tool' is missing: scripts/setup test installs it"; exit 1; }
+done
+small_scene
+
+# same NAME FOLDER: all that the run left equals what the uninterrupted run left
+same() {
+  same_state "$1" "$work/whole" "$2"
+  same_series "$1" "$work/whole" "$2"
+  same_snapshots "$1" "$work/whole" "$2"
+}
+
+runs 0 run "$work/scene.toml" -o "$work/whole" --threads 1
+
+runs 0 run "$work/scene.toml" -o "$work/two" --threads 2
+same "two threads" "$work/two"
+
+runs 0 run "$work/scene.toml" -o "$work/half" --set time.end=0.5
+runs 0 resume "$work/half" --until 1
+same "half and half" "$work/half"
+
+runs 0 run "$work/scene.toml" -o "$work/threads" --set time.end=0.5 --threads 1
+runs 0 resume "$work/threads" --until 1 --threads 2
+same "half with one thread, half with two" "$work/threads"
+
+runs 0 resume "$work/threads"
+same "a finished run, resumed" "$work/threads"
+
+interrupted KILL 137 "$work/killed"
+[ -e "$work/killed/summary.json" ] && fail "killed after its end"
+runs 0 resume "$work/killed"
+same "kill -9" "$work/killed"
+
+interrupted TERM 75 "$work/stopped" --threads 2
+runs 0 resume "$work/stopped" --threads 1
+same "TERM" "$work/stopped"
+
+# Other schedules make other files, never another state; the rows of the series are at their own steps.
+runs 0 run "$work/scene.toml" -o "$work/schedules" --set output.checkpoint_every=0.034 --set output.snapshot_every=0.07
+same_state "other schedules" "$work/whole" "$work/schedules"
+same_series "other schedules" "$work/whole" "$work/schedules"
+
+# A moved folder goes on; what it was made from is not needed.
+sources() {
+  seq 400 | sed 's/.*/1.0/' >"$work/radii.txt"
+  cp "$work/whole/snap_000000.hdf" "$work/start.hdf"
+}
+for source in "start.from=$work/start.hdf" "particles.sizes={law=\"file\",path=\"$work/radii.txt\"}"; do
+  rm -rf "$work/here" "$work/there" "$work/once"
+  sources
+  runs 0 run "$work/scene.toml" --set "$source" -o "$work/once" --set time.end=0.1
+  runs 0 run "$work/scene.toml" --set "$source" -o "$work/here" --set time.end=0.05
+  mv "$work/here" "$work/there"
+  rm "$work/radii.txt" "$work/start.hdf"
+  runs 0 resume "$work/there" --until 0.1
+  same_state "moved, $source" "$work/once" "$work/there"
+  runs 0 analyze "$work/there"
+done
+
+# Kicks every third step: ends and schedules are rounded to whole kicks, and no restart falls between two halves.
+sed -i 's/^solver.*/&\nkick_every = 3/; s/^snapshot_every.*/snapshot_every = 0.13/; s/^checkpoint_every.*/checkpoint_every = 0.07/' \
+  "$work/scene.toml"
+rm -rf "$work/whole"
+runs 0 run "$work/scene.toml" -o "$work/whole"
+grep -q "rounded" "$work/err" || fail "kick_every: silent about rounding: $(cat "$work/err")"
+
+runs 0 run "$work/scene.toml" -o "$work/odd" --set time.end=0.5
+runs 0 resume "$work/odd" --until 1
+same_state "kick_every, half and half" "$work/whole" "$work/odd"
+same_series "kick_every, half and half" "$work/whole" "$work/odd"
+
+interrupted TERM 75 "$work/odd-stopped"
+runs 0 resume "$work/odd-stopped"
+same "kick_every, TERM" "$work/odd-stopped"
+
+interrupted KILL 137 "$work/odd-killed"
+runs 0 resume "$work/odd-killed"
+same "kick_every, kill -9" "$work/odd-killed"
+
+report

@@ -1,0 +1,49 @@
+#!/bin/bash
+# signals.sh KEELER SOURCE_DIR: INT, TERM, USR1 and --wall-time stop a run with exit code 75 and a checkpoint; USR2
+# writes a snapshot and the run goes on. The runs here would last for hours, so no signal comes too late.
+# shellcheck source=tests/cli/helpers.sh
+source "$(dirname "$0")/helpers.sh"
+small_scene
+endless=(run "$work/scene.toml" --set time.end=1e5 --set output.snapshot_every=0 --set output.checkpoint_every=0.01)
+
+# stopped NAME FOLDER: what a stop leaves
+stopped() {
+  runs 0 info "$(newest_checkpoint "$2")" --json
+  cp "$work/out" "$work/info.json"
+  runs 0 analyze "$2"
+  [ "$(text finished "$2/summary.json")" = false ] || fail "$1: summary says finished"
+  for key in state_hash time_orbits; do
+    [ "$(text $key "$work/info.json")" = "$(text $key "$2/summary.json")" ] || fail "$1: $key is not the checkpoint's"
+  done
+}
+
+for signal in INT TERM USR1; do
+  signalled $signal "$work/$signal" "${endless[@]}" -o "$work/$signal"
+  [ "$signalled" -eq 75 ] || fail "$signal: exit $signalled"
+  grep -q "continue with \"keeler resume $work/$signal\"" "$work/err" || fail "$signal: no advice: $(cat "$work/err")"
+  stopped $signal "$work/$signal"
+done
+
+runs 75 "${endless[@]}" -o "$work/wall" --wall-time 0.5
+stopped "--wall-time" "$work/wall"
+runs 75 resume "$work/wall" --until 1e4 --wall-time 0.5
+grep -q "resume $work/wall --until 10000" "$work/err" || fail "--until is not in the advice: $(cat "$work/err")"
+stopped "resume --wall-time" "$work/wall"
+
+"$keeler" "${endless[@]}" -o "$work/asked" >"$work/out" 2>"$work/err" &
+process=$!
+until compgen -G "$work/asked/checkpoint_*" >/dev/null; do sleep 0.01; done
+for n in 1 2; do
+  kill -USR2 "$process"
+  until [ -e "$work/asked/snap_00000$n.hdf" ] || ! kill -0 "$process"; do sleep 0.01; done
+done
+kill -TERM "$process"
+code=0
+wait "$process" || code=$?
+[ "$code" -eq 75 ] || fail "USR2, then TERM: exit $code"
+stopped "USR2" "$work/asked"
+runs 0 info "$work/asked/snap_000002.hdf" --json
+later=$(printf '%s\n' "$(text time_orbits "$work/out")" "$(text time_orbits "$work/asked/summary.json")" | sort -g | tail -n 1)
+[ "$later" = "$(text time_orbits "$work/asked/summary.json")" ] || fail "USR2: the run did not go on"
+
+report
