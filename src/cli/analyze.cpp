@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 namespace keeler {
@@ -70,7 +71,8 @@ void print_text(const Analysis& a, double overlap) {
     fmt::print("wakes                none\n");
     return;
   }
-  fmt::print("wake pitch           {:.1f} degrees, trailing\n", *a.wake_pitch_degrees);
+  fmt::print("wake pitch           {:.1f} degrees, {}\n", std::abs(*a.wake_pitch_degrees),
+             *a.wake_pitch_degrees < 0.0 ? "leading" : "trailing");
   if (a.wake_spacing_m)
     fmt::print("wake spacing         {:.3g} m radially = {:.2f} lambda_cr\n", *a.wake_spacing_m,
                *a.wake_spacing_m / a.critical_wavelength_m);

@@ -21,11 +21,11 @@ section() { sed -n "/^## keeler $1\$/,/^## /p" "$manual"; }
 while read -r command; do
   accepts "help of $command" "$command" --help
   prints "help of $command" "keeler $command"
-  grep -oE -- '--[a-z-]+' "$work/out" | sort -u | grep -v -- '^--help$' >"$work/options"
+  grep -oE -- '--[a-z][a-z-]*' "$work/out" | sort -u | grep -v -- '^--help$' >"$work/options"
   while read -r option; do
     section "$command" | grep -qE -- "$option\b" || fail "the manual does not have $command $option"
   done <"$work/options"
-  section "$command" | grep -oE -- '--[a-z-]+' | sort -u | while read -r option; do
+  section "$command" | grep -oE -- '--[a-z][a-z-]*' | sort -u | while read -r option; do
     grep -qxF -- "$option" "$work/options" || echo "$command has no $option"
   done >"$work/unknown"
   [ -s "$work/unknown" ] && fail "the manual is ahead: $(cat "$work/unknown")"
