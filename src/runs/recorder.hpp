@@ -33,6 +33,7 @@ public:
   void sample(const Simulation& simulation);
   void log(const std::string& event, const nlohmann::ordered_json& details);
   const OutputCounters& counters() const { return counters_; }
+  const Provenance& provenance() const { return provenance_; }
   double seconds() const { return seconds_; } ///< wall time spent writing
 
 private:

@@ -1,8 +1,8 @@
 #include <keeler/runs/run.hpp>
 
 #include "recorder.hpp"
+#include "summary.hpp"
 
-#include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
@@ -111,41 +111,6 @@ private:
   double start_ = watch_.elapsed(), last_time_ = start_, longest_pass_ = 0.0;
 };
 
-nlohmann::ordered_json summary_of(const Simulation& simulation, const Scene& scene, const RunResult& result,
-                                  std::int64_t first_step, double wall, double cpu, double output) {
-  const SimulationState& state = simulation.state();
-  const double count = static_cast<double>(state.particles.size()), orbits = simulation.orbits();
-  const auto rate = [&](std::uint64_t n) {
-    return orbits > 0.0 ? 2.0 * static_cast<double>(n) / (count * orbits) : 0.0;
-  };
-  const double joule = scene.planet.orbital_frequency * scene.planet.orbital_frequency;
-  const TimeSplit& split = simulation.time_split();
-  const double passes = count * static_cast<double>(std::max<std::int64_t>(1, state.step - first_step)) * 1e-9;
-  nlohmann::ordered_json json;
-  json["finished"] = result.finished;
-  json["state_hash"] = result.state_hash;
-  json["time_orbits"] = orbits;
-  json["steps"] = state.step;
-  json["particle_count"] = state.particles.size();
-  json["threads"] = threads();
-  json["collisions_per_particle_orbit"] = rate(state.collisions.fast);
-  json["slow_contacts_per_particle_orbit"] = rate(state.collisions.slow);
-  json["finder_gave_up"] = state.collisions.gave_up;
-  json["largest_overlap"] = largest_overlap(simulation.patch()).depth;
-  json["energy_j"] = {{"start", state.energy.start * joule},
-                      {"now", total_energy(state.particles, scene.planet.frequencies) * joule},
-                      {"kick_work", state.energy.kick_work * joule},
-                      {"edge_work", (state.energy.wrap_work + state.collisions.edge_work) * joule},
-                      {"lost_in_collisions", state.collisions.energy_lost * joule},
-                      {"residual", simulation.energy_residual() * joule}};
-  json["wall_s"] = wall;
-  json["cpu_s"] = cpu;
-  json["split"] = {{"drift_s", split.drift}, {"gravity_s", split.gravity}, {"output_s", output}};
-  json["ns_per_particle_step"] = {
-      {"drift", split.drift / passes}, {"gravity", split.gravity / passes}, {"output", output / passes}};
-  return json;
-}
-
 // When the command began, and the step whose checkpoint it found.
 struct Start {
   double cpu = cpu_seconds(), wall = 0.0;
@@ -158,8 +123,8 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
   const std::int64_t first_step = simulation.state().step;
   Runner runner(scene, options, requests, simulation, recorder, start.watch, start.checkpoint_step);
   const RunResult result = runner.run();
-  const nlohmann::ordered_json summary = summary_of(simulation, scene, result, first_step, start.watch.elapsed(),
-                                                    cpu_seconds() - start.cpu, recorder.seconds());
+  const RunCost cost{first_step, start.watch.elapsed(), cpu_seconds() - start.cpu, recorder.seconds()};
+  const nlohmann::ordered_json summary = summarise(simulation, scene, result, cost, recorder.provenance());
   write_text(folder.summary(), summary.dump(2) + "\n");
   recorder.log(result.finished ? "finished" : "stopped", {{"step", result.step}, {"state_hash", result.state_hash}});
   return result;

@@ -1,0 +1,54 @@
+#include "summary.hpp"
+
+#include <keeler/cells/overlap.hpp>
+#include <keeler/core/threads.hpp>
+
+#include <algorithm>
+
+namespace keeler {
+namespace {
+
+nlohmann::ordered_json energies(const Simulation& simulation, const Scene& scene) {
+  const SimulationState& state = simulation.state();
+  const double joule = scene.planet.orbital_frequency * scene.planet.orbital_frequency; // per kg m² rad⁻²
+  return {{"start", state.energy.start * joule},
+          {"now", total_energy(state.particles, scene.planet.frequencies) * joule},
+          {"kick_work", state.energy.kick_work * joule},
+          {"edge_work", (state.energy.wrap_work + state.collisions.edge_work) * joule},
+          {"lost_in_collisions", state.collisions.energy_lost * joule},
+          {"residual", simulation.energy_residual() * joule}};
+}
+
+} // namespace
+
+nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scene, const RunResult& result,
+                                 const RunCost& cost, const Provenance& provenance) {
+  const SimulationState& state = simulation.state();
+  const double count = static_cast<double>(state.particles.size()), orbits = simulation.orbits();
+  const auto rate = [&](std::uint64_t n) {
+    return orbits > 0.0 ? 2.0 * static_cast<double>(n) / (count * orbits) : 0.0;
+  };
+  const TimeSplit& split = simulation.time_split();
+  const double passes = 1e-9 * count * static_cast<double>(std::max<std::int64_t>(1, state.step - cost.first_step));
+  nlohmann::ordered_json json;
+  json["finished"] = result.finished;
+  json["state_hash"] = result.state_hash;
+  json["time_orbits"] = orbits;
+  json["steps"] = state.step;
+  json["particle_count"] = state.particles.size();
+  json["threads"] = threads();
+  json["collisions_per_particle_orbit"] = rate(state.collisions.fast);
+  json["slow_contacts_per_particle_orbit"] = rate(state.collisions.slow);
+  json["finder_gave_up"] = state.collisions.gave_up;
+  json["largest_overlap"] = largest_overlap(simulation.patch()).depth;
+  json["energy_j"] = energies(simulation, scene);
+  json["wall_s"] = cost.wall_s;
+  json["cpu_s"] = cost.cpu_s;
+  json["split"] = {{"drift_s", split.drift}, {"gravity_s", split.gravity}, {"output_s", cost.output_s}};
+  json["ns_per_particle_step"] = {
+      {"drift", split.drift / passes}, {"gravity", split.gravity / passes}, {"output", cost.output_s / passes}};
+  json["provenance"] = provenance;
+  return json;
+}
+
+} // namespace keeler

@@ -1,0 +1,21 @@
+// summary.json: what a run came to, in numbers.
+#pragma once
+
+#include <keeler/io/provenance.hpp>
+#include <keeler/runs/run.hpp>
+
+#include <nlohmann/json.hpp>
+
+namespace keeler {
+
+/// What this stretch of the run took: since it began or was resumed at first_step.
+struct RunCost {
+  std::int64_t first_step = 0;
+  double wall_s = 0.0, cpu_s = 0.0, output_s = 0.0;
+};
+
+/// Counts and energies are those of the whole run, times those of this stretch.
+nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scene, const RunResult& result,
+                                 const RunCost& cost, const Provenance& provenance);
+
+} // namespace keeler
