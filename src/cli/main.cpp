@@ -8,8 +8,11 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
+
+#include <unistd.h>
 
 using namespace keeler;
 
@@ -46,9 +49,19 @@ int run(int argc, char** argv) {
   return static_cast<int>(code);
 }
 
+// OpenMP reads its wait policy when it is loaded, before main. Threads that spin while they wait make a run ten times
+// slower on a busy machine, so the program starts itself again with the policy set; where that fails it is only slower.
+void let_threads_sleep(char** argv) {
+  if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT"))
+    return;
+  setenv("OMP_WAIT_POLICY", "passive", 1);
+  execv("/proc/self/exe", argv);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
+  let_threads_sleep(argv);
   std::signal(SIGXFSZ, SIG_IGN); // a file-size limit is then an error of the write
   try {
     return run(argc, argv);

@@ -7,7 +7,6 @@ source_dir=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 failures=0
-export OMP_WAIT_POLICY=passive # threads that wait leave the processor to the tests beside them
 
 fail() {
   echo "FAILED: $*"

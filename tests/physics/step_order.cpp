@@ -100,8 +100,8 @@ TEST_CASE("second order in the step without collisions, also with a kick every f
 }
 
 TEST_CASE("first order in the step with collisions") {
-  // One sphere bounces elastically on top of another, over many phases of the bounces in the step. One start's error jumps
-  // about with the phase; the root mean square over starts falls as the step.
+  // One sphere bounces elastically on top of another, over many phases of the bounces in the step. One start's error
+  // jumps about with the phase; the root mean square over starts falls as the step.
   constexpr double orbits = 0.256;
   constexpr int starts = 60;
   const auto pair_of = [](const Scene& scene, int k) {

@@ -15,7 +15,7 @@ int threads();
 /// Calls body(k) once for each k in [0, count), in no promised order; body must write only what belongs to k.
 /// Exceptions must not leave body. What fits in one chunk runs on the calling thread.
 template<class Body> void parallel_for(std::size_t count, const Body& body, int chunk = 256) {
-#pragma omp parallel for schedule(dynamic, chunk) if (count > static_cast<std::size_t>(chunk))
+#pragma omp parallel for schedule(dynamic, chunk) if (count > static_cast <std::size_t>(chunk))
   for (std::size_t k = 0; k < count; ++k)
     body(k);
 }

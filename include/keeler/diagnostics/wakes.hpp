@@ -1,10 +1,9 @@
 // Self-gravity wakes as the autocorrelation shows them: direction of the central ridge, distance to the next wake.
 //
-// Pitch: the angle from the y axis of the central ridge, a line fitted to its crest (the largest ξ at each Δy) out to one
-// λ_cr; positive when trailing, that is when the outer part of a wake (x > 0) lags behind (y < 0). The crest starts in the
-// direction along which the mean of ξ over a line through zero lag is largest.
-// Spacing: ξ is averaged along that direction into a function of the radial lag Δx (at Δy = 0); the spacing is its
-// first side maximum.
+// Pitch: the angle from the y axis of the central ridge, a line fitted to its crest (the largest ξ at each Δy) out to
+// one λ_cr; positive when trailing, that is when the outer part of a wake (x > 0) lags behind (y < 0). The crest starts
+// in the direction along which the mean of ξ over a line through zero lag is largest. Spacing: ξ is averaged along that
+// direction into a function of the radial lag Δx (at Δy = 0); the spacing is its first side maximum.
 #pragma once
 
 #include <keeler/diagnostics/autocorrelation.hpp>
@@ -24,8 +23,8 @@ struct Wakes {
   std::vector<double> profile;  ///< ξ averaged along the ridge, at radial lags 0, 1, 2 … × profile_spacing
 };
 
-/// Lines reach 3/4 λ_cr to each side (less in a small box). There are no wakes when λ_cr is not resolved by the map, or when the
-/// amplitude is below 0.02 or below five times the noise of particles at random.
+/// Lines reach 3/4 λ_cr to each side (less in a small box). There are no wakes when λ_cr is not resolved by the map, or
+/// when the amplitude is below 0.02 or below five times the noise of particles at random.
 Wakes find_wakes(const AutocorrelationMap& map, double critical_wavelength);
 
 } // namespace keeler

@@ -39,7 +39,7 @@ struct GravitySettings {
   enum class Solver { direct, tree };
   Solver solver = Solver::tree;
   double opening_angle = 0.6; ///< tree: a cell is opened when its size exceeds this times its distance
-  int image_rings = 1;         ///< rings of periodic images around the cell (1 is 9 boxes); beyond them the mean sheet
+  int image_rings = 1;        ///< rings of periodic images around the cell (1 is 9 boxes); beyond them the mean sheet
   int kick_every = 1;         ///< drifts per kick
 };
 

@@ -7,9 +7,9 @@
 // approaching, the event is now; receding, the first possible turning point −f'/m is the next safe step.
 // All roundings are taken to the safe side: f, f' and m down, V and A up, the step down.
 //
-// Within rounding of contact the steps would shrink to noise (a pair at constant distance never leaves it). There a step
-// may let f sink by one rounding error, and by one more for every 1024 passes. So no contact deeper than a few rounding
-// errors of |d|² − R² is missed, and every search ends.
+// Within rounding of contact the steps would shrink to noise (a pair at constant distance never leaves it). There a
+// step may let f sink by one rounding error, and by one more for every 1024 passes. So no contact deeper than a few
+// rounding errors of |d|² − R² is missed, and every search ends.
 #pragma once
 
 #include <keeler/collision/pair.hpp>
