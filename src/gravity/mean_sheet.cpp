@@ -149,8 +149,8 @@ void MeanSheet::tabulate() {
       const SheetField field = closed_form(half_x_ * x_nodes[a], half_y_ * node);
       chebyshev(node, y_terms, ty);
       ty[0] = 0.5; // its square's mean over the nodes is twice that of the others
-      for (std::size_t odd = 0; odd < 2; ++odd)
-        for (std::size_t k = 0; k < y_terms / 2; ++k) {
+      for (Eigen::Index odd = 0; odd < 2; ++odd)
+        for (Eigen::Index k = 0; k < Half::RowsAtCompileTime; ++k) {
           along_y[odd].x[k] += field.x * ty[2 * k + 1 - odd];
           along_y[odd].y[k] += field.y * ty[2 * k + 1 - odd];
           along_y[odd].stiffness[k] += field.stiffness * ty[2 * k + odd];
