@@ -16,7 +16,9 @@ void set_colour(cairo_t* cairo, const Colour& colour, double opacity = 1.0) {
 }
 
 std::uint32_t packed(const Colour& colour) {
-  const auto byte = [](double value) { return static_cast<std::uint32_t>(std::clamp(value, 0.0, 1.0) * 255.0 + 0.5); };
+  const auto byte = [](double value) {
+    return static_cast<std::uint32_t>(std::lround(std::clamp(value, 0.0, 1.0) * 255.0));
+  };
   return 0xff000000u | byte(colour.r) << 16 | byte(colour.g) << 8 | byte(colour.b);
 }
 
