@@ -4,14 +4,29 @@
 
 #include <fmt/format.h>
 
-#include <regex>
+#include <string_view>
 
 namespace keeler {
 namespace fs = std::filesystem;
 namespace {
 
-const std::regex
-    own_file(R"((snap_\d{6,}\.hdf|checkpoint_\d{6,}\.h5|scene\.toml|series\.csv|summary\.json|log\.jsonl)(\.tmp)?)");
+bool is_numbered(std::string_view name, std::string_view prefix, std::string_view ending) {
+  if (name.size() <= prefix.size() + ending.size() || !name.starts_with(prefix) || !name.ends_with(ending))
+    return false;
+  name.remove_prefix(prefix.size());
+  name.remove_suffix(ending.size());
+  return name.find_first_not_of("0123456789") == name.npos;
+}
+
+// Files that a run writes, also those of an interrupted write.
+bool is_own(std::string_view name) {
+  if (name.ends_with(".tmp"))
+    name.remove_suffix(4);
+  for (const std::string_view own : {"scene.toml", "series.csv", "summary.json", "log.jsonl"})
+    if (name == own)
+      return true;
+  return is_numbered(name, "snap_", ".hdf") || is_numbered(name, "checkpoint_", ".h5");
+}
 
 } // namespace
 
@@ -37,7 +52,7 @@ void RunFolder::claim(bool force) const {
   try {
     fs::create_directories(path_);
     for (const fs::directory_entry& entry : fs::directory_iterator(path_))
-      if (std::regex_match(entry.path().filename().string(), own_file))
+      if (is_own(entry.path().filename().string()))
         fs::remove(entry.path());
   } catch (const fs::filesystem_error& error) {
     throw IoError(fmt::format("cannot make the folder '{}': {}", path_.string(), error.code().message()));
