@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 
 namespace keeler {
@@ -59,6 +61,18 @@ void print_particles(const Scene& scene, const Derived& d) {
   fmt::print("mid-plane filling  {:.3g} at the start\n", d.midplane_filling);
 }
 
+// What is allowed but seldom meant.
+std::vector<std::string> doubts(const Scene& scene, const Derived& d) {
+  std::vector<std::string> found;
+  if (d.particles_known && scene.gravity && std::min(scene.size_x, scene.size_y) < 3.99 * d.lambda_cr)
+    found.push_back("the box is smaller than 4 lambda_cr: self-gravity wakes will feel its edges");
+  if (d.particles_known && scene.particles.density < 50.0)
+    found.push_back("the density is in kg/m^3: water ice has 917");
+  if (scene.gravity && scene.time.step * scene.gravity->kick_every > 0.02)
+    found.push_back("kicks are more than 0.02 orbits apart: self-gravity is hardly resolved in time");
+  return found;
+}
+
 void print_text(const Scene& scene, const Derived& d) {
   if (!scene.title.empty())
     fmt::print("{}\n", scene.title);
@@ -66,13 +80,15 @@ void print_text(const Scene& scene, const Derived& d) {
     print_particles(scene, d);
   else
     fmt::print("box and particles  from {}\n", *scene.start_from);
-  fmt::print("steps              {} of {} orbits\n", d.steps, scene.time.step);
+  fmt::print("steps              {} of {:.6g} orbits\n", d.steps, scene.time.step);
   if (d.particles_known) {
     fmt::print("memory             about {:.0f} MB (an estimate)\n", d.memory_mb);
     fmt::print("time               about {} on one thread (an estimate)\n", duration(d.estimated_s));
   }
   for (const std::string& notice : scene.notices)
     fmt::print("note: {}\n", notice);
+  for (const std::string& doubt : doubts(scene, d))
+    fmt::print("note: {}\n", doubt);
 }
 
 ExitCode check(const CheckOptions& options) {
@@ -83,6 +99,8 @@ ExitCode check(const CheckOptions& options) {
   if (options.scene.path.empty())
     throw UsageError("check needs a scene (there is nothing to check); write keeler check SCENE, or --defaults");
   const Scene scene = options.scene.load();
+  if (scene.start_from && !std::filesystem::exists(*scene.start_from))
+    throw IoError(fmt::format("start.from names '{}', which does not exist", *scene.start_from));
   const Derived derived = derive(scene);
   if (options.json)
     fmt::print("{}\n", as_json(scene, derived).dump(2));

@@ -24,6 +24,8 @@ struct GenerateOptions {
 ExitCode generate(const GenerateOptions& options, const std::vector<std::string>& arguments) {
   options.threads.apply();
   const Scene scene = options.scene.load();
+  if (std::filesystem::is_directory(options.output))
+    throw UsageError(fmt::format("'{}' is a folder (a state is one file); name a file in it", options.output));
   if (std::filesystem::exists(options.output) && !options.force)
     throw UsageError(fmt::format("'{}' exists already (a state is never overwritten); name another file or add --force",
                                  options.output));

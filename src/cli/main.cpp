@@ -26,7 +26,7 @@ int fail(ExitCode code, const char* message) {
 int run(int argc, char** argv) {
   CLI::App program("Keeler simulates a self-gravitating patch of a planetary ring.", "keeler");
   program.set_version_flag("--version", "keeler " + program_version());
-  program.require_subcommand(1);
+  program.require_subcommand(0, 1); // none is refused below, after words that are no command
   Action action;
   const std::vector<std::string> arguments(argv, argv + argc);
   add_check(program, action);
@@ -43,6 +43,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     throw UsageError(fmt::format("{}; \"keeler --help\" lists what can be asked", error.what()));
   }
+  if (!action)
+    throw UsageError("no command is given; \"keeler --help\" lists the commands");
   const ExitCode code = action();
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) // a full disk must not look like success
     throw IoError(fmt::format("cannot write to standard output: {}", std::strerror(errno)));

@@ -43,7 +43,7 @@ RunOptions run_options(const JobOptions& job, const std::vector<std::string>& ar
 
 void print_summary(const std::string& folder, const nlohmann::json& s) {
   const auto number = [&](const char* key) { return s[key].get<double>(); };
-  fmt::print("{} orbits, {} steps, {} particles, {} threads\n", number("time_orbits"), s["steps"].get<long>(),
+  fmt::print("{:.6g} orbits, {} steps, {} particles, {} threads\n", number("time_orbits"), s["steps"].get<long>(),
              s["particle_count"].get<long>(), s["threads"].get<int>());
   fmt::print("collisions per particle and orbit   {:.3g} faster than v_cut, {:.3g} slow contacts\n",
              number("collisions_per_particle_orbit"), number("slow_contacts_per_particle_orbit"));
@@ -82,7 +82,7 @@ ExitCode report(const JobOptions& job, const RunResult& result) {
 
 void add_common(CLI::App& command, JobOptions& job) {
   command.add_option("--wall-time", job.wall_time, "stop with a checkpoint before this many seconds have passed")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command.add_flag("--json", job.json, "print the summary as JSON");
   job.threads.add_to(command);
 }
@@ -103,8 +103,6 @@ void add_run(CLI::App& program, Action& action, const std::vector<std::string>& 
       if (!job->from.empty())
         job->scene.overrides.push_back("start.from=" + nlohmann::json(job->from).dump()); // quoted, as in TOML
       const Scene scene = job->scene.load();
-      for (const std::string& notice : scene.notices)
-        say(notice);
       RunResult result;
       {
         ProgressLine line;
@@ -119,7 +117,7 @@ void add_resume(CLI::App& program, Action& action, const std::vector<std::string
   const auto job = std::make_shared<JobOptions>();
   CLI::App& command = *program.add_subcommand("resume", "continue a run from its newest whole checkpoint");
   command.add_option("DIR", job->folder, "the folder of the run")->required()->type_name("");
-  command.add_option("--until", job->until, "another end, in orbits since the run began")->check(CLI::PositiveNumber);
+  command.add_option("--until", job->until, "another end, in orbits since the run began")->check(positive_number());
   add_common(command, *job);
   command.callback([job, arguments, &action] {
     action = [job, arguments] {

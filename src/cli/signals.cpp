@@ -26,7 +26,7 @@ void install(int signal, void (*handler)(int)) {
 } // namespace
 
 RunRequests& requests_from_signals() {
-  for (const int signal : {SIGINT, SIGTERM, SIGUSR1})
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1})
     install(signal, ask_to_stop);
   install(SIGUSR2, ask_for_snapshot);
   return requests;

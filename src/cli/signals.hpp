@@ -1,4 +1,4 @@
-// Signals: INT, TERM and USR1 ask the run to finish its step, write a checkpoint and stop; a second one ends the
+// Signals: INT, TERM, HUP and USR1 ask the run to finish its step, write a checkpoint and stop; a second one ends the
 // program at once. USR2 asks for a snapshot.
 #pragma once
 

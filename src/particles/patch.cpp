@@ -1,6 +1,11 @@
 #include <keeler/particles/patch.hpp>
 
+#include <keeler/core/error.hpp>
+
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace keeler {
@@ -28,6 +33,21 @@ Patch make_patch(const Particles& particles, const ShearingBox& box, double offs
     patch.ids.push_back(particles.ids[k]);
   }
   return patch;
+}
+
+void require_sound(const Patch& patch) {
+  const auto positive = [](double value) { return value > 0.0 && std::isfinite(value); };
+  for (std::size_t k = 0; k < patch.size(); ++k) {
+    const auto refuse = [&](const char* what) {
+      throw InvariantError(fmt::format("particle {} has {}; take another state", patch.ids[k], what));
+    };
+    if (!patch.positions[k].allFinite() || !patch.velocities[k].allFinite())
+      refuse("a place or a velocity that is not finite");
+    if (!positive(patch.radii[k]))
+      refuse("a radius that is not positive");
+    if (!positive(patch.masses[k]))
+      refuse("a mass that is not positive");
+  }
 }
 
 Particles particles_from(const Patch& patch, double ahead) {

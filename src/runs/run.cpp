@@ -1,5 +1,6 @@
 #include <keeler/runs/run.hpp>
 
+#include "folder_lock.hpp"
 #include "recorder.hpp"
 #include "summary.hpp"
 
@@ -172,7 +173,12 @@ RunResult start_run(const Scene& scene, const RunOptions& options, RunRequests& 
   if (!options.force)
     folder.refuse_if_occupied(); // before the work of an initial state
   Simulation simulation(scene, initial_patch(scene));
+  folder.make();
+  const FolderLock lock(folder.path());
   folder.claim(options.force);
+  if (options.notice)
+    for (const std::string& notice : scene.notices)
+      options.notice(notice);
   Recorder recorder(folder, scene, options.arguments, {}, std::nullopt);
   recorder.log("started", {{"particles", simulation.state().particles.size()}, {"threads", threads()}});
   recorder.snapshot(simulation);
@@ -183,6 +189,7 @@ RunResult start_run(const Scene& scene, const RunOptions& options, RunRequests& 
 RunResult resume_run(const RunOptions& options, RunRequests& requests) {
   Start start;
   const RunFolder folder(options.folder);
+  const FolderLock lock(folder.path());
   const NewestCheckpoint newest = newest_valid_checkpoint(folder.path());
   if (options.notice)
     for (const std::string& warning : newest.warnings)

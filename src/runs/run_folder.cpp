@@ -46,16 +46,22 @@ void RunFolder::refuse_if_occupied() const {
                     path_.string()));
 }
 
+void RunFolder::make() const {
+  std::error_code error;
+  fs::create_directories(path_, error);
+  if (error)
+    throw IoError(fmt::format("cannot make the folder '{}': {}", path_.string(), error.message()));
+}
+
 void RunFolder::claim(bool force) const {
   if (!force)
     refuse_if_occupied();
   try {
-    fs::create_directories(path_);
     for (const fs::directory_entry& entry : fs::directory_iterator(path_))
       if (is_own(entry.path().filename().string()))
         fs::remove(entry.path());
   } catch (const fs::filesystem_error& error) {
-    throw IoError(fmt::format("cannot make the folder '{}': {}", path_.string(), error.code().message()));
+    throw IoError(fmt::format("cannot empty the folder '{}': {}", path_.string(), error.code().message()));
   }
 }
 

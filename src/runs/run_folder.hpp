@@ -20,8 +20,11 @@ public:
   /// Throws UsageError when the name is taken by a file, or by a folder that holds anything.
   void refuse_if_occupied() const;
 
-  /// Makes the folder for a new run. Throws UsageError when it holds anything and force is not given; with force, the
-  /// files of the run that it holds are removed, nothing else. Throws IoError when it cannot be made.
+  /// Makes the folder if it is not there. Throws IoError when it cannot be made.
+  void make() const;
+
+  /// Empties the folder for a new run. Throws UsageError when it holds anything and force is not given; with force, the
+  /// files of the run that it holds are removed, nothing else. Throws IoError when one stays.
   void claim(bool force) const;
 
   /// Removes snapshots from this number on: the resumed run makes them again.

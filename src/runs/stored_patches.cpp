@@ -41,6 +41,7 @@ StoredPatches load_patches(const fs::path& path, double orbits) {
   StoredPatches stored;
   for (auto file = files.rbegin(); file != files.rend(); ++file) {
     Snapshot snapshot = read_snapshot(*file);
+    require_sound(snapshot.patch);
     if (stored.patches.empty())
       stored.title = parse_stored_scene(snapshot.meta.scene, file->string()).title;
     else if (snapshot.patch.time_orbits < stored.patches.front().time_orbits - orbits * (1.0 + 1e-9))

@@ -16,6 +16,7 @@ namespace {
 constexpr double allowed_overlap = 1e-8; // of a radius sum: what the least exact finder, linear-full, leaves behind
 
 SimulationState first_state(const Scene& scene, const Patch& start) {
+  require_sound(start);
   const Overlap overlap = largest_overlap(start);
   if (overlap.depth > allowed_overlap)
     throw InvariantError(fmt::format("particles {} and {} of the initial state overlap by {:.2e} of their radius sum; "
@@ -35,6 +36,11 @@ SimulationState first_state(const Scene& scene, const Patch& start) {
   Patch patch = start;
   patch.frequencies = scene.planet.frequencies;
   state.particles = particles_from(patch, 0.5 * state.step_length);
+  const double offset = state.epoch_offset();
+  for (Body& body : state.particles.bodies) {
+    Elements& el = body.elements;
+    el = state.box.image_of(el, state.box.image_into_cell(el.guiding_x, el.guiding_y, offset), offset);
+  }
   state.energy.start = total_energy(state.particles, scene.planet.frequencies);
   return state;
 }

@@ -1,13 +1,36 @@
 #include <keeler/states/initial.hpp>
 
+#include <keeler/core/error.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/scene/derived.hpp>
 #include <keeler/states/uniform.hpp>
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 namespace keeler {
+
+namespace {
+
+// Epicycles of one planet are no epicycles of another: the shear would be wrong everywhere.
+void require_same_planet(const Patch& patch, const Scene& scene, const std::string& path) {
+  const PlanetSettings& planet = scene.planet;
+  const auto differ = [](double a, double b) { return std::fabs(a - b) > 1e-6 * std::fabs(b); };
+  if (differ(patch.orbital_frequency, planet.orbital_frequency) ||
+      differ(patch.frequencies.kappa, planet.frequencies.kappa) || differ(patch.frequencies.nu, planet.frequencies.nu))
+    throw UsageError(
+        fmt::format("'{}' was made at another place (Omega {:.6g} rad/s, kappa/Omega {:.6g}, nu/Omega {:.6g}; the "
+                    "scene has {:.6g}, {:.6g}, {:.6g}); give the scene the same [planet]",
+                    path, patch.orbital_frequency, patch.frequencies.kappa, patch.frequencies.nu,
+                    planet.orbital_frequency, planet.frequencies.kappa, planet.frequencies.nu));
+}
+
+} // namespace
 
 Patch patch_from_snapshot(const std::string& path, const Scene& scene) {
   Patch patch = read_snapshot(path).patch;
+  require_same_planet(patch, scene, path);
   // Velocities are stored in m/s; the scene's orbital frequency decides what they are in its own time.
   for (Vec3& velocity : patch.velocities)
     velocity *= patch.orbital_frequency / scene.planet.orbital_frequency;

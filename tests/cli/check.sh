@@ -53,7 +53,7 @@ fi
 refuses "bad override" "--set gravity.solver=quantum: gravity.solver" check "$good" --set gravity.solver=quantum
 refuses "override without a value" "not an override" check "$good" --set gravity
 refuses "no scene" "check needs a scene" check
-refuses "no command" "subcommand"
+refuses "no command" "no command is given"
 refuses "unknown command" "" chekc
 refuses "unknown option" "--wibble" check --wibble
 

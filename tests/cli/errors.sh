@@ -42,6 +42,8 @@ fi
 refuses "binary scene" "not TOML" run "$keeler" -o "$none"
 refuses "bad override" "particles.count" run "$work/scene.toml" -o "$none" --set particles.count=-1
 refuses "no output" "--output" run "$work/scene.toml"
+refuses "no such command" "foo" foo
+refuses "no command" "no command is given"
 refuses "no threads" "--threads" run "$work/scene.toml" -o "$none" --threads 0
 refuses "no wall time" "--wall-time" run "$work/scene.toml" -o "$none" --wall-time -1
 nothing_left "bad options"
@@ -56,6 +58,23 @@ echo mine >"$work/taken/notes.txt"
 runs 0 run "$work/scene.toml" -o "$work/taken" --set time.end=0.004 --force
 [ "$(cat "$work/taken/notes.txt")" = mine ] || fail "--force removed a file that is not the run's"
 [ "$(text steps "$work/taken/summary.json")" -eq 2 ] || fail "--force did not run"
+
+runs 0 generate "$work/scene.toml" -o "$work/start.hdf"
+refuses "a start from another place" "another place" run "$work/scene.toml" -o "$none" --from "$work/start.hdf" \
+  --set planet.preset=saturn-c-ring
+refuses "a state over a folder" "is a folder" generate "$work/scene.toml" -o "$work/taken" --force
+nothing_left "bad starts"
+
+"$keeler" run "$work/scene.toml" -o "$work/busy" --set time.end=1000 >"$work/busy.out" 2>&1 &
+busy=$!
+for ((k = 0; k < 100; k++)); do
+  [ -e "$work/busy/series.csv" ] && break
+  sleep 0.05
+done
+refuses "a folder with a run going on" "another process" run "$work/scene.toml" -o "$work/busy" --force
+refuses "resuming a run going on" "another process" resume "$work/busy"
+kill -9 $busy
+wait $busy 2>/dev/null
 
 touch "$work/file"
 refuses "a file as folder" "is a file" run "$work/scene.toml" -o "$work/file"

@@ -27,6 +27,10 @@ struct Patch {
   std::size_t size() const { return positions.size(); }
 };
 
+/// Throws InvariantError naming the first particle whose place or velocity is not finite, or whose radius or mass is
+/// not positive and finite.
+void require_sound(const Patch& patch);
+
 /// The patch at `after` (rad) from the epoch of the particles; `offset` is the box's shear offset at that instant.
 Patch make_patch(const Particles& particles, const ShearingBox& box, double offset, const Frequencies& frequencies,
                  double after);

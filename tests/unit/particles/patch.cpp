@@ -1,5 +1,7 @@
 #include <keeler/particles/patch.hpp>
 
+#include <keeler/core/error.hpp>
+
 #include <doctest/doctest.h>
 
 using namespace keeler;
@@ -19,4 +21,22 @@ TEST_CASE("a patch lists particles by id and gives the elements back") {
   for (const double d : {difference.guiding_x, difference.guiding_y, difference.e_cos, difference.e_sin,
                          difference.i_sin, difference.i_cos})
     CHECK(std::fabs(d) < 1e-14);
+}
+
+TEST_CASE("a patch that no run can start from is named") {
+  Patch patch;
+  patch.positions = {Vec3::Zero(), Vec3(3.0, 0.0, 0.0)};
+  patch.velocities = {Vec3::Zero(), Vec3::Zero()};
+  patch.radii = {1.0, 1.0};
+  patch.masses = {1.0, 1.0};
+  patch.ids = {4, 7};
+  CHECK_NOTHROW(require_sound(patch));
+  for (double* broken : {&patch.radii[1], &patch.masses[1], &patch.positions[1].x(), &patch.velocities[1].z()}) {
+    const double kept = *broken;
+    *broken = std::nan("");
+    CHECK_THROWS_WITH_AS(require_sound(patch), doctest::Contains("particle 7"), InvariantError);
+    *broken = kept;
+  }
+  patch.radii[0] = -1.0;
+  CHECK_THROWS_AS(require_sound(patch), InvariantError);
 }

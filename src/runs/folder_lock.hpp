@@ -1,0 +1,21 @@
+// One process at a time works in a run's folder.
+#pragma once
+
+#include <filesystem>
+
+namespace keeler {
+
+/// Holds a folder for as long as it lives; the system lets go of it when the process ends, however it ends.
+class FolderLock {
+public:
+  /// Throws UsageError when another process holds the folder, IoError when it cannot be opened.
+  explicit FolderLock(const std::filesystem::path& folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+private:
+  int descriptor_;
+};
+
+} // namespace keeler
