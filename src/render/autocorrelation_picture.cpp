@@ -80,7 +80,8 @@ void draw_map(Page& page, const AutocorrelationMap& map, const Wakes& wakes, con
   page.frame(map_left, map_top, map_size, map_size, mix(page_colour, faint_ink, 0.5));
 
   const double step = tick_step(view.half);
-  for (double lag = -std::floor(view.half / step) * step; lag <= view.half; lag += step) {
+  for (double k = -std::floor(view.half / step); k * step <= view.half; ++k) {
+    const double lag = k * step;
     const PagePoint x = view.at(lag, -view.half), y = view.at(-view.half, lag);
     page.line({x.x, x.y}, {x.x, x.y + 8}, faint_ink, 1.5);
     page.text({x.x, x.y + 30}, fmt::format("{:g}", lag), {17, faint_ink, Align::centre});
@@ -118,16 +119,19 @@ void draw_profile(Page& page, const Wakes& wakes, double critical_wavelength) {
   const auto at = [=](double lag, double xi) {
     return PagePoint{plot_left + plot_width * lag / end, map_top + map_size * (high - xi) / (high - low)};
   };
-  for (double lag = 0.0, step = tick_step(end); lag <= end; lag += step) {
+  const double lag_step = tick_step(end);
+  for (double k = 0.0; k * lag_step <= end; ++k) {
+    const double lag = k * lag_step;
     const PagePoint p = at(lag, low);
     page.line(p, {p.x, p.y + 8}, faint_ink, 1.5);
     page.text({p.x, p.y + 30}, fmt::format("{:g}", lag), {17, faint_ink, Align::centre});
   }
   const double step = tick_step(high - low);
-  for (double xi = std::ceil(low / step) * step; xi <= high; xi += step) {
+  for (double k = std::ceil(low / step); k * step <= high; ++k) {
+    const double xi = k * step;
     const PagePoint p = at(0.0, xi);
     page.line({p.x - 8, p.y}, p, faint_ink, 1.5);
-    page.text({p.x - 14, p.y + 6}, fmt::format("{:g}", std::fabs(xi) < 1e-9 ? 0.0 : xi), {17, faint_ink, Align::right});
+    page.text({p.x - 14, p.y + 6}, fmt::format("{:g}", k == 0.0 ? 0.0 : xi), {17, faint_ink, Align::right});
   }
   page.line(at(0.0, 0.0), at(end, 0.0), mix(page_colour, faint_ink, 0.5), 1.5);
   if (critical_wavelength < end) {

@@ -28,23 +28,21 @@ std::vector<Patch> third_orbit(int seed) {
 } // namespace
 
 TEST_CASE("wakes of the A-ring example have the pitch and the spacing of the literature") {
-  std::vector<Patch> all;
-  for (const int seed : {1, 2, 3}) {
+  constexpr int seeds = 3;
+  double spacing = 0.0; // mean over the seeds, λ_cr
+  for (int seed = 1; seed <= seeds; ++seed) {
     const std::vector<Patch> patches = third_orbit(seed);
     const Analysis a = analyze(patches);
     REQUIRE(a.wake_pitch_degrees.has_value());
-    MESSAGE("seed " << seed << ": pitch " << *a.wake_pitch_degrees << " degrees, spacing "
-                    << a.wake_spacing_m.value_or(std::nan("")) / a.critical_wavelength_m << " lambda_cr, Q "
-                    << a.toomre_q);
+    REQUIRE(a.wake_spacing_m.has_value());
+    const double own_spacing = *a.wake_spacing_m / a.critical_wavelength_m;
+    MESSAGE("seed " << seed << ": pitch " << *a.wake_pitch_degrees << " degrees, spacing " << own_spacing
+                    << " lambda_cr, Q " << a.toomre_q);
     CHECK(*a.wake_pitch_degrees > 15.0);
     CHECK(*a.wake_pitch_degrees < 30.0);
     CHECK(largest_overlap(patches.back()).depth < 1e-9);
-    all.insert(all.end(), patches.begin(), patches.end());
+    spacing += own_spacing / seeds;
   }
-  const Analysis mean = analyze(all);
-  REQUIRE(mean.wake_spacing_m.has_value());
-  MESSAGE("three seeds: pitch " << *mean.wake_pitch_degrees << " degrees, spacing "
-                                << *mean.wake_spacing_m / mean.critical_wavelength_m << " lambda_cr");
-  CHECK(*mean.wake_spacing_m > 0.5 * mean.critical_wavelength_m);
-  CHECK(*mean.wake_spacing_m < 1.5 * mean.critical_wavelength_m);
+  CHECK(spacing > 0.5);
+  CHECK(spacing < 1.5);
 }
