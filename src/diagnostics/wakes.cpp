@@ -128,8 +128,7 @@ Wakes find_wakes(const AutocorrelationMap& map, double critical_wavelength) {
 
   wakes.pitch_degrees = pitch * 180.0 / pi;
   const std::vector<double> smoothed = smooth(wakes.profile, critical_wavelength / 20.0 / wakes.profile_spacing);
-  const double depth = smoothed[0] - *std::min_element(smoothed.begin(), smoothed.end());
-  if (const auto entry = first_side_maximum(smoothed, std::max(0.01 * depth, 3.0 * line_noise)))
+  if (const auto entry = first_side_maximum(smoothed, 3.0 * line_noise))
     wakes.spacing = *entry * wakes.profile_spacing;
   return wakes;
 }

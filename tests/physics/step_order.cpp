@@ -55,7 +55,8 @@ Patch six_bodies(const Scene& scene) {
   std::vector<Vec3> places, velocities;
   for (int k = 0; k < 6; ++k) {
     RandomStream random(2, RandomPurpose::position, k);
-    places.emplace_back(12.0 * (k % 3) - 12.0 + random.normal(), 14.0 * (k / 3) - 7.0 + random.normal(),
+    const int column = k % 3, row = k / 3;
+    places.emplace_back(12.0 * column - 12.0 + random.normal(), 14.0 * row - 7.0 + random.normal(),
                         4.0 * random.normal());
     velocities.emplace_back(random.normal(), -1.5 * places.back().x() + random.normal(), random.normal());
   }

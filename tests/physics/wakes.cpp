@@ -1,7 +1,6 @@
 // Self-gravity wakes in the demo's A-ring patch: trailing at 15–30°, spaced by about λ_cr (Salo 1995; Daisaka, Tanaka &
-// Ida 2001), over the third orbit. The box holds two or three wakes, so a single run's spacing scatters by 0.15 λ_cr
-// about 1.4 (fourteen runs); it is taken from the mean autocorrelation of three seeds, the pitch from each. Minutes of
-// processor time.
+// Ida 2001), over the third orbit, for each of three seeds. The box holds two or three wakes, so the spacing of a
+// single run scatters: ten runs gave 0.8–1.4 λ_cr. Minutes of processor time.
 #include "physics/scenes.hpp"
 
 #include <keeler/cells/overlap.hpp>

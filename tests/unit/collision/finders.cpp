@@ -101,7 +101,8 @@ TEST_CASE("the certified finder finds every first contact, grazing ones too, and
           REQUIRE(result.exit != FinderExit::gave_up);
           most_passes = std::max(most_passes, result.iterations);
           // what the search itself allows a contact to sink unseen, doubled: see search/certified.hpp
-          const auto allowed = twin.rounding() * (1 + result.iterations / 1024);
+          const int sinks = 1 + result.iterations / 1024;
+          const auto allowed = sinks * twin.rounding();
           if (result.contact()) {
             ++hits;
             CHECK(twin.gap(result.time) <= allowed);

@@ -101,7 +101,8 @@ TEST_CASE("many particles smaller than a pixel keep their light") {
   Patch patch = spheres({});
   for (int k = 0; k < 20'000; ++k) { // on a lattice, covering 10 % of the sky
     patch.ids.push_back(patch.size());
-    patch.positions.emplace_back(-50.0 + 0.5 * (k % 200) + 0.25, -30.0 + 0.6 * (k / 200) + 0.3, 0.0);
+    const int column = k % 200, row = k / 200;
+    patch.positions.emplace_back(-50.0 + 0.5 * column + 0.25, -30.0 + 0.6 * row + 0.3, 0.0);
     patch.velocities.emplace_back(0.0, 0.0, 0.0);
     patch.radii.push_back(0.098);
     patch.masses.push_back(2.0);
