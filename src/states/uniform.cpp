@@ -9,12 +9,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace keeler {
 namespace {
 
-constexpr double clearance = 1e-4; // pairs are pushed to this much more than contact, in radius sums
+constexpr double enough = 1e-5; // the least clearance of a finished state, in radius sums
 constexpr int most_sweeps = 5000;
+
+// How pairs are pushed apart: to this much more than contact (in radius sums), by this share of what is missing; and
+// whether particles that have room themselves give way to neighbours that have none.
+struct Effort {
+  double clearance, strength;
+  bool give_way;
+};
+
+// Sparse layers are done in a few strong sweeps that move only what overlaps. In a crowd that comes to a standstill,
+// particles squeezed between others that stay where they are: then all give way, gently, so as not to swing.
+Effort effort_of(int sweep) {
+  constexpr int patience = 500;
+  return sweep < patience ? Effort{1e-4, 1.02, false} : Effort{1e-3, 0.5, true};
+}
 
 // Epicycles of random phase about each place: the in-plane motion is a velocity alone, the vertical one is also a
 // height.
@@ -35,12 +50,12 @@ struct Push {
   double deepest = 0.0;
 };
 
-Push push_of(const PeriodicGrid& grid, const Patch& patch, std::size_t i, double r_max) {
+Push push_of(const PeriodicGrid& grid, const Patch& patch, std::size_t i, double r_max, const Effort& effort) {
   Push push;
-  const double reach = (patch.radii[i] + r_max) * (1.0 + clearance);
+  const double reach = (patch.radii[i] + r_max) * (1.0 + effort.clearance);
   grid.visit_near(patch.positions[i], reach, reach, [&](std::size_t j, const Image& image) {
     const Vec3 d = patch.positions[i] - patch.positions[j] - patch.box.displacement(image, patch.offset);
-    const double sum = patch.radii[i] + patch.radii[j], wanted = sum * (1.0 + clearance);
+    const double sum = patch.radii[i] + patch.radii[j], wanted = sum * (1.0 + effort.clearance);
     const double distance = d.norm();
     if (j == i || distance >= wanted)
       return;
@@ -48,22 +63,22 @@ Push push_of(const PeriodicGrid& grid, const Patch& patch, std::size_t i, double
     const double share =
         patch.radii[j] * patch.radii[j] / (patch.radii[i] * patch.radii[i] + patch.radii[j] * patch.radii[j]);
     const Vec3 direction = distance > 0.0 ? Vec3(d / distance) : Vec3(0.0, 0.0, i < j ? -1.0 : 1.0);
-    push.shift += direction * (share * (wanted - distance) * 1.02);
-    push.deepest = std::max(push.deepest, (sum * (1.0 + 0.1 * clearance) - distance) / sum);
+    push.shift += direction * (share * (wanted - distance) * effort.strength);
+    push.deepest = std::max(push.deepest, (sum * (1.0 + enough) - distance) / sum);
   });
   return push;
 }
 
 // Moves everything apart once; returns the deepest shortfall before the move.
-double sweep(Patch& patch, double r_max) {
+double sweep(Patch& patch, double r_max, const Effort& effort) {
   PeriodicGrid grid;
-  grid.build(patch.positions, patch.box, patch.offset, 2.0 * r_max * (1.0 + clearance));
+  grid.build(patch.positions, patch.box, patch.offset, 2.0 * r_max * (1.0 + effort.clearance));
   std::vector<Push> pushes(patch.size());
-  parallel_for(patch.size(), [&](std::size_t i) { pushes[i] = push_of(grid, patch, i, r_max); });
+  parallel_for(patch.size(), [&](std::size_t i) { pushes[i] = push_of(grid, patch, i, r_max, effort); });
   double deepest = 0.0;
   for (std::size_t i = 0; i < patch.size(); ++i) {
     deepest = std::max(deepest, pushes[i].deepest);
-    if (pushes[i].deepest > 0.0)
+    if (effort.give_way || pushes[i].deepest > 0.0)
       patch.positions[i] += pushes[i].shift;
   }
   return deepest;
@@ -75,7 +90,7 @@ void separate(Patch& patch) {
   const double r_max = *std::max_element(patch.radii.begin(), patch.radii.end());
   double deepest = 0.0;
   for (int k = 0; k < most_sweeps; ++k) {
-    deepest = sweep(patch, r_max);
+    deepest = sweep(patch, r_max, effort_of(k));
     if (deepest <= 0.0)
       return;
   }

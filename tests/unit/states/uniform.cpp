@@ -46,6 +46,18 @@ TEST_CASE("no overlaps, up to a mid-plane filling of 0.4, and the dispersion ask
     }
 }
 
+TEST_CASE("dense layers whose particles take more room than their motion are placed too") {
+  // c_z below what the filling of 0.4 asks of a Gaussian layer: the particles themselves hold the layer up
+  struct Case {
+    double optical_depth, dispersion_z;
+  };
+  for (const Case& c : {Case{1.5, 1.21}, Case{1.0, 0.78}, Case{0.5, 0.03}}) {
+    UniformRequest request = layer(c.optical_depth, 0.4, 1500, 5);
+    request.dispersion_z = c.dispersion_z;
+    CHECK(largest_overlap(uniform_patch(request)).depth == 0.0);
+  }
+}
+
 TEST_CASE("the same state for the same seed, whatever the threads") {
   const UniformRequest request = layer(0.8, 0.3, 1500, 9);
   set_threads(1);
