@@ -27,8 +27,8 @@ void CollisionTally::list_fields(FieldTable& table) {
 DriftPhase::DriftPhase(const CollisionSettings& settings, const Frequencies& frequencies, double orbital_frequency,
                        double step)
     : settings_(settings), frequencies_(frequencies), orbital_frequency_(orbital_frequency), step_(step),
-      find_(finder_named(settings.finder)) {
-  if (!find_)
+      finder_(make_finder(settings.finder)), at_hand_(frequencies, -0.5 * step, 0.5 * step, 0.0) {
+  if (!finder_)
     throw UsageError(fmt::format("unknown collision finder '{}'", settings.finder));
 }
 
@@ -47,82 +47,61 @@ void DriftPhase::collide(Particles& particles, const ShearingBox& box, double of
   tally.gave_up += gave_up_;
 }
 
-DriftPhase::Middle DriftPhase::middle_of(const Body& body) const {
-  static const Rotation at_epoch;
-  const State s = state_at(body.elements, frequencies_, at_epoch);
-  const double e = body.elements.eccentricity(), i = body.elements.inclination();
-  const double nu2 = frequencies_.nu * frequencies_.nu;
-  return {s.position, s.velocity, e, wider * std::hypot(2.0 * frequencies_.kappa * e, nu2 * i)};
-}
-
 void DriftPhase::prepare() {
   const std::size_t count = particles_->size();
-  middles_.resize(count);
+  tangents_.resize(count);
   binned_.resize(count);
   last_change_.assign(count, -0.5 * step_);
   stamps_.assign(count, 0);
   parallel_for(count, [&](std::size_t k) {
-    middles_[k] = middle_of(particles_->bodies[k]);
-    binned_[k] = middles_[k].position;
+    tangents_[k] = tangent_of(particles_->bodies[k].elements, frequencies_);
+    binned_[k] = tangents_[k].position;
   });
   largest_radius_ = largest_eccentricity_ = largest_stray_ = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
-    if (!(std::isfinite(middles_[k].acceleration) && binned_[k].allFinite()))
+    if (!(std::isfinite(tangents_[k].acceleration) && binned_[k].allFinite()))
       throw InvariantError(fmt::format("particle {} has elements that are not finite", particles_->ids[k]));
     largest_radius_ = std::max(largest_radius_, particles_->bodies[k].radius);
-    largest_eccentricity_ = std::max(largest_eccentricity_, middles_[k].eccentricity);
+    largest_eccentricity_ = std::max(largest_eccentricity_, tangents_[k].eccentricity);
   }
   const double cell = 2.0 * largest_radius_ + step_ * 2.0 * largest_eccentricity_;
   grid_.build(binned_, box_, offset_, cell);
+  at_hand_ = DriftStep(frequencies_, -0.5 * step_, 0.5 * step_, box_.size_x + box_.size_y);
+  at_hand_.bodies = particles_->bodies;
+  at_hand_.tangents = tangents_;
+  finder_->begin(at_hand_);
+  if (watch)
+    watch->begins(at_hand_);
 }
 
 // Calls visit(j, image) for every particle image that particle i could meet in this step.
 template<class Visit> void DriftPhase::visit_candidates(std::size_t i, const Visit& visit) const {
   const double half = 0.5 * step_;
-  const double e = middles_[i].eccentricity + largest_eccentricity_;
+  const double e = tangents_[i].eccentricity + largest_eccentricity_;
   const double contact = particles_->bodies[i].radius + largest_radius_;
   const double reach_x = contact + half * frequencies_.kappa * e;
   const double reach_y = contact + half * (frequencies_.shear() * (reach_x + e) + 2.0 * e);
   const double stray = largest_stray_ + 1e-12 * (box_.size_x + box_.size_y);
-  grid_.visit_near(middles_[i].position, wider * reach_x + stray, wider * reach_y + stray,
+  grid_.visit_near(tangents_[i].position, wider * reach_x + stray, wider * reach_y + stray,
                    [&](std::size_t j, const Image& image) {
                      if (j != i)
                        visit(j, image);
                    });
 }
 
-// False only when the straight-line closest approach over [start, h/2], with all that curvature and rounding can add,
-// stays outside contact: a certified miss.
-bool DriftPhase::may_touch(std::size_t i, std::size_t j, const Image& image, double start) const {
-  const Middle &a = middles_[i], &b = middles_[j];
-  const Vec3 d = b.position + box_.displacement(image, offset_) - a.position;
-  Vec3 v = b.velocity - a.velocity;
-  v.y() -= image.nx * box_.shear * box_.size_x;
-  const double v2 = v.squaredNorm();
-  const double closest = v2 > 0.0 ? std::clamp(-d.dot(v) / v2, start, 0.5 * step_) : start;
-  const double reach = particles_->bodies[i].radius + particles_->bodies[j].radius +
-                       (a.acceleration + b.acceleration) * step_ * step_ * 0.125 + 1e-13 * (box_.size_x + box_.size_y);
-  return !((d + closest * v).squaredNorm() > reach * reach * wider);
+// The lower id first; `image` is that of particle j.
+Query DriftPhase::query_of(std::size_t i, std::size_t j, const Image& image) const {
+  const bool ordered = particles_->ids[i] < particles_->ids[j];
+  const Vec3 shift = box_.displacement(ordered ? image : -image, offset_);
+  return {static_cast<std::uint32_t>(ordered ? i : j), static_cast<std::uint32_t>(ordered ? j : i), shift.x(),
+          shift.y(), std::max(last_change_[i], last_change_[j])};
 }
 
-FinderResult DriftPhase::search(std::size_t i, std::size_t j, const Image& image, Event& event) const {
-  const auto& ids = particles_->ids;
-  const bool ordered = ids[i] < ids[j];
-  const std::size_t low = ordered ? i : j, high = ordered ? j : i;
-  const Image shift = ordered ? image : -image;
-  const Body &a = particles_->bodies[low], &b = particles_->bodies[high];
-  Pair pair;
-  pair.lo = a.elements;
-  pair.hi = box_.image_of(b.elements, shift, offset_);
-  pair.reach = a.radius + b.radius;
-  pair.start = std::max(last_change_[i], last_change_[j]);
-  pair.end = 0.5 * step_;
-  pair.step = step_;
-  const FinderResult result = find_(pair, frequencies_);
-  event = {
-      result.time,  ids[low],     ids[high], shift, static_cast<std::uint32_t>(low), static_cast<std::uint32_t>(high),
-      stamps_[low], stamps_[high]};
-  return result;
+// `image` is that of the partner of particle i.
+Event DriftPhase::event_of(const Query& query, double time, std::size_t i, const Image& image) const {
+  return {
+      time,       particles_->ids[query.low], particles_->ids[query.high], query.low == i ? image : -image, query.low,
+      query.high, stamps_[query.low],         stamps_[query.high]};
 }
 
 void DriftPhase::predict_all() {
@@ -134,22 +113,28 @@ void DriftPhase::predict_all() {
   constexpr std::size_t block = 512; // of particles; blocks are joined in order, so threads do not matter
   const std::size_t count = particles_->size();
   std::vector<Found> found((count + block - 1) / block);
-  parallel_for(
-      found.size(),
-      [&](std::size_t b) {
-        for (std::size_t i = b * block; i < std::min(count, (b + 1) * block); ++i)
-          visit_candidates(i, [&](std::size_t j, const Image& image) {
-            if (particles_->ids[j] < particles_->ids[i] || !may_touch(i, j, image, -0.5 * step_))
-              return;
-            Event event;
-            const FinderResult result = search(i, j, image, event);
-            if (result.contact())
-              found[b].events.push_back(event);
-            found[b].gave_up += result.exit == FinderExit::gave_up;
-            found[b].broken |= result.exit == FinderExit::not_a_number;
-          });
-      },
-      1);
+  const auto search_block = [&](std::size_t b) {
+    for (std::size_t i = b * block; i < std::min(count, (b + 1) * block); ++i)
+      visit_candidates(i, [&](std::size_t j, const Image& image) {
+        if (particles_->ids[j] < particles_->ids[i])
+          return;
+        const Query query = query_of(i, j, image);
+        if (!every_candidate && !may_touch(query, at_hand_))
+          return;
+        const FinderResult result = finder_->find(query);
+        if (watch)
+          watch->searched(query, result);
+        if (result.contact())
+          found[b].events.push_back(event_of(query, result.time, i, image));
+        found[b].gave_up += result.exit == FinderExit::gave_up;
+        found[b].broken |= result.exit == FinderExit::not_a_number;
+      });
+  };
+  if (watch)
+    for (std::size_t b = 0; b < found.size(); ++b)
+      search_block(b);
+  else
+    parallel_for(found.size(), search_block, 1);
   std::vector<Event> all;
   for (const Found& f : found) {
     all.insert(all.end(), f.events.begin(), f.events.end());
@@ -161,15 +146,17 @@ void DriftPhase::predict_all() {
 }
 
 void DriftPhase::predict(std::size_t i, std::size_t j, const Image& image) {
-  if (!may_touch(i, j, image, std::max(last_change_[i], last_change_[j])))
+  const Query query = query_of(i, j, image);
+  if (!every_candidate && !may_touch(query, at_hand_))
     return;
-  Event event;
-  const FinderResult result = search(i, j, image, event);
+  const FinderResult result = finder_->find(query);
+  if (watch)
+    watch->searched(query, result);
   if (result.exit == FinderExit::not_a_number)
     throw InvariantError(fmt::format("the collision search of particles {} and {} met numbers that are not finite",
-                                     event.low_id, event.high_id));
+                                     particles_->ids[query.low], particles_->ids[query.high]));
   if (result.contact())
-    events_.add(event);
+    events_.add(event_of(query, result.time, i, image));
   gave_up_ += result.exit == FinderExit::gave_up;
 }
 
@@ -192,8 +179,8 @@ void DriftPhase::carry_out(const Event& event, CollisionTally& tally) {
   tally.energy_lost += 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
   tally.edge_work += event.image.nx * box_.shear * box_.size_x * impulse.y();
   tally.momentum_flux += relative.position.x() * impulse.y();
-  if (observer)
-    observer({event.time, event.low_id, event.high_id, event.image, speed, after.fast});
+  if (watch)
+    watch->collided({event.time, event.low_id, event.high_id, event.image, speed, after.fast});
 
   changed(event.low, event.time);
   changed(event.high, event.time);
@@ -207,9 +194,12 @@ void DriftPhase::changed(std::size_t i, double time) {
     throw InvariantError(fmt::format(
         "particle {} collided more than {} times in one step (an event storm); raise collisions.elastic_below",
         particles_->ids[i], most_collisions));
-  middles_[i] = middle_of(particles_->bodies[i]);
-  largest_eccentricity_ = std::max(largest_eccentricity_, middles_[i].eccentricity);
-  largest_stray_ = std::max(largest_stray_, (middles_[i].position - binned_[i]).cwiseAbs().maxCoeff());
+  tangents_[i] = tangent_of(particles_->bodies[i].elements, frequencies_);
+  largest_eccentricity_ = std::max(largest_eccentricity_, tangents_[i].eccentricity);
+  largest_stray_ = std::max(largest_stray_, (tangents_[i].position - binned_[i]).cwiseAbs().maxCoeff());
+  finder_->changed(i);
+  if (watch)
+    watch->changed(i);
 }
 
 void DriftPhase::search_again(std::size_t i, std::size_t j) {

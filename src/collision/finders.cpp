@@ -8,29 +8,33 @@
 namespace keeler {
 namespace {
 
-FinderResult certified(const Pair& pair, const Frequencies& f) {
-  return certified_search(RelativeMotion(pair, f), pair);
-}
-
-FinderResult linear_full(const Pair& pair, const Frequencies& f) {
-  return linear_search(FullMotion(pair, f), pair);
+template<class Motion, class Search> std::unique_ptr<Finder> make() {
+  return std::make_unique<MotionSearch<Motion, Search>>();
 }
 
 constexpr FinderEntry table[] = {
-    {"certified", "relative epicycle, guaranteed first root", certified},
-    {"linear-full", "own epicycles, straight-line guesses (the paper's fastest; can miss)", linear_full},
+    {"certified", "relative epicycle, guaranteed first root", make<TangentMotion, CertifiedSearch>},
+    {"linear-full", "own epicycles, straight-line guesses (the paper's fastest; can miss)",
+     make<FullMotion, LinearSearch>},
 };
 
+constexpr const char* exit_names[finder_exits] = {"hit",     "overlapping", "receding",    "missed",
+                                                  "outside", "gave up",     "not a number"};
+
 } // namespace
+
+const char* name_of(FinderExit exit) {
+  return exit_names[static_cast<int>(exit)];
+}
 
 std::span<const FinderEntry> finder_table() {
   return table;
 }
 
-Finder finder_named(const std::string& name) {
+std::unique_ptr<Finder> make_finder(const std::string& name) {
   for (const FinderEntry& entry : table)
     if (name == entry.name)
-      return entry.find;
+      return entry.make();
   return nullptr;
 }
 

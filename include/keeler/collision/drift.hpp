@@ -18,8 +18,6 @@
 #include <keeler/collision/settings.hpp>
 #include <keeler/particles/store.hpp>
 
-#include <functional>
-
 namespace keeler {
 
 /// What collisions did, summed in the order of the events. Energies in kg m² rad⁻².
@@ -34,13 +32,23 @@ struct CollisionTally {
   void list_fields(FieldTable& table);
 };
 
-/// One collision as it happened, for observers and tests.
+/// One collision as it happened.
 struct CollisionRecord {
   double time; ///< relative to the middle of the step, rad
   std::uint64_t low_id, high_id;
   Image image;         ///< of the particle with the higher id
   double normal_speed; ///< approach speed, m rad⁻¹
   bool fast;           ///< faster than v_cut
+};
+
+/// Looks on while a drift is carried out; calls come one at a time, in an order that no number of threads changes.
+class DriftWatch {
+public:
+  virtual ~DriftWatch() = default;
+  virtual void begins(const DriftStep&) {}
+  virtual void searched(const Query&, const FinderResult&) {}
+  virtual void collided(const CollisionRecord&) {}
+  virtual void changed(std::size_t /*particle*/) {} ///< its velocity
 };
 
 class DriftPhase {
@@ -53,22 +61,19 @@ public:
   /// collides more than 100,000 times in the step.
   void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally);
 
-  /// Called for each collision, in order; none by default.
-  std::function<void(const CollisionRecord&)> observer;
+  const Finder& finder() const { return *finder_; }
+
+  DriftWatch* watch = nullptr; ///< searches then run on one thread
+
+  /// Hand every candidate of the grid to the finder, without rejecting any first: to measure finders.
+  bool every_candidate = false;
 
 private:
-  // A particle's orbit at mid-step: its tangent, and what bounds its departure from it.
-  struct Middle {
-    Vec3 position, velocity;
-    double eccentricity, acceleration;
-  };
-
-  Middle middle_of(const Body& body) const;
   void prepare();
   void predict_all();
   template<class Visit> void visit_candidates(std::size_t i, const Visit& visit) const;
-  bool may_touch(std::size_t i, std::size_t j, const Image& image, double start) const;
-  FinderResult search(std::size_t i, std::size_t j, const Image& image, Event& event) const;
+  Query query_of(std::size_t i, std::size_t j, const Image& image) const;
+  Event event_of(const Query& query, double time, std::size_t i, const Image& image) const;
   void predict(std::size_t i, std::size_t j, const Image& image);
   void carry_out(const Event& event, CollisionTally& tally);
   void changed(std::size_t i, double time);
@@ -77,15 +82,16 @@ private:
   CollisionSettings settings_;
   Frequencies frequencies_;
   double orbital_frequency_, step_;
-  Finder find_;
+  std::unique_ptr<Finder> finder_;
 
   // the step at hand
   Particles* particles_ = nullptr;
   ShearingBox box_;
   double offset_ = 0.0;
+  DriftStep at_hand_;
   PeriodicGrid grid_;
   EventQueue events_;
-  std::vector<Middle> middles_;
+  std::vector<Tangent> tangents_;
   std::vector<Vec3> binned_;          // mid-step places as the grid knows them
   std::vector<double> last_change_;   // time of the last velocity change in this step
   std::vector<std::uint32_t> stamps_; // velocity changes in this step

@@ -1,25 +1,24 @@
 // The finders by name: each is one form of motion under one form of search, and one line of the table.
 #pragma once
 
-#include <keeler/collision/pair.hpp>
+#include <keeler/collision/finder.hpp>
 
+#include <memory>
 #include <span>
 #include <string>
 
 namespace keeler {
 
-using Finder = FinderResult (*)(const Pair&, const Frequencies&);
-
 struct FinderEntry {
   const char* name;
   const char* about;
-  Finder find;
+  std::unique_ptr<Finder> (*make)();
 };
 
 /// All finders, the default first.
 std::span<const FinderEntry> finder_table();
 
-/// The finder of that name, or null.
-Finder finder_named(const std::string& name);
+/// A finder of that name, or null.
+std::unique_ptr<Finder> make_finder(const std::string& name);
 
 } // namespace keeler

@@ -9,7 +9,8 @@ namespace keeler {
 /// to the epoch of the elements, rad. The span is half-open: a contact at `end` belongs to the next step.
 struct Pair {
   Elements lo, hi;
-  double reach = 0.0; ///< r_i + r_j, m
+  double shift_x = 0.0, shift_y = 0.0; ///< what has been added to X and Y of `hi`, at the epoch
+  double reach = 0.0;                  ///< r_i + r_j, m
   double start = 0.0; ///< the later of the two particles' last velocity changes in this step, or the step's start
   double end = 0.0;   ///< the end of the step
   double step = 0.0;  ///< the length of the whole step
@@ -30,9 +31,14 @@ enum class FinderExit {
   overlapping, ///< in contact and approaching at the start: the event is now
   receding,    ///< moving apart at the start (and, for a certified finder, for the whole span)
   missed,      ///< no contact in the span
+  outside,     ///< a root was found, but before the start or after the end of the span
   gave_up,     ///< the iteration did not converge; a contact may have been lost
   not_a_number ///< the elements are not finite
 };
+inline constexpr int finder_exits = 7;
+
+/// The exit's name in words, as reports and JSON show it.
+const char* name_of(FinderExit exit);
 
 struct FinderResult {
   FinderExit exit = FinderExit::missed;

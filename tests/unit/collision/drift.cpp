@@ -59,10 +59,13 @@ CollisionSettings settings_of(const Scenario& s) {
 
 std::vector<CollisionRecord> run_drift(const Scenario& s, Start& start, CollisionTally& tally) {
   DriftPhase drift(settings_of(s), {s.kappa, s.nu}, omega, s.step);
-  std::vector<CollisionRecord> records;
-  drift.observer = [&](const CollisionRecord& record) { records.push_back(record); };
+  struct Recorder : DriftWatch {
+    std::vector<CollisionRecord> records;
+    void collided(const CollisionRecord& record) override { records.push_back(record); }
+  } recorder;
+  drift.watch = &recorder;
   drift.collide(start.particles, start.box, start.offset, tally);
-  return records;
+  return recorder.records;
 }
 
 // Compares one drift with the twin; returns the number of collisions. Times must agree to 1e-9 of a step, or to the

@@ -10,6 +10,22 @@ using namespace keeler;
 
 namespace {
 
+// Asks a finder by name about one pair.
+FinderResult ask(const std::string& name, const Pair& pair, const Frequencies& f) {
+  const std::unique_ptr<Finder> finder = make_finder(name);
+  const std::vector<Body> bodies = {{pair.lo, 0.5 * pair.reach, 1.0}, {pair.hi, 0.5 * pair.reach, 1.0}};
+  const std::vector<Tangent> tangents = {tangent_of(pair.lo, f), tangent_of(pair.hi, f)};
+  DriftStep step(f, pair.end - pair.step, pair.end, 100.0);
+  step.bodies = bodies;
+  step.tangents = tangents;
+  finder->begin(step);
+  return finder->find({0, 1, 0.0, 0.0, pair.start});
+}
+
+FinderResult certified(const Pair& pair, const Frequencies& f) {
+  return ask("certified", pair, f);
+}
+
 // A pair that touches with a given depth of closest approach at a chosen time: |d| has its minimum R − depth there.
 Pair grazing_pair(RandomStream& random, const Frequencies& f, double step, double depth, double speed) {
   Pair pair;
@@ -88,7 +104,6 @@ private:
 } // namespace
 
 TEST_CASE("the certified finder finds every first contact, grazing ones too, and invents none") {
-  const Finder certified = finder_named("certified");
   RandomStream random(11, RandomPurpose::position, 0);
   int hits = 0, misses = 0, most_passes = 0;
   for (const Frequencies f : {Frequencies{1.0, 1.0}, Frequencies{0.95, 1.05}, Frequencies{1.0, 3.6}})
@@ -119,7 +134,6 @@ TEST_CASE("the certified finder finds every first contact, grazing ones too, and
 }
 
 TEST_CASE("after a bounce the pair is not found again at once, and its later contact is") {
-  const Finder certified = finder_named("certified");
   const Frequencies f{1.0, 1.0};
   RandomStream random(3, RandomPurpose::position, 1);
   int bounces = 0;
@@ -143,7 +157,6 @@ TEST_CASE("after a bounce the pair is not found again at once, and its later con
 }
 
 TEST_CASE("pairs that stay at contact within rounding end their search") {
-  const Finder certified = finder_named("certified");
   const Frequencies f{1.0, 1.0};
   Pair pair;
   pair.step = 0.1, pair.start = -0.05, pair.end = 0.05;
@@ -166,7 +179,7 @@ TEST_CASE("a number that is not finite never reads as a miss") {
     pair.hi.guiding_x = std::nan("");
     pair.reach = 1.0;
     pair.start = -0.1, pair.end = 0.1, pair.step = 0.2;
-    CHECK(entry.find(pair, f).exit == FinderExit::not_a_number);
+    CHECK(ask(entry.name, pair, f).exit == FinderExit::not_a_number);
   }
 }
 
@@ -176,11 +189,11 @@ TEST_CASE("linear-full finds ordinary contacts at a small step") {
   int found = 0, all = 0; // times to |d² − R²| < 1e-8 R² over its slope of about 50
   for (int k = 0; k < 1000; ++k) {
     const Pair pair = grazing_pair(random, f, two_pi * 1e-2, 0.1, 30.0 + random.uniform());
-    const FinderResult exact = finder_named("certified")(pair, f);
+    const FinderResult exact = certified(pair, f);
     if (exact.exit != FinderExit::hit)
       continue;
     ++all;
-    const FinderResult linear = finder_named("linear-full")(pair, f);
+    const FinderResult linear = ask("linear-full", pair, f);
     found += linear.contact() && std::fabs(linear.time - exact.time) < 1e-8;
   }
   CHECK(all > 200);

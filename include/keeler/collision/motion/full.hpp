@@ -2,23 +2,23 @@
 // timed it.
 #pragma once
 
-#include <keeler/collision/pair.hpp>
+#include <keeler/collision/finder.hpp>
 
 namespace keeler {
 
 class FullMotion {
 public:
-  FullMotion(const Pair& pair, const Frequencies& f) : lo_(pair.lo), hi_(pair.hi), frequencies_(f) {}
+  FullMotion(const Pair& pair, const DriftStep& step) : pair_(pair), frequencies_(step.frequencies) {}
 
   Separation at(double time) const {
-    const State lo = state_at(lo_, frequencies_, Rotation(frequencies_, time));
-    const State hi = state_at(hi_, frequencies_, Rotation(frequencies_, time));
+    const State lo = state_at(pair_.lo, frequencies_, Rotation(frequencies_, time));
+    const State hi = state_at(pair_.hi, frequencies_, Rotation(frequencies_, time));
     return {hi.position - lo.position, hi.velocity - lo.velocity};
   }
 
 private:
-  Elements lo_, hi_;
-  Frequencies frequencies_;
+  const Pair& pair_;
+  const Frequencies& frequencies_;
 };
 
 } // namespace keeler

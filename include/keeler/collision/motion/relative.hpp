@@ -1,8 +1,9 @@
 // Motion, form "relative epicycle": the relative orbit of two particles is an epicycle of the differences of their
 // elements, so one sine and cosine a guess serve, and its speed and acceleration are bounded for all times.
+// TangentMotion is the same path, with most misses proven from the tangents before it is set up.
 #pragma once
 
-#include <keeler/collision/pair.hpp>
+#include <keeler/collision/finder.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -11,7 +12,9 @@ namespace keeler {
 
 class RelativeMotion {
 public:
-  RelativeMotion(const Pair& pair, const Frequencies& f) : elements_(pair.hi - pair.lo), frequencies_(f) {
+  RelativeMotion(const Pair& pair, const DriftStep& step)
+      : elements_(pair.hi - pair.lo), frequencies_(step.frequencies) {
+    const Frequencies& f = frequencies_;
     const double e = elements_.eccentricity(), i = elements_.inclination();
     const double horizontal = f.shear() * std::fabs(elements_.guiding_x) + 2.0 * e;
     constexpr double up = 1.0 + 1e-14; // the bounds must hold after their own rounding
@@ -44,6 +47,12 @@ private:
   Elements elements_;
   Frequencies frequencies_;
   double speed_, acceleration_, scale_;
+};
+
+class TangentMotion : public RelativeMotion {
+public:
+  using RelativeMotion::RelativeMotion;
+  static bool surely_apart(const Query& query, const DriftStep& step) { return !may_touch(query, step); }
 };
 
 } // namespace keeler

@@ -12,15 +12,19 @@
 // rounding errors of |d|² − R² is missed, and every search ends.
 #pragma once
 
-#include <keeler/collision/pair.hpp>
+#include <keeler/collision/finder.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 namespace keeler {
 
-/// `Motion` has at(), largest_speed(), largest_acceleration(), gap_error() and closing_error(): see RelativeMotion.
-template<class Motion> FinderResult certified_search(const Motion& motion, const Pair& pair) {
+/// `Motion` also has largest_speed(), largest_acceleration(), gap_error() and closing_error(): see RelativeMotion.
+struct CertifiedSearch {
+  template<class Motion> static FinderResult find(const Motion& motion, const Pair& pair);
+};
+
+template<class Motion> FinderResult CertifiedSearch::find(const Motion& motion, const Pair& pair) {
   constexpr double down = 1.0 - 1e-13;
   constexpr int patience = 8; // short steps in a row before the window is halved: nearer bounds are tighter
   const double speed_bound = motion.largest_speed(), acceleration_bound = motion.largest_acceleration();

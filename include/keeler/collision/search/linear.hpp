@@ -2,7 +2,7 @@
 // touch, or else their closest approach. Its limits are those of the paper's code; it can miss a contact.
 #pragma once
 
-#include <keeler/collision/pair.hpp>
+#include <keeler/collision/finder.hpp>
 
 #include <cmath>
 
@@ -18,14 +18,16 @@ struct LinearLimits {
   static constexpr double hopeless = 2.0;    ///< gives up when a closest approach has d² beyond this many R²
 };
 
-/// `Motion` has at().
-template<class Motion> FinderResult linear_search(const Motion& motion, const Pair& pair) {
+struct LinearSearch {
+  template<class Motion> static FinderResult find(Motion& motion, const Pair& pair);
+};
+
+template<class Motion> FinderResult LinearSearch::find(Motion& motion, const Pair& pair) {
   using L = LinearLimits;
   const double reach2 = pair.reach * pair.reach, step_start = pair.end - pair.step;
   FinderResult result;
   result.time = pair.start;
-  Separation now = motion.at(pair.start);
-  result.evaluations = 1;
+  Separation now = first_separation(motion, pair, result);
   if (!std::isfinite(now.gap(pair.reach)) || !std::isfinite(now.closing())) {
     result.exit = FinderExit::not_a_number;
     return result;

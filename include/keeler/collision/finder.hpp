@@ -1,0 +1,151 @@
+// A finder: a form of motion under a form of search, with what the motion keeps for each particle through a step.
+//
+// Motion: how the relative path of two particles is represented. It has
+//   Motion(const Pair&, const DriftStep&)             or, when it keeps something for each particle,
+//   struct Memory; static Memory remember(const Elements&, const DriftStep&);
+//   Motion(const Pair&, const DriftStep&, const Memory& lo, const Memory& hi);
+//   Separation at(double time)                        one evaluation
+// and may have
+//   Separation at_start()                             the separation at pair.start from what is kept: no evaluation
+//   static bool surely_apart(const Query&, const DriftStep&)    proves a miss before a pair is even set up
+// Search: how guesses move to the first contact. It has
+//   template<class Motion> static FinderResult find(Motion&, const Pair&);
+// A new finder is one such file and one line in src/collision/finders.cpp.
+#pragma once
+
+#include <keeler/collision/pair.hpp>
+#include <keeler/collision/tangent.hpp>
+#include <keeler/core/threads.hpp>
+#include <keeler/particles/store.hpp>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace keeler {
+
+/// One step as finders see it. Times are relative to the epoch of the elements, rad.
+struct DriftStep {
+  std::span<const Body> bodies;
+  std::span<const Tangent> tangents; ///< of the same particles
+  Frequencies frequencies;
+  double begin = 0.0, end = 0.0;
+  Rotation at_begin, at_end;
+  TangentTest tangent_test{};
+
+  /// `size` is the largest coordinate that occurs, m: it sets the allowance for rounding.
+  DriftStep(const Frequencies& f, double begin_time, double end_time, double size)
+      : frequencies(f), begin(begin_time), end(end_time), at_begin(f, begin_time), at_end(f, end_time) {
+    const double longest = std::max(std::fabs(begin), std::fabs(end));
+    tangent_test = {f.shear(), end, 0.5 * longest * longest, 1e-13 * size};
+  }
+};
+
+/// Which two particles (places in the store; `low` has the lower id), the shift of the image of `high` at the epoch,
+/// and from when on.
+struct Query {
+  std::uint32_t low = 0, high = 0;
+  double shift_x = 0.0, shift_y = 0.0; ///< m
+  double start = 0.0;                  ///< rad
+};
+
+inline bool may_touch(const Query& q, const DriftStep& s) {
+  return s.tangent_test.may_touch(s.tangents[q.low], s.tangents[q.high], q.shift_x, q.shift_y,
+                                  s.bodies[q.low].radius + s.bodies[q.high].radius, q.start);
+}
+
+inline Pair pair_of(const Query& q, const DriftStep& s) {
+  const Body &a = s.bodies[q.low], &b = s.bodies[q.high];
+  Pair pair;
+  pair.lo = a.elements;
+  pair.hi = b.elements;
+  pair.hi.guiding_x += q.shift_x;
+  pair.hi.guiding_y += q.shift_y;
+  pair.shift_x = q.shift_x;
+  pair.shift_y = q.shift_y;
+  pair.reach = a.radius + b.radius;
+  pair.start = q.start;
+  pair.end = s.end;
+  pair.step = s.end - s.begin;
+  return pair;
+}
+
+/// The separation at the start of the span: from what the motion keeps when it can, else an evaluation, counted.
+template<class Motion> Separation first_separation(Motion& motion, const Pair& pair, FinderResult& result) {
+  if constexpr (requires { motion.at_start(); }) {
+    return motion.at_start();
+  } else {
+    ++result.evaluations;
+    return motion.at(pair.start);
+  }
+}
+
+class Finder {
+public:
+  virtual ~Finder() = default;
+
+  /// A step begins. The step and the particles it names must stay where they are until the next call.
+  virtual void begin(const DriftStep& step) = 0;
+
+  /// A particle has changed its velocity.
+  virtual void changed(std::size_t particle) = 0;
+
+  virtual FinderResult find(const Query& query) const = 0;
+
+  /// Kept for each particle beyond its elements and tangent.
+  virtual std::size_t bytes_per_particle() const = 0;
+};
+
+template<class Motion, class Search> class MotionSearch final : public Finder {
+public:
+  void begin(const DriftStep& step) override {
+    step_ = &step;
+    if constexpr (remembers) {
+      memories_.resize(step.bodies.size());
+      parallel_for(memories_.size(), [&](std::size_t k) { changed(k); });
+    }
+  }
+
+  void changed([[maybe_unused]] std::size_t k) override {
+    if constexpr (remembers)
+      memories_[k] = Motion::remember(step_->bodies[k].elements, *step_);
+  }
+
+  FinderResult find(const Query& query) const override {
+    if constexpr (requires { Motion::surely_apart(query, *step_); })
+      if (Motion::surely_apart(query, *step_))
+        return {};
+    const Pair pair = pair_of(query, *step_);
+    Motion motion = motion_of(pair, query);
+    return Search::find(motion, pair);
+  }
+
+  std::size_t bytes_per_particle() const override {
+    if constexpr (remembers)
+      return sizeof(typename Motion::Memory);
+    else
+      return 0;
+  }
+
+private:
+  static constexpr bool remembers = requires { typename Motion::Memory; };
+  struct Nothing {};
+  template<class M> struct MemoryOf { using Type = Nothing; };
+  template<class M>
+  requires requires { typename M::Memory; }
+  struct MemoryOf<M> {
+    using Type = typename M::Memory;
+  };
+
+  Motion motion_of(const Pair& pair, [[maybe_unused]] const Query& query) const {
+    if constexpr (remembers)
+      return Motion(pair, *step_, memories_[query.low], memories_[query.high]);
+    else
+      return Motion(pair, *step_);
+  }
+
+  const DriftStep* step_ = nullptr;
+  std::vector<typename MemoryOf<Motion>::Type> memories_;
+};
+
+} // namespace keeler
