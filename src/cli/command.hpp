@@ -23,5 +23,7 @@ void add_resume(CLI::App& program, Action& action, const std::vector<std::string
 void add_info(CLI::App& program, Action& action);
 void add_analyze(CLI::App& program, Action& action);
 void add_render(CLI::App& program, Action& action);
+void add_bench(CLI::App& program, Action& action);
+void add_study(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
 
 } // namespace keeler

@@ -36,6 +36,7 @@ int run(int argc, char** argv) {
   add_info(program, action);
   add_analyze(program, action);
   add_render(program, action);
+  add_bench(program, action);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& asked) { // --help and --version

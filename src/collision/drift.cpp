@@ -54,7 +54,7 @@ void DriftPhase::prepare() {
   last_change_.assign(count, -0.5 * step_);
   stamps_.assign(count, 0);
   parallel_for(count, [&](std::size_t k) {
-    tangents_[k] = tangent_of(particles_->bodies[k].elements, frequencies_);
+    tangents_[k] = tangent_of(particles_->bodies[k], frequencies_);
     binned_[k] = tangents_[k].position;
   });
   largest_radius_ = largest_eccentricity_ = largest_stray_ = 0.0;
@@ -62,7 +62,7 @@ void DriftPhase::prepare() {
     if (!(std::isfinite(tangents_[k].acceleration) && binned_[k].allFinite()))
       throw InvariantError(fmt::format("particle {} has elements that are not finite", particles_->ids[k]));
     largest_radius_ = std::max(largest_radius_, particles_->bodies[k].radius);
-    largest_eccentricity_ = std::max(largest_eccentricity_, tangents_[k].eccentricity);
+    largest_eccentricity_ = std::max(largest_eccentricity_, particles_->bodies[k].elements.eccentricity());
   }
   const double cell = 2.0 * largest_radius_ + step_ * 2.0 * largest_eccentricity_;
   grid_.build(binned_, box_, offset_, cell);
@@ -77,16 +77,19 @@ void DriftPhase::prepare() {
 // Calls visit(j, image) for every particle image that particle i could meet in this step.
 template<class Visit> void DriftPhase::visit_candidates(std::size_t i, const Visit& visit) const {
   const double half = 0.5 * step_;
-  const double e = tangents_[i].eccentricity + largest_eccentricity_;
+  const double e = particles_->bodies[i].elements.eccentricity() + largest_eccentricity_;
   const double contact = particles_->bodies[i].radius + largest_radius_;
   const double reach_x = contact + half * frequencies_.kappa * e;
   const double reach_y = contact + half * (frequencies_.shear() * (reach_x + e) + 2.0 * e);
   const double stray = largest_stray_ + 1e-12 * (box_.size_x + box_.size_y);
-  grid_.visit_near(tangents_[i].position, wider * reach_x + stray, wider * reach_y + stray,
-                   [&](std::size_t j, const Image& image) {
-                     if (j != i)
-                       visit(j, image);
-                   });
+  const auto other = [&](std::size_t j, const Image& image) {
+    if (j != i)
+      visit(j, image);
+  };
+  if (every_candidate)
+    grid_.visit_touched_cells(tangents_[i].position, wider * reach_x + stray, wider * reach_y + stray, other);
+  else
+    grid_.visit_near(tangents_[i].position, wider * reach_x + stray, wider * reach_y + stray, other);
 }
 
 // The lower id first; `image` is that of particle j.
@@ -194,8 +197,8 @@ void DriftPhase::changed(std::size_t i, double time) {
     throw InvariantError(fmt::format(
         "particle {} collided more than {} times in one step (an event storm); raise collisions.elastic_below",
         particles_->ids[i], most_collisions));
-  tangents_[i] = tangent_of(particles_->bodies[i].elements, frequencies_);
-  largest_eccentricity_ = std::max(largest_eccentricity_, tangents_[i].eccentricity);
+  tangents_[i] = tangent_of(particles_->bodies[i], frequencies_);
+  largest_eccentricity_ = std::max(largest_eccentricity_, particles_->bodies[i].elements.eccentricity());
   largest_stray_ = std::max(largest_stray_, (tangents_[i].position - binned_[i]).cwiseAbs().maxCoeff());
   finder_->changed(i);
   if (watch)

@@ -20,9 +20,20 @@ public:
 
   /// Calls visit(j, image) for every image of every point j with |x_j' − x| <= reach_x and |y_j' − y| <= reach_y, where
   /// (x_j', y_j') = point j + box.displacement(image, offset). The point itself is visited like any other.
-  template<class Visit> void visit_near(const Vec3& point, double reach_x, double reach_y, const Visit& visit) const;
+  template<class Visit> void visit_near(const Vec3& point, double reach_x, double reach_y, const Visit& visit) const {
+    visit_cells<true>(point, reach_x, reach_y, visit);
+  }
+
+  /// The same for everything in the cells that this window touches: what a grid alone can say.
+  template<class Visit>
+  void visit_touched_cells(const Vec3& point, double reach_x, double reach_y, const Visit& visit) const {
+    visit_cells<false>(point, reach_x, reach_y, visit);
+  }
 
 private:
+  template<bool inside_window, class Visit>
+  void visit_cells(const Vec3& point, double reach_x, double reach_y, const Visit& visit) const;
+
   struct Entry {
     double x, y; // inside the cell
     std::uint32_t point;
@@ -48,8 +59,8 @@ struct FloorDivision {
   }
 };
 
-template<class Visit>
-void PeriodicGrid::visit_near(const Vec3& point, double reach_x, double reach_y, const Visit& visit) const {
+template<bool inside_window, class Visit>
+void PeriodicGrid::visit_cells(const Vec3& point, double reach_x, double reach_y, const Visit& visit) const {
   const double left = point.x() + 0.5 * box_.size_x - reach_x, right = left + 2.0 * reach_x;
   const auto first_column = static_cast<std::int64_t>(std::floor(left * per_x_));
   const auto last_column = static_cast<std::int64_t>(std::floor(right * per_x_));
@@ -67,7 +78,7 @@ void PeriodicGrid::visit_near(const Vec3& point, double reach_x, double reach_y,
       const std::size_t cell = static_cast<std::size_t>(column.remainder * rows_ + row.remainder);
       for (std::uint32_t k = first_[cell]; k < first_[cell + 1]; ++k) {
         const Entry& e = entries_[k];
-        if (std::fabs(e.x - x) <= reach_x && std::fabs(e.y - y) <= reach_y)
+        if (!inside_window || (std::fabs(e.x - x) <= reach_x && std::fabs(e.y - y) <= reach_y))
           visit(std::size_t{e.point}, Image{e.home.nx + static_cast<std::int32_t>(column.quotient),
                                             e.home.ny + static_cast<std::int32_t>(row.quotient)});
       }

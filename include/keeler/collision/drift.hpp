@@ -65,7 +65,7 @@ public:
 
   DriftWatch* watch = nullptr; ///< searches then run on one thread
 
-  /// Hand every candidate of the grid to the finder, without rejecting any first: to measure finders.
+  /// Hand all that the grid's cells hold to the finder, without rejecting any first: to measure finders.
   bool every_candidate = false;
 
 private:

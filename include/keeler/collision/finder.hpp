@@ -36,8 +36,7 @@ struct DriftStep {
   /// `size` is the largest coordinate that occurs, m: it sets the allowance for rounding.
   DriftStep(const Frequencies& f, double begin_time, double end_time, double size)
       : frequencies(f), begin(begin_time), end(end_time), at_begin(f, begin_time), at_end(f, end_time) {
-    const double longest = std::max(std::fabs(begin), std::fabs(end));
-    tangent_test = {f.shear(), end, 0.5 * longest * longest, 1e-13 * size};
+    tangent_test = {f.shear(), end, std::max(std::fabs(begin), std::fabs(end)), 1e-13 * size};
   }
 };
 
@@ -50,8 +49,7 @@ struct Query {
 };
 
 inline bool may_touch(const Query& q, const DriftStep& s) {
-  return s.tangent_test.may_touch(s.tangents[q.low], s.tangents[q.high], q.shift_x, q.shift_y,
-                                  s.bodies[q.low].radius + s.bodies[q.high].radius, q.start);
+  return s.tangent_test.may_touch(s.tangents[q.low], s.tangents[q.high], q.shift_x, q.shift_y, q.start);
 }
 
 inline Pair pair_of(const Query& q, const DriftStep& s) {

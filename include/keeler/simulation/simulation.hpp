@@ -38,6 +38,9 @@ public:
 
   const TimeSplit& time_split() const { return split_; }
 
+  /// To watch collisions, or to measure finders.
+  DriftPhase& drift() { return drift_; }
+
 private:
   void accelerate();
   void half_kick();
