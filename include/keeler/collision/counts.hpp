@@ -1,4 +1,5 @@
-// How the calls of a finder ended: by exit reason, with histograms of iterations and of motion evaluations.
+// What a finder's calls came to: how many ended for each reason, and after how many iterations and evaluations. The
+// histograms are those of the paper's Figures 5 and 6.
 #pragma once
 
 #include <keeler/collision/pair.hpp>
@@ -10,36 +11,50 @@
 namespace keeler {
 
 struct FinderCounts {
-  static constexpr int bins = 64; ///< 0 … 62, and one for all above
+  static constexpr int bins = 64; ///< 0 … 62; the last one holds 63 and all above
   using Histogram = std::array<std::uint64_t, bins>;
 
-  std::array<Histogram, finder_exits> iterations{};  ///< by exit reason
-  std::array<Histogram, finder_exits> evaluations{}; ///< by exit reason
-  std::uint64_t all_evaluations = 0;
+  /// Calls of one kind.
+  struct Calls {
+    std::uint64_t count = 0;
+    std::uint64_t iterations = 0, evaluations = 0; ///< summed
+    Histogram by_iterations{}, by_evaluations{};
+
+    void merge(const Calls& other) {
+      count += other.count;
+      iterations += other.iterations;
+      evaluations += other.evaluations;
+      for (int k = 0; k < bins; ++k) {
+        by_iterations[k] += other.by_iterations[k];
+        by_evaluations[k] += other.by_evaluations[k];
+      }
+    }
+  };
+
+  std::array<Calls, finder_exits> by_exit{};
+
+  const Calls& of(FinderExit exit) const { return by_exit[static_cast<int>(exit)]; }
 
   void add(const FinderResult& result) {
-    const auto exit = static_cast<std::size_t>(result.exit);
-    ++iterations[exit][static_cast<std::size_t>(std::min(result.iterations, bins - 1))];
-    ++evaluations[exit][static_cast<std::size_t>(std::min(result.evaluations, bins - 1))];
-    all_evaluations += static_cast<std::uint64_t>(result.evaluations);
+    Calls& calls = by_exit[static_cast<int>(result.exit)];
+    ++calls.count;
+    calls.iterations += result.iterations;
+    calls.evaluations += result.evaluations;
+    ++calls.by_iterations[std::min(result.iterations, bins - 1)];
+    ++calls.by_evaluations[std::min(result.evaluations, bins - 1)];
   }
 
-  std::uint64_t calls(FinderExit exit) const {
-    std::uint64_t sum = 0;
-    for (const std::uint64_t count : iterations[static_cast<std::size_t>(exit)])
-      sum += count;
-    return sum;
+  void merge(const FinderCounts& other) {
+    for (int k = 0; k < finder_exits; ++k)
+      by_exit[k].merge(other.by_exit[k]);
   }
 
-  std::uint64_t calls() const {
-    std::uint64_t sum = 0;
-    for (int exit = 0; exit < finder_exits; ++exit)
-      sum += calls(static_cast<FinderExit>(exit));
-    return sum;
+  Calls total() const {
+    Calls all;
+    for (const Calls& calls : by_exit)
+      all.merge(calls);
+    return all;
   }
-
-  /// Calls that reported a contact.
-  std::uint64_t contacts() const { return calls(FinderExit::hit) + calls(FinderExit::overlapping); }
 };
 
 } // namespace keeler
