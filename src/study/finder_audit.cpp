@@ -3,8 +3,6 @@
 #include <keeler/collision/finders.hpp>
 #include <keeler/collision/motion/relative.hpp>
 
-#include <nlohmann/json.hpp>
-
 namespace keeler {
 namespace {
 

@@ -25,8 +25,8 @@ struct DriftBench {
   int steps = 0;                              ///< timed in each repeat
 };
 
-/// The state is a uniform patch near its equilibrium, evolved for one and a half orbits; every repeat starts from it anew.
-/// Throws UsageError for an unknown finder or an impossible patch.
+/// The state is a uniform patch near its equilibrium, evolved for one and a half orbits; every repeat starts from it
+/// anew. Throws UsageError for an unknown finder or an impossible patch.
 DriftBench bench_drift(const DriftBenchSettings& settings);
 
 } // namespace keeler

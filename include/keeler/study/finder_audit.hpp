@@ -4,8 +4,6 @@
 #include <keeler/collision/counts.hpp>
 #include <keeler/collision/drift.hpp>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <memory>
 #include <vector>
 
@@ -21,11 +19,10 @@ struct FinderVerdict {
   std::uint64_t misordered = 0; ///< particles whose first contact of a step, by the finder's times, is not the first
   double deepest = 0.0;         ///< the deepest contact called, in R
 
-  std::uint64_t calls() const { return counts.calls(); }
+  std::uint64_t calls() const { return counts.total().count; }
+  /// Calls that reported a contact.
+  std::uint64_t hits() const { return counts.of(FinderExit::hit).count + counts.of(FinderExit::overlapping).count; }
 };
-
-void to_json(nlohmann::ordered_json& json, const FinderVerdict& verdict);
-void from_json(const nlohmann::ordered_json& json, FinderVerdict& verdict);
 
 class FinderAudit : public DriftWatch {
 public:

@@ -1,0 +1,58 @@
+#include "job_list.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/stopwatch.hpp>
+
+#include <fmt/format.h>
+
+namespace keeler {
+
+JobList::JobList(const std::filesystem::path& file) : file_(file) {
+  std::ifstream in(file);
+  std::string text;
+  for (std::string line; std::getline(in, line);) {
+    const Json entry = Json::parse(line, nullptr, false);
+    if (!entry.is_object() || !entry.contains("job") || !entry.contains("result"))
+      continue;
+    results_[entry["job"].get<std::string>()] = entry["result"];
+    text += line + "\n";
+  }
+  in.close();
+  std::ofstream(file, std::ios::trunc) << text; // without a line that was cut short
+}
+
+void JobList::keep(const std::string& name, const Json& result) {
+  std::ofstream out(file_, std::ios::app);
+  out << Json{{"job", name}, {"result", result}}.dump() << "\n" << std::flush;
+  if (!out)
+    throw IoError(fmt::format("cannot write '{}' (is the disk full?); free some space and start the same command again",
+                              file_.string()));
+  results_[name] = result;
+}
+
+bool JobList::run(const std::vector<Job>& jobs, const std::function<void(const JobProgress&)>& progress,
+                  const std::atomic<bool>& stop) {
+  double elapsed = 0.0, spent = 0.0, all = 0.0, done = 0.0;
+  for (const Job& job : jobs)
+    all += job.weight;
+  std::size_t count = 0;
+  for (const Job& job : jobs) {
+    if (stop)
+      return false;
+    if (!results_.contains(job.name)) {
+      {
+        const Stopwatch watch(elapsed);
+        keep(job.name, job.work());
+      }
+      spent += job.weight;
+    }
+    done += job.weight;
+    ++count;
+    const double left = spent > 0.0 ? elapsed * (all - done) / spent : 0.0;
+    if (progress)
+      progress({job.name, count, jobs.size(), done / all, elapsed, left});
+  }
+  return true;
+}
+
+} // namespace keeler

@@ -1,0 +1,211 @@
+#include "measurements.hpp"
+
+#include <keeler/cells/overlap.hpp>
+#include <keeler/collision/finders.hpp>
+#include <keeler/core/random.hpp>
+#include <keeler/core/stopwatch.hpp>
+#include <keeler/simulation/simulation.hpp>
+#include <keeler/study/finder_audit.hpp>
+#include <keeler/study/median.hpp>
+#include <keeler/study/pair_set.hpp>
+
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+constexpr double least_seconds = 0.02; // of finder calls, for the time of one
+
+PairSet first_pairs(const StudyState& state, const Scene& scene, bool every_candidate) {
+  const Simulation simulation(scene, state.patch);
+  const SimulationState& s = simulation.state();
+  return PairSet::of(s.particles, s.box, s.epoch_offset(), scene.collisions, scene.planet.frequencies, s.step_length,
+                     every_candidate);
+}
+
+int steps_of(double step) {
+  return static_cast<int>(std::lround(study_orbits / step));
+}
+
+Json trimmed(const FinderCounts::Histogram& histogram) {
+  std::size_t length = histogram.size();
+  while (length > 0 && histogram[length - 1] == 0)
+    --length;
+  return Json(std::vector<std::uint64_t>(histogram.begin(), histogram.begin() + static_cast<std::ptrdiff_t>(length)));
+}
+
+Json exits_of(const FinderCounts& counts) {
+  Json exits = Json::object();
+  for (int k = 0; k < finder_exits; ++k) {
+    const FinderCounts::Calls& calls = counts.by_exit[static_cast<std::size_t>(k)];
+    if (calls.count > 0)
+      exits[name_of(static_cast<FinderExit>(k))] = {{"calls", calls.count},
+                                                    {"iterations", trimmed(calls.by_iterations)},
+                                                    {"evaluations", trimmed(calls.by_evaluations)}};
+  }
+  return exits;
+}
+
+double run_seconds(const StudyState& state, const Scene& scene, bool every_candidate) {
+  Simulation simulation(scene, state.patch);
+  simulation.drift().every_candidate = every_candidate;
+  const double start = cpu_seconds();
+  for (int k = steps_of(scene.time.step); k > 0; --k)
+    simulation.advance();
+  return cpu_seconds() - start;
+}
+
+// Every finder on the same pairs, in turn, several times: medians of the time of a call.
+Json times_per_call(const PairSet& pairs, int repeats) {
+  std::vector<std::unique_ptr<Finder>> finders;
+  for (const FinderEntry& entry : finder_table())
+    finders.push_back(entry.make());
+  std::vector<std::vector<double>> times(finders.size());
+  for (int repeat = 0; repeat < repeats; ++repeat)
+    for (std::size_t k = 0; k < finders.size(); ++k)
+      times[k].push_back(ns_per_call(pairs, *finders[k], least_seconds));
+  Json json;
+  for (std::size_t k = 0; k < finders.size(); ++k)
+    json[finder_table()[k].name] = median(times[k]);
+  return json;
+}
+
+FinderVerdict verdict_on(const PairSet& pairs, Finder& finder) {
+  const DriftStep step = pairs.view();
+  finder.begin(step);
+  FinderAudit audit;
+  audit.begins(step);
+  for (const Query& query : pairs.queries)
+    audit.searched(query, finder.find(query));
+  return audit.verdict();
+}
+
+// Gives a share of the particles a small velocity change at a time of its own within the step.
+void move_some(PairSet& pairs, double share, double kick_speed) {
+  const DriftStep step = pairs.view();
+  std::vector<double> changed(pairs.bodies.size(), step.begin);
+  for (std::size_t k = 0; k < pairs.bodies.size(); ++k) {
+    RandomStream random(1, RandomPurpose::relaxation, k);
+    if (random.uniform() >= share)
+      continue;
+    changed[k] = step.begin + (step.end - step.begin) * random.uniform();
+    const Vec3 dv = kick_speed * Vec3(random.normal(), random.normal(), random.normal());
+    kick(pairs.bodies[k].elements, dv, step.frequencies, Rotation(step.frequencies, changed[k]));
+    pairs.tangents[k] = tangent_of(pairs.bodies[k], step.frequencies);
+  }
+  for (Query& query : pairs.queries)
+    query.start = std::max(changed[query.low], changed[query.high]);
+}
+
+} // namespace
+
+std::vector<std::string> all_finders() {
+  std::vector<std::string> names;
+  for (const FinderEntry& entry : finder_table())
+    names.emplace_back(entry.name);
+  return names;
+}
+
+Json timed_run(const StudyState& state, double step, const std::string& finder) {
+  const Scene scene = state.timed(step, finder);
+  const PairSet pairs = first_pairs(state, scene, true);
+  const double call = ns_per_call(pairs, *make_finder(finder), least_seconds);
+  return {{"cpu_s", run_seconds(state, scene, true)}, {"ns_per_call", call}};
+}
+
+Json audited_run(const StudyState& state, double step, const std::string& finder) {
+  Simulation simulation(state.timed(step, finder), state.patch);
+  simulation.drift().every_candidate = true;
+  FinderAudit audit;
+  simulation.drift().watch = &audit;
+  for (int k = steps_of(step); k > 0; --k)
+    simulation.advance();
+  const FinderVerdict verdict = audit.verdict();
+  const CollisionTally& tally = simulation.state().collisions;
+  return {{"calls", verdict.calls()},
+          {"hits", verdict.hits()},
+          {"true_hits", verdict.true_hits},
+          {"missed", verdict.missed},
+          {"false_hits", verdict.false_hits},
+          {"late", verdict.late},
+          {"misordered", verdict.misordered},
+          {"evaluations", verdict.counts.total().evaluations},
+          {"iterations", verdict.counts.total().iterations},
+          {"collisions", tally.fast + tally.slow},
+          {"largest_overlap", largest_overlap(simulation.patch()).depth},
+          {"bytes_per_particle", simulation.drift().finder().bytes_per_particle()},
+          {"exits", exits_of(verdict.counts)}};
+}
+
+Json scan_check(const StudyState& state, double step) {
+  const PairSet pairs = first_pairs(state, state.timed(step, "certified"), true);
+  const DriftStep view = pairs.view();
+  const std::unique_ptr<Finder> certified = make_finder("certified");
+  certified->begin(view);
+  std::uint64_t contacts = 0, only_scan = 0, only_certified = 0, other_time = 0;
+  for (const Query& query : pairs.queries) {
+    const FinderResult truth = certified->find(query);
+    const ScanResult scan = dense_scan(pair_of(query, view), view.frequencies);
+    contacts += truth.contact();
+    only_scan += scan.contact && !truth.contact();
+    only_certified += truth.contact() && !scan.contact;
+    other_time += truth.contact() && scan.contact && std::fabs(truth.time - scan.time) > 1e-6 * (view.end - view.begin);
+  }
+  return {{"pairs", pairs.queries.size()},
+          {"contacts", contacts},
+          {"only_scan", only_scan},
+          {"only_certified", only_certified},
+          {"other_time", other_time}};
+}
+
+Json rejection(const StudyState& state, double step, int repeats) {
+  const Scene plain = state.timed(step, "certified");
+  const PairSet all = first_pairs(state, plain, true), left = first_pairs(state, plain, false);
+  const std::vector<std::string> finders = all_finders();
+  std::vector<std::vector<double>> before(finders.size()), after(finders.size());
+  for (int repeat = 0; repeat < repeats; ++repeat)
+    for (std::size_t k = 0; k < finders.size(); ++k) {
+      before[k].push_back(run_seconds(state, state.timed(step, finders[k]), true));
+      after[k].push_back(run_seconds(state, state.timed(step, finders[k]), false));
+    }
+  Json times_before, times_after;
+  for (std::size_t k = 0; k < finders.size(); ++k) {
+    times_before[finders[k]] = median(before[k]);
+    times_after[finders[k]] = median(after[k]);
+  }
+  const std::unique_ptr<Finder> certified = make_finder("certified");
+  return {{"candidates", all.queries.size()},
+          {"left", left.queries.size()},
+          {"contacts", verdict_on(left, *certified).true_hits},
+          {"cpu_s_every_candidate", times_before},
+          {"cpu_s_after_rejection", times_after},
+          {"ns_per_call_after_rejection", times_per_call(left, repeats)}};
+}
+
+Json local_times(const StudyState& state, double step, double share, int repeats) {
+  PairSet pairs = first_pairs(state, state.timed(step, "certified"), true);
+  double mean_radius = 0.0;
+  for (const Body& body : pairs.bodies)
+    mean_radius += body.radius / static_cast<double>(pairs.bodies.size());
+  move_some(pairs, share, 0.2 * mean_radius);
+  Json missed, false_hits, late, evaluations;
+  std::uint64_t true_hits = 0;
+  for (const std::string& name : all_finders()) {
+    const FinderVerdict verdict = verdict_on(pairs, *make_finder(name));
+    true_hits = verdict.true_hits;
+    missed[name] = verdict.missed;
+    false_hits[name] = verdict.false_hits;
+    late[name] = verdict.late;
+    evaluations[name] =
+        static_cast<double>(verdict.counts.total().evaluations) / static_cast<double>(pairs.queries.size());
+  }
+  return {{"calls", pairs.queries.size()},
+          {"true_hits", true_hits},
+          {"missed", missed},
+          {"false_hits", false_hits},
+          {"late", late},
+          {"evaluations_per_call", evaluations},
+          {"ns_per_call", times_per_call(pairs, repeats)}};
+}
+
+} // namespace keeler

@@ -1,0 +1,33 @@
+// The single measurements of the finder study, each a JSON object.
+#pragma once
+
+#include "job_list.hpp"
+#include "study_states.hpp"
+
+namespace keeler {
+
+/// The paper's five, in its order.
+inline const std::vector<std::string> paper_finders = {"original", "newton-full", "newton-cubic", "linear-full",
+                                                       "linear-cubic"};
+
+/// All names of finder_table().
+std::vector<std::string> all_finders();
+
+constexpr double study_orbits = 0.1; // length of a run, as in the paper
+
+/// A run with every grid candidate handed to the finder: cpu_s, and ns_per_call on the pairs of its first step.
+Json timed_run(const StudyState& state, double step, const std::string& finder);
+
+/// The same run, each call held against the certified finder: counts, verdict, histograms, the overlap at the end.
+Json audited_run(const StudyState& state, double step, const std::string& finder);
+
+/// The first step's pairs: the certified finder against a dense scan.
+Json scan_check(const StudyState& state, double step);
+
+/// Runs with the drift's own rejection in front of every finder, interleaved, and what it leaves of the pairs.
+Json rejection(const StudyState& state, double step, int repeats);
+
+/// Cost and truth of each finder when a share of the particles has changed its velocity earlier in the step.
+Json local_times(const StudyState& state, double step, double share, int repeats);
+
+} // namespace keeler
