@@ -86,8 +86,9 @@ FileDescription describe_snapshot(const hdf5::Handle& image) {
   FileDescription description;
   description.format_version = hdf5::read_attribute<std::int64_t>(hdf5::open_group(image, "Code"), "format_version");
   add_fields(description, image, "PartType1");
-  for (const char* group : {"Header", "RingBox", "Code"})
-    add_attributes(description, hdf5::open_group(image, group), group);
+  for (const char* group : {"Header", "RingBox", "Code", clumping_group})
+    if (hdf5::exists(image, group))
+      add_attributes(description, hdf5::open_group(image, group), group);
   description.scene = hdf5::read_text_attribute(hdf5::open_group(image, "Parameters"), "scene");
   return description;
 }

@@ -11,5 +11,6 @@ inline constexpr std::int64_t checkpoint_version = 1;
 
 inline constexpr char snapshot_format[] = "keeler snapshot";
 inline constexpr std::int64_t snapshot_version = 1;
+inline constexpr char clumping_group[] = "Clumping"; // in snapshots of clumped states
 
 } // namespace keeler

@@ -139,6 +139,25 @@ void check_format(const hdf5::Handle& code) {
                               snapshot_version));
 }
 
+void write_clumping(const hdf5::Handle& image, const SnapshotMeta& meta) {
+  if (meta.clumping.empty())
+    return;
+  const hdf5::Handle group = hdf5::create_group(image, clumping_group);
+  for (const auto& [name, numbers] : meta.clumping)
+    if (numbers.size() == 1)
+      hdf5::write_attribute(group, name, numbers.front());
+    else
+      hdf5::write_attribute(group, name, numbers);
+}
+
+void read_clumping(const hdf5::Handle& image, SnapshotMeta& meta) {
+  if (!hdf5::exists(image, clumping_group))
+    return;
+  const hdf5::Handle group = hdf5::open_group(image, clumping_group);
+  for (const std::string& name : hdf5::attribute_names(group))
+    meta.clumping[name] = hdf5::read_attribute_values<double>(group, name);
+}
+
 // An array of rows whose shape must be `shape`.
 template<class T, class Row>
 std::vector<Row> read_array(const hdf5::Handle& group, const std::string& name, const hdf5::Shape& shape) {
@@ -180,6 +199,7 @@ void write_snapshot(const std::filesystem::path& file, const Patch& patch, const
   write_provenance(code, meta.provenance);
   hdf5::write_attribute(code, "format", std::string_view(snapshot_format));
   hdf5::write_attribute(code, "format_version", snapshot_version);
+  write_clumping(image, meta);
   write_sealed(file, image);
 }
 
@@ -196,6 +216,7 @@ Snapshot read_snapshot(const std::filesystem::path& file) {
     snapshot.meta.scene = hdf5::read_text_attribute(hdf5::open_group(image, "Parameters"), "scene");
     snapshot.meta.provenance = read_provenance(code);
     snapshot.meta.provenance.erase("format");
+    read_clumping(image, snapshot.meta);
     return snapshot;
   } catch (const IoError& error) {
     throw IoError(fmt::format("cannot read snapshot '{}': {}", file.string(), error.what()));

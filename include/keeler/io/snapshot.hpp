@@ -6,7 +6,9 @@
 #include <keeler/particles/patch.hpp>
 
 #include <filesystem>
+#include <map>
 #include <string>
+#include <vector>
 
 namespace keeler {
 
@@ -14,6 +16,7 @@ namespace keeler {
 struct SnapshotMeta {
   std::string scene; ///< the resolved scene, as TOML
   Provenance provenance;
+  std::map<std::string, std::vector<double>> clumping = {}; ///< how a clumped state came about; empty for any other
 };
 
 struct Snapshot {
