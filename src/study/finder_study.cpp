@@ -1,0 +1,201 @@
+#include <keeler/study/finder_study.hpp>
+
+#include "finder_report.hpp"
+#include "measurements.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/threads.hpp>
+#include <keeler/io/files.hpp>
+#include <keeler/io/provenance.hpp>
+#include <keeler/study/median.hpp>
+
+#include <fmt/format.h>
+
+namespace keeler {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Plan {
+  std::size_t count;
+  std::vector<double> steps; // orbits; each divides a tenth
+  int repeats;
+  std::vector<double> shares = {0.0, 0.25, 0.5, 0.75, 1.0};
+};
+
+Plan plan_of(const FinderStudySettings& settings) {
+  if (settings.quick)
+    return {std::min<std::size_t>(settings.count, 3000), {1e-3, 1.0 / 300.0, 1e-2}, 2};
+  return {settings.count, {1e-4, 1.0 / 3000.0, 1e-3, 1.0 / 300.0, 1e-2}, 6};
+}
+
+// A study is continued only with the settings that began it. Returns the commit of the program that did.
+std::string require_same_study(const fs::path& folder, const Plan& plan, const std::string& commit) {
+  const Json now = {{"study", "finders"},
+                    {"count", plan.count},
+                    {"steps_orbits", plan.steps},
+                    {"repeats", plan.repeats},
+                    {"finders", all_finders()}};
+  const fs::path file = folder / "study.json";
+  if (!fs::exists(file)) {
+    if (fs::exists(folder) && !fs::is_empty(folder))
+      throw UsageError(fmt::format("'{}' is not empty and holds no study; name another folder", folder.string()));
+    fs::create_directories(folder);
+    Json begun = now;
+    begun["commit"] = commit;
+    write_text(file, begun.dump(2) + "\n");
+    return commit;
+  }
+  const Json before = Json::parse(read_text(file), nullptr, false);
+  for (const auto& [key, value] : now.items())
+    if (!before.is_object() || !before.contains(key) || before[key] != value)
+      throw UsageError(fmt::format("'{}' holds a study with another {}; give the same options or name another folder",
+                                   folder.string(), key));
+  return before.value("commit", "");
+}
+
+std::size_t missing(const std::vector<Job>& jobs, const JobList& list) {
+  std::size_t count = 0;
+  for (const Job& job : jobs)
+    count += !list.results().contains(job.name);
+  return count;
+}
+
+// Nanoseconds of a run, roughly: what a particle and step cost with every candidate in a finder's hands.
+double expected_cost(const StudyState& state, double step) {
+  const double size = state.name.starts_with("power") ? 1500.0 : 400.0;
+  const double far = 1.0 + 100.0 * step * (state.name.ends_with("clumped") ? 3.0 : 2.0);
+  return static_cast<double>(state.patch.size()) * study_orbits / step * size * far;
+}
+
+class Jobs {
+public:
+  Jobs(const std::vector<StudyState>& states, const Plan& plan) : states_(states), plan_(plan) {}
+
+  std::vector<Job> all() {
+    for (const StudyState& state : states_)
+      for (const double step : plan_.steps)
+        add_truth(state, step);
+    for (const StudyState& state : states_)
+      add_rejection(state);
+    for (const double step : {1e-3, 1e-2})
+      for (const double share : plan_.shares)
+        add_local_times(step, share);
+    for (int repeat = 0; repeat < plan_.repeats; ++repeat)
+      for (const StudyState& state : states_)
+        for (const double step : plan_.steps)
+          add_runs(state, step, repeat);
+    return std::move(jobs_);
+  }
+
+private:
+  void add(std::string name, double weight, std::function<Json()> work) {
+    jobs_.push_back({std::move(name), weight, std::move(work)});
+  }
+
+  void add_truth(const StudyState& state, double step) {
+    const double cost = expected_cost(state, step);
+    add(job_name("scan", state.name, step), 3e9, [&state, step] { return scan_check(state, step); });
+    for (const std::string& finder : all_finders())
+      add(job_name("audit", state.name, step, finder), 1.3 * cost,
+          [&state, step, finder] { return audited_run(state, step, finder); });
+  }
+
+  void add_rejection(const StudyState& state) {
+    const int repeats = std::min(plan_.repeats, 3);
+    add(job_name("rejection", state.name, 1e-3), 20.0 * repeats * expected_cost(state, 1e-3),
+        [&state, repeats] { return rejection(state, 1e-3, repeats); });
+  }
+
+  void add_local_times(double step, double share) {
+    const StudyState& state = states_.front();
+    add(fmt::format("local/{}/{:.6g}/{}", state.name, step, share), 2e9,
+        [&state, step, share] { return local_times(state, step, share, 5); });
+  }
+
+  // In another order in each repeat, so that a machine that drifts favours no finder.
+  void add_runs(const StudyState& state, double step, int repeat) {
+    const std::vector<std::string> finders = all_finders();
+    const std::size_t count = finders.size(), stride = repeat % 2 ? 5 : 7; // both prime to the number of finders, 12
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::string& finder = finders[(k * stride + static_cast<std::size_t>(repeat)) % count];
+      add(job_name("run", state.name, step, finder, repeat), expected_cost(state, step),
+          [&state, step, finder] { return timed_run(state, step, finder); });
+    }
+  }
+
+  const std::vector<StudyState>& states_;
+  const Plan& plan_;
+  std::vector<Job> jobs_;
+};
+
+void announce(const std::vector<Job>& jobs, std::size_t left, const std::function<void(const std::string&)>& say) {
+  double cost = 0.0;
+  for (const Job& job : jobs)
+    cost += job.weight;
+  say(fmt::format("{} measurements on one thread, {} of them done; all take roughly {:.0f} minutes", jobs.size(),
+                  jobs.size() - left, std::ceil(cost / 60e9)));
+}
+
+} // namespace
+
+std::string job_name(const std::string& kind, const std::string& state, double step, const std::string& finder,
+                     int repeat) {
+  std::string name = fmt::format("{}/{}/{:.6g}", kind, state, step);
+  if (!finder.empty())
+    name += "/" + finder;
+  if (repeat >= 0)
+    name += fmt::format("/{}", repeat);
+  return name;
+}
+
+const Json& FinderStudyData::audit(const std::string& state, double step, const std::string& finder) const {
+  return result(job_name("audit", state, step, finder));
+}
+
+double FinderStudyData::timed(const std::string& state, double step, const std::string& finder,
+                              const char* field) const {
+  std::vector<double> values;
+  for (int repeat = 0; repeat < repeats; ++repeat)
+    values.push_back(result(job_name("run", state, step, finder, repeat)).at(field).get<double>());
+  return median(values);
+}
+
+bool study_finders(const FinderStudySettings& settings, const std::atomic<bool>& stop) {
+  const Plan plan = plan_of(settings);
+  const Provenance provenance = collect_provenance(settings.arguments);
+  const std::string commit = require_same_study(settings.folder, plan, provenance.at("commit"));
+  const std::optional<std::vector<StudyState>> states =
+      study_states(settings.folder / "states", plan.count, settings.notice, stop);
+  if (!states)
+    return false;
+  const std::vector<Job> jobs = Jobs(*states, plan).all();
+  JobList list(settings.folder / "measurements.jsonl");
+  const std::size_t left = missing(jobs, list);
+  if (left > 0 && left < jobs.size() && commit != provenance.at("commit"))
+    throw UsageError(fmt::format("'{}' was begun with another build of the program ({}), and times of two builds do not "
+                                 "compare; go on with that one or name another folder",
+                                 settings.folder.string(), commit));
+  if (left > 0)
+    announce(jobs, left, settings.notice);
+
+  const int threads_before = threads();
+  set_threads(1); // what follows is timed
+  const bool finished = list.run(
+      jobs, [&](const JobProgress& p) { settings.progress(p.share, p.remaining_s, p.name); }, stop);
+  set_threads(threads_before);
+  if (!finished)
+    return false;
+
+  const FinderStudyData data{settings.folder, *states,           plan.steps, 1e-3,
+                             plan.repeats,    plan.shares,       list.results(), provenance.at("host"),
+                             commit,          provenance.at("arguments")};
+  write_finder_tables(data);
+  const bool drawn = draw_finder_figures(data);
+  if (!drawn)
+    settings.notice("gnuplot is not there, so only the data of the graphs are written (Debian: gnuplot-nox)");
+  write_finder_report(data, drawn);
+  return true;
+}
+
+} // namespace keeler
