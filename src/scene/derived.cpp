@@ -120,8 +120,8 @@ Derived derive(const Scene& scene) {
       particles.velocity_dispersion * particles.sizes.mean_power(1) * scene.planet.orbital_frequency;
   d.toomre_q = toomre_q(d.surface_density, dispersion, scene.planet);
   d.hill_parameter = hill_parameter(particles.density, distance_from_saturn(scene.planet));
-  d.midplane_filling =
-      midplane_filling(d.optical_depth, particles.sizes, particles.velocity_dispersion, scene.planet.frequencies.nu);
+  d.midplane_filling = midplane_filling(scene.bunched_optical_depth(), particles.sizes, particles.velocity_dispersion,
+                                        scene.planet.frequencies.nu);
   d.memory_mb = 1e-6 * (cost::program_bytes + bytes_per_particle(scene) * static_cast<double>(particles.count));
   d.estimated_s = estimate_seconds(scene, d.steps);
   return d;

@@ -38,6 +38,13 @@ SizeLaw read_sizes(Settings& settings, const std::string& scene_name) {
   return sizes;
 }
 
+StreamlineSettings read_streamlines(const Settings& settings) {
+  if (!settings.has("particles.streamlines"))
+    return {};
+  return {static_cast<int>(settings.integer("particles.streamlines.waves")),
+          settings.number("particles.streamlines.bunching"), settings.number("particles.streamlines.inclination")};
+}
+
 // The key that sets how much there is, and the optical depth it asks for (0 when a count waits for the box).
 struct Amount {
   std::string key;
@@ -98,15 +105,15 @@ void read_count(Scene& scene, Settings& settings, const Amount& amount) {
   if (amount.key != "particles.count")
     settings.resolve("particles.count", static_cast<std::int64_t>(particles.count), amount.key);
 
-  const double filling = midplane_filling(scene.optical_depth(), particles.sizes, particles.velocity_dispersion,
-                                          scene.planet.frequencies.nu);
+  const double nu = scene.planet.frequencies.nu, depth = scene.bunched_optical_depth();
+  const double filling = midplane_filling(depth, particles.sizes, particles.velocity_dispersion, nu);
   if (!(filling <= largest_filling)) {
-    const double enough =
-        dispersion_for_filling(scene.optical_depth(), particles.sizes, scene.planet.frequencies.nu, largest_filling);
+    const double enough = dispersion_for_filling(depth, particles.sizes, nu, largest_filling);
     fail_at(place, fmt::format("too dense (the mid-plane would be filled to {:.2f}, and {:.1f} is the most that can be "
                                "placed without overlap); raise velocity_dispersion to at least {:.2f} or lower the "
-                               "optical depth of {:.3g}",
-                               filling, largest_filling, std::ceil(enough * 100.0) / 100.0, scene.optical_depth()));
+                               "optical depth of {:.3g}{}",
+                               filling, largest_filling, std::ceil(enough * 100.0) / 100.0, scene.optical_depth(),
+                               depth > scene.optical_depth() ? " or the bunching" : ""));
   }
 }
 
@@ -118,6 +125,7 @@ void read_particles_and_box(Scene& scene, Settings& settings, const std::string&
   particles.sizes = read_sizes(settings, name);
   particles.velocity_dispersion = settings.number("particles.velocity_dispersion");
   particles.seed = static_cast<std::uint64_t>(settings.integer("particles.seed"));
+  particles.streamlines = read_streamlines(settings);
   const Amount amount = read_amount(settings, particles);
   read_box(scene, settings, amount);
   read_count(scene, settings, amount);

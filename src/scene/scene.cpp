@@ -132,6 +132,10 @@ double Scene::optical_depth() const {
   return static_cast<double>(particles.count) * pi * particles.sizes.mean_power(2) / (size_x * size_y);
 }
 
+double Scene::bunched_optical_depth() const {
+  return optical_depth() / (1.0 - particles.streamlines.bunching);
+}
+
 Scene parse_scene(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
   Document document = parse_document(text, name);
   std::vector<std::string> notices;

@@ -52,6 +52,9 @@ Patch initial_patch(const Scene& scene) {
   request.density = scene.particles.density;
   request.dispersion_x = scene.particles.velocity_dispersion * mean_radius;
   request.dispersion_z = vertical_share * request.dispersion_x;
+  const StreamlineSettings& streamlines = scene.particles.streamlines;
+  request.streamlines = Streamlines::bunched(streamlines.waves, scene.size_x, streamlines.bunching);
+  request.streamlines.inclination = streamlines.inclination * mean_radius;
   request.seed = scene.particles.seed;
   Patch patch = uniform_patch(request);
   patch.orbital_frequency = scene.planet.orbital_frequency;

@@ -39,6 +39,9 @@ void draw(const UniformRequest& request, std::size_t k, Vec3& place, Vec3& motio
   place.x() = (where.uniform() - 0.5) * request.box.size_x;
   place.y() = (where.uniform() - 0.5) * request.box.size_y;
   place.z() = request.dispersion_z / f.nu * where.normal();
+  const Elements streamline = request.streamlines.elements(place.x());
+  place.x() -= streamline.e_cos;
+  place.y() += 2.0 / f.kappa * streamline.e_sin;
   motion.x() = request.dispersion_x * how.normal();
   motion.y() = 0.5 * f.kappa * request.dispersion_x * how.normal();
   motion.z() = request.dispersion_z * how.normal();
@@ -116,8 +119,10 @@ Patch uniform_patch(const UniformRequest& request) {
     patch.ids.push_back(k);
   }
   separate(patch);
-  for (std::size_t k = 0; k < count; ++k) // the shear of the final place
-    patch.velocities[k].y() -= request.frequencies.shear() * patch.positions[k].x();
+  for (std::size_t k = 0; k < count; ++k) { // the mean motion of the final place
+    const double guiding_x = request.streamlines.guiding_x(patch.positions[k].x());
+    patch.velocities[k] += state_at(request.streamlines.elements(guiding_x), request.frequencies, Rotation()).velocity;
+  }
   return patch;
 }
 

@@ -51,7 +51,7 @@ struct Derived {
   double lambda_cr = 0.0;       ///< m
   double toomre_q = 0.0;        ///< at the start
   double hill_parameter = 0.0;
-  double midplane_filling = 0.0; ///< at the start
+  double midplane_filling = 0.0; ///< at the start, where streamlines are closest
   std::int64_t steps = 0;
   double memory_mb = 0.0;   ///< estimate of the largest use, 10⁶ bytes
   double estimated_s = 0.0; ///< estimate of the processor time, s: on one thread the wall time

@@ -21,12 +21,20 @@ struct PlanetSettings {
   Frequencies frequencies;        ///< κ/Ω, ν/Ω
 };
 
+/// The mean motion at the start: circles, unless the scene patterns the eccentricity vectors in x.
+struct StreamlineSettings {
+  int waves = 1;            ///< n of the phases 2π n X / L_x
+  double bunching = 0.0;    ///< q
+  double inclination = 0.0; ///< ⟨r⟩
+};
+
 struct ParticleSettings {
   std::size_t count = 0; ///< N, derived when the file gives τ or Σ
   double density = 0.0;  ///< kg/m³
   SizeLaw sizes;
   double velocity_dispersion = 2.0; ///< c_x in ⟨r⟩ Ω
   std::uint64_t seed = 1;
+  StreamlineSettings streamlines;
 };
 
 /// Steps are integers: `end` and the schedules are rounded to whole kick intervals.
@@ -60,6 +68,8 @@ struct Scene {
   double surface_density() const;
   /// Optical depth Σ π r² / area.
   double optical_depth() const;
+  /// The same where streamlines are closest at the start, 1/(1 − q) of it.
+  double bunched_optical_depth() const;
 };
 
 /// Reads and checks a scene file; overrides are "a.b=value" with TOML values (bare words are taken as strings).

@@ -8,8 +8,8 @@
 
 namespace keeler {
 
-/// A fresh uniform patch, or the snapshot that the scene names. Throws UsageError (too dense) or IoError (the
-/// snapshot).
+/// A fresh patch on the scene's streamlines, or the snapshot that the scene names. Throws UsageError (too dense) or
+/// IoError (the snapshot).
 Patch initial_patch(const Scene& scene);
 
 /// The patch of a snapshot, made the start of a run of this scene: the scene's frequencies, its own box, time zero.

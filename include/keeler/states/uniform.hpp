@@ -2,6 +2,7 @@
 #pragma once
 
 #include <keeler/particles/patch.hpp>
+#include <keeler/states/streamlines.hpp>
 
 #include <cstdint>
 #include <vector>
@@ -16,12 +17,14 @@ struct UniformRequest {
   double density = 900.0;     ///< kg m⁻³
   double dispersion_x = 1.0;  ///< c_x, m rad⁻¹
   double dispersion_z = 0.65; ///< c_z, m rad⁻¹; the layer's height is c_z/ν
+  Streamlines streamlines;    ///< that the mean motion follows; circles unless given
   std::uint64_t seed = 1;
 };
 
-/// Uniform in x and y, Gaussian in z, eccentricity and inclination vectors Gaussian (so that c_y = c_x κ/2).
-/// Overlapping particles are pushed apart along their centre lines until none is left; velocities stay. Same request,
-/// same state, for any number of threads. Throws UsageError when the layer is too dense for that.
+/// Uniform in x and y (in X, where streamlines bunch), Gaussian in z, eccentricity and inclination vectors Gaussian
+/// about those of the streamlines (so that c_y = c_x κ/2). Overlapping particles are pushed apart along their centre
+/// lines until none is left; velocities stay. Same request, same state, for any number of threads. Throws UsageError
+/// when the layer is too dense for that.
 Patch uniform_patch(const UniformRequest& request);
 
 } // namespace keeler

@@ -83,6 +83,8 @@ TEST_CASE("what is missing is told with an example") {
   CHECK(with("sizes = { law = \"equal\", radius = 1.0 }\n", "") ==
         "s.toml:5:2: [particles.sizes] is missing (it says how large they are); add a table [particles.sizes]");
   CHECK(fault("") == "s.toml:1:1: [planet] is missing (it says where the patch orbits); add a table [planet]");
+  CHECK(with("count = 300", "count = 300\nstreamlines = { waves = 2 }").find("streamlines.bunching is missing") !=
+        std::string::npos);
   CHECK(fault(least + "[collisions]\nrestitution = { law = \"constant\" }\n").find("restitution.value is missing") !=
         std::string::npos);
 }
@@ -116,6 +118,10 @@ TEST_CASE("impossible requests are told") {
         "s.toml:6:17: too dense (the mid-plane would be filled to 0.44, and 0.4 is the most that can be placed without "
         "overlap); raise velocity_dispersion to at least 2.52 or lower the optical depth of 1.8");
   CHECK(with("count = 300", "optical_depth = 1.8\nvelocity_dispersion = 2.52") == "");
+  // 0.9 bunched by q = 0.5 is 1.8 where streamlines are closest
+  CHECK(with("count = 300", "optical_depth = 0.9\nstreamlines = { waves = 1, bunching = 0.5 }") ==
+        "s.toml:6:17: too dense (the mid-plane would be filled to 0.44, and 0.4 is the most that can be placed without "
+        "overlap); raise velocity_dispersion to at least 2.52 or lower the optical depth of 0.9 or the bunching");
   CHECK(with("count = 300", "optical_depth = 1e-6").find("makes 0 particles") != std::string::npos);
   CHECK(with("count = 300", "optical_depth = 0.1\nseed = 3").empty());
   CHECK(

@@ -28,6 +28,8 @@ TEST_CASE("the least scene has the documented defaults") {
   CHECK(scene.particles.sizes.max == 1.0);
   CHECK(scene.particles.velocity_dispersion == 2.0);
   CHECK(scene.particles.seed == 1);
+  CHECK(scene.particles.streamlines.bunching == 0.0);
+  CHECK(scene.particles.streamlines.inclination == 0.0);
   CHECK(scene.collisions.finder == "certified");
   CHECK(scene.collisions.elastic_below == 1e-2);
   CHECK(scene.collisions.restitution.kind == RestitutionLaw::Kind::bridges);
@@ -59,6 +61,7 @@ density = 500
 velocity_dispersion = 12.5
 seed = 42
 sizes = { law = "power", exponent = 2.5, min = 0.5, max = 5 }
+streamlines = { waves = 3, bunching = 0.7, inclination = 1.5 }
 [collisions]
 finder = "linear-full"
 elastic_below = 0
@@ -90,6 +93,10 @@ checkpoint_every = 0.25
   CHECK(std::fabs(scene.surface_density() / 100 - 1) <= 0.5 / static_cast<double>(scene.particles.count));
   CHECK(scene.particles.velocity_dispersion == 12.5);
   CHECK(scene.particles.seed == 42);
+  CHECK(scene.particles.streamlines.waves == 3);
+  CHECK(scene.particles.streamlines.bunching == 0.7);
+  CHECK(scene.particles.streamlines.inclination == 1.5);
+  CHECK(scene.bunched_optical_depth() == doctest::Approx(scene.optical_depth() / 0.3).epsilon(1e-14));
   CHECK(scene.collisions.finder == "linear-full");
   CHECK(scene.collisions.elastic_below == 0.0);
   CHECK(scene.collisions.restitution.kind == RestitutionLaw::Kind::constant);

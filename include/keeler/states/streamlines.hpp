@@ -1,0 +1,28 @@
+// Streamlines: circles, or epicycles whose phases are patterned in x, so that they bunch once an orbit.
+//
+//   X -> x = X − e cos kX,  y = Y + (2/κ) e sin kX   at time zero; φ = κt + kX later
+//   ∂x/∂X = 1 + k e sin(κt + kX): between 1 − q and 1 + q, q = k e < 1, so that streamlines never cross
+//
+// All particles may swing up and down together besides, with one inclination and one phase.
+#pragma once
+
+#include <keeler/orbit/elements.hpp>
+
+namespace keeler {
+
+struct Streamlines {
+  double wave_number = 0.0;  ///< k, rad m⁻¹: 2π n / L_x in a periodic box
+  double eccentricity = 0.0; ///< e, m
+  double inclination = 0.0;  ///< i, m, with i sin ζ = 0 at time zero
+
+  /// n waves in a length, bunched by q; the pattern leads outward in phase, or lags where n < 0.
+  static Streamlines bunched(int waves, double length, double q);
+
+  /// At time zero, on the streamline of guiding centre X, with Y = 0.
+  Elements elements(double guiding_x) const;
+
+  /// The X of the streamline that passes a place at time zero.
+  double guiding_x(double x) const;
+};
+
+} // namespace keeler
