@@ -37,6 +37,7 @@ int run(int argc, char** argv) {
   add_analyze(program, action);
   add_render(program, action);
   add_bench(program, action);
+  add_study(program, action, arguments);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& asked) { // --help and --version

@@ -97,9 +97,9 @@ void Document::figure(const std::filesystem::path& folder, const std::string& na
   const bool vector = std::filesystem::exists(folder / (name + ".svg"));
   markdown_ += fmt::format("\n![{}]({}.{})\n\n*{}*\n", name, place, vector ? "svg" : "png", caption);
   const std::string type = vector ? "svg+xml" : "png";
-  body_ += fmt::format("<figure><img alt=\"{}\" src=\"data:image/{};base64,{}\"><figcaption>{}</figcaption></figure>\n",
-                       name, type, base64(read_file(folder / (name + (vector ? ".svg" : ".png")))),
-                       inline_html(caption));
+  body_ +=
+      fmt::format("<figure><img alt=\"{}\" src=\"data:image/{};base64,{}\"><figcaption>{}</figcaption></figure>\n",
+                  name, type, base64(read_file(folder / (name + (vector ? ".svg" : ".png")))), inline_html(caption));
 }
 
 std::string Document::html() const {

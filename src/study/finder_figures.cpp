@@ -43,8 +43,10 @@ bool figure1(const FinderStudyData& data, const fs::path& folder) {
     const bool line = path.starts_with("straight");
     curves += fmt::format("{}'figure1.dat' index {} using 1:COLUMN with lines lc rgb '{}' lw {} title '{}'",
                           index ? ", " : "", index, line ? colours[static_cast<std::size_t>(1 + index) % 6] : "#bbbbbb",
-                          line ? 2 : 1, line ? fmt::format("{}, step {:.2g}", path, result.at("step_orbits").get<double>())
-                                             : path == "certified" ? "every finder" : "");
+                          line ? 2 : 1,
+                          line ? fmt::format("{}, step {:.2g}", path, result.at("step_orbits").get<double>())
+                          : path == "certified" ? "every finder"
+                                                : "");
     ++index;
   }
   write_text(folder / "figure1.csv", drift_csv(all));
@@ -65,8 +67,8 @@ bool figure1(const FinderStudyData& data, const fs::path& folder) {
   };
   return plot(folder, "figure1",
               "set multiplot layout 1,2\nset key left bottom\nset xlabel 'orbits'\nset grid\n" +
-                  panel("2", "drift of the mean guiding centre, r") + panel("3", "drift of the mean vertical motion, r") +
-                  "unset multiplot\n",
+                  panel("2", "drift of the mean guiding centre, r") +
+                  panel("3", "drift of the mean vertical motion, r") + "unset multiplot\n",
               1100, 480);
 }
 
@@ -138,9 +140,10 @@ std::string histogram(const Json& audit, const char* field, std::size_t first, s
 bool histograms(const FinderStudyData& data, const fs::path& folder, const std::string& figure, const char* field,
                 const std::vector<std::string>& finders) {
   const std::string& state = data.states.front().name;
-  std::string script = fmt::format("set multiplot layout {},1\nset style fill solid 1.0 noborder\nset boxwidth 0.9\n"
-                                   "set logscale y\nset yrange [0.5:*]\nset xrange [0:52]\nset ylabel 'calls'\nset grid y\n",
-                                   finders.size());
+  std::string script =
+      fmt::format("set multiplot layout {},1\nset style fill solid 1.0 noborder\nset boxwidth 0.9\n"
+                  "set logscale y\nset yrange [0.5:*]\nset xrange [0:52]\nset ylabel 'calls'\nset grid y\n",
+                  finders.size());
   for (const std::string& finder : finders) {
     const std::string file = fmt::format("{}-{}.dat", figure, finder);
     write_text(folder / file, histogram(data.audit(state, data.shown_step, finder), field, 1, 51));
@@ -167,8 +170,8 @@ bool local_times_figure(const FinderStudyData& data, const fs::path& folder) {
   std::string script = "set xlabel 'share of particles moved earlier in the step'\nset ylabel 'ns per call'\nset grid\n"
                        "set key outside right\nset yrange [0:*]\nplot ";
   for (std::size_t k = 0; k < shown_finders().size(); ++k)
-    script += fmt::format("{}'local-times.dat' using 1:{} with linespoints {} title '{}'", k ? ", " : "", k + 2, style(k),
-                          shown_finders()[k]);
+    script += fmt::format("{}'local-times.dat' using 1:{} with linespoints {} title '{}'", k ? ", " : "", k + 2,
+                          style(k), shown_finders()[k]);
   return plot(folder, "local-times", script + "\n", 800, 420);
 }
 

@@ -30,8 +30,8 @@ std::string job_name(const std::string& kind, const std::string& state, double s
 /// finders.csv and finders.json: a row a timed run.
 void write_finder_tables(const FinderStudyData& data);
 
-/// figures/figure1 … figure6 and those of the open questions, as PNG and SVG; returns false, and leaves only their data,
-/// when there is no gnuplot.
+/// figures/figure1 … figure6 and those of the open questions, as PNG and SVG; returns false, and leaves only their
+/// data, when there is no gnuplot.
 bool draw_finder_figures(const FinderStudyData& data);
 
 /// report.md and report.html.

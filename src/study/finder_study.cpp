@@ -8,6 +8,7 @@
 #include <keeler/io/files.hpp>
 #include <keeler/io/provenance.hpp>
 #include <keeler/study/median.hpp>
+#include <keeler/study/perturbed_ring.hpp>
 
 #include <fmt/format.h>
 
@@ -20,13 +21,14 @@ struct Plan {
   std::size_t count;
   std::vector<double> steps; // orbits; each divides a tenth
   int repeats;
+  double drift_orbits;
   std::vector<double> shares = {0.0, 0.25, 0.5, 0.75, 1.0};
 };
 
 Plan plan_of(const FinderStudySettings& settings) {
   if (settings.quick)
-    return {std::min<std::size_t>(settings.count, 3000), {1e-3, 1.0 / 300.0, 1e-2}, 2};
-  return {settings.count, {1e-4, 1.0 / 3000.0, 1e-3, 1.0 / 300.0, 1e-2}, 6};
+    return {std::min<std::size_t>(settings.count, 3000), {1e-3, 1.0 / 300.0, 1e-2}, 2, 10.0};
+  return {settings.count, {1e-4, 1.0 / 3000.0, 1e-3, 1.0 / 300.0, 1e-2}, 6, 100.0};
 }
 
 // A study is continued only with the settings that began it. Returns the commit of the program that did.
@@ -81,6 +83,7 @@ public:
     for (const double step : {1e-3, 1e-2})
       for (const double share : plan_.shares)
         add_local_times(step, share);
+    add_drifts();
     for (int repeat = 0; repeat < plan_.repeats; ++repeat)
       for (const StudyState& state : states_)
         for (const double step : plan_.steps)
@@ -111,6 +114,23 @@ private:
     const StudyState& state = states_.front();
     add(fmt::format("local/{}/{:.6g}/{}", state.name, step, share), 2e9,
         [&state, step, share] { return local_times(state, step, share, 5); });
+  }
+
+  // Figure 1. The finders at one step: they differ from zero by rounding at any.
+  void add_drifts() {
+    for (const double step : {1e-3, 3e-3, 1e-2})
+      for (const char* path : {straight_path, control_path})
+        add_drift(path, step);
+    for (const std::string& finder : all_finders())
+      add_drift(finder, 1e-2);
+  }
+
+  void add_drift(const std::string& path, double step) {
+    PerturbedRing ring;
+    ring.step_orbits = step;
+    ring.orbits = plan_.drift_orbits;
+    add(fmt::format("drift/{}/{:.6g}", path, step), ring.orbits / step * 1e3 * 400.0,
+        [ring, path] { return drift_of_means(ring, path); });
   }
 
   // In another order in each repeat, so that a machine that drifts favours no finder.
@@ -173,22 +193,24 @@ bool study_finders(const FinderStudySettings& settings, const std::atomic<bool>&
   JobList list(settings.folder / "measurements.jsonl");
   const std::size_t left = missing(jobs, list);
   if (left > 0 && left < jobs.size() && commit != provenance.at("commit"))
-    throw UsageError(fmt::format("'{}' was begun with another build of the program ({}), and times of two builds do not "
-                                 "compare; go on with that one or name another folder",
-                                 settings.folder.string(), commit));
+    throw UsageError(
+        fmt::format("'{}' was begun with another build of the program ({}), and times of two builds do not "
+                    "compare; go on with that one or name another folder",
+                    settings.folder.string(), commit));
   if (left > 0)
     announce(jobs, left, settings.notice);
 
   const int threads_before = threads();
   set_threads(1); // what follows is timed
-  const bool finished = list.run(
-      jobs, [&](const JobProgress& p) { settings.progress(p.share, p.remaining_s, p.name); }, stop);
+  const bool finished = list.run(jobs, settings.progress, stop);
   set_threads(threads_before);
   if (!finished)
     return false;
 
-  const FinderStudyData data{settings.folder, *states,           plan.steps, 1e-3,
-                             plan.repeats,    plan.shares,       list.results(), provenance.at("host"),
+  const FinderStudyData data{settings.folder, *states,
+                             plan.steps,      1e-3,
+                             plan.repeats,    plan.shares,
+                             list.results(),  provenance.at("host"),
                              commit,          provenance.at("arguments")};
   write_finder_tables(data);
   const bool drawn = draw_finder_figures(data);

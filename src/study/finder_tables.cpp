@@ -11,8 +11,8 @@ namespace {
 Json row_of(const FinderStudyData& data, const StudyState& state, double step, const std::string& finder, int repeat) {
   const Json& run = data.result(job_name("run", state.name, step, finder, repeat));
   const Json& audit = data.audit(state.name, step, finder);
-  Json row = {{"state", state.name}, {"step_orbits", step}, {"finder", finder}, {"repeat", repeat},
-              {"cpu_s", run.at("cpu_s")}};
+  Json row = {
+      {"state", state.name}, {"step_orbits", step}, {"finder", finder}, {"repeat", repeat}, {"cpu_s", run.at("cpu_s")}};
   for (const char* key : {"calls", "hits", "missed", "false_hits", "late", "misordered", "evaluations"})
     row[key] = audit.at(key);
   row["ns_per_call"] = run.at("ns_per_call");

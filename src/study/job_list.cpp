@@ -30,12 +30,11 @@ void JobList::keep(const std::string& name, const Json& result) {
   results_[name] = result;
 }
 
-bool JobList::run(const std::vector<Job>& jobs, const std::function<void(const JobProgress&)>& progress,
+bool JobList::run(const std::vector<Job>& jobs, const std::function<void(const StudyProgress&)>& progress,
                   const std::atomic<bool>& stop) {
   double elapsed = 0.0, spent = 0.0, all = 0.0, done = 0.0;
   for (const Job& job : jobs)
     all += job.weight;
-  std::size_t count = 0;
   for (const Job& job : jobs) {
     if (stop)
       return false;
@@ -47,10 +46,8 @@ bool JobList::run(const std::vector<Job>& jobs, const std::function<void(const J
       spent += job.weight;
     }
     done += job.weight;
-    ++count;
     const double left = spent > 0.0 ? elapsed * (all - done) / spent : 0.0;
-    if (progress)
-      progress({job.name, count, jobs.size(), done / all, elapsed, left});
+    progress({done / all, elapsed, left, job.name});
   }
   return true;
 }

@@ -2,6 +2,8 @@
 // a line of a file as soon as it is known. Started again on the same file, the list does only what is missing.
 #pragma once
 
+#include <keeler/study/finder_study.hpp>
+
 #include <nlohmann/json.hpp>
 
 #include <atomic>
@@ -22,20 +24,13 @@ struct Job {
   std::function<Json()> work;
 };
 
-struct JobProgress {
-  std::string name;
-  std::size_t done = 0, all = 0;
-  double share = 0.0; ///< of the weight
-  double elapsed_s = 0.0, remaining_s = 0.0;
-};
-
 class JobList {
 public:
   /// Reads the results that the file holds; a line that an interruption cut short is dropped.
   explicit JobList(const std::filesystem::path& file);
 
   /// Does the jobs that have no result yet, in order; returns false when `stop` was set, which is obeyed between jobs.
-  bool run(const std::vector<Job>& jobs, const std::function<void(const JobProgress&)>& progress,
+  bool run(const std::vector<Job>& jobs, const std::function<void(const StudyProgress&)>& progress,
            const std::atomic<bool>& stop);
 
   /// By name of the job.

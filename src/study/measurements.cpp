@@ -208,4 +208,14 @@ Json local_times(const StudyState& state, double step, double share, int repeats
           {"ns_per_call", times_per_call(pairs, repeats)}};
 }
 
+Json drift_of_means(const PerturbedRing& ring, const std::string& path) {
+  Json rows = Json::array();
+  for (const DriftRow& row : perturbed_ring_drift(ring, path).rows)
+    rows.push_back({{"orbits", row.orbits},
+                    {"mean_guiding_x_r", row.mean_guiding_x_r},
+                    {"mean_vertical_r", row.mean_vertical_r},
+                    {"collisions_per_particle", row.collisions_per_particle}});
+  return {{"path", path}, {"step_orbits", ring.step_orbits}, {"rows", rows}};
+}
+
 } // namespace keeler

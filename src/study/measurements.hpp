@@ -4,6 +4,8 @@
 #include "job_list.hpp"
 #include "study_states.hpp"
 
+#include <keeler/study/perturbed_ring.hpp>
+
 namespace keeler {
 
 /// The paper's five, in its order.
@@ -29,5 +31,8 @@ Json rejection(const StudyState& state, double step, int repeats);
 
 /// Cost and truth of each finder when a share of the particles has changed its velocity earlier in the step.
 Json local_times(const StudyState& state, double step, double share, int repeats);
+
+/// Figure 1: how far the means of a perturbed ring drift on a path.
+Json drift_of_means(const PerturbedRing& ring, const std::string& path);
 
 } // namespace keeler

@@ -29,11 +29,10 @@ const Recipe recipes[] = {{"equal", {SizeLaw::Kind::equal, 3.0, 1.0, 1.0, {}, {}
 
 Scene scene_of(const Recipe& r, std::size_t count) {
   const double size = std::sqrt(static_cast<double>(count) * pi * r.sizes.mean_power(2) / r.optical_depth);
-  const std::string sizes =
-      r.sizes.kind == SizeLaw::Kind::equal
-          ? fmt::format("{{ law = \"equal\", radius = {} }}", r.sizes.min)
-          : fmt::format("{{ law = \"power\", exponent = {}, min = {}, max = {} }}", r.sizes.exponent, r.sizes.min,
-                        r.sizes.max);
+  const std::string sizes = r.sizes.kind == SizeLaw::Kind::equal
+                                ? fmt::format("{{ law = \"equal\", radius = {} }}", r.sizes.min)
+                                : fmt::format("{{ law = \"power\", exponent = {}, min = {}, max = {} }}",
+                                              r.sizes.exponent, r.sizes.min, r.sizes.max);
   return parse_scene(fmt::format(R"(
 title = "The finders' study, {0} sizes"
 [planet]
@@ -92,10 +91,11 @@ std::optional<Made> make_clumped(const Scene& scene, const std::function<void(co
   if (!state)
     return std::nullopt;
   const Settling& s = state->clumping.settling;
-  return Made{state->patch,
-              fmt::format("{} particles, {:.3g} orbits with self-gravity, until the mean autocorrelation amplitude of an "
-                          "orbit settled ({:.3g}, {:.0f} % from the orbit before)",
-                          scene.particles.count, state->clumping.orbits, s.amplitude, 100.0 * s.change)};
+  return Made{
+      state->patch,
+      fmt::format("{} particles, {:.3g} orbits with self-gravity, until the mean autocorrelation amplitude of an "
+                  "orbit settled ({:.3g}, {:.0f} % from the orbit before)",
+                  scene.particles.count, state->clumping.orbits, s.amplitude, 100.0 * s.change)};
 }
 
 } // namespace

@@ -15,14 +15,19 @@
 
 namespace keeler {
 
+struct StudyProgress {
+  double share = 0.0; ///< of the work done, 0 … 1
+  double elapsed_s = 0.0, remaining_s = 0.0;
+  std::string what; ///< is being done
+};
+
 struct FinderStudySettings {
   std::filesystem::path folder;
   std::size_t count = 10000; ///< particles of equal size; the states with a size distribution have half as many
   bool quick = false;        ///< fewer particles, steps and repeats: minutes instead of an hour and a half
   std::vector<std::string> arguments; ///< the command line, for provenance
   std::function<void(const std::string&)> notice;
-  /// Share of the work done (0 … 1), seconds left, and what is being done.
-  std::function<void(double, double, const std::string&)> progress;
+  std::function<void(const StudyProgress&)> progress;
 };
 
 /// Carries out what is missing and writes the report. Returns false when `stop` was set: the folder can be continued.
