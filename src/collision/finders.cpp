@@ -1,9 +1,11 @@
 #include <keeler/collision/finders.hpp>
 
+#include <keeler/collision/motion/cubic.hpp>
 #include <keeler/collision/motion/full.hpp>
 #include <keeler/collision/motion/relative.hpp>
 #include <keeler/collision/search/certified.hpp>
 #include <keeler/collision/search/linear.hpp>
+#include <keeler/collision/search/newton.hpp>
 
 namespace keeler {
 namespace {
@@ -12,10 +14,28 @@ template<class Motion, class Search> std::unique_ptr<Finder> make() {
   return std::make_unique<MotionSearch<Motion, Search>>();
 }
 
+using OriginalNewton = NewtonSearch<NewtonForm::original>;
+using Newton = NewtonSearch<NewtonForm::damped>;
+using NewtonAsCoded = NewtonSearch<NewtonForm::as_coded>;
+using Linear = LinearSearch<LinearForm::full>;
+using LinearOnCubic = LinearSearch<LinearForm::cubic>;
+
 constexpr FinderEntry table[] = {
     {"certified", "relative epicycle, guaranteed first root", make<TangentMotion, CertifiedSearch>},
-    {"linear-full", "own epicycles, straight-line guesses (the paper's fastest; can miss)",
-     make<FullMotion, LinearSearch>},
+    {"newton-relative", "relative epicycle, damped Newton", make<RelativeMotion, Newton>},
+    {"linear-relative", "relative epicycle, straight-line guesses", make<RelativeMotion, Linear>},
+    {"original", "own epicycles, Newton steps of half length", make<FullMotion, OriginalNewton>},
+    {"newton-full", "own epicycles, damped Newton", make<FullMotion, Newton>},
+    {"newton-full-as-coded", "the same, with trials at the old guess as published", make<FullMotion, NewtonAsCoded>},
+    {"newton-cubic", "cubics fitted for each pair, damped Newton", make<CubicMotion, Newton>},
+    {"newton-cubic-cached", "cubics kept for each particle, damped Newton", make<CachedCubicMotion, Newton>},
+    {"linear-full", "own epicycles with the start's states kept, straight-line guesses (the paper's fastest)",
+     make<StoredStartMotion, Linear>},
+    {"linear-full-no-start", "the same with nothing kept", make<FullMotion, Linear>},
+    {"linear-cubic", "cubics fitted for each pair that approaches, straight-line guesses",
+     make<LateCubicMotion, LinearOnCubic>},
+    {"linear-cubic-cached", "cubics kept for each particle, straight-line guesses",
+     make<CachedCubicMotion, LinearOnCubic>},
 };
 
 constexpr const char* exit_names[finder_exits] = {"hit",     "overlapping", "receding",    "missed",

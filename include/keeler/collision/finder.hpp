@@ -6,11 +6,12 @@
 //   Motion(const Pair&, const DriftStep&, const Memory& lo, const Memory& hi);
 //   Separation at(double time)                        one evaluation
 // and may have
-//   Separation at_start()                             the separation at pair.start from what is kept: no evaluation
+//   std::optional<Separation> at_start()              the separation at pair.start from what is kept, if that can be:
+//                                                     no evaluation
 //   static bool surely_apart(const Query&, const DriftStep&)    proves a miss before a pair is even set up
 // Search: how guesses move to the first contact. It has
 //   template<class Motion> static FinderResult find(Motion&, const Pair&);
-// A new finder is one such file and one line in src/collision/finders.cpp.
+// A new finder is one such file and one line in src/collision/finders.cpp: docs/dev/finders.md shows one.
 #pragma once
 
 #include <keeler/collision/pair.hpp>
@@ -18,7 +19,9 @@
 #include <keeler/core/threads.hpp>
 #include <keeler/particles/store.hpp>
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -64,20 +67,26 @@ inline Pair pair_of(const Query& q, const DriftStep& s) {
   pair.shift_x = q.shift_x;
   pair.shift_y = q.shift_y;
   pair.reach = a.radius + b.radius;
+  pair.smaller = std::min(a.radius, b.radius);
   pair.start = q.start;
   pair.end = s.end;
   pair.step = s.end - s.begin;
   return pair;
 }
 
+/// What the image of `hi` adds to the state of the particle itself at a time: images drift with the shear, exactly.
+inline State image_offset(const Pair& pair, const Frequencies& f, double time) {
+  const double drift = -f.shear() * pair.shift_x;
+  return {Vec3(pair.shift_x, pair.shift_y + drift * time, 0.0), Vec3(0.0, drift, 0.0)};
+}
+
 /// The separation at the start of the span: from what the motion keeps when it can, else an evaluation, counted.
 template<class Motion> Separation first_separation(Motion& motion, const Pair& pair, FinderResult& result) {
-  if constexpr (requires { motion.at_start(); }) {
-    return motion.at_start();
-  } else {
-    ++result.evaluations;
-    return motion.at(pair.start);
-  }
+  if constexpr (requires { motion.at_start(); })
+    if (const std::optional<Separation> kept = motion.at_start())
+      return *kept;
+  ++result.evaluations;
+  return motion.at(pair.start);
 }
 
 class Finder {
@@ -90,6 +99,7 @@ public:
   /// A particle has changed its velocity.
   virtual void changed(std::size_t particle) = 0;
 
+  /// A contact's time lies in [query.start, end of the step): a root elsewhere is reported as `outside`.
   virtual FinderResult find(const Query& query) const = 0;
 
   /// Kept for each particle beyond its elements and tangent.
@@ -117,7 +127,10 @@ public:
         return {};
     const Pair pair = pair_of(query, *step_);
     Motion motion = motion_of(pair, query);
-    return Search::find(motion, pair);
+    FinderResult result = Search::find(motion, pair);
+    if (result.contact() && !(result.time >= pair.start && result.time < pair.end))
+      result.exit = FinderExit::outside;
+    return result;
   }
 
   std::size_t bytes_per_particle() const override {

@@ -11,6 +11,7 @@ struct Pair {
   Elements lo, hi;
   double shift_x = 0.0, shift_y = 0.0; ///< what has been added to X and Y of `hi`, at the epoch
   double reach = 0.0;                  ///< r_i + r_j, m
+  double smaller = 0.0;                ///< the smaller of the two radii, m
   double start = 0.0; ///< the later of the two particles' last velocity changes in this step, or the step's start
   double end = 0.0;   ///< the end of the step
   double step = 0.0;  ///< the length of the whole step

@@ -1,6 +1,6 @@
 // Motion, form "relative epicycle": the relative orbit of two particles is an epicycle of the differences of their
 // elements, so one sine and cosine a guess serve, and its speed and acceleration are bounded for all times.
-// TangentMotion is the same path, with most misses proven from the tangents before it is set up.
+// TangentMotion is the same path with those bounds, and most misses are proven from the tangents before it is set up.
 #pragma once
 
 #include <keeler/collision/finder.hpp>
@@ -13,7 +13,23 @@ namespace keeler {
 class RelativeMotion {
 public:
   RelativeMotion(const Pair& pair, const DriftStep& step)
-      : elements_(pair.hi - pair.lo), frequencies_(step.frequencies) {
+      : elements_(pair.hi - pair.lo), frequencies_(step.frequencies) {}
+
+  Separation at(double time) const {
+    const State s = state_at(elements_, frequencies_, Rotation(frequencies_, time));
+    return {s.position, s.velocity};
+  }
+
+protected:
+  Elements elements_;
+  Frequencies frequencies_;
+};
+
+class TangentMotion : public RelativeMotion {
+public:
+  static bool surely_apart(const Query& query, const DriftStep& step) { return !may_touch(query, step); }
+
+  TangentMotion(const Pair& pair, const DriftStep& step) : RelativeMotion(pair, step) {
     const Frequencies& f = frequencies_;
     const double e = elements_.eccentricity(), i = elements_.inclination();
     const double horizontal = f.shear() * std::fabs(elements_.guiding_x) + 2.0 * e;
@@ -21,11 +37,6 @@ public:
     speed_ = up * std::sqrt(horizontal * horizontal + f.nu * f.nu * i * i);
     acceleration_ = up * std::hypot(2.0 * f.kappa * e, f.nu * f.nu * i);
     scale_ = std::max({std::fabs(elements_.guiding_x), std::fabs(elements_.guiding_y), 2.0 * e / f.kappa, i});
-  }
-
-  Separation at(double time) const {
-    const State s = state_at(elements_, frequencies_, Rotation(frequencies_, time));
-    return {s.position, s.velocity};
   }
 
   double largest_speed() const { return speed_; }               ///< V: |v| <= V at all times (κ <= 2)
@@ -44,15 +55,7 @@ public:
   }
 
 private:
-  Elements elements_;
-  Frequencies frequencies_;
   double speed_, acceleration_, scale_;
-};
-
-class TangentMotion : public RelativeMotion {
-public:
-  using RelativeMotion::RelativeMotion;
-  static bool surely_apart(const Query& query, const DriftStep& step) { return !may_touch(query, step); }
 };
 
 } // namespace keeler

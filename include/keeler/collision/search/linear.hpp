@@ -1,73 +1,80 @@
 // Search, form "linear" (the paper's fastest): the next guess is where straight lines from the present guess would
-// touch, or else their closest approach. Its limits are those of the paper's code; it can miss a contact.
+// touch, or else their closest approach; the move is halved while |f| grows or the particles recede there. It can miss
+// a contact, most often in this way: when it has moved to a closest approach that turns out to lie farther off than
+// d² = 2 R², the form "full" ends, though from there straight lines may well lead to a contact. That test is made after
+// the move, on the distance reached, as published.
 #pragma once
 
 #include <keeler/collision/finder.hpp>
-
-#include <cmath>
+#include <keeler/collision/search/published.hpp>
 
 namespace keeler {
 
-/// Constants of the published code (HardSphereCollSims, 2023).
-struct LinearLimits {
-  static constexpr double convergence = 1e-8; ///< of |d² − R²|, in R²
-  static constexpr int iterations = 50;
-  static constexpr int closest_moves = 25;   ///< moves to a closest approach before giving up
-  static constexpr double least_move = 1e-8; ///< of the step
-  static constexpr double farthest = 5.0;    ///< steps from the step's start
-  static constexpr double hopeless = 2.0;    ///< gives up when a closest approach has d² beyond this many R²
-};
+/// The published code differs a little between the two motions that it searches in this way.
+enum class LinearForm { full, cubic };
 
-struct LinearSearch {
+template<LinearForm form> struct LinearSearch {
   template<class Motion> static FinderResult find(Motion& motion, const Pair& pair);
+
+private:
+  static double overlap_delay(const Separation& now, const Pair& pair);
 };
 
-template<class Motion> FinderResult LinearSearch::find(Motion& motion, const Pair& pair) {
-  using L = LinearLimits;
-  const double reach2 = pair.reach * pair.reach, step_start = pair.end - pair.step;
-  FinderResult result;
-  result.time = pair.start;
-  Separation now = first_separation(motion, pair, result);
-  if (!std::isfinite(now.gap(pair.reach)) || !std::isfinite(now.closing())) {
-    result.exit = FinderExit::not_a_number;
-    return result;
-  }
-  if (now.closing() >= 0.0) {
-    result.exit = FinderExit::receding;
-    return result;
-  }
-  if (now.d.squaredNorm() <= reach2 * (1.0 + L::convergence)) {
-    result.exit = FinderExit::overlapping;
-    return result;
-  }
+template<LinearForm form> double LinearSearch<form>::overlap_delay(const Separation& now, const Pair& pair) {
+  if (form == LinearForm::full && pair.start > pair.end - pair.step)
+    return Published::overlap_radius * pair.smaller / now.v.norm();
+  return Published::overlap_step * pair.step;
+}
 
-  double t = pair.start;
+template<LinearForm form>
+template<class Motion>
+FinderResult LinearSearch<form>::find(Motion& motion, const Pair& pair) {
+  using P = Published;
+  const double reach2 = pair.reach * pair.reach;
+  FinderResult result;
+  Separation now = first_separation(motion, pair, result);
+  if (!is_number(now))
+    return not_a_number(result);
+  if (now.closing() >= 0.0)
+    return leave(result, PublishedExit::receding);
+  if (now.d.squaredNorm() <= reach2 * (1.0 + P::convergence))
+    return overlap(result, pair, overlap_delay(now, pair));
+
+  double guess = pair.start;
   int closest_moves = 0;
-  result.exit = FinderExit::gave_up;
-  for (; result.iterations < L::iterations; ++result.iterations) {
-    const double v2 = now.v.squaredNorm(), dv = now.d.dot(now.v);
-    const double discriminant = dv * dv - v2 * now.gap(pair.reach);
+  while (result.iterations < P::iterations) {
+    ++result.iterations;
+    const double gap = now.gap(pair.reach), v2 = now.v.squaredNorm(), dv = now.d.dot(now.v);
+    const double discriminant = dv * dv - v2 * gap;
     const bool touches = discriminant >= 0.0;
-    const double move = touches ? (-dv - std::sqrt(discriminant)) / v2 : -dv / v2;
-    if (!touches && (++closest_moves > L::closest_moves || std::fabs(move) < L::least_move * pair.step))
-      return result;
-    t += move;
-    if (!(std::fabs(t - step_start) <= L::farthest * pair.step)) {
-      result.exit = FinderExit::missed;
-      return result;
-    }
-    now = motion.at(t);
+    double move = (-dv - (touches ? std::sqrt(discriminant) : 0.0)) / v2;
+    if (!touches && ++closest_moves > P::closest_moves)
+      return leave(result, PublishedExit::closest_moves);
+    if (!touches && std::fabs(move) < P::least_move * pair.step)
+      return leave(result, PublishedExit::no_movement);
+    if (leads_nowhere(move, pair))
+      return leave(result, move > 0.0 ? PublishedExit::too_late : PublishedExit::too_early);
+
+    now = motion.at(guess + move);
     ++result.evaluations;
-    if (std::fabs(now.gap(pair.reach)) < L::convergence * reach2 && now.closing() < 0.0) {
-      const bool in_span = t >= pair.start && t < pair.end;
-      result.exit = in_span ? FinderExit::hit : FinderExit::missed;
-      result.time = t;
+    const auto worse = [&](const Separation& s) {
+      return std::fabs(s.gap(pair.reach)) > std::fabs(gap) || s.closing() > 0.0;
+    };
+    if (!damp(motion, guess, move, now, result, worse))
+      return leave(result, PublishedExit::halvings);
+    if (!is_number(now))
+      return not_a_number(result);
+    guess += move;
+    if (out_of_range(guess, pair, result))
       return result;
+    if (is_root(now, pair.reach) && now.closing() < 0.0) {
+      result.time = guess;
+      return leave(result, PublishedExit::root);
     }
-    if (!touches && now.d.squaredNorm() > L::hopeless * reach2)
-      return result;
+    if (form == LinearForm::full && !touches && now.d.squaredNorm() > P::hopeless * reach2)
+      return leave(result, PublishedExit::no_movement);
   }
-  return result;
+  return leave(result, PublishedExit::iterations);
 }
 
 } // namespace keeler
