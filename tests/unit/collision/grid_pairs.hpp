@@ -1,0 +1,93 @@
+// All pairs that the grid offers in a dense, equilibrium-like patch, put to several finders at once while the certified
+// one drives: the calls that the paper counted.
+#pragma once
+
+#include <keeler/collision/counts.hpp>
+#include <keeler/collision/drift.hpp>
+#include <keeler/core/units.hpp>
+#include <keeler/states/uniform.hpp>
+
+#include <string>
+#include <vector>
+
+namespace keeler::test {
+
+/// Equal spheres of radius 1 at τ = 0.5, with the dispersions of ε = 0.5 in equilibrium (c_x = 2.175, c_z = 1.45 r Ω).
+inline Patch equilibrium_patch(std::size_t count, std::uint64_t seed) {
+  UniformRequest request;
+  request.radii.assign(count, 1.0);
+  const double side = std::sqrt(static_cast<double>(count) * pi / 0.5);
+  request.box = {side, side, request.frequencies.shear(), 0.0};
+  request.dispersion_x = 2.175;
+  request.dispersion_z = 1.45;
+  request.seed = seed;
+  return uniform_patch(request);
+}
+
+/// A patch that moves on step by step.
+struct Ring {
+  Particles particles;
+  ShearingBox box;
+  double step;
+  DriftPhase drift;
+  CollisionTally tally;
+  int steps = 0;
+
+  Ring(const Patch& patch, const CollisionSettings& settings, double step_length)
+      : particles(particles_from(patch, 0.5 * step_length)), box(patch.box), step(step_length),
+        drift(settings, patch.frequencies, 1.3175e-4, step_length) {}
+
+  void advance() {
+    drift.collide(particles, box, box.offset(2 * steps + 1, 0.5 * step), tally);
+    ++steps;
+    const double offset = box.offset(2 * steps + 1, 0.5 * step);
+    const Rebase rebase({1.0, 1.0}, step);
+    for (Body& body : particles.bodies) {
+      Elements& el = body.elements;
+      rebase(el);
+      el = box.image_of(el, box.image_into_cell(el.guiding_x, el.guiding_y, offset), offset);
+    }
+  }
+
+  Patch patch() const {
+    const double offset = box.offset(2 * steps, 0.5 * step);
+    return make_patch(particles, box, offset, {1.0, 1.0}, -0.5 * step);
+  }
+};
+
+/// Asks each finder what the driving one is asked, and compares.
+class AskAll final : public DriftWatch {
+public:
+  struct Asked {
+    std::string name;
+    std::unique_ptr<Finder> finder;
+    FinderCounts counts;
+    std::uint64_t lost = 0;  ///< contacts that the driving finder found and this one did not
+    std::uint64_t false_ = 0; ///< the reverse
+  };
+  std::vector<Asked> asked;
+
+  AskAll() {
+    for (const FinderEntry& entry : finder_table())
+      asked.push_back({entry.name, entry.make(), {}});
+  }
+
+  void begins(const DriftStep& step) override {
+    for (Asked& a : asked)
+      a.finder->begin(step);
+  }
+  void changed(std::size_t particle) override {
+    for (Asked& a : asked)
+      a.finder->changed(particle);
+  }
+  void searched(const Query& query, const FinderResult& truth) override {
+    for (Asked& a : asked) {
+      const FinderResult result = a.finder->find(query);
+      a.counts.add(result);
+      a.lost += truth.contact() && !result.contact();
+      a.false_ += !truth.contact() && result.contact();
+    }
+  }
+};
+
+} // namespace keeler::test
