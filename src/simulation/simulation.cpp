@@ -13,7 +13,7 @@
 namespace keeler {
 namespace {
 
-constexpr double allowed_overlap = 1e-8; // of a radius sum: what the least exact finder, linear-full, leaves behind
+constexpr double allowed_overlap = 1e-8; // of a radius sum: where the inexact finders call a root; not what they miss
 
 SimulationState first_state(const Scene& scene, const Patch& start) {
   require_sound(start);

@@ -7,6 +7,8 @@
 #include <keeler/core/units.hpp>
 #include <keeler/states/uniform.hpp>
 
+#include <algorithm>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -62,17 +64,23 @@ public:
     std::string name;
     std::unique_ptr<Finder> finder;
     FinderCounts counts;
-    std::uint64_t lost = 0;  ///< contacts that the driving finder found and this one did not
-    std::uint64_t false_ = 0; ///< the reverse
+    std::uint64_t lost = 0;     ///< contacts that the driving finder found and this one did not
+    std::uint64_t invented = 0; ///< the reverse
   };
   std::vector<Asked> asked;
+  bool in_span = true; ///< every contact's time so far
 
   AskAll() {
     for (const FinderEntry& entry : finder_table())
       asked.push_back({entry.name, entry.make(), {}});
   }
 
+  const Asked& of(const std::string& name) const {
+    return *std::find_if(asked.begin(), asked.end(), [&](const Asked& a) { return a.name == name; });
+  }
+
   void begins(const DriftStep& step) override {
+    end_ = step.end;
     for (Asked& a : asked)
       a.finder->begin(step);
   }
@@ -84,10 +92,14 @@ public:
     for (Asked& a : asked) {
       const FinderResult result = a.finder->find(query);
       a.counts.add(result);
+      in_span &= !result.contact() || (result.time >= query.start && result.time < end_);
       a.lost += truth.contact() && !result.contact();
-      a.false_ += !truth.contact() && result.contact();
+      a.invented += !truth.contact() && result.contact();
     }
   }
+
+private:
+  double end_ = 0.0;
 };
 
 } // namespace keeler::test
