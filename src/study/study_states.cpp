@@ -5,6 +5,7 @@
 #include <keeler/core/units.hpp>
 #include <keeler/io/files.hpp>
 #include <keeler/io/snapshot.hpp>
+#include <keeler/scene/derived.hpp>
 #include <keeler/simulation/simulation.hpp>
 #include <keeler/states/clumped.hpp>
 #include <keeler/states/initial.hpp>
@@ -14,7 +15,8 @@
 namespace keeler {
 namespace {
 
-constexpr double early_orbits = 0.25; // long enough for the start's own features to go, too short for clumps
+constexpr double early_orbits = 0.25;  // long enough for the start's own features to go, too short for clumps
+constexpr double clumped_orbits = 3.0; // in a box below four λ_cr, which holds too few wakes to settle
 
 struct Recipe {
   const char* name;
@@ -62,9 +64,9 @@ struct Made {
   std::string how;
 };
 
-std::optional<Made> make_early(const Scene& scene, const std::atomic<bool>& stop) {
+std::optional<Made> evolve(const Scene& scene, double orbits, const std::atomic<bool>& stop) {
   Simulation simulation(scene, initial_patch(scene));
-  const long steps = std::lround(early_orbits / scene.time.step);
+  const long steps = std::lround(orbits / scene.time.step);
   for (long k = 0; k < steps; ++k) {
     if (stop)
       return std::nullopt;
@@ -75,11 +77,11 @@ std::optional<Made> make_early(const Scene& scene, const std::atomic<bool>& stop
   return Made{simulation.patch(),
               fmt::format("{} particles, {} orbits with self-gravity from a uniform start (wall time per particle and "
                           "step: gravity {:.0f} ns, drift {:.0f} ns)",
-                          scene.particles.count, early_orbits, split.gravity / passes, split.drift / passes)};
+                          scene.particles.count, orbits, split.gravity / passes, split.drift / passes)};
 }
 
-std::optional<Made> make_clumped(const Scene& scene, const std::function<void(const std::string&)>& say,
-                                 const std::atomic<bool>& stop) {
+std::optional<Made> settle(const Scene& scene, const std::function<void(const std::string&)>& say,
+                           const std::atomic<bool>& stop) {
   double next = 0.0;
   const auto progress = [&](const ClumpingProgress& p) {
     if (p.orbits < next)
@@ -96,6 +98,14 @@ std::optional<Made> make_clumped(const Scene& scene, const std::function<void(co
       fmt::format("{} particles, {:.3g} orbits with self-gravity, until the mean autocorrelation amplitude of an "
                   "orbit settled ({:.3g}, {:.0f} % from the orbit before)",
                   scene.particles.count, state->clumping.orbits, s.amplitude, 100.0 * s.change)};
+}
+
+std::optional<Made> make(const Scene& scene, bool clumped, const std::function<void(const std::string&)>& say,
+                         const std::atomic<bool>& stop) {
+  const double wavelength = critical_wavelength(scene.surface_density(), scene.planet);
+  if (clumped && scene.size_x >= 4.0 * wavelength)
+    return settle(scene, say, stop);
+  return evolve(scene, clumped ? clumped_orbits : early_orbits, stop);
 }
 
 } // namespace
@@ -121,7 +131,7 @@ std::optional<std::vector<StudyState>> study_states(const std::filesystem::path&
       const std::filesystem::path file = folder / (state.name + ".hdf"), note = folder / (state.name + ".txt");
       if (!std::filesystem::exists(note)) {
         say(fmt::format("making the state {}", state.name));
-        const std::optional<Made> made = clumped ? make_clumped(state.scene, say, stop) : make_early(state.scene, stop);
+        const std::optional<Made> made = make(state.scene, clumped, say, stop);
         if (!made)
           return std::nullopt;
         write_snapshot(file, made->patch, {state.scene.resolved, collect_provenance({}), {}});

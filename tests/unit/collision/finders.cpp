@@ -14,7 +14,7 @@ namespace {
 FinderResult ask(const std::string& name, const Pair& pair, const Frequencies& f) {
   const std::unique_ptr<Finder> finder = make_finder(name);
   const std::vector<Body> bodies = {{pair.lo, 0.5 * pair.reach, 1.0}, {pair.hi, 0.5 * pair.reach, 1.0}};
-  const std::vector<Tangent> tangents = {tangent_of(bodies[0], f), tangent_of(bodies[1], f)};
+  const std::vector<Tangent> tangents = {tangent_of(pair.lo, f), tangent_of(pair.hi, f)};
   DriftStep step(f, pair.end - pair.step, pair.end, 100.0);
   step.bodies = bodies;
   step.tangents = tangents;
@@ -172,23 +172,22 @@ TEST_CASE("pairs that stay at contact within rounding end their search") {
   CHECK(certified(pair, f).iterations < 100000);
 }
 
-TEST_CASE("a number that is not finite never reads as a miss") {
+TEST_CASE("an element that is not a number never reads as a miss") {
   const Frequencies f{1.0, 1.0};
   for (const FinderEntry& entry : finder_table())
     for (double Elements::*element : {&Elements::guiding_x, &Elements::guiding_y, &Elements::e_cos, &Elements::e_sin,
                                       &Elements::i_sin, &Elements::i_cos})
-      for (const double bad : {std::nan(""), HUGE_VAL})
-        for (const double start : {-0.1, 0.05})
-          for (const bool low : {false, true}) {
-            CAPTURE(entry.name);
-            Pair pair;
-            pair.hi = {4.0, 1.0, 0.5, 0.2, 0.3, 0.1};
-            Elements& elements = low ? pair.lo : pair.hi;
-            elements.*element = bad;
-            pair.reach = 1.0;
-            pair.start = start, pair.end = 0.1, pair.step = 0.2;
-            CHECK(ask(entry.name, pair, f).exit == FinderExit::not_a_number);
-          }
+      for (const double start : {-0.1, 0.05})
+        for (const bool low : {false, true}) {
+          CAPTURE(entry.name);
+          Pair pair;
+          pair.hi = {4.0, 1.0, 0.5, 0.2, 0.3, 0.1};
+          Elements& elements = low ? pair.lo : pair.hi;
+          elements.*element = std::nan("");
+          pair.reach = 1.0;
+          pair.start = start, pair.end = 0.1, pair.step = 0.2;
+          CHECK(ask(entry.name, pair, f).exit == FinderExit::not_a_number);
+        }
 }
 
 TEST_CASE("linear-full finds ordinary contacts at a small step") {

@@ -48,6 +48,20 @@ TEST_CASE("the published exit codes: what the finder decided, what it found, and
     CHECK(exit_of(static_cast<E>(code)) == exit);
 }
 
+TEST_CASE("counts: by exit, in bins with an open last one, and merged") {
+  FinderCounts a, b;
+  a.add({FinderExit::hit, 0.0, 3, 4});
+  b.add({FinderExit::hit, 0.0, 1000, 2000});
+  b.add({FinderExit::missed, 0.0, 0, 1});
+  a.merge(b);
+  CHECK(a.of(FinderExit::hit).count == 2);
+  CHECK(a.of(FinderExit::hit).by_iterations[3] == 1);
+  CHECK(a.of(FinderExit::hit).by_iterations[FinderCounts::bins - 1] == 1);
+  CHECK(a.total().count == 3);
+  CHECK(a.total().evaluations == 2005);
+  CHECK(a.total().by_evaluations[1] == 1);
+}
+
 // The sizes of the effects are those of the paper's Figures 5 and 6 (single size, early, a thousandth of an orbit).
 TEST_CASE("grid pairs of a settled state at a thousandth of an orbit: iterations and evaluations as in the paper") {
   test::Ring ring(test::equilibrium_patch(2000, 3), {}, two_pi * 1e-3);
