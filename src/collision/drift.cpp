@@ -198,6 +198,9 @@ void DriftPhase::changed(std::size_t i, double time) {
         "particle {} collided more than {} times in one step (an event storm); raise collisions.elastic_below",
         particles_->ids[i], most_collisions));
   tangents_[i] = tangent_of(particles_->bodies[i], frequencies_);
+  if (!(std::isfinite(tangents_[i].acceleration) && tangents_[i].position.allFinite()))
+    throw InvariantError(
+        fmt::format("a collision left particle {} with elements that are not finite", particles_->ids[i]));
   largest_eccentricity_ = std::max(largest_eccentricity_, particles_->bodies[i].elements.eccentricity());
   largest_stray_ = std::max(largest_stray_, (tangents_[i].position - binned_[i]).cwiseAbs().maxCoeff());
   finder_->changed(i);

@@ -132,6 +132,7 @@ Json audited_run(const StudyState& state, double step, const std::string& finder
           {"evaluations", verdict.counts.total().evaluations},
           {"iterations", verdict.counts.total().iterations},
           {"collisions", tally.fast + tally.slow},
+          {"deepest", verdict.deepest},
           {"largest_overlap", largest_overlap(simulation.patch()).depth},
           {"bytes_per_particle", simulation.drift().finder().bytes_per_particle()},
           {"exits", exits_of(verdict.counts)}};

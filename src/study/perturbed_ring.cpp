@@ -31,7 +31,7 @@ Ring make_ring(const PerturbedRing& settings, double step) {
   request.frequencies = frequencies;
   request.radii.assign(settings.count, 1.0);
   request.dispersion_x = settings.dispersion;
-  request.dispersion_z = 0.65 * settings.dispersion;
+  request.dispersion_z = 0.65 * settings.dispersion; // as in equilibria without self-gravity
   request.streamlines = Streamlines::bunched(settings.waves, side, settings.bunching);
   request.streamlines.inclination = settings.inclination;
   request.seed = settings.seed;
@@ -59,8 +59,8 @@ void drive(Ring& ring, double epoch, double step) {
   }
 }
 
-// Adds up −a t²/2 over collisions as they happen: t since the start of the step or the particle's collision before, a
-// from the orbit before the collision. A displacement δx changes X by 4 δx, δz the height by itself.
+// At each collision as it happens, how far a straight line from the start of the step, or from the particle's collision
+// before, would have led beside the orbit. A displacement δx changes X by 4 δx, δz the height by itself.
 class StraightForecast final : public DriftWatch {
 public:
   double epoch = 0.0; // of the step at hand, rad since the start
@@ -77,12 +77,11 @@ public:
   void collided(const CollisionRecord& record) override { time_ = record.time; }
 
   void changed(std::size_t k) override {
-    const Rotation rotation(frequencies, time_);
-    const State state = state_at(orbits_[k], frequencies, rotation);
-    const double half_square = 0.5 * (time_ - since_[k]) * (time_ - since_[k]);
-    const double acceleration_x = orbits_[k].guiding_x - state.position.x(); // e cos φ
-    guiding_x -= 4.0 * acceleration_x * half_square;
-    vertical += state.position.z() * half_square * std::sin(epoch + time_);
+    const State first = state_at(orbits_[k], frequencies, Rotation(frequencies, since_[k]));
+    const State now = state_at(orbits_[k], frequencies, Rotation(frequencies, time_));
+    const Vec3 beside = first.position + (time_ - since_[k]) * first.velocity - now.position;
+    guiding_x += 4.0 * beside.x();
+    vertical += beside.z() * std::sin(epoch + time_);
     orbits_[k] = bodies_[k].elements;
     since_[k] = time_;
   }

@@ -46,8 +46,8 @@ struct DriftRow {
   double collisions_per_particle = 0.0;
 };
 
-/// A path's drift, and what straight lines would have added to it by −a t²/2 at each collision (0 for the straight path
-/// itself): the figure's prediction, made from exact collisions.
+/// A path's drift, and what straight lines would have added to it at each collision (0 for the straight paths
+/// themselves): the figure's prediction, made from exact collisions.
 struct Drift {
   std::vector<DriftRow> rows;
   double forecast_guiding_x_r = 0.0;

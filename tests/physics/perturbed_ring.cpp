@@ -1,0 +1,122 @@
+// The paper's Figure 1: in a ring whose collisions prefer one side of the epicycle, straight paths within a step make
+// particles drift, and Keeler's do not. The size expected is what straight lines would have led beside the
+// orbits at each collision, −a t²/2 to leading order, summed over collisions that happened on exact paths.
+#include <keeler/collision/finders.hpp>
+#include <keeler/study/perturbed_ring.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+using namespace keeler;
+
+namespace {
+
+constexpr double orbits = 6.0;
+
+PerturbedRing ring_of(double step_orbits, std::uint64_t seed = 1) {
+  PerturbedRing ring;
+  ring.step_orbits = step_orbits;
+  ring.orbits = orbits;
+  ring.samples = 1;
+  ring.seed = seed;
+  return ring;
+}
+
+// Mean and standard deviation over seeds.
+struct Scatter {
+  double mean = 0.0, deviation = 0.0;
+};
+
+Scatter scatter(const std::vector<double>& values) {
+  Scatter s;
+  for (const double v : values)
+    s.mean += v / static_cast<double>(values.size());
+  for (const double v : values)
+    s.deviation += (v - s.mean) * (v - s.mean) / static_cast<double>(values.size() - 1);
+  s.deviation = std::sqrt(s.deviation);
+  return s;
+}
+
+} // namespace
+
+TEST_CASE("straight paths drift where streamlines bunch, by as much as exact collisions foretell") {
+  constexpr int seeds = 5;
+  std::vector<double> x, vertical, control_x, control_vertical, forecast_x, forecast_vertical;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const PerturbedRing ring = ring_of(1e-2, seed);
+    const DriftRow straight = perturbed_ring_drift(ring, straight_path).rows.back();
+    const DriftRow control = perturbed_ring_drift(ring, control_path).rows.back();
+    const Drift exact = perturbed_ring_drift(ring, "certified");
+    x.push_back(straight.mean_guiding_x_r);
+    vertical.push_back(straight.mean_vertical_r);
+    control_x.push_back(control.mean_guiding_x_r);
+    control_vertical.push_back(control.mean_vertical_r);
+    forecast_x.push_back(exact.forecast_guiding_x_r);
+    forecast_vertical.push_back(exact.forecast_vertical_r);
+  }
+  const Scatter drift = scatter(x), none = scatter(control_x), foretold = scatter(forecast_x);
+  const Scatter rise = scatter(vertical), no_rise = scatter(control_vertical),
+                foretold_rise = scatter(forecast_vertical);
+  MESSAGE("X after " << orbits << " orbits: straight " << drift.mean << " +- " << drift.deviation << " r, unperturbed "
+                     << none.mean << " +- " << none.deviation << ", foretold " << foretold.mean << " +- "
+                     << foretold.deviation);
+  MESSAGE("vertical: straight " << rise.mean << " +- " << rise.deviation << " r, unperturbed " << no_rise.mean << " +- "
+                                << no_rise.deviation << ", foretold " << foretold_rise.mean << " +- "
+                                << foretold_rise.deviation);
+  CHECK(drift.mean > 10.0 * none.deviation);
+  CHECK(rise.mean > 10.0 * no_rise.deviation);
+  // three standard errors of the difference of the two means, and a hundredth, as the drift feeds on itself
+  const auto error = [](const Scatter& a, const Scatter& b) {
+    return 3.0 * std::hypot(a.deviation, b.deviation) / std::sqrt(seeds);
+  };
+  CHECK(std::fabs(drift.mean - foretold.mean) < error(drift, foretold) + 0.01 * foretold.mean);
+  CHECK(std::fabs(rise.mean - foretold_rise.mean) < error(rise, foretold_rise) + 0.01 * foretold_rise.mean);
+}
+
+TEST_CASE("the drift grows as the square of the step, and turns with the pattern") {
+  const double coarse = perturbed_ring_drift(ring_of(1e-2), straight_path).rows.back().mean_guiding_x_r;
+  const double fine = perturbed_ring_drift(ring_of(2.5e-3), straight_path).rows.back().mean_guiding_x_r;
+  MESSAGE("X at steps of 1e-2 and 2.5e-3 orbit: " << coarse << ", " << fine << " r");
+  CHECK(std::log2(coarse / fine) / 2.0 == doctest::Approx(2.0).epsilon(0.1)); // runs scatter by 10 %
+  PerturbedRing mirrored = ring_of(1e-2);
+  mirrored.waves = -mirrored.waves;
+  const double back = perturbed_ring_drift(mirrored, straight_path).rows.back().mean_guiding_x_r;
+  CHECK(back == doctest::Approx(-coarse).epsilon(0.3)); // three times that scatter
+}
+
+TEST_CASE("no finder lets the mean guiding centre or the mean inclination drift beyond rounding") {
+  for (const FinderEntry& finder : finder_table()) {
+    CAPTURE(finder.name);
+    PerturbedRing ring = ring_of(1e-2);
+    ring.count = 400;
+    const DriftRow row = perturbed_ring_drift(ring, finder.name).rows.back();
+    CHECK(row.collisions_per_particle > 30.0);
+    // each collision rounds X in half a box of 32 m, and each step the inclination, by at most 7e-15 m
+    const double rounding = 7.1e-15 * (row.collisions_per_particle + orbits / 1e-2);
+    CHECK(std::fabs(row.mean_guiding_x_r) < rounding);
+    CHECK(std::fabs(row.mean_vertical_r) < rounding);
+  }
+}
+
+TEST_CASE("the figure has every path and step, with rows in time, and its CSV a line a row") {
+  PerturbedRing ring = ring_of(1e-2);
+  ring.count = 100;
+  ring.orbits = 0.2;
+  ring.samples = 2;
+  const std::vector<DriftRow> rows = figure_one(ring);
+  CHECK(rows.size() == 2 * 3 * (2 + finder_table().size()));
+  CHECK(rows[0].orbits == doctest::Approx(0.1));
+  CHECK(rows[1].orbits == doctest::Approx(0.2));
+  CHECK(rows[2].step_orbits == 3e-3);
+  std::istringstream csv(drift_csv(rows));
+  std::string line;
+  std::size_t lines = 0;
+  while (std::getline(csv, line)) {
+    CHECK(std::count(line.begin(), line.end(), ',') == 5);
+    ++lines;
+  }
+  CHECK(lines == rows.size() + 1);
+}
