@@ -27,22 +27,42 @@ ProgressLine::~ProgressLine() {
     fmt::print(stderr, "\n");
 }
 
-void ProgressLine::show(const RunProgress& p) {
-  const bool last = p.step == p.end_step;
-  if (p.elapsed_s < next_s_ && !last)
-    return;
-  next_s_ = p.elapsed_s + (terminal_ ? terminal_interval_s : log_interval_s);
-  const double done = static_cast<double>(p.step) / static_cast<double>(p.end_step);
-  const std::string numbers = fmt::format("{:.3f}/{:.3g} orbits  {:3.0f} %  {} left  {:.0f} collisions/s", p.orbits,
-                                          p.end_orbits, 100.0 * done, clock(p.remaining_s), p.collisions_per_second);
+bool ProgressLine::due(double elapsed_s, bool last) {
+  if (elapsed_s < next_s_ && !last)
+    return false;
+  next_s_ = elapsed_s + (terminal_ ? terminal_interval_s : log_interval_s);
+  return true;
+}
+
+void ProgressLine::print(const std::string& bar, const std::string& numbers) {
   if (!terminal_) {
     fmt::print(stderr, "{}\n", numbers);
     return;
   }
-  const int filled = static_cast<int>(done * bar_width);
-  fmt::print(stderr, "\r[{}{}] {}\033[K", std::string(filled, '#'), std::string(bar_width - filled, '.'), numbers);
+  fmt::print(stderr, "\r{}{}\033[K", bar, numbers);
   std::fflush(stderr);
   open_ = true;
+}
+
+void ProgressLine::show(const RunProgress& p) {
+  if (!due(p.elapsed_s, p.step == p.end_step))
+    return;
+  const double done = static_cast<double>(p.step) / static_cast<double>(p.end_step);
+  const int filled = static_cast<int>(done * bar_width);
+  print(fmt::format("[{}{}] ", std::string(filled, '#'), std::string(bar_width - filled, '.')),
+        fmt::format("{:.3f}/{:.3g} orbits  {:3.0f} %  {} left  {:.0f} collisions/s", p.orbits, p.end_orbits,
+                    100.0 * done, clock(p.remaining_s), p.collisions_per_second));
+}
+
+// No bar and no time left: nobody knows when wakes settle.
+void ProgressLine::show(const ClumpingProgress& p) {
+  if (!due(p.elapsed_s, p.settled))
+    return;
+  std::string numbers = fmt::format("{:.3f} orbits  {}  amplitude {:.3f}", p.orbits, clock(p.elapsed_s), p.amplitude);
+  if (p.settling)
+    numbers += fmt::format("  mean {:.3f}, changes by {:.0f} % (settled at {:.0f} %)", p.settling->amplitude,
+                           100.0 * p.settling->change, 100.0 * p.criterion.largest_change);
+  print("", numbers);
 }
 
 } // namespace keeler

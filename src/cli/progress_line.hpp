@@ -2,6 +2,9 @@
 #pragma once
 
 #include <keeler/runs/run.hpp>
+#include <keeler/states/clumped.hpp>
+
+#include <string>
 
 namespace keeler {
 
@@ -10,8 +13,13 @@ public:
   ProgressLine();
   ~ProgressLine();
   void show(const RunProgress& progress);
+  void show(const ClumpingProgress& progress);
 
 private:
+  // Whether it is time for the next line.
+  bool due(double elapsed_s, bool last);
+  void print(const std::string& bar, const std::string& numbers);
+
   bool terminal_;
   double next_s_ = 0.0;
   bool open_ = false; // a line without its end is on the terminal
