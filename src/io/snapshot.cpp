@@ -155,7 +155,8 @@ void read_clumping(const hdf5::Handle& image, SnapshotMeta& meta) {
     return;
   const hdf5::Handle group = hdf5::open_group(image, clumping_group);
   for (const std::string& name : hdf5::attribute_names(group))
-    meta.clumping[name] = hdf5::read_attribute_values<double>(group, name);
+    if (hdf5::layout_of_attribute(group, name).type == "float64") // not what another tool has noted there
+      meta.clumping[name] = hdf5::read_attribute_values<double>(group, name);
 }
 
 // An array of rows whose shape must be `shape`.

@@ -46,12 +46,11 @@ std::int64_t steps_between_samples(const Scene& scene, const SettleCriterion& cr
                             "too light or too hot to clump (Toomre's Q is {:.3g}); raise the optical depth or the "
                             "density of the particles",
                             c.orbits, s.amplitude, toomre_q(patch)));
-  throw Error(
-      ExitCode::run_time,
-      fmt::format("the wakes did not settle in {:.3g} orbits (autocorrelation amplitude {:.3g} over the last "
-                  "orbit, {:.3g} over the one before: a change of {:.0f} %, settled is {:.0f} %); take a larger "
-                  "box, whose mean scatters less, or a snapshot of a run",
-                  c.orbits, s.amplitude, s.before, 100.0 * s.change, 100.0 * c.criterion.largest_change));
+  throw Error(ExitCode::run_time,
+              fmt::format("the wakes did not settle in {:.3g} orbits (autocorrelation amplitude {:.3g} over the last "
+                          "orbit, {:.3g} over the one before: a change of {:.0f} %, settled is {:g} %); take a larger "
+                          "box, whose mean scatters less, or a snapshot of a run",
+                          c.orbits, s.amplitude, s.before, 100.0 * s.change, 100.0 * c.criterion.largest_change));
 }
 
 } // namespace
@@ -102,6 +101,8 @@ std::map<std::string, std::vector<double>> clumping_numbers(const Clumping& clum
       {"amplitude_before", {clumping.settling.before}},
       {"change", {clumping.settling.change}},
       {"largest_change", {clumping.criterion.largest_change}},
+      {"deviation", {clumping.settling.deviation}},
+      {"largest_deviation", {clumping.criterion.largest_deviation}},
       {"window_orbits", {clumping.criterion.window_orbits}},
       {"most_orbits", {clumping.criterion.most_orbits}},
       {"sample_every_orbits", {clumping.sample_every_orbits}},

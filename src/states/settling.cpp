@@ -22,8 +22,11 @@ std::optional<Settling> compare_windows(std::span<const WakeSample> history, std
   Settling settling;
   settling.amplitude = mean_amplitude(last);
   settling.before = mean_amplitude(before);
-  settling.change =
-      settling.amplitude > 0.0 ? std::fabs(settling.amplitude - settling.before) / settling.amplitude : HUGE_VAL;
+  const auto of_mean = [&](double difference) {
+    return settling.amplitude > 0.0 ? std::fabs(difference) / settling.amplitude : HUGE_VAL;
+  };
+  settling.change = of_mean(settling.amplitude - settling.before);
+  settling.deviation = of_mean(last.back().amplitude - settling.amplitude);
   settling.standing = std::all_of(last.begin(), last.end(), [](const WakeSample& sample) { return sample.standing; });
   return settling;
 }

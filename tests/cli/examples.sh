@@ -1,5 +1,6 @@
 #!/bin/bash
-# examples.sh KEELER SOURCE_DIR: the commands in the examples' READMEs work as they stand there; runs are cut to two steps.
+# examples.sh KEELER SOURCE_DIR: the commands in the examples' READMEs work as they stand there; runs are cut to two
+# steps, and what is clumped to a quarter of the box with steps that are coarse.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 ln -s "$source_dir/examples" "$work/examples"
@@ -9,6 +10,8 @@ for readme in examples/*/README.md; do
   while read -r program command; do
     [ "$program" = keeler ] || { fail "$readme: not a command of keeler: $program $command"; continue; }
     [[ $command == run* ]] && command+=" --set time.end=0.002"
+    [[ $command == *--clumped* ]] &&
+      command+=" --set box.size_in_wavelengths=[2,2] --set time.step=4e-3 --set gravity.kick_every=4"
     # shellcheck disable=SC2086 # several words
     runs 0 $command
     count=$((count + 1))

@@ -5,6 +5,7 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/io/describe.hpp>
 #include <keeler/io/sealed_image.hpp>
 
 #include <doctest/doctest.h>
@@ -89,6 +90,21 @@ TEST_CASE("a snapshot gives back the patch") {
       }
   }
   CHECK(folder.file_count() == 1);
+}
+
+TEST_CASE("a snapshot gives back how its state clumped, where it did") {
+  const TemporaryFolder folder;
+  SnapshotMeta clumped = meta;
+  clumped.clumping = {{"amplitude", {0.1 + 0.2}}, {"history_amplitude", {0.02, 1.0 / 3.0, 0.3}}};
+  write_snapshot(folder / "a.hdf", sample(10), clumped);
+  CHECK(read_snapshot(folder / "a.hdf").meta.clumping == clumped.clumping);
+  const auto attributes = describe_file(folder / "a.hdf").attributes;
+  CHECK(attributes.at("Clumping/amplitude") == "0.30000000000000004");
+  CHECK(attributes.at("Clumping/history_amplitude") == "[0.02, 0.3333333333333333, 0.3]");
+
+  write_snapshot(folder / "b.hdf", sample(10), meta);
+  CHECK(read_snapshot(folder / "b.hdf").meta.clumping.empty());
+  CHECK_FALSE(hdf5::exists(open_sealed(folder / "b.hdf", Seal::required), "Clumping"));
 }
 
 TEST_CASE("GADGET readers find their groups, in SI") {

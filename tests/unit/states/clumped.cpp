@@ -76,7 +76,7 @@ TEST_CASE("what cannot clump is refused in words, a stop leaves nothing") {
 }
 
 TEST_CASE("a patch too light to clump is given up, not written") {
-  // Q of 2 in collisional balance: no wakes stand out (Salo 1995)
+  // Q = 2.1 at c_x = 2 r Ω, which collisions alone keep up: no wakes stand out (Salo 1995)
   const Scene light = scene({"particles.density=110", "box.size=[60,60]", "gravity.kick_every=10"});
   try {
     clumped_state(light, {}, go_on);

@@ -51,6 +51,7 @@ TEST_CASE("windows are compared from the second one on, by their means") {
   CHECK(s->amplitude == 4.0);
   CHECK(s->before == 1.5);
   CHECK(s->change == 0.625);
+  CHECK(s->deviation == 0.25);
   CHECK(s->standing);
   CHECK_FALSE(compare_windows(std::span(samples).first(4), 2)->standing); // one of the last two does not stand out
 }
@@ -73,6 +74,12 @@ TEST_CASE("wakes that wander about a settled amplitude settle, near it, and not 
     // the standard error of a mean of 16 draws of 20 % is 5 %: four of them
     CHECK(compare_windows(std::span(samples).first(end), window)->amplitude == doctest::Approx(0.9).epsilon(0.2));
   }
+}
+
+TEST_CASE("no state is taken while the amplitude is far from its mean") {
+  // 0.8 for most of an orbit and then 1.6 for a quarter of it, always the same: settled, but not at every moment
+  const auto at = settles_at(history([](double t) { return std::fmod(t - 1.0 / 16.0, 1.0) < 0.745 ? 0.8 : 1.6; }));
+  CHECK(at == 2.0 + 1.0 / 16.0); // orbit 2 ends in the peak, 60 % above the mean
 }
 
 TEST_CASE("without wakes nothing settles, however constant it is") {
