@@ -24,8 +24,8 @@ void clump(const Case& expected) {
   REQUIRE(state);
   const Clumping& c = state->clumping;
   const Analysis a = analyze(std::span(&state->patch, 1));
-  MESSAGE(expected.example << ": " << c.orbits << " orbits, mean amplitude " << c.settling.amplitude << ", the state's "
-                           << a.wake_amplitude << ", Q " << a.toomre_q);
+  MESSAGE(std::string(expected.example) << ": " << c.orbits << " orbits, mean amplitude " << c.settling.amplitude
+                                        << ", the state's " << a.wake_amplitude << ", Q " << a.toomre_q);
   CHECK(c.settling.amplitude > expected.least_amplitude);
   CHECK(c.settling.amplitude < expected.largest_amplitude);
   CHECK(a.wake_amplitude == c.history.back().amplitude); // what is recorded is what `keeler analyze` measures
