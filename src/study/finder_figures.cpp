@@ -18,57 +18,58 @@ namespace fs = std::filesystem;
 
 const std::vector<std::string> colours = {"#444444", "#c0392b", "#e67e22", "#1f77b4", "#17a2b8", "#2e8b57"};
 
-// The paper's five and the certified one.
-std::vector<std::string> shown_finders() {
-  std::vector<std::string> names = paper_finders;
-  names.emplace_back("certified");
-  return names;
-}
-
 std::string style(std::size_t k) {
   return fmt::format("lc rgb '{}' lw 2 pt {}", colours[k % colours.size()], 5 + k);
 }
 
+// One curve of Figure 1: a block of figure1.dat, and how it is drawn.
+struct DriftCurve {
+  std::string title, look;
+  const Json* result;
+};
+
+// The straight paths by step, then all finders in grey, with one entry in the key.
+std::vector<DriftCurve> drift_curves(const FinderStudyData& data) {
+  std::vector<DriftCurve> curves;
+  for (const auto& [name, result] : data.results)
+    if (name.starts_with("drift/") && !result.at("path").get<std::string>().starts_with("straight"))
+      curves.push_back({curves.empty() ? "every finder, step 0.01" : "", "lc rgb '#999999' lw 1", &result});
+  for (const char* path : {control_path, straight_path})
+    for (const auto& [name, result] : data.results)
+      if (name.starts_with("drift/") && result.at("path") == path)
+        curves.push_back({fmt::format("{}, step {:.2g}", path, result.at("step_orbits").get<double>()),
+                          fmt::format("lc rgb '{}' lw 2{}", colours[curves.size() % colours.size()],
+                                      path == std::string(control_path) ? " dt 2" : ""),
+                          &result});
+  return curves;
+}
+
 bool figure1(const FinderStudyData& data, const fs::path& folder) {
   std::vector<DriftRow> all;
-  std::string curves;
-  int index = 0;
-  for (const auto& [name, result] : data.results) {
-    if (!name.starts_with("drift/"))
-      continue;
-    for (const Json& row : result.at("rows"))
+  std::string blocks, in_x, in_z;
+  const std::vector<DriftCurve> curves = drift_curves(data);
+  for (std::size_t k = 0; k < curves.size(); ++k) {
+    const Json& result = *curves[k].result;
+    for (const Json& row : result.at("rows")) {
       all.push_back({row.at("orbits"), result.at("path"), result.at("step_orbits"), row.at("mean_guiding_x_r"),
                      row.at("mean_vertical_r"), row.at("collisions_per_particle")});
-    const std::string path = result.at("path");
-    const bool line = path.starts_with("straight");
-    curves += fmt::format("{}'figure1.dat' index {} using 1:COLUMN with lines lc rgb '{}' lw {} title '{}'",
-                          index ? ", " : "", index, line ? colours[static_cast<std::size_t>(1 + index) % 6] : "#bbbbbb",
-                          line ? 2 : 1,
-                          line ? fmt::format("{}, step {:.2g}", path, result.at("step_orbits").get<double>())
-                          : path == "certified" ? "every finder"
-                                                : "");
-    ++index;
+      blocks += fmt::format("{} {} {}\n", all.back().orbits, all.back().mean_guiding_x_r, all.back().mean_vertical_r);
+    }
+    blocks += "\n\n";
+    const auto curve = [&](int column) {
+      return fmt::format("{}'figure1.dat' index {} using 1:{} with lines {} title '{}'", k ? ", " : "", k, column,
+                         curves[k].look, curves[k].title);
+    };
+    in_x += curve(2);
+    in_z += curve(3);
   }
   write_text(folder / "figure1.csv", drift_csv(all));
-  std::string blocks, last;
-  for (const DriftRow& row : all) {
-    const std::string key = fmt::format("{} {}", row.path, row.step_orbits);
-    if (!last.empty() && key != last)
-      blocks += "\n\n";
-    last = key;
-    blocks += fmt::format("{} {} {}\n", row.orbits, row.mean_guiding_x_r, row.mean_vertical_r);
-  }
   write_text(folder / "figure1.dat", blocks);
-  const auto panel = [&](const char* column, const char* label) {
-    std::string text = curves;
-    for (std::size_t at = text.find("COLUMN"); at != std::string::npos; at = text.find("COLUMN"))
-      text.replace(at, 6, column);
-    return fmt::format("set ylabel '{}'\nplot {}\n", label, text);
-  };
   return plot(folder, "figure1",
-              "set multiplot layout 1,2\nset key left bottom\nset xlabel 'orbits'\nset grid\n" +
-                  panel("2", "drift of the mean guiding centre, r") +
-                  panel("3", "drift of the mean vertical motion, r") + "unset multiplot\n",
+              fmt::format("set multiplot layout 1,2\nset key left top\nset xlabel 'orbits'\nset grid\n"
+                          "set ylabel 'drift of the mean guiding centre, r'\nplot {}\n"
+                          "set ylabel 'drift of the mean vertical motion, r'\nplot {}\nunset multiplot\n",
+                          in_x, in_z),
               1100, 480);
 }
 
@@ -97,7 +98,8 @@ bool figure2(const fs::path& folder) {
 
 bool figure4(const FinderStudyData& data, const fs::path& folder) {
   std::string script = "set multiplot layout 2,2\nset logscale xy\nset xlabel 'step (orbits)'\n"
-                       "set ylabel 'processor time for 0.1 orbit (s)'\nset grid\nset key top center\n";
+                       "set ylabel 'processor time for 0.1 orbit (s)'\nset grid\nset key top right samplen 2\nset "
+                       "xrange [8e-5:1.3e-2]\n";
   for (const StudyState& state : data.states) {
     std::string table = "# step_orbits";
     for (const std::string& finder : shown_finders())
@@ -180,7 +182,7 @@ bool local_times_figure(const FinderStudyData& data, const fs::path& folder) {
 bool draw_finder_figures(const FinderStudyData& data) {
   const fs::path folder = data.folder / "figures";
   fs::create_directories(folder);
-  render_patch(data.states[1].patch, (folder / "figure3.png").string(), {"Clumped by self-gravity, equal sizes", 900});
+  render_patch(data.states[1].patch, (folder / "figure3.png").string(), {"Clumped by self-gravity, equal sizes", 700});
   bool drawn = figure1(data, folder);
   drawn &= figure2(folder);
   drawn &= figure4(data, folder);

@@ -99,6 +99,12 @@ void move_some(PairSet& pairs, double share, double kick_speed) {
 
 } // namespace
 
+std::vector<std::string> shown_finders() {
+  std::vector<std::string> names = paper_finders;
+  names.emplace_back("certified");
+  return names;
+}
+
 std::vector<std::string> all_finders() {
   std::vector<std::string> names;
   for (const FinderEntry& entry : finder_table())

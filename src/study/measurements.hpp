@@ -12,6 +12,9 @@ namespace keeler {
 inline const std::vector<std::string> paper_finders = {"original", "newton-full", "newton-cubic", "linear-full",
                                                        "linear-cubic"};
 
+/// Those and the certified one, which the graphs show.
+std::vector<std::string> shown_finders();
+
 /// All names of finder_table().
 std::vector<std::string> all_finders();
 
