@@ -19,6 +19,13 @@ struct BenchOptions {
   ThreadOption threads;
 };
 
+CLI::Validator finder_name() {
+  const auto refusal = [](const std::string& name) {
+    return make_finder(name) ? std::string() : "there is no finder '" + name + "' (docs/manual/scene.md lists them)";
+  };
+  return CLI::Validator(refusal, "");
+}
+
 void print_json(const DriftBenchSettings& s, const DriftBench& b) {
   nlohmann::ordered_json json;
   json["ns_per_particle_step"] = b.ns_per_particle_step;
@@ -67,7 +74,7 @@ void add_bench(CLI::App& program, Action& action) {
   drift.add_option("--count", s.count, "particles (default: 10000)")->check(positive_number());
   drift.add_option("--step", s.step_orbits, "step in orbits (default: 0.001)")->check(positive_number());
   drift.add_option("--optical-depth", s.optical_depth, "optical depth (default: 0.5)")->check(positive_number());
-  drift.add_option("--finder", s.finder, "collision finder (default: certified)");
+  drift.add_option("--finder", s.finder, "collision finder (default: certified)")->check(finder_name());
   drift.add_option("--repeats", s.repeats, "times measured; medians are given (default: 5)")->check(positive_number());
   drift.add_flag("--all-pairs", s.all_pairs,
                  "hand every candidate of the grid to the finder, without rejecting any first");

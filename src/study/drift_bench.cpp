@@ -5,6 +5,7 @@
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
+#include <keeler/scene/derived.hpp>
 #include <keeler/simulation/simulation.hpp>
 #include <keeler/states/initial.hpp>
 #include <keeler/study/median.hpp>
@@ -21,9 +22,11 @@ namespace {
 
 constexpr double least_seconds = 0.1; // of finder calls, for the time of one
 
-// Near c_x of the equilibrium at ε = 0.5, in rΩ: 2.82, 2.18 and 1.62 at τ = 0.1, 0.5 and 1.
-double equilibrium_dispersion(double optical_depth) {
-  return 3.0 * std::exp(-0.62 * optical_depth);
+// Near c_x of the equilibrium at ε = 0.5, in rΩ: 2.82, 2.18 and 1.62 at τ = 0.1, 0.5 and 1; more where particles of
+// that dispersion could not be placed.
+double first_dispersion(double optical_depth) {
+  const double placed = 1.001 * dispersion_for_filling(optical_depth, {}, 1.0, largest_filling);
+  return std::max(3.0 * std::exp(-0.62 * optical_depth), placed);
 }
 
 Scene bench_scene(const DriftBenchSettings& s) {
@@ -45,7 +48,7 @@ restitution = {{ law = "constant", value = 0.5 }}
 step = {4}
 end = {4}
 )",
-                                 size, s.count, equilibrium_dispersion(s.optical_depth), s.finder, s.step_orbits),
+                                 size, s.count, first_dispersion(s.optical_depth), s.finder, s.step_orbits),
                      "bench");
 }
 

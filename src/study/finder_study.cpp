@@ -27,7 +27,7 @@ struct Plan {
 
 Plan plan_of(const FinderStudySettings& settings) {
   if (settings.quick)
-    return {std::min<std::size_t>(settings.count, 3000), {1e-3, 1.0 / 300.0, 1e-2}, 2, 10.0};
+    return {std::min<std::size_t>(settings.count, 3000), {1e-3, 1.0 / 300.0, 1e-2}, 2, 4.0};
   return {settings.count, {1e-4, 1.0 / 3000.0, 1e-3, 1.0 / 300.0, 1e-2}, 6, 100.0};
 }
 
@@ -112,8 +112,9 @@ private:
 
   void add_local_times(double step, double share) {
     const StudyState& state = states_.front();
+    const int repeats = std::min(plan_.repeats, 5);
     add(fmt::format("local/{}/{:.6g}/{}", state.name, step, share), 2e9,
-        [&state, step, share] { return local_times(state, step, share, 5); });
+        [&state, step, share, repeats] { return local_times(state, step, share, repeats); });
   }
 
   // Figure 1. The finders at one step: they differ from zero by rounding at any.

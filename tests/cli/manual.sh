@@ -21,7 +21,14 @@ section() { sed -n "/^## keeler $1\$/,/^## /p" "$manual"; }
 while read -r command; do
   accepts "help of $command" "$command" --help
   prints "help of $command" "keeler $command"
-  grep -oE -- '--[a-z][a-z-]*' "$work/out" | sort -u | grep -v -- '^--help$' >"$work/options"
+  cp "$work/out" "$work/help"
+  for part in $(sed '1,/^Subcommands:/d' "$work/help" | sed -nE 's/^  ([a-z]+) .*/\1/p'); do # keeler bench drift, ...
+    accepts "help of $command $part" "$command" "$part" --help
+    prints "help of $command $part" "keeler $command $part"
+    section "$command" | grep -qF "keeler $command $part" || fail "the manual does not have $command $part"
+    cat "$work/out" >>"$work/help"
+  done
+  grep -oE -- '--[a-z][a-z-]*' "$work/help" | sort -u | grep -v -- '^--help$' >"$work/options"
   while read -r option; do
     section "$command" | grep -qE -- "$option\b" || fail "the manual does not have $command $option"
   done <"$work/options"
@@ -38,6 +45,8 @@ names() {
     section "$1" | grep -qF "\`$name\`" || fail "the manual does not have the name $name of $1"
   done < <(sed -nE 's/^ {2,4}"([a-z_0-9]+)":.*/\1/p' "$work/out" | sort -u)
 }
+accepts "bench" bench drift --count 200 --repeats 1 --json
+names bench
 runs 0 run "$work/scene.toml" -o "$work/run" --set time.end=0.004 --json
 names run
 accepts "check" check "$work/scene.toml" --json

@@ -164,6 +164,24 @@ TEST_CASE("the same bits for any number of threads and any order in memory") {
   CHECK(tally.momentum_flux == tally_one.momentum_flux);
 }
 
+TEST_CASE("handing every candidate to the finder, or watching, changes no bit") {
+  Scenario s;
+  s.count = 1000;
+  s.step = two_pi * 1e-2;
+  const Start start = make_start(s, 6);
+  Start plain = start, all = start;
+  CollisionTally tally_plain, tally_all;
+  DriftPhase drift(settings_of(s), {s.kappa, s.nu}, omega, s.step);
+  drift.collide(plain.particles, plain.box, plain.offset, tally_plain);
+  CHECK(tally_plain.fast > 30);
+  drift.every_candidate = true;
+  DriftWatch watch;
+  drift.watch = &watch;
+  drift.collide(all.particles, all.box, all.offset, tally_all);
+  CHECK(std::memcmp(plain.particles.bodies.data(), all.particles.bodies.data(), 64 * s.count) == 0);
+  CHECK(tally_all.momentum_flux == tally_plain.momentum_flux);
+}
+
 TEST_CASE("collisions keep the sums that mechanics keeps, and lose the energy that they book") {
   for (const double nu : {1.0, 3.6}) {
     Scenario s;

@@ -1,0 +1,62 @@
+#!/bin/bash
+# study.sh KEELER SOURCE_DIR: the finders' study from start to report, interrupted and continued; the bench's numbers.
+# shellcheck source=tests/cli/helpers.sh
+source "$(dirname "$0")/helpers.sh"
+number='-?[0-9.]+(e[-+]?[0-9]+)?'
+folder=$work/study
+
+# Stopped once in the middle, then continued.
+"$keeler" study finders --quick --count 300 -o "$folder" >"$work/out" 2>"$work/err" &
+process=$!
+until grep -q '"job":"audit' "$folder/measurements.jsonl" 2>/dev/null || ! kill -0 "$process" 2>/dev/null; do
+  sleep 0.05
+done
+kill -TERM "$process"
+code=0
+wait "$process" || code=$?
+[ "$code" -eq 75 ] || fail "a stopped study: exit $code: $(tail -n 3 "$work/err")"
+grep -q "the same command goes on from here" "$work/err" || fail "a stopped study does not say how to go on"
+head -n 3 "$folder/measurements.jsonl" >"$work/kept"
+refuses "another count" "another count" study finders --quick --count 301 -o "$folder"
+runs 0 study finders --quick --count 300 -o "$folder"
+head -n 3 "$folder/measurements.jsonl" | cmp - "$work/kept" || fail "a continued study does measurements again"
+for name in report.md report.html finders.csv finders.json figures; do
+  prints "study" "$folder/$name"
+  [ -e "$folder/$name" ] || fail "study: no $name"
+done
+mkdir "$work/full" && touch "$work/full/mine"
+refuses "a folder with other things" "holds no study" study finders --quick -o "$work/full"
+
+# Twelve finders, four states, three steps, two repeats.
+expected=state,step_orbits,finder,repeat,cpu_s,calls,hits,missed,false_hits,late,misordered,evaluations,ns_per_call
+[ "$(head -n 1 "$folder/finders.csv")" = "$expected" ] || fail "finders.csv begins: $(head -n 1 "$folder/finders.csv")"
+[ "$(wc -l <"$folder/finders.csv")" -eq $((1 + 12 * 4 * 3 * 2)) ] || fail "rows: $(wc -l <"$folder/finders.csv")"
+awk -F, '$3 == "certified" && $8 + $9 + $10 + $11 != 0 { wrong = 1 } END { exit wrong }' "$folder/finders.csv" ||
+  fail "the certified finder missed something, or called something false or late"
+awk -F, 'NR > 1 && !($5 > 0 && $6 > 0 && $13 > 0) { wrong = 1 } END { exit wrong }' "$folder/finders.csv" ||
+  fail "a row without time or calls"
+grep -q '"rows"' "$folder/finders.json" || fail "finders.json has no rows"
+for words in "The paper's claims" "Truth: what each finder missed" "Figure 4" "Does it pay to keep the cubics?" \
+  "Where is the best step" "Particles at different local times" "A conservative rejection" "Straight paths drift"; do
+  grep -qF "$words" "$folder/report.md" || fail "the report has no '$words'"
+done
+grep -q "0 found by the scan alone, 0 by the certified finder alone" "$folder/report.md" ||
+  fail "the truth is in doubt: $(grep 'dense scan' "$folder/report.md")"
+if command -v gnuplot >/dev/null; then
+  for k in 1 2 4 5 6; do
+    [ -s "$folder/figures/figure$k.svg" ] && [ -s "$folder/figures/figure$k.png" ] || fail "no figure $k"
+  done
+fi
+grep -q 'src="[^d]' "$folder/report.html" && fail "the page needs other files"
+
+accepts "bench" bench drift --count 500 --step 2e-3 --repeats 2 --json
+for key in ns_per_particle_step ns_per_call collisions_per_particle_orbit dispersion_r_omega; do
+  grep -qE "\"$key\": $number,?$" "$work/out" || fail "bench: no $key in: $(cat "$work/out")"
+done
+accepts "bench of another finder" bench drift --count 500 --repeats 1 --finder original --all-pairs --threads 2
+prints "bench" "ns per particle and step"
+refuses "an unknown finder" "'guess'" bench drift --finder guess
+refuses "bench without a kernel" "keeler --help" bench
+refuses "no particles" "--count" bench drift --count 0
+
+report
