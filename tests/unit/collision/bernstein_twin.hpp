@@ -227,7 +227,8 @@ private:
       fallen_ += fall;
       return;
     }
-    if (64 * p.error <= bound_ && low.least - p.error >= (low.reached ? -bound_ : -bound_ / 64)) {
+    // deeper than half, the fall decides: the pair may have come out of contact only just, and turned back
+    if (64 * p.error <= bound_ && low.least - p.error >= -bound_ * (low.reached ? 9.0L / 16 : 1.0L / 64)) {
       deepest_ = std::max(deepest_, p.error - low.least);
       return;
     }
