@@ -210,3 +210,28 @@ TEST_CASE("the twin convicts a finder that misses contacts") {
     CHECK(tally.missed > 20);
   }
 }
+
+TEST_CASE("the pairs pictured in docs/theory/finders.md") {
+  PairCase c;
+  c.begin = c.query.start = -0.2 * pi;
+  c.end = 0.2 * pi;
+  c.size = 100.0;
+  c.query.high = 1;
+  c.bodies[0].radius = c.bodies[1].radius = 1.0;
+  const auto ask = [&](const char* finder) {
+    Examiner examiner(finder);
+    examiner.complaints = 0;
+    Tally tally;
+    return examiner.examine(c, 0.0, tally);
+  };
+  SUBCASE("Newton passes the first contact") {
+    c.frequencies = {1.0, 3.6};
+    c.bodies[1].elements = {-1.075, -4.593, 0.251, 2.198, 1.722, 2.907};
+    CHECK(ask("certified").time == doctest::Approx(-0.2009).epsilon(1e-3));
+  }
+  SUBCASE("the linear search ends at a closest approach") {
+    c.bodies[1].elements = {-3.391, 1.38, -3.821, 0.719, 0.0, 0.0};
+    CHECK(ask("certified").time == doctest::Approx(0.3284).epsilon(1e-3));
+    CHECK(!ask("linear-full").contact());
+  }
+}
