@@ -42,7 +42,7 @@ public:
   }
 
   /// How far the pair sinks into contact, approaching, in [from, to], in units of `bound`: below 0 by that much, or by
-  /// that much while in contact. Proven, and at most 1/64 too large; above 1 where it is not proven to be less.
+  /// that much while in contact. Proven, so never too small. Above 1 it is not proven to be less: the walk ends there.
   double sinks(Real from, Real to, Real bound) {
     bound_ = bound;
     deepest_ = fallen_ = 0;
