@@ -8,8 +8,8 @@
 // All roundings are taken to the safe side: f, f' and m down, V and A up, the step down.
 //
 // Within rounding of contact the steps would shrink to noise (a pair at constant distance never leaves it). There a
-// step may let f sink by one rounding error, and by one more for every 1024 passes. So every search ends, and no contact
-// deeper than 2 δ (1 + passes/1024) is missed, with δ = gap_error: docs/theory/finders.md has the proof.
+// step may let f sink by one rounding error, and by one more for every 1024 passes. So every search ends, and no
+// contact deeper than 2 δ (1 + passes/1024) is missed, with δ = gap_error: docs/theory/finders.md has the proof.
 #pragma once
 
 #include <keeler/collision/finder.hpp>
