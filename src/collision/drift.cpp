@@ -11,7 +11,6 @@ namespace keeler {
 namespace {
 
 constexpr std::uint32_t most_collisions = 100000; // of one particle in one step: an event storm, not physics
-constexpr double wider = 1.0 + 1e-9;              // windows and tests must hold after their own rounding
 
 } // namespace
 
@@ -27,7 +26,8 @@ void CollisionTally::list_fields(FieldTable& table) {
 DriftPhase::DriftPhase(const CollisionSettings& settings, const Frequencies& frequencies, double orbital_frequency,
                        double step)
     : settings_(settings), frequencies_(frequencies), orbital_frequency_(orbital_frequency), step_(step),
-      finder_(make_finder(settings.finder)), at_hand_(frequencies, -0.5 * step, 0.5 * step, 0.0) {
+      finder_(make_finder(settings.finder)), at_hand_(frequencies, -0.5 * step, 0.5 * step, 0.0),
+      neighbours_(frequencies, step) {
   if (!finder_)
     throw UsageError(fmt::format("unknown collision finder '{}'", settings.finder));
 }
@@ -48,48 +48,23 @@ void DriftPhase::collide(Particles& particles, const ShearingBox& box, double of
 }
 
 void DriftPhase::prepare() {
-  const std::size_t count = particles_->size();
-  tangents_.resize(count);
-  binned_.resize(count);
-  last_change_.assign(count, -0.5 * step_);
-  stamps_.assign(count, 0);
-  parallel_for(count, [&](std::size_t k) {
-    tangents_[k] = tangent_of(particles_->bodies[k], frequencies_);
-    binned_[k] = tangents_[k].position;
-  });
-  largest_radius_ = largest_eccentricity_ = largest_stray_ = 0.0;
-  for (std::size_t k = 0; k < count; ++k) {
-    if (!(std::isfinite(tangents_[k].acceleration) && binned_[k].allFinite()))
-      throw InvariantError(fmt::format("particle {} has elements that are not finite", particles_->ids[k]));
-    largest_radius_ = std::max(largest_radius_, particles_->bodies[k].radius);
-    largest_eccentricity_ = std::max(largest_eccentricity_, particles_->bodies[k].elements.eccentricity());
+  if (stamps_.size() != particles_->size()) {
+    last_change_.assign(particles_->size(), -0.5 * step_);
+    stamps_.assign(particles_->size(), 0);
+  } else {
+    for (const std::uint32_t k : touched_) {
+      last_change_[k] = -0.5 * step_;
+      stamps_[k] = 0;
+    }
   }
-  const double cell = 2.0 * largest_radius_ + step_ * 2.0 * largest_eccentricity_;
-  grid_.build(binned_, box_, offset_, cell);
+  touched_.clear();
+  neighbours_.every_candidate = every_candidate;
+  neighbours_.begin(*particles_, box_, offset_);
   at_hand_ = DriftStep(frequencies_, -0.5 * step_, 0.5 * step_, box_.size_x + box_.size_y);
   at_hand_.bodies = particles_->bodies;
-  at_hand_.tangents = tangents_;
   finder_->begin(at_hand_);
   if (watch)
     watch->begins(at_hand_);
-}
-
-// Calls visit(j, image) for every particle image that particle i could meet in this step.
-template<class Visit> void DriftPhase::visit_candidates(std::size_t i, const Visit& visit) const {
-  const double half = 0.5 * step_;
-  const double e = particles_->bodies[i].elements.eccentricity() + largest_eccentricity_;
-  const double contact = particles_->bodies[i].radius + largest_radius_;
-  const double reach_x = contact + half * frequencies_.kappa * e;
-  const double reach_y = contact + half * (frequencies_.shear() * (reach_x + e) + 2.0 * e);
-  const double stray = largest_stray_ + 1e-12 * (box_.size_x + box_.size_y);
-  const auto other = [&](std::size_t j, const Image& image) {
-    if (j != i)
-      visit(j, image);
-  };
-  if (every_candidate)
-    grid_.visit_touched_cells(tangents_[i].position, wider * reach_x + stray, wider * reach_y + stray, other);
-  else
-    grid_.visit_near(tangents_[i].position, wider * reach_x + stray, wider * reach_y + stray, other);
 }
 
 // The lower id first; `image` is that of particle j.
@@ -113,25 +88,18 @@ void DriftPhase::predict_all() {
     std::uint64_t gave_up = 0;
     bool broken = false;
   };
-  constexpr std::size_t block = 512; // of particles; blocks are joined in order, so threads do not matter
-  const std::size_t count = particles_->size();
-  std::vector<Found> found((count + block - 1) / block);
+  std::vector<Found> found(neighbours_.blocks()); // joined in order, so threads do not matter
   const auto search_block = [&](std::size_t b) {
-    for (std::size_t i = b * block; i < std::min(count, (b + 1) * block); ++i)
-      visit_candidates(i, [&](std::size_t j, const Image& image) {
-        if (particles_->ids[j] < particles_->ids[i])
-          return;
-        const Query query = query_of(i, j, image);
-        if (!every_candidate && !may_touch(query, at_hand_))
-          return;
-        const FinderResult result = finder_->find(query);
-        if (watch)
-          watch->searched(query, result);
-        if (result.contact())
-          found[b].events.push_back(event_of(query, result.time, i, image));
-        found[b].gave_up += result.exit == FinderExit::gave_up;
-        found[b].broken |= result.exit == FinderExit::not_a_number;
-      });
+    neighbours_.visit_block(b, [&](std::size_t i, std::size_t j, const Image& image) {
+      const Query query = query_of(i, j, image);
+      const FinderResult result = finder_->find(query);
+      if (watch)
+        watch->searched(query, result);
+      if (result.contact())
+        found[b].events.push_back(event_of(query, result.time, i, image));
+      found[b].gave_up += result.exit == FinderExit::gave_up;
+      found[b].broken |= result.exit == FinderExit::not_a_number;
+    });
   };
   if (watch)
     for (std::size_t b = 0; b < found.size(); ++b)
@@ -150,8 +118,6 @@ void DriftPhase::predict_all() {
 
 void DriftPhase::predict(std::size_t i, std::size_t j, const Image& image) {
   const Query query = query_of(i, j, image);
-  if (!every_candidate && !may_touch(query, at_hand_))
-    return;
   const FinderResult result = finder_->find(query);
   if (watch)
     watch->searched(query, result);
@@ -190,30 +156,27 @@ void DriftPhase::carry_out(const Event& event, CollisionTally& tally) {
   search_again(event.low, event.high);
 }
 
-// A new orbit: stale events die by the stamp, and the windows of later searches cover where the orbit now leads.
+// A new orbit: stale events die by the stamp.
 void DriftPhase::changed(std::size_t i, double time) {
+  if (stamps_[i] == 0)
+    touched_.push_back(static_cast<std::uint32_t>(i));
   last_change_[i] = time;
   if (++stamps_[i] > most_collisions)
     throw InvariantError(fmt::format(
         "particle {} collided more than {} times in one step (an event storm); raise collisions.elastic_below",
         particles_->ids[i], most_collisions));
-  tangents_[i] = tangent_of(particles_->bodies[i], frequencies_);
-  if (!(std::isfinite(tangents_[i].acceleration) && tangents_[i].position.allFinite()))
-    throw InvariantError(
-        fmt::format("a collision left particle {} with elements that are not finite", particles_->ids[i]));
-  largest_eccentricity_ = std::max(largest_eccentricity_, particles_->bodies[i].elements.eccentricity());
-  largest_stray_ = std::max(largest_stray_, (tangents_[i].position - binned_[i]).cwiseAbs().maxCoeff());
+  neighbours_.changed(i);
   finder_->changed(i);
   if (watch)
     watch->changed(i);
 }
 
 void DriftPhase::search_again(std::size_t i, std::size_t j) {
-  visit_candidates(i, [&](std::size_t k, const Image& image) { predict(i, k, image); });
-  visit_candidates(j, [&](std::size_t k, const Image& image) {
-    if (k != i) // the pair itself, in all its images, has been searched
-      predict(j, k, image);
-  });
+  constexpr std::size_t nobody = ~std::size_t{0};
+  neighbours_.visit_partners(i, nobody, last_change_[i],
+                             [&](std::size_t k, const Image& image) { predict(i, k, image); });
+  // the pair itself, in all its images, has been searched
+  neighbours_.visit_partners(j, i, last_change_[j], [&](std::size_t k, const Image& image) { predict(j, k, image); });
 }
 
 } // namespace keeler

@@ -21,7 +21,7 @@ using Linear = LinearSearch<LinearForm::full>;
 using LinearOnCubic = LinearSearch<LinearForm::cubic>;
 
 constexpr FinderEntry table[] = {
-    {"certified", "relative epicycle, guaranteed first root", make<TangentMotion, CertifiedSearch>},
+    {"certified", "relative epicycle, guaranteed first root", make<BoundedMotion, CertifiedSearch>},
     {"newton-relative", "relative epicycle, damped Newton", make<RelativeMotion, Newton>},
     {"linear-relative", "relative epicycle, straight-line guesses", make<RelativeMotion, Linear>},
     {"original", "own epicycles, Newton steps of half length", make<FullMotion, OriginalNewton>},

@@ -66,6 +66,7 @@ void Simulation::advance() {
     const Stopwatch watch(split_.drift);
     drift_.collide(state_.particles, state_.box, state_.epoch_offset(), state_.collisions);
     move_on();
+    drift_.moved_on();
   }
   if (kick_due()) {
     accelerate();
@@ -120,6 +121,10 @@ void Simulation::half_kick() {
   const Frequencies& f = scene_.planet.frequencies;
   const Rotation rotation(f, -0.5 * state_.step_length);
   const double half = 0.5 * state_.step_length * scene_.gravity->kick_every;
+  double largest = 0.0;
+  for (const Vec3& a : state_.accelerations)
+    largest = std::max(largest, a.squaredNorm());
+  drift_.kicked(half * std::sqrt(largest));
   state_.energy.kick_work += ordered_sum(state_.particles.size(), [&](std::size_t k) {
     Body& body = state_.particles.bodies[k];
     const Vec3 dv = half * state_.accelerations[k];

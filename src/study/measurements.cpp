@@ -91,7 +91,6 @@ void move_some(PairSet& pairs, double share, double kick_speed) {
     changed[k] = step.begin + (step.end - step.begin) * random.uniform();
     const Vec3 dv = kick_speed * Vec3(random.normal(), random.normal(), random.normal());
     kick(pairs.bodies[k].elements, dv, step.frequencies, Rotation(step.frequencies, changed[k]));
-    pairs.tangents[k] = tangent_of(pairs.bodies[k], step.frequencies);
   }
   for (Query& query : pairs.queries)
     query.start = std::max(changed[query.low], changed[query.high]);

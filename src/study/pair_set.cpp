@@ -8,14 +8,12 @@ namespace keeler {
 namespace {
 
 struct Recorder : DriftWatch {
-  std::vector<Tangent> tangents;
   std::vector<Query> queries;
   const DriftStep* step = nullptr;
   bool before_events = true;
 
   void begins(const DriftStep& now) override {
     step = &now;
-    tangents.assign(now.tangents.begin(), now.tangents.end());
   }
   void searched(const Query& query, const FinderResult&) override {
     if (before_events)
@@ -52,7 +50,6 @@ PairSet PairSet::of(Particles particles, const ShearingBox& box, double offset, 
   drift.collide(particles, box, offset, tally);
   PairSet set(*recorder.step);
   set.bodies = before;
-  set.tangents = std::move(recorder.tangents);
   set.queries = std::move(recorder.queries);
   return set;
 }
@@ -60,7 +57,6 @@ PairSet PairSet::of(Particles particles, const ShearingBox& box, double offset, 
 DriftStep PairSet::view() const {
   DriftStep step = step_;
   step.bodies = bodies;
-  step.tangents = tangents;
   return step;
 }
 

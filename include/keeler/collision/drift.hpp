@@ -1,20 +1,16 @@
 // The drift phase: between two kicks, particles ride their epicycles and meet as hard spheres, at exact times on the
 // curved paths, in the order of events.hpp.
 //
-// Candidates come from bounds, never from statistics. At the middle of the step, the epoch of the elements, positions
-// and velocities need no trigonometry. Over half a step no relative coordinate changes by more than
-//   |Δx| <= (h/2) κ (e_i + e_j),   |Δy| <= (h/2) [S |ΔX| + 2 (e_i + e_j)],   |ΔX| <= |Δx| + e_i + e_j,
-// which sets the window of the grid search; and no path leaves its mid-step tangent by more than A h²/8, A = A_i + A_j,
-// which rejects most candidates before a finder runs. A particle that was hit is searched from its new orbit, and how
-// far new orbits stray from the binned places widens all later windows of the step.
+// Candidates come from bounds, kept over several steps (neighbours.hpp). A particle that was hit is searched again from
+// its new orbit.
 //
 // The answer is that of the sequential order, for any number of threads: searches are independent, events are not.
 #pragma once
 
 #include <keeler/box/shearing_box.hpp>
-#include <keeler/cells/grid.hpp>
 #include <keeler/collision/events.hpp>
 #include <keeler/collision/finders.hpp>
+#include <keeler/collision/neighbours.hpp>
 #include <keeler/collision/settings.hpp>
 #include <keeler/particles/store.hpp>
 
@@ -63,6 +59,13 @@ public:
 
   const Finder& finder() const { return *finder_; }
 
+  /// Promises that keep neighbours over steps. Without the first the next collide() begins anew; no result depends on
+  /// it. The particles of the last collide() have moved on by one step and been wrapped, nothing else but kicks
+  /// happened.
+  void moved_on() { neighbours_.moved_on(); }
+  /// All particles have been kicked by no more than this (m rad⁻¹).
+  void kicked(double largest) { neighbours_.kicked(largest); }
+
   DriftWatch* watch = nullptr; ///< searches then run on one thread
 
   /// Hand all that the grid's cells hold to the finder, without rejecting any first: to measure finders.
@@ -71,7 +74,6 @@ public:
 private:
   void prepare();
   void predict_all();
-  template<class Visit> void visit_candidates(std::size_t i, const Visit& visit) const;
   Query query_of(std::size_t i, std::size_t j, const Image& image) const;
   Event event_of(const Query& query, double time, std::size_t i, const Image& image) const;
   void predict(std::size_t i, std::size_t j, const Image& image);
@@ -89,13 +91,11 @@ private:
   ShearingBox box_;
   double offset_ = 0.0;
   DriftStep at_hand_;
-  PeriodicGrid grid_;
+  Neighbours neighbours_;
   EventQueue events_;
-  std::vector<Tangent> tangents_;
-  std::vector<Vec3> binned_;          // mid-step places as the grid knows them
-  std::vector<double> last_change_;   // time of the last velocity change in this step
-  std::vector<std::uint32_t> stamps_; // velocity changes in this step
-  double largest_radius_ = 0.0, largest_eccentricity_ = 0.0, largest_stray_ = 0.0;
+  std::vector<double> last_change_;    // time of the last velocity change in this step
+  std::vector<std::uint32_t> stamps_;  // velocity changes in this step
+  std::vector<std::uint32_t> touched_; // whose two are not those of a step's start
   std::uint64_t gave_up_ = 0;
 };
 

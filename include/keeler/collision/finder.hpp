@@ -15,7 +15,7 @@
 #pragma once
 
 #include <keeler/collision/pair.hpp>
-#include <keeler/collision/tangent.hpp>
+#include <keeler/collision/straight_line.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/particles/store.hpp>
 
@@ -30,16 +30,15 @@ namespace keeler {
 /// One step as finders see it. Times are relative to the epoch of the elements, rad.
 struct DriftStep {
   std::span<const Body> bodies;
-  std::span<const Tangent> tangents; ///< of the same particles
   Frequencies frequencies;
   double begin = 0.0, end = 0.0;
   Rotation at_begin, at_end;
-  TangentTest tangent_test{};
+  StraightLineTest straight_line;
 
   /// `size` is the largest coordinate that occurs, m: it sets the allowance for rounding.
   DriftStep(const Frequencies& f, double begin_time, double end_time, double size)
       : frequencies(f), begin(begin_time), end(end_time), at_begin(f, begin_time), at_end(f, end_time) {
-    tangent_test = {f.shear(), end, std::max(std::fabs(begin), std::fabs(end)), 1e-13 * size};
+    straight_line = {f, end, std::max(std::fabs(begin), std::fabs(end)), 1e-13 * size};
   }
 };
 
@@ -52,7 +51,7 @@ struct Query {
 };
 
 inline bool may_touch(const Query& q, const DriftStep& s) {
-  return s.tangent_test.may_touch(s.tangents[q.low], s.tangents[q.high], q.shift_x, q.shift_y, q.start);
+  return s.straight_line.may_touch(s.bodies[q.low], s.bodies[q.high], q.shift_x, q.shift_y, q.start);
 }
 
 inline Pair pair_of(const Query& q, const DriftStep& s) {
@@ -100,7 +99,7 @@ public:
   /// A contact's time lies in [query.start, end of the step): a root elsewhere is reported as `outside`.
   virtual FinderResult find(const Query& query) const = 0;
 
-  /// Kept for each particle beyond its elements and tangent.
+  /// Kept for each particle beyond its elements.
   virtual std::size_t bytes_per_particle() const = 0;
 };
 

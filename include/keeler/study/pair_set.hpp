@@ -19,7 +19,6 @@ public:
   DriftStep view() const;
 
   std::vector<Body> bodies;
-  std::vector<Tangent> tangents;
   std::vector<Query> queries;
 
 private:

@@ -14,10 +14,8 @@ namespace {
 FinderResult ask(const std::string& name, const Pair& pair, const Frequencies& f) {
   const std::unique_ptr<Finder> finder = make_finder(name);
   const std::vector<Body> bodies = {{pair.lo, 0.5 * pair.reach, 1.0}, {pair.hi, 0.5 * pair.reach, 1.0}};
-  const std::vector<Tangent> tangents = {tangent_of(bodies[0], f), tangent_of(bodies[1], f)};
   DriftStep step(f, pair.end - pair.step, pair.end, 100.0);
   step.bodies = bodies;
-  step.tangents = tangents;
   finder->begin(step);
   return finder->find({0, 1, 0.0, 0.0, pair.start});
 }

@@ -108,10 +108,7 @@ public:
 private:
   FinderResult ask(const PairCase& c) {
     step_ = DriftStep(c.frequencies, c.begin, c.end, c.size);
-    for (int k = 0; k < 2; ++k)
-      tangents_[k] = tangent_of(c.bodies[k], c.frequencies);
     step_.bodies = c.bodies;
-    step_.tangents = tangents_;
     finder_->begin(step_);
     return finder_->find(c.query);
   }
@@ -146,7 +143,6 @@ private:
   }
 
   std::unique_ptr<Finder> finder_;
-  std::array<Tangent, 2> tangents_;
   DriftStep step_{{}, 0.0, 0.0, 0.0};
 };
 

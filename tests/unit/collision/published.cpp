@@ -177,9 +177,7 @@ TEST_CASE("a buried pair is an event a little later in the step, never past its 
       std::vector<Body> bodies(2, Body{{}, 1.0, 1.0});
       bodies[1].elements = elements_from({{1.2, 0.3, 0.5}, velocity}, f, Rotation(f, start));
       DriftStep step(f, -0.5 * h, 0.5 * h, 100.0);
-      const std::vector<Tangent> tangents = {tangent_of(bodies[0], f), tangent_of(bodies[1], f)};
       step.bodies = bodies;
-      step.tangents = tangents;
       const auto finder = make_finder(entry.name);
       finder->begin(step);
       const FinderResult result = finder->find({0, 1, 0.0, 0.0, start});

@@ -19,7 +19,6 @@ const Frequencies kepler{1.0, 1.0};
 // passes far away.
 struct Trio {
   std::vector<Body> bodies;
-  std::vector<Tangent> tangents;
   DriftStep step{kepler, -0.5e-3, 0.5e-3, 100.0};
 
   Trio() {
@@ -27,10 +26,7 @@ struct Trio {
     add({-2.0, 0.0, 0.0}, {50.0, 0.0, 0.0}, at(0.2));
     add({2.0, 0.0, 0.0}, {-50.0, 0.0, 0.0}, at(0.6));
     add({20.0, 20.0, 0.0}, {-50.0, 0.0, 0.0}, at(0.5));
-    for (const Body& body : bodies)
-      tangents.push_back(tangent_of(body, kepler));
     step.bodies = bodies;
-    step.tangents = tangents;
   }
   void add(const Vec3& place, const Vec3& velocity, double time) {
     bodies.push_back({elements_from({place, velocity}, kepler, Rotation(kepler, time)), 1.0, 1.0});

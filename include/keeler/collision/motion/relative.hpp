@@ -1,6 +1,6 @@
 // Motion, form "relative epicycle": the relative orbit of two particles is an epicycle of the differences of their
 // elements, so one sine and cosine a guess serve, and its speed and acceleration are bounded for all times.
-// TangentMotion is the same path with those bounds, and most misses are proven from the tangents before it is set up.
+// BoundedMotion is the same path with those bounds, and straight lines prove most misses before it is set up.
 #pragma once
 
 #include <keeler/collision/finder.hpp>
@@ -25,11 +25,11 @@ protected:
   Frequencies frequencies_;
 };
 
-class TangentMotion : public RelativeMotion {
+class BoundedMotion : public RelativeMotion {
 public:
   static bool surely_apart(const Query& query, const DriftStep& step) { return !may_touch(query, step); }
 
-  TangentMotion(const Pair& pair, const DriftStep& step) : RelativeMotion(pair, step) {
+  BoundedMotion(const Pair& pair, const DriftStep& step) : RelativeMotion(pair, step) {
     const Frequencies& f = frequencies_;
     const double e = elements_.eccentricity(), i = elements_.inclination();
     const double horizontal = f.shear() * std::fabs(elements_.guiding_x) + 2.0 * e;

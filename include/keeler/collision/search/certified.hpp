@@ -19,7 +19,7 @@
 
 namespace keeler {
 
-/// `Motion` also has largest_speed(), largest_acceleration(), gap_error() and closing_error(): see TangentMotion.
+/// `Motion` also has largest_speed(), largest_acceleration(), gap_error() and closing_error(): see BoundedMotion.
 struct CertifiedSearch {
   template<class Motion> static FinderResult find(const Motion& motion, const Pair& pair);
 };

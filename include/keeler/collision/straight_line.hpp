@@ -1,0 +1,45 @@
+// The straight line that a relative path touches at the epoch, and the test that it allows: no path leaves its tangent
+// by more than A t²/2, so a pair whose tangents stay farther apart than contact plus that is a proven miss, without a
+// sine or cosine. Everything comes from the difference of the elements: a body is one line of cache.
+#pragma once
+
+#include <keeler/particles/store.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler {
+
+/// The test over times up to `end` after the epoch, none farther from it than `longest` (rad).
+struct StraightLineTest {
+  Frequencies frequencies;
+  double end = 0.0;
+  double longest = 0.0;
+  double allowance = 0.0; ///< added to contact, m: for the rounding of coordinates, or a skin
+
+  /// False only when the closest approach of the straight lines over [start, end], with all that curvature and rounding
+  /// can add, stays outside contact. The shift, at the epoch, is that of the image of `b`.
+  bool may_touch(const Body& a, const Body& b, double shift_x, double shift_y, double start) const {
+    constexpr double up = 1.0 + 1e-9;
+    const double shear = frequencies.shear(), kappa = frequencies.kappa, nu = frequencies.nu;
+    const Elements el = b.elements - a.elements;
+    const double gx = el.guiding_x + shift_x, gy = el.guiding_y + shift_y;
+    const Vec3 d(gx - el.e_cos, gy + (2.0 / kappa) * el.e_sin, el.i_sin);
+    const Vec3 v(kappa * el.e_sin, 2.0 * el.e_cos - shear * gx, nu * el.i_cos);
+    const double half_square = 0.5 * longest * longest;
+    // A² = (2κ e)² + (ν² i)²; A is no more than the sum of the four parts
+    const double bound = 2.0 * kappa * (std::fabs(el.e_cos) + std::fabs(el.e_sin)) +
+                         nu * nu * (std::fabs(el.i_sin) + std::fabs(el.i_cos));
+    const double contact = a.radius + b.radius + allowance, far = contact + bound * half_square;
+    const double d2 = d.squaredNorm(), dv = d.dot(v);
+    if (d2 - 2.0 * up * std::fabs(dv) * longest > far * far * up) // |d + v t|² is no less: most pairs end here
+      return false;
+    const double e2 = el.e_cos * el.e_cos + el.e_sin * el.e_sin, i2 = el.i_sin * el.i_sin + el.i_cos * el.i_cos;
+    const double near = contact + up * std::sqrt(4.0 * kappa * kappa * e2 + nu * nu * nu * nu * i2) * half_square;
+    const double v2 = v.squaredNorm();
+    const double closest = v2 > 0.0 ? std::clamp(-dv / v2, start, end) : start;
+    return !((d + closest * v).squaredNorm() > near * near * up);
+  }
+};
+
+} // namespace keeler
