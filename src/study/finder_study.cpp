@@ -78,8 +78,10 @@ public:
     for (const StudyState& state : states_)
       for (const double step : plan_.steps)
         add_truth(state, step);
-    for (const StudyState& state : states_)
+    for (const StudyState& state : states_) {
+      add_shares(state);
       add_rejection(state);
+    }
     for (const double step : {1e-3, 1e-2})
       for (const double share : plan_.shares)
         add_local_times(step, share);
@@ -110,6 +112,14 @@ private:
         [&state, repeats] { return rejection(state, 1e-3, repeats); });
   }
 
+  void add_shares(const StudyState& state) {
+    const int repeats = std::min(plan_.repeats, 3);
+    add(job_name("details", state.name, 1e-3), 1e9, [&state, repeats] { return call_details(state, 1e-3, repeats); });
+    for (const std::string& finder : paper_finders)
+      add(job_name("share", state.name, 1e-3, finder), 2.0 * repeats * expected_cost(state, 1e-3),
+          [&state, finder, repeats] { return finder_share(state, 1e-3, finder, repeats); });
+  }
+
   void add_local_times(double step, double share) {
     const StudyState& state = states_.front();
     const int repeats = std::min(plan_.repeats, 5);
@@ -137,9 +147,10 @@ private:
   // In another order in each repeat, so that a machine that drifts favours no finder.
   void add_runs(const StudyState& state, double step, int repeat) {
     const std::vector<std::string> finders = all_finders();
-    const std::size_t count = finders.size(), stride = repeat % 2 ? 5 : 7; // both prime to the number of finders, 12
+    const std::size_t count = finders.size();
     for (std::size_t k = 0; k < count; ++k) {
-      const std::string& finder = finders[(k * stride + static_cast<std::size_t>(repeat)) % count];
+      const std::size_t turned = (k + static_cast<std::size_t>(repeat) * 5) % count;
+      const std::string& finder = finders[repeat % 2 ? count - 1 - turned : turned];
       add(job_name("run", state.name, step, finder, repeat), expected_cost(state, step),
           [&state, step, finder] { return timed_run(state, step, finder); });
     }

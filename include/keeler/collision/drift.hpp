@@ -63,6 +63,9 @@ public:
 
   const Finder& finder() const { return *finder_; }
 
+  /// Puts another finder in place of the settings' one: to measure finders.
+  void use(std::unique_ptr<Finder> finder) { finder_ = std::move(finder); }
+
   DriftWatch* watch = nullptr; ///< searches then run on one thread
 
   /// Hand all that the grid's cells hold to the finder, without rejecting any first: to measure finders.

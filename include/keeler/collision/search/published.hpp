@@ -91,6 +91,7 @@ bool damp(Motion& motion, double guess, double& step, Separation& trial, FinderR
     step *= 0.5;
     trial = motion.at(guess + step);
     ++result.evaluations;
+    ++result.halvings;
     if (++halvings == Published::halvings)
       return false;
   }
