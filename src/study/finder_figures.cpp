@@ -65,12 +65,14 @@ bool figure1(const FinderStudyData& data, const fs::path& folder) {
   }
   write_text(folder / "figure1.csv", drift_csv(all));
   write_text(folder / "figure1.dat", blocks);
-  return plot(folder, "figure1",
-              fmt::format("set multiplot layout 1,2\nset key left top\nset xlabel 'orbits'\nset grid\n"
-                          "set ylabel 'drift of the mean guiding centre, r'\nplot {}\n"
-                          "set ylabel 'drift of the mean vertical motion, r'\nplot {}\nunset multiplot\n",
-                          in_x, in_z),
-              1100, 480);
+  return plot(
+      folder, "figure1",
+      fmt::format(
+          "set multiplot layout 1,2\nset key bmargin center horizontal samplen 2\nset xlabel 'orbits'\nset grid\n"
+          "set ylabel 'drift of the mean guiding centre, r'\nplot {}\n"
+          "set ylabel 'drift of the mean vertical motion, r'\nplot {}\nunset multiplot\n",
+          in_x, in_z),
+      1100, 560);
 }
 
 // A hit, a graze and a miss: relative epicycles that pass at different distances.
