@@ -99,9 +99,9 @@ bool figure2(const fs::path& folder) {
 }
 
 bool figure4(const FinderStudyData& data, const fs::path& folder) {
-  std::string script = "set multiplot layout 2,2\nset logscale xy\nset xlabel 'step (orbits)'\n"
-                       "set ylabel 'processor time for 0.1 orbit (s)'\nset grid\nset key top right samplen 2\nset "
-                       "xrange [8e-5:1.3e-2]\n";
+  std::string script =
+      "set multiplot layout 2,2\nset logscale xy\nset xlabel 'step (orbits)'\n"
+      "set ylabel 'processor time for 0.1 orbit (s)'\nset grid\nset key bmargin center horizontal samplen 2\n\n";
   for (const StudyState& state : data.states) {
     std::string table = "# step_orbits";
     for (const std::string& finder : shown_finders())

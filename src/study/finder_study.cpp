@@ -44,9 +44,12 @@ Json require_same_study(const fs::path& folder, const Plan& plan, const std::map
                     {"finders", all_finders()}};
   const fs::path file = folder / "study.json";
   if (!fs::exists(file)) {
-    if (fs::exists(folder) && !fs::is_empty(folder))
+    if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
       throw UsageError(fmt::format("'{}' is not empty and holds no study; name another folder", folder.string()));
-    fs::create_directories(folder);
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error)
+      throw IoError(fmt::format("cannot make the folder '{}': {}; name another", folder.string(), error.message()));
     Json begun = now;
     for (const auto& [key, value] : made)
       begun[key] = value;
@@ -239,6 +242,10 @@ double FinderStudyData::timed(const std::string& state, double step, const std::
 }
 
 bool study_finders(const FinderStudySettings& settings, const std::atomic<bool>& stop) {
+  constexpr std::size_t fewest = 100, most = 10000000;
+  if (settings.count < fewest || settings.count > most)
+    throw UsageError(
+        fmt::format("a study of {} particles is not possible; --count takes {} to {}", settings.count, fewest, most));
   const Plan plan = plan_of(settings);
   const std::map<std::string, std::string> made = builder(settings.arguments);
   const Json begun = require_same_study(settings.folder, plan, made);
