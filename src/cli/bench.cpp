@@ -55,8 +55,11 @@ ExitCode bench(const BenchOptions& options) {
   }
   fmt::print("ns per particle and step            {:.1f} (median of {} times {} steps, {} thread{})\n",
              b.ns_per_particle_step, options.drift.repeats, b.steps, threads(), threads() == 1 ? "" : "s");
-  fmt::print("ns per finder call                  {:.1f}, {:.3g} calls per particle at the start of a step\n",
-             b.ns_per_call, b.calls_per_particle_step);
+  if (b.calls_per_particle_step > 0.0)
+    fmt::print("ns per finder call                  {:.1f}, {:.3g} calls per particle at the start of a step\n",
+               b.ns_per_call, b.calls_per_particle_step);
+  else
+    fmt::print("ns per finder call                  none: no pair came to the finder\n");
   fmt::print("collisions per particle and orbit   {:.3g} faster than v_cut\n", b.collisions_per_particle_orbit);
   fmt::print("dispersion c_x                      {:.3g} r Omega\n", b.dispersion_r_omega);
   return ExitCode::done;
@@ -73,8 +76,10 @@ void add_bench(CLI::App& program, Action& action) {
   DriftBenchSettings& s = options->drift;
   drift.add_option("--count", s.count, "particles (default: 10000)")->check(positive_number());
   drift.add_option("--step", s.step_orbits, "step in orbits (default: 0.001)")->check(positive_number());
-  drift.add_option("--optical-depth", s.optical_depth, "optical depth (default: 0.5)")->check(positive_number());
-  drift.add_option("--finder", s.finder, "collision finder (default: certified)")->check(finder_name());
+  drift.add_option("--optical-depth", s.optical_depth, "optical depth, up to 10 (default: 0.5)")
+      ->check(CLI::Range(1e-6, 10.0).description(""));
+  drift.add_option("--finder", s.finder, "collision finder, a name of the manual's scene keys (default: certified)")
+      ->check(finder_name());
   drift.add_option("--repeats", s.repeats, "times measured; medians are given (default: 5)")->check(positive_number());
   drift.add_flag("--all-pairs", s.all_pairs,
                  "hand every candidate of the grid to the finder, without rejecting any first");

@@ -5,14 +5,18 @@
 #include "scene_arguments.hpp"
 #include "signals.hpp"
 
+#include <keeler/diagnostics/surface.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/states/clumped.hpp>
 #include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
+
+#include <unistd.h>
 
 namespace keeler {
 namespace {
@@ -30,6 +34,14 @@ void refuse_if_taken(const GenerateOptions& options) {
   if (std::filesystem::exists(options.output) && !options.force)
     throw UsageError(fmt::format("'{}' exists already (a state is never overwritten); name another file or add --force",
                                  options.output));
+}
+
+// Before minutes are spent on a state that cannot be written.
+void require_folder(const std::string& output) {
+  const std::filesystem::path folder = std::filesystem::absolute(output).parent_path();
+  if (!std::filesystem::is_directory(folder) || access(folder.c_str(), W_OK) != 0)
+    throw IoError(fmt::format("cannot write '{}': '{}' is no folder that can be written to; make it, or name another",
+                              output, folder.string()));
 }
 
 ClumpedState evolve_until_clumped(const Scene& scene) {
@@ -56,10 +68,20 @@ void print_clumping(const Clumping& c) {
       100.0 * s.change, 100.0 * c.criterion.largest_change, 100.0 * s.deviation, 100.0 * c.criterion.largest_deviation);
 }
 
+void print_doubts(const Patch& patch) {
+  constexpr double enough = 4.0; // λ_cr: docs/dev/diagnostics.md
+  const double wavelengths = std::min(patch.box.size_x, patch.box.size_y) / critical_wavelength(patch);
+  if (wavelengths < 0.99 * enough)
+    fmt::print("note: the box spans {:.2g} lambda_cr; below {:g} it holds so few wakes that their settling, pitch and "
+               "spacing mean little\n",
+               wavelengths, enough);
+}
+
 ExitCode generate(const GenerateOptions& options, const std::vector<std::string>& arguments) {
   options.threads.apply();
   const Scene scene = options.scene.load();
   refuse_if_taken(options);
+  require_folder(options.output);
   SnapshotMeta meta{scene.resolved, collect_provenance(arguments)};
   Patch patch;
   if (options.clumped) {
@@ -67,6 +89,7 @@ ExitCode generate(const GenerateOptions& options, const std::vector<std::string>
     patch = std::move(state.patch);
     meta.clumping = clumping_numbers(state.clumping);
     print_clumping(state.clumping);
+    print_doubts(patch);
   } else {
     patch = initial_patch(scene);
   }

@@ -48,6 +48,9 @@ void print_summary(const std::string& folder, const nlohmann::json& s) {
   fmt::print("collisions per particle and orbit   {:.3g} faster than v_cut, {:.3g} slow contacts\n",
              number("collisions_per_particle_orbit"), number("slow_contacts_per_particle_orbit"));
   fmt::print("largest overlap                     {:.1e} of a radius sum\n", number("largest_overlap"));
+  if (s["finder_gave_up"].get<long>() > 0 || number("largest_overlap") > 1e-8)
+    fmt::print("the collision finder                gave up {} searches, and may have missed contacts\n",
+               s["finder_gave_up"].get<long>());
   const nlohmann::json& e = s["energy_j"];
   const auto energy = [&](const char* key) { return e[key].get<double>(); };
   fmt::print("energy budget (J)                   change {:.4g} = kicks {:.4g} + edges {:.4g} - collisions {:.4g}, "

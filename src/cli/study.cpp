@@ -37,8 +37,9 @@ void add_study(CLI::App& program, Action& action, const std::vector<std::string>
   const auto settings = std::make_shared<FinderStudySettings>();
   CLI::App& command = *program.add_subcommand("study", "carry out an experiment and write a report on it");
   command.require_subcommand(1);
-  CLI::App& finders =
-      *command.add_subcommand("finders", "the collision finders: time, truth and the paper's claims, on four states");
+  CLI::App& finders = *command.add_subcommand(
+      "finders", "the collision finders: time, truth and the paper's claims, on four states; stopped (exit 75), the "
+                 "same command goes on");
   finders.add_option("-o,--output", settings->folder, "the folder for the results; a study in it is continued")
       ->required();
   finders.add_option("--count", settings->count, "particles of equal size (default: 10000, about 90 minutes)")

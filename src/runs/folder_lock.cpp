@@ -1,4 +1,4 @@
-#include "folder_lock.hpp"
+#include <keeler/runs/folder_lock.hpp>
 
 #include <keeler/core/error.hpp>
 
@@ -20,7 +20,7 @@ FolderLock::FolderLock(const std::filesystem::path& folder)
   if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
     return; // a file system without locks does not keep anyone from working
   close(descriptor_);
-  throw UsageError(fmt::format("a run is going on in '{}' (another process holds the folder); wait for its end or name "
+  throw UsageError(fmt::format("work is going on in '{}' (another process holds the folder); wait for its end or name "
                                "another folder",
                                folder.string()));
 }

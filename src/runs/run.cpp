@@ -1,6 +1,5 @@
 #include <keeler/runs/run.hpp>
 
-#include "folder_lock.hpp"
 #include "recorder.hpp"
 #include "summary.hpp"
 
@@ -10,6 +9,7 @@
 #include <keeler/io/checkpoint.hpp>
 #include <keeler/io/checkpoint_folder.hpp>
 #include <keeler/io/files.hpp>
+#include <keeler/runs/folder_lock.hpp>
 #include <keeler/runs/state_hash.hpp>
 #include <keeler/states/initial.hpp>
 

@@ -14,6 +14,16 @@ double depth(const Query& query, const DriftStep& step, double time) {
   return 1.0 - RelativeMotion(pair, step).at(time).d.norm() / pair.reach;
 }
 
+// The deepest between two times: a contact that was passed counts, though the spheres may be apart again. Sampled: what
+// lies between two of the times is a graze.
+double deepest(const Query& query, const DriftStep& step, double from, double to) {
+  constexpr int samples = 64;
+  double depth_so_far = depth(query, step, to);
+  for (int k = 0; k < samples && from < to; ++k)
+    depth_so_far = std::max(depth_so_far, depth(query, step, from + (to - from) * k / samples));
+  return depth_so_far;
+}
+
 bool same(const Query& a, const Query& b) {
   return a.low == b.low && a.high == b.high && a.shift_x == b.shift_x && a.shift_y == b.shift_y;
 }
@@ -43,9 +53,9 @@ void FinderAudit::searched(const Query& query, const FinderResult& result) {
     ++verdict_.false_hits;
     return;
   }
-  const double at_truth = depth(query, *step_, truth.time);
-  verdict_.late += inside > std::max(at_truth, 0.0) + noticeable;
-  verdict_.deepest = std::max(verdict_.deepest, inside);
+  const double sunk = deepest(query, *step_, truth.time, result.time);
+  verdict_.late += sunk > std::max(depth(query, *step_, truth.time), 0.0) + noticeable;
+  verdict_.deepest = std::max(verdict_.deepest, sunk);
   if (query.start == step_->begin) {
     note_first(found_, query, result.time);
     note_first(true_, query, truth.time);

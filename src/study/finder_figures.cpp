@@ -65,12 +65,14 @@ bool figure1(const FinderStudyData& data, const fs::path& folder) {
   }
   write_text(folder / "figure1.csv", drift_csv(all));
   write_text(folder / "figure1.dat", blocks);
-  return plot(folder, "figure1",
-              fmt::format("set multiplot layout 1,2\nset key left top\nset xlabel 'orbits'\nset grid\n"
-                          "set ylabel 'drift of the mean guiding centre, r'\nplot {}\n"
-                          "set ylabel 'drift of the mean vertical motion, r'\nplot {}\nunset multiplot\n",
-                          in_x, in_z),
-              1100, 480);
+  return plot(
+      folder, "figure1",
+      fmt::format(
+          "set multiplot layout 1,2\nset key bmargin center horizontal samplen 2\nset xlabel 'orbits'\nset grid\n"
+          "set ylabel 'drift of the mean guiding centre, r'\nplot {}\n"
+          "set ylabel 'drift of the mean vertical motion, r'\nplot {}\nunset multiplot\n",
+          in_x, in_z),
+      1100, 560);
 }
 
 // A hit, a graze and a miss: relative epicycles that pass at different distances.
@@ -97,9 +99,9 @@ bool figure2(const fs::path& folder) {
 }
 
 bool figure4(const FinderStudyData& data, const fs::path& folder) {
-  std::string script = "set multiplot layout 2,2\nset logscale xy\nset xlabel 'step (orbits)'\n"
-                       "set ylabel 'processor time for 0.1 orbit (s)'\nset grid\nset key top right samplen 2\nset "
-                       "xrange [8e-5:1.3e-2]\n";
+  std::string script =
+      "set multiplot layout 2,2\nset logscale xy\nset xlabel 'step (orbits)'\n"
+      "set ylabel 'processor time for 0.1 orbit (s)'\nset grid\nset key bmargin center horizontal samplen 2\n\n";
   for (const StudyState& state : data.states) {
     std::string table = "# step_orbits";
     for (const std::string& finder : shown_finders())

@@ -15,11 +15,13 @@ struct FinderStudyData {
   int repeats = 0;
   std::vector<double> shares; ///< of particles moved, for the local times
   std::map<std::string, Json> results;
-  std::string host, commit, command;
+  std::map<std::string, std::string> made; ///< command, host, processor, compiler, flags, commit of the timed runs
 
   const Json& audit(const std::string& state, double step, const std::string& finder) const;
   const Json& result(const std::string& name) const { return results.at(name); }
-  /// Median over the repeats of a field of the timed runs.
+  /// A field of the timed runs, one value a repeat, and its median.
+  std::vector<double> repeated(const std::string& state, double step, const std::string& finder,
+                               const char* field) const;
   double timed(const std::string& state, double step, const std::string& finder, const char* field) const;
 };
 

@@ -10,7 +10,11 @@
 #include <keeler/study/median.hpp>
 #include <keeler/study/perturbed_ring.hpp>
 
+#include <keeler/runs/folder_lock.hpp>
+
 #include <fmt/format.h>
+
+#include <fstream>
 
 namespace keeler {
 namespace {
@@ -31,8 +35,8 @@ Plan plan_of(const FinderStudySettings& settings) {
   return {settings.count, {1e-4, 1.0 / 3000.0, 1e-3, 1.0 / 300.0, 1e-2}, 6, 100.0};
 }
 
-// A study is continued only with the settings that began it. Returns the commit of the program that did.
-std::string require_same_study(const fs::path& folder, const Plan& plan, const std::string& commit) {
+// A study is continued only with the settings that began it. Returns what is written of it, its builder included.
+Json require_same_study(const fs::path& folder, const Plan& plan, const std::map<std::string, std::string>& made) {
   const Json now = {{"study", "finders"},
                     {"count", plan.count},
                     {"steps_orbits", plan.steps},
@@ -40,20 +44,59 @@ std::string require_same_study(const fs::path& folder, const Plan& plan, const s
                     {"finders", all_finders()}};
   const fs::path file = folder / "study.json";
   if (!fs::exists(file)) {
-    if (fs::exists(folder) && !fs::is_empty(folder))
+    if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
       throw UsageError(fmt::format("'{}' is not empty and holds no study; name another folder", folder.string()));
-    fs::create_directories(folder);
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error)
+      throw IoError(fmt::format("cannot make the folder '{}': {}; name another", folder.string(), error.message()));
     Json begun = now;
-    begun["commit"] = commit;
+    for (const auto& [key, value] : made)
+      begun[key] = value;
     write_text(file, begun.dump(2) + "\n");
-    return commit;
+    return begun;
   }
   const Json before = Json::parse(read_text(file), nullptr, false);
   for (const auto& [key, value] : now.items())
     if (!before.is_object() || !before.contains(key) || before[key] != value)
-      throw UsageError(fmt::format("'{}' holds a study with another {}; give the same options or name another folder",
-                                   folder.string(), key));
-  return before.value("commit", "");
+      throw UsageError(fmt::format("'{}' holds a study with another {} ({}); give the same options or name another "
+                                   "folder",
+                                   folder.string(), key,
+                                   before.is_object() && before.contains(key) ? before[key].dump() : "none"));
+  return before;
+}
+
+// Times of different builds or machines do not compare. Whatever else is missing may be measured by a newer program:
+// each such measurement compares only with itself, or is no time.
+void require_same_build(const Json& begun, const std::map<std::string, std::string>& made, const std::vector<Job>& jobs,
+                        const JobList& list, const fs::path& folder) {
+  std::size_t missing_runs = 0, runs = 0;
+  for (const Job& job : jobs)
+    if (job.name.starts_with("run/")) {
+      ++runs;
+      missing_runs += !list.results().contains(job.name);
+    }
+  if (missing_runs == 0 || missing_runs == runs)
+    return;
+  for (const char* key : {"commit", "host", "compiler", "flags"})
+    if (begun.value(key, "") != made.at(key))
+      throw UsageError(fmt::format("the timed runs of '{}' were begun with another {} ({}), and such times do not "
+                                   "compare; go on there with that one or name another folder",
+                                   folder.string(), key, begun.value(key, "")));
+}
+
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.starts_with("model name"))
+      return line.substr(line.find(':') + 2);
+  return "unknown";
+}
+
+std::map<std::string, std::string> builder(const std::vector<std::string>& arguments) {
+  const Provenance p = collect_provenance(arguments);
+  return {{"command", p.at("arguments")}, {"host", p.at("host")},   {"processor", processor()},
+          {"compiler", p.at("compiler")}, {"flags", p.at("flags")}, {"commit", p.at("commit")}};
 }
 
 std::size_t missing(const std::vector<Job>& jobs, const JobList& list) {
@@ -78,8 +121,10 @@ public:
     for (const StudyState& state : states_)
       for (const double step : plan_.steps)
         add_truth(state, step);
-    for (const StudyState& state : states_)
+    for (const StudyState& state : states_) {
+      add_shares(state);
       add_rejection(state);
+    }
     for (const double step : {1e-3, 1e-2})
       for (const double share : plan_.shares)
         add_local_times(step, share);
@@ -110,6 +155,14 @@ private:
         [&state, repeats] { return rejection(state, 1e-3, repeats); });
   }
 
+  void add_shares(const StudyState& state) {
+    const int repeats = std::min(plan_.repeats, 3);
+    add(job_name("details", state.name, 1e-3), 1e9, [&state, repeats] { return call_details(state, 1e-3, repeats); });
+    for (const std::string& finder : paper_finders)
+      add(job_name("share", state.name, 1e-3, finder), 2.0 * repeats * expected_cost(state, 1e-3),
+          [&state, finder, repeats] { return finder_share(state, 1e-3, finder, repeats); });
+  }
+
   void add_local_times(double step, double share) {
     const StudyState& state = states_.front();
     const int repeats = std::min(plan_.repeats, 5);
@@ -137,9 +190,10 @@ private:
   // In another order in each repeat, so that a machine that drifts favours no finder.
   void add_runs(const StudyState& state, double step, int repeat) {
     const std::vector<std::string> finders = all_finders();
-    const std::size_t count = finders.size(), stride = repeat % 2 ? 5 : 7; // both prime to the number of finders, 12
+    const std::size_t count = finders.size();
     for (std::size_t k = 0; k < count; ++k) {
-      const std::string& finder = finders[(k * stride + static_cast<std::size_t>(repeat)) % count];
+      const std::size_t turned = (k + static_cast<std::size_t>(repeat) * 5) % count;
+      const std::string& finder = finders[repeat % 2 ? count - 1 - turned : turned];
       add(job_name("run", state.name, step, finder, repeat), expected_cost(state, step),
           [&state, step, finder] { return timed_run(state, step, finder); });
     }
@@ -174,18 +228,28 @@ const Json& FinderStudyData::audit(const std::string& state, double step, const 
   return result(job_name("audit", state, step, finder));
 }
 
-double FinderStudyData::timed(const std::string& state, double step, const std::string& finder,
-                              const char* field) const {
+std::vector<double> FinderStudyData::repeated(const std::string& state, double step, const std::string& finder,
+                                              const char* field) const {
   std::vector<double> values;
   for (int repeat = 0; repeat < repeats; ++repeat)
     values.push_back(result(job_name("run", state, step, finder, repeat)).at(field).get<double>());
-  return median(values);
+  return values;
+}
+
+double FinderStudyData::timed(const std::string& state, double step, const std::string& finder,
+                              const char* field) const {
+  return median(repeated(state, step, finder, field));
 }
 
 bool study_finders(const FinderStudySettings& settings, const std::atomic<bool>& stop) {
+  constexpr std::size_t fewest = 100, most = 10000000;
+  if (settings.count < fewest || settings.count > most)
+    throw UsageError(
+        fmt::format("a study of {} particles is not possible; --count takes {} to {}", settings.count, fewest, most));
   const Plan plan = plan_of(settings);
-  const Provenance provenance = collect_provenance(settings.arguments);
-  const std::string commit = require_same_study(settings.folder, plan, provenance.at("commit"));
+  const std::map<std::string, std::string> made = builder(settings.arguments);
+  const Json begun = require_same_study(settings.folder, plan, made);
+  const FolderLock lock(settings.folder);
   const std::optional<std::vector<StudyState>> states =
       study_states(settings.folder / "states", plan.count, settings.notice, stop);
   if (!states)
@@ -193,11 +257,7 @@ bool study_finders(const FinderStudySettings& settings, const std::atomic<bool>&
   const std::vector<Job> jobs = Jobs(*states, plan).all();
   JobList list(settings.folder / "measurements.jsonl");
   const std::size_t left = missing(jobs, list);
-  if (left > 0 && left < jobs.size() && commit != provenance.at("commit"))
-    throw UsageError(
-        fmt::format("'{}' was begun with another build of the program ({}), and times of two builds do not "
-                    "compare; go on with that one or name another folder",
-                    settings.folder.string(), commit));
+  require_same_build(begun, made, jobs, list, settings.folder);
   if (left > 0)
     announce(jobs, left, settings.notice);
 
@@ -208,11 +268,9 @@ bool study_finders(const FinderStudySettings& settings, const std::atomic<bool>&
   if (!finished)
     return false;
 
-  const FinderStudyData data{settings.folder, *states,
-                             plan.steps,      1e-3,
-                             plan.repeats,    plan.shares,
-                             list.results(),  provenance.at("host"),
-                             commit,          provenance.at("arguments")};
+  FinderStudyData data{settings.folder, *states, plan.steps, 1e-3, plan.repeats, plan.shares, list.results(), made};
+  for (auto& [key, value] : data.made)
+    value = begun.value(key, value);
   write_finder_tables(data);
   const bool drawn = draw_finder_figures(data);
   if (!drawn)

@@ -44,13 +44,8 @@ void write_finder_tables(const FinderStudyData& data) {
   for (const auto& [name, result] : data.results)
     if (!name.starts_with("run/"))
       other[name] = result;
-  write_text(data.folder / "finders.json", Json{{"host", data.host},
-                                                {"commit", data.commit},
-                                                {"command", data.command},
-                                                {"rows", rows},
-                                                {"measurements", other}}
-                                                   .dump(1) +
-                                               "\n");
+  write_text(data.folder / "finders.json",
+             Json{{"made", data.made}, {"rows", rows}, {"measurements", other}}.dump(1) + "\n");
 }
 
 } // namespace keeler

@@ -2,6 +2,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/stopwatch.hpp>
+#include <keeler/io/files.hpp>
 
 #include <fmt/format.h>
 
@@ -18,7 +19,8 @@ JobList::JobList(const std::filesystem::path& file) : file_(file) {
     text += line + "\n";
   }
   in.close();
-  std::ofstream(file, std::ios::trunc) << text; // without a line that was cut short
+  if (std::filesystem::exists(file) && text.size() != std::filesystem::file_size(file))
+    write_text(file, text); // without a line that was cut short
 }
 
 void JobList::keep(const std::string& name, const Json& result) {

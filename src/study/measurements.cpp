@@ -2,6 +2,8 @@
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/collision/finders.hpp>
+#include <keeler/collision/motion/relative.hpp>
+#include <keeler/collision/search/certified.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/simulation/simulation.hpp>
@@ -9,6 +11,7 @@
 #include <keeler/study/median.hpp>
 #include <keeler/study/pair_set.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace keeler {
@@ -46,14 +49,44 @@ Json exits_of(const FinderCounts& counts) {
   return exits;
 }
 
-double run_seconds(const StudyState& state, const Scene& scene, bool every_candidate) {
-  Simulation simulation(scene, state.patch);
-  simulation.drift().every_candidate = every_candidate;
+double run_seconds(Simulation& simulation, double step) {
   const double start = cpu_seconds();
-  for (int k = steps_of(scene.time.step); k > 0; --k)
+  for (int k = steps_of(step); k > 0; --k)
     simulation.advance();
   return cpu_seconds() - start;
 }
+
+double run_seconds(const StudyState& state, const Scene& scene, bool every_candidate) {
+  Simulation simulation(scene, state.patch);
+  simulation.drift().every_candidate = every_candidate;
+  return run_seconds(simulation, scene.time.step);
+}
+
+// The certified finder's motion without the rejection that spares most calls the search.
+struct UnrejectedMotion : BoundedMotion {
+  using BoundedMotion::BoundedMotion;
+  static bool surely_apart(const Query&, const DriftStep&) { return false; }
+};
+
+// The answers of a run, in order.
+struct TapeRecorder : DriftWatch {
+  std::vector<FinderResult> answers;
+  void searched(const Query&, const FinderResult& result) override { answers.push_back(result); }
+};
+
+// Gives recorded answers again, for a run of the same calls: what such a run costs is everything but the finder.
+class Tape final : public Finder {
+public:
+  explicit Tape(const std::vector<FinderResult>& answers) : answers_(answers) {}
+  void begin(const DriftStep&) override {}
+  void changed(std::size_t) override {}
+  FinderResult find(const Query&) const override { return answers_[next_++]; }
+  std::size_t bytes_per_particle() const override { return 0; }
+
+private:
+  const std::vector<FinderResult>& answers_;
+  mutable std::size_t next_ = 0;
+};
 
 // Every finder on the same pairs, in turn, several times: medians of the time of a call.
 Json times_per_call(const PairSet& pairs, int repeats) {
@@ -80,6 +113,16 @@ FinderVerdict verdict_on(const PairSet& pairs, Finder& finder) {
   return audit.verdict();
 }
 
+// Leaves out pairs that are in contact when their search begins: their contact would have been carried out before.
+void drop_overlapping(PairSet& pairs) {
+  const DriftStep step = pairs.view();
+  const auto overlapping = [&](const Query& query) {
+    const Pair pair = pair_of(query, step);
+    return RelativeMotion(pair, step).at(query.start).gap(pair.reach) <= 0.0;
+  };
+  pairs.queries.erase(std::remove_if(pairs.queries.begin(), pairs.queries.end(), overlapping), pairs.queries.end());
+}
+
 // Gives a share of the particles a small velocity change at a time of its own within the step.
 void move_some(PairSet& pairs, double share, double kick_speed) {
   const DriftStep step = pairs.view();
@@ -94,6 +137,7 @@ void move_some(PairSet& pairs, double share, double kick_speed) {
   }
   for (Query& query : pairs.queries)
     query.start = std::max(changed[query.low], changed[query.high]);
+  drop_overlapping(pairs);
 }
 
 } // namespace
@@ -136,11 +180,57 @@ Json audited_run(const StudyState& state, double step, const std::string& finder
           {"misordered", verdict.misordered},
           {"evaluations", verdict.counts.total().evaluations},
           {"iterations", verdict.counts.total().iterations},
+          {"halvings", verdict.counts.total().halvings},
           {"collisions", tally.fast + tally.slow},
           {"deepest", verdict.deepest},
           {"largest_overlap", largest_overlap(simulation.patch()).depth},
           {"bytes_per_particle", simulation.drift().finder().bytes_per_particle()},
           {"exits", exits_of(verdict.counts)}};
+}
+
+Json finder_share(const StudyState& state, double step, const std::string& finder, int repeats) {
+  const Scene scene = state.timed(step, finder);
+  TapeRecorder recorder;
+  {
+    Simulation simulation(scene, state.patch);
+    simulation.drift().every_candidate = true;
+    simulation.drift().watch = &recorder;
+    run_seconds(simulation, step);
+  }
+  std::vector<double> with, without;
+  for (int repeat = 0; repeat < repeats; ++repeat) {
+    with.push_back(run_seconds(state, scene, true));
+    Simulation simulation(scene, state.patch);
+    simulation.drift().every_candidate = true;
+    simulation.drift().use(std::make_unique<Tape>(recorder.answers));
+    without.push_back(run_seconds(simulation, step));
+  }
+  return {{"cpu_s", median(with)}, {"cpu_s_without_finder", median(without)}};
+}
+
+Json call_details(const StudyState& state, double step, int repeats) {
+  const PairSet pairs = first_pairs(state, state.timed(step, "certified"), true);
+  const DriftStep view = pairs.view();
+  Json begin;
+  for (const FinderEntry& entry : finder_table()) {
+    const std::unique_ptr<Finder> finder = entry.make();
+    if (finder->bytes_per_particle() == 0)
+      continue;
+    constexpr int rounds = 20;
+    std::vector<double> times;
+    for (int repeat = 0; repeat < repeats; ++repeat) {
+      const double start = cpu_seconds();
+      for (int round = 0; round < rounds; ++round)
+        finder->begin(view);
+      times.push_back(1e9 * (cpu_seconds() - start) / (rounds * static_cast<double>(pairs.bodies.size())));
+    }
+    begin[entry.name] = median(times);
+  }
+  std::vector<double> alone;
+  MotionSearch<UnrejectedMotion, CertifiedSearch> search;
+  for (int repeat = 0; repeat < repeats; ++repeat)
+    alone.push_back(ns_per_call(pairs, search, least_seconds));
+  return {{"begin_ns_per_particle", begin}, {"certified_search_alone_ns_per_call", median(alone)}};
 }
 
 Json scan_check(const StudyState& state, double step) {

@@ -26,6 +26,13 @@ Json timed_run(const StudyState& state, double step, const std::string& finder);
 /// The same run, each call held against the certified finder: counts, verdict, histograms, the overlap at the end.
 Json audited_run(const StudyState& state, double step, const std::string& finder);
 
+/// Runs with the finder and, on recorded answers, without: what share of the time is the finder's.
+Json finder_share(const StudyState& state, double step, const std::string& finder, int repeats);
+
+/// What the time of a call leaves out: the start of a step for finders that keep something (ns a particle); and the
+/// certified search without its rejection (ns a call).
+Json call_details(const StudyState& state, double step, int repeats);
+
 /// The first step's pairs: the certified finder against a dense scan.
 Json scan_check(const StudyState& state, double step);
 

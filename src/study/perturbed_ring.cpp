@@ -186,21 +186,6 @@ Drift perturbed_ring_drift(const PerturbedRing& request, const std::string& path
   return drift;
 }
 
-std::vector<DriftRow> figure_one(const PerturbedRing& ring) {
-  std::vector<std::string> paths = {straight_path, control_path};
-  for (const FinderEntry& finder : finder_table())
-    paths.emplace_back(finder.name);
-  std::vector<DriftRow> rows;
-  for (const std::string& path : paths)
-    for (const double step : {1e-3, 3e-3, 1e-2}) {
-      PerturbedRing run = ring;
-      run.step_orbits = step;
-      const Drift drift = perturbed_ring_drift(run, path);
-      rows.insert(rows.end(), drift.rows.begin(), drift.rows.end());
-    }
-  return rows;
-}
-
 std::string drift_csv(const std::vector<DriftRow>& rows) {
   std::string text = "orbits,path,step_orbits,mean_guiding_x_r,mean_vertical_r,collisions_per_particle\n";
   for (const DriftRow& row : rows)

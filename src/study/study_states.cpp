@@ -129,7 +129,7 @@ std::optional<std::vector<StudyState>> study_states(const std::filesystem::path&
       state.name = fmt::format("{}-{}", recipe.name, clumped ? "clumped" : "early");
       state.scene = scene_of(recipe, recipe.sizes.kind == SizeLaw::Kind::equal ? count : count / 2);
       const std::filesystem::path file = folder / (state.name + ".hdf"), note = folder / (state.name + ".txt");
-      if (!std::filesystem::exists(note)) {
+      if (!std::filesystem::exists(note) || !std::filesystem::exists(file)) {
         say(fmt::format("making the state {}", state.name));
         const std::optional<Made> made = make(state.scene, clumped, say, stop);
         if (!made)

@@ -22,12 +22,13 @@ while read -r command; do
   accepts "help of $command" "$command" --help
   prints "help of $command" "keeler $command"
   cp "$work/out" "$work/help"
-  for part in $(sed '1,/^Subcommands:/d' "$work/help" | sed -nE 's/^  ([a-z]+) .*/\1/p'); do # keeler bench drift, ...
+  sed '1,/^Subcommands:/d' "$work/help" | sed -nE 's/^  ([a-z]+) .*/\1/p' >"$work/parts"
+  while read -r part; do # keeler bench drift, ...
     accepts "help of $command $part" "$command" "$part" --help
     prints "help of $command $part" "keeler $command $part"
     section "$command" | grep -qF "keeler $command $part" || fail "the manual does not have $command $part"
     cat "$work/out" >>"$work/help"
-  done
+  done <"$work/parts"
   grep -oE -- '--[a-z][a-z-]*' "$work/help" | sort -u | grep -v -- '^--help$' >"$work/options"
   while read -r option; do
     section "$command" | grep -qE -- "$option\b" || fail "the manual does not have $command $option"

@@ -17,14 +17,15 @@ wait "$process" || code=$?
 [ "$code" -eq 75 ] || fail "a stopped study: exit $code: $(tail -n 3 "$work/err")"
 grep -q "the same command goes on from here" "$work/err" || fail "a stopped study does not say how to go on"
 head -n 3 "$folder/measurements.jsonl" >"$work/kept"
-refuses "another count" "another count" study finders --quick --count 301 -o "$folder"
+refuses "another count" "another count (300)" study finders --quick --count 301 -o "$folder"
 runs 0 study finders --quick --count 300 -o "$folder"
 head -n 3 "$folder/measurements.jsonl" | cmp - "$work/kept" || fail "a continued study does measurements again"
 for name in report.md report.html finders.csv finders.json figures; do
   prints "study" "$folder/$name"
   [ -e "$folder/$name" ] || fail "study: no $name"
 done
-mkdir "$work/full" && touch "$work/full/mine"
+mkdir "$work/full"
+touch "$work/full/mine"
 refuses "a folder with other things" "holds no study" study finders --quick -o "$work/full"
 
 # Twelve finders, four states, three steps, two repeats.
@@ -44,7 +45,9 @@ grep -q "0 found by the scan alone, 0 by the certified finder alone" "$folder/re
   fail "the truth is in doubt: $(grep 'dense scan' "$folder/report.md")"
 if command -v gnuplot >/dev/null; then
   for k in 1 2 4 5 6; do
-    [ -s "$folder/figures/figure$k.svg" ] && [ -s "$folder/figures/figure$k.png" ] || fail "no figure $k"
+    for ending in svg png; do
+      [ -s "$folder/figures/figure$k.$ending" ] || fail "no figure$k.$ending"
+    done
   done
 fi
 grep -q 'src="[^d]' "$folder/report.html" && fail "the page needs other files"

@@ -17,13 +17,14 @@ struct FinderCounts {
   /// Calls of one kind.
   struct Calls {
     std::uint64_t count = 0;
-    std::uint64_t iterations = 0, evaluations = 0; ///< summed
+    std::uint64_t iterations = 0, evaluations = 0, halvings = 0; ///< summed
     Histogram by_iterations{}, by_evaluations{};
 
     void merge(const Calls& other) {
       count += other.count;
       iterations += other.iterations;
       evaluations += other.evaluations;
+      halvings += other.halvings;
       for (int k = 0; k < bins; ++k) {
         by_iterations[k] += other.by_iterations[k];
         by_evaluations[k] += other.by_evaluations[k];
@@ -40,6 +41,7 @@ struct FinderCounts {
     ++calls.count;
     calls.iterations += result.iterations;
     calls.evaluations += result.evaluations;
+    calls.halvings += result.halvings;
     ++calls.by_iterations[std::min(result.iterations, bins - 1)];
     ++calls.by_evaluations[std::min(result.evaluations, bins - 1)];
   }

@@ -65,6 +65,8 @@ public:
   void moved_on() { neighbours_.moved_on(); }
   /// All particles have been kicked by no more than this (m rad⁻¹).
   void kicked(double largest) { neighbours_.kicked(largest); }
+  /// Puts another finder in place of the settings' one: to measure finders.
+  void use(std::unique_ptr<Finder> finder) { finder_ = std::move(finder); }
 
   DriftWatch* watch = nullptr; ///< searches then run on one thread
 

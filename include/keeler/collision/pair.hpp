@@ -46,6 +46,7 @@ struct FinderResult {
   double time = 0.0;   ///< of the contact, in [start, end), when exit is hit or overlapping
   int iterations = 0;  ///< passes of the search loop
   int evaluations = 0; ///< evaluations of the motion
+  int halvings = 0;    ///< steps that were tried and then halved; each is an evaluation too
 
   bool contact() const { return exit == FinderExit::hit || exit == FinderExit::overlapping; }
 };

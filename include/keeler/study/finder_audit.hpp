@@ -15,9 +15,9 @@ struct FinderVerdict {
   std::uint64_t true_hits = 0;  ///< calls that have a contact
   std::uint64_t missed = 0;     ///< it has a contact, the finder found none
   std::uint64_t false_hits = 0; ///< it has none, the finder called one; or called it more than 1e-6 R apart
-  std::uint64_t late = 0;       ///< called when the spheres were inside each other by more than 1e-6 R
+  std::uint64_t late = 0;       ///< called after the spheres had been inside each other by more than 1e-6 R
   std::uint64_t misordered = 0; ///< particles whose first contact of a step, by the finder's times, is not the first
-  double deepest = 0.0;         ///< the deepest contact called, in R
+  double deepest = 0.0;         ///< how deep spheres were at most until their contact was called, in R
 
   std::uint64_t calls() const { return counts.total().count; }
   /// Calls that reported a contact.

@@ -57,9 +57,6 @@ struct Drift {
 /// Runs the ring on one of the two straight paths or with a finder of that name. Throws UsageError for an unknown name.
 Drift perturbed_ring_drift(const PerturbedRing& ring, const std::string& path);
 
-/// The figure: both straight paths and every finder of finder_table(), each at steps of 1e-3, 3e-3 and 1e-2 orbit.
-std::vector<DriftRow> figure_one(const PerturbedRing& ring = {});
-
 /// The rows as CSV, a header first.
 std::string drift_csv(const std::vector<DriftRow>& rows);
 

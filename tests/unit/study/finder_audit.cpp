@@ -1,6 +1,7 @@
 #include <keeler/study/finder_audit.hpp>
 
 #include <keeler/collision/finders.hpp>
+#include <keeler/collision/motion/relative.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/states/uniform.hpp>
 #include <keeler/study/pair_set.hpp>
@@ -78,6 +79,29 @@ TEST_CASE("an audit tells true contacts, missed, false, late and misordered ones
     CHECK(v.misordered == 1); // particle 0 meets 2 first, and 1 in truth
     CHECK(v.deepest == doctest::Approx(50.0 * 0.5 * 1e-3 / 2.0).epsilon(0.01));
   }
+}
+
+TEST_CASE("a contact that was passed is late, though the spheres just touch when it is called") {
+  std::vector<Body> bodies(2, {{}, 1.0, 1.0});
+  bodies[1].elements = elements_from({{0.5, 0.0, 0.0}, {0.0, -50.0, 0.0}}, kepler, Rotation(kepler, 0.0));
+  DriftStep step(kepler, -0.2, 0.2, 100.0);
+  step.bodies = bodies;
+  const Query query{0, 1, 0.0, 0.0, step.begin};
+  const Pair pair = pair_of(query, step);
+  double inside = 0.0, outside = 0.1; // when they part again
+  for (int k = 0; k < 60; ++k) {
+    const double middle = 0.5 * (inside + outside);
+    (RelativeMotion(pair, step).at(middle).gap(pair.reach) < 0.0 ? inside : outside) = middle;
+  }
+  FinderAudit audit;
+  audit.begins(step);
+  audit.searched(query, called(FinderExit::hit, outside));
+  const FinderVerdict v = audit.verdict();
+  CHECK(v.true_hits == 1);
+  CHECK(v.missed == 0);
+  CHECK(v.false_hits == 0);
+  CHECK(v.late == 1);
+  CHECK(v.deepest > 0.5);
 }
 
 TEST_CASE("on the pairs of a real step the dense scan finds what the certified finder finds") {
