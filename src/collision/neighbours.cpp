@@ -108,10 +108,8 @@ void Neighbours::open() {
   at_step_ = 0;
   hits_ = 0;
 
-  // an orbit after a collision with a body that it meets at most this fast
-  const double fastest =
-      frequencies_.shear() * 2.0 * (largest_radius_ + largest_eccentricity_) + 4.0 * largest_eccentricity_;
-  const double e = 2.0 * (largest_eccentricity_ + 4.0 * fastest);
+  plain_eccentricity_ = 4.0 * (largest_eccentricity_ + largest_radius_);
+  const double e = plain_eccentricity_ + largest_eccentricity_;
   const double far =
       std::max(reach_x(e, 2.0 * largest_radius_, window_end()), reach_y(e, 2.0 * largest_radius_, window_end()));
   listed_ = length_ > 1 && std::min(box_.size_x, box_.size_y) > fewest_reaches * far;

@@ -135,12 +135,14 @@ template<class Visit> void Neighbours::visit_block(std::size_t block, const Visi
 
 template<class Visit>
 void Neighbours::visit_partners(std::size_t i, std::size_t except, double start, const Visit& visit) {
+  if (particles_->bodies[i].elements.eccentricity() > plain_eccentricity_)
+    length_ = at_step_ + 1; // it may reach farther than the lists can tell images apart: a new window next step
   const bool more_steps = at_step_ + 1 < length_;
   const double time = more_steps ? window_end() : since_open() + 0.5 * step_;
   visit_grid(i, time, [&](std::size_t j, const Image& image_then) {
     if (j == except)
       return;
-    const Image image = listed_ ? nearest_image(i, j) : image_then;
+    const Image image = listed_ && at_step_ > 0 ? nearest_image(i, j) : image_then;
     if (every_candidate || may_touch(step_test_, i, j, image, start))
       visit(j, image);
     if (more_steps && may_touch(window_test_, i, j, image, start)) {
