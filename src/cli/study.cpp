@@ -42,7 +42,7 @@ void add_study(CLI::App& program, Action& action, const std::vector<std::string>
                  "same command goes on");
   finders.add_option("-o,--output", settings->folder, "the folder for the results; a study in it is continued")
       ->required();
-  finders.add_option("--count", settings->count, "particles of equal size (default: 10000, about 90 minutes)")
+  finders.add_option("--count", settings->count, "particles of equal size (default: 10000, some 95 minutes)")
       ->check(positive_number());
   finders.add_flag("--quick", settings->quick, "3000 particles, three steps, two repeats: a few minutes");
   finders.callback([settings, arguments, &action] {

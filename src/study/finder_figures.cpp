@@ -101,7 +101,8 @@ bool figure2(const fs::path& folder) {
 bool figure4(const FinderStudyData& data, const fs::path& folder) {
   std::string script =
       "set multiplot layout 2,2\nset logscale xy\nset xlabel 'step (orbits)'\n"
-      "set ylabel 'processor time for 0.1 orbit (s)'\nset grid\nset key bmargin center horizontal samplen 2\n\n";
+      "set ylabel 'processor time for 0.1 orbit (s)'\nset grid\nset key bmargin center horizontal samplen 2\n";
+  script += fmt::format("set xrange [{}:{}]\n", 0.8 * data.steps.front(), 1.25 * data.steps.back());
   for (const StudyState& state : data.states) {
     std::string table = "# step_orbits";
     for (const std::string& finder : shown_finders())

@@ -106,11 +106,17 @@ std::size_t missing(const std::vector<Job>& jobs, const JobList& list) {
   return count;
 }
 
-// Nanoseconds of a run, roughly: what a particle and step cost with every candidate in a finder's hands.
+// Nanoseconds of a run, roughly, with every candidate in a finder's hands: of the study in docs/paper-reproduction.md,
+// means over its finders.
 double expected_cost(const StudyState& state, double step) {
-  const double size = state.name.starts_with("power") ? 1500.0 : 400.0;
-  const double far = 1.0 + 100.0 * step * (state.name.ends_with("clumped") ? 3.0 : 2.0);
-  return static_cast<double>(state.patch.size()) * study_orbits / step * size * far;
+  struct Cost {
+    double base, linear, square; // ns a particle and step: base (1 + linear h + square h²)
+  };
+  const bool power = state.name.starts_with("power");
+  const Cost c = state.name.ends_with("early") ? Cost{power ? 1500.0 : 500.0, 150.0, 4e4}
+                                               : Cost{power ? 1700.0 : 1100.0, 300.0, power ? 2.6e5 : 6e5};
+  return static_cast<double>(state.patch.size()) * study_orbits / step * c.base *
+         (1.0 + c.linear * step + c.square * step * step);
 }
 
 class Jobs {

@@ -5,7 +5,8 @@
 //   - relative rest (f′ = 0) is receding, not a first guess at infinity;
 //   - an event for an overlapping pair that would fall behind the end of the step is at the start of the span.
 // Its costs are not all the same: there the original's trials need no velocities (six sines and cosines, here eight),
-// linear-cubic evaluates each accepted guess once more, and both cubic ones work on two cubics, not on their difference.
+// linear-cubic evaluates each accepted guess once more, and both cubic ones work on two cubics, not on their
+// difference.
 #pragma once
 
 #include <keeler/collision/pair.hpp>
