@@ -76,6 +76,7 @@ void Simulation::advance() {
 
 // To the epoch of the next step, and back into the cell by guiding centre.
 void Simulation::move_on() {
+  const Stopwatch watch(split_.advance);
   const Frequencies& f = scene_.planet.frequencies;
   const Rebase rebase(f, state_.step_length);
   ++state_.step;

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <keeler/box/shearing_box.hpp>
+#include <keeler/collision/costs.hpp>
 #include <keeler/collision/events.hpp>
 #include <keeler/collision/finders.hpp>
 #include <keeler/collision/neighbours.hpp>
@@ -58,6 +59,7 @@ public:
   void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally);
 
   const Finder& finder() const { return *finder_; }
+  const DriftCosts& costs() const { return costs_; }
 
   /// Promises that keep neighbours over steps. Without the first the next collide() begins anew; no result depends on
   /// it. The particles of the last collide() have moved on by one step and been wrapped, nothing else but kicks
@@ -99,6 +101,7 @@ private:
   std::vector<std::uint32_t> stamps_;  // velocity changes in this step
   std::vector<std::uint32_t> touched_; // whose two are not those of a step's start
   std::uint64_t gave_up_ = 0;
+  DriftCosts costs_;
 };
 
 } // namespace keeler

@@ -13,6 +13,7 @@ namespace keeler {
 /// Wall time spent in each part since construction, s.
 struct TimeSplit {
   double drift = 0.0;
+  double advance = 0.0; ///< of the drift: to the next epoch and back into the cell
   double gravity = 0.0;
 };
 
