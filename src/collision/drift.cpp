@@ -1,19 +1,12 @@
 #include <keeler/collision/drift.hpp>
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace keeler {
-namespace {
-
-constexpr std::uint32_t most_collisions = 100000; // of one particle in one step: an event storm, not physics
-
-} // namespace
-
 void CollisionTally::list_fields(FieldTable& table) {
   table.scalar("collisions_fast", fast, "1", "collisions faster than v_cut");
   table.scalar("collisions_slow", slow, "1", "contacts slower than v_cut, bounced elastically");
@@ -23,31 +16,90 @@ void CollisionTally::list_fields(FieldTable& table) {
   table.scalar("collision_momentum_flux", momentum_flux, "kg m^2 rad^-1", "sum of (x_j - x_i) p_y gained by j");
 }
 
+void CollisionTally::add(const Contact& contact) {
+  ++(contact.fast ? fast : slow);
+  energy_lost += contact.energy_lost;
+  edge_work += contact.edge_work;
+  momentum_flux += contact.momentum_flux;
+}
+
 DriftPhase::DriftPhase(const CollisionSettings& settings, const Frequencies& frequencies, double orbital_frequency,
                        double step)
     : settings_(settings), frequencies_(frequencies), orbital_frequency_(orbital_frequency), step_(step),
-      finder_(make_finder(settings.finder)), at_hand_(frequencies, -0.5 * step, 0.5 * step, 0.0),
-      neighbours_(frequencies, step) {
+      finder_(make_finder(settings.finder)), finder_step_(frequencies, -0.5 * step, 0.5 * step, 0.0),
+      neighbours_(frequencies, step), grid_(frequencies, step) {
   if (!finder_)
     throw UsageError(fmt::format("unknown collision finder '{}'", settings.finder));
 }
 
+// The orbits in the store itself: one loop has them all.
+struct DriftPhase::InPlace {
+  DriftPhase& drift;
+  CollisionTally& tally;
+
+  const Body& body(std::size_t i) const { return drift.particles_->bodies[i]; }
+  std::uint32_t stamp(std::size_t i) const { return drift.stamps_[i]; }
+  double last_change(std::size_t i) const { return drift.last_change_[i]; }
+
+  void change(std::uint32_t i, const Elements& elements, double time) {
+    if (drift.stamps_[i]++ == 0)
+      drift.touched_.push_back(i);
+    drift.last_change_[i] = time;
+    drift.particles_->bodies[i].elements = elements;
+    if (drift.through_grid_)
+      drift.grid_.changed(i);
+    else
+      drift.neighbours_.changed(i);
+    drift.finder_->changed(i);
+    if (drift.watch)
+      drift.watch->changed(i);
+  }
+
+  template<class Visit> void visit_partners(std::size_t i, const Visit& visit) {
+    if (drift.through_grid_)
+      drift.grid_.visit_partners(i, last_change(i), visit);
+    else
+      drift.neighbours_.visit_partners(i, body(i), last_change(i), buffer, visit);
+  }
+
+  FinderResult find(const Query& query) const {
+    const FinderResult result = drift.finder_->find(query);
+    if (drift.watch)
+      drift.watch->searched(query, result);
+    drift.gave_up_ += result.exit == FinderExit::gave_up;
+    return result;
+  }
+
+  void happened(const Contact& contact) {
+    tally.add(contact);
+    ++drift.costs_.contacts;
+    drift.costs_.recontacts += contact.again;
+    if (drift.watch)
+      drift.watch->collided({contact.event.time, contact.event.low_id, contact.event.high_id, contact.event.image,
+                             contact.normal_speed, contact.fast});
+  }
+
+  std::vector<std::uint32_t> buffer;
+};
+
 void DriftPhase::collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally) {
   particles_ = &particles;
-  box_ = box;
-  offset_ = offset;
+  step_at_hand_ = {&particles, &settings_, frequencies_, orbital_frequency_, box, offset, -0.5 * step_};
   gave_up_ = 0;
   prepare();
-  predict_all();
-  while (!events_.empty()) {
-    const Event event = events_.take_first();
-    if (event.low_stamp == stamps_[event.low] && event.high_stamp == stamps_[event.high])
-      carry_out(event, tally);
-  }
+  reject();
+  events_.assign(solve());
+  const Stopwatch stopwatch(costs_.events);
+  InPlace orbits{*this, tally, {}};
+  ContactLoop(step_at_hand_, orbits, events_).run();
+  if (!through_grid_)
+    neighbours_.settle(touched_);
   tally.gave_up += gave_up_;
 }
 
 void DriftPhase::prepare() {
+  const Stopwatch stopwatch(costs_.build);
+  ++costs_.steps;
   if (stamps_.size() != particles_->size()) {
     last_change_.assign(particles_->size(), -0.5 * step_);
     stamps_.assign(particles_->size(), 0);
@@ -58,48 +110,61 @@ void DriftPhase::prepare() {
     }
   }
   touched_.clear();
-  neighbours_.every_candidate = every_candidate;
-  neighbours_.begin(*particles_, box_, offset_);
-  at_hand_ = DriftStep(frequencies_, -0.5 * step_, 0.5 * step_, box_.size_x + box_.size_y);
-  at_hand_.bodies = particles_->bodies;
-  finder_->begin(at_hand_);
+  const ShearingBox& box = step_at_hand_.box;
+  neighbours_.in_order = watch;
+  through_grid_ = every_candidate || !neighbours_.begin(*particles_, box, step_at_hand_.offset);
+  if (through_grid_)
+    grid_.begin(*particles_, box, step_at_hand_.offset, every_candidate);
+  finder_step_ = DriftStep(frequencies_, -0.5 * step_, 0.5 * step_, box.size_x + box.size_y);
+  finder_step_.bodies = particles_->bodies;
+  finder_->begin(finder_step_);
   if (watch)
-    watch->begins(at_hand_);
+    watch->begins(finder_step_);
 }
 
-// The lower id first; `image` is that of particle j.
-Query DriftPhase::query_of(std::size_t i, std::size_t j, const Image& image) const {
-  const bool ordered = particles_->ids[i] < particles_->ids[j];
-  const Vec3 shift = box_.displacement(ordered ? image : -image, offset_);
-  return {static_cast<std::uint32_t>(ordered ? i : j), static_cast<std::uint32_t>(ordered ? j : i), shift.x(),
-          shift.y(), std::max(last_change_[i], last_change_[j])};
+// The pairs that the finder has to be asked about, block by block.
+void DriftPhase::reject() {
+  const Stopwatch stopwatch(costs_.reject);
+  candidates_.resize(through_grid_ ? grid_.blocks() : neighbours_.blocks());
+  parallel_for(
+      candidates_.size(),
+      [&](std::size_t b) {
+        candidates_[b].clear();
+        const auto keep = [&](std::size_t low, std::size_t high, const Image& image) {
+          candidates_[b].push_back({static_cast<std::uint32_t>(low), static_cast<std::uint32_t>(high), image});
+        };
+        if (through_grid_)
+          grid_.visit_block(b, keep);
+        else
+          neighbours_.visit_block(b, keep);
+      },
+      1);
+  for (const std::vector<Candidate>& block : candidates_)
+    costs_.survivors += block.size();
 }
 
-// `image` is that of the partner of particle i.
-Event DriftPhase::event_of(const Query& query, double time, std::size_t i, const Image& image) const {
-  return {
-      time,       particles_->ids[query.low], particles_->ids[query.high], query.low == i ? image : -image, query.low,
-      query.high, stamps_[query.low],         stamps_[query.high]};
-}
-
-void DriftPhase::predict_all() {
+// All contacts as long as nothing has changed. Blocks are joined in order, so threads do not matter.
+std::vector<Event> DriftPhase::solve() {
+  const Stopwatch stopwatch(costs_.solve);
   struct Found {
     std::vector<Event> events;
     std::uint64_t gave_up = 0;
     bool broken = false;
   };
-  std::vector<Found> found(neighbours_.blocks()); // joined in order, so threads do not matter
+  std::vector<Found> found(candidates_.size());
+  const std::vector<std::uint64_t>& ids = particles_->ids;
   const auto search_block = [&](std::size_t b) {
-    neighbours_.visit_block(b, [&](std::size_t i, std::size_t j, const Image& image) {
-      const Query query = query_of(i, j, image);
+    for (const Candidate& c : candidates_[b]) {
+      const Vec3 shift = step_at_hand_.box.displacement(c.image, step_at_hand_.offset);
+      const Query query{c.low, c.high, shift.x(), shift.y(), step_at_hand_.begin};
       const FinderResult result = finder_->find(query);
       if (watch)
         watch->searched(query, result);
       if (result.contact())
-        found[b].events.push_back(event_of(query, result.time, i, image));
+        found[b].events.push_back({result.time, ids[c.low], ids[c.high], c.image, c.low, c.high, 0, 0});
       found[b].gave_up += result.exit == FinderExit::gave_up;
       found[b].broken |= result.exit == FinderExit::not_a_number;
-    });
+    }
   };
   if (watch)
     for (std::size_t b = 0; b < found.size(); ++b)
@@ -113,70 +178,27 @@ void DriftPhase::predict_all() {
     if (f.broken)
       throw InvariantError("a collision search met numbers that are not finite");
   }
-  events_.assign(std::move(all));
+  return all;
 }
 
-void DriftPhase::predict(std::size_t i, std::size_t j, const Image& image) {
-  const Query query = query_of(i, j, image);
-  const FinderResult result = finder_->find(query);
-  if (watch)
-    watch->searched(query, result);
-  if (result.exit == FinderExit::not_a_number)
-    throw InvariantError(fmt::format("the collision search of particles {} and {} met numbers that are not finite",
-                                     particles_->ids[query.low], particles_->ids[query.high]));
-  if (result.contact())
-    events_.add(event_of(query, result.time, i, image));
-  gave_up_ += result.exit == FinderExit::gave_up;
+DriftCosts DriftPhase::costs() const {
+  DriftCosts costs = costs_;
+  costs.windows = neighbours_.windows;
+  costs.pairs_tested = neighbours_.tested;
+  costs.listed = neighbours_.listed;
+  if (particles_ && particles_->size())
+    costs.bytes_per_particle = bytes() / particles_->size();
+  return costs;
 }
 
-// The impulse along the line of centres turns the normal approach speed into the rebound's.
-void DriftPhase::carry_out(const Event& event, CollisionTally& tally) {
-  Body &a = particles_->bodies[event.low], &b = particles_->bodies[event.high];
-  const Rotation rotation(frequencies_, event.time);
-  const State relative = state_at(box_.image_of(b.elements, event.image, offset_) - a.elements, frequencies_, rotation);
-  const Vec3 normal = relative.position.normalized();
-  const double speed = -relative.velocity.dot(normal);
-  const Rebound after = rebound(settings_, speed, a.radius + b.radius, orbital_frequency_);
-  if (!(speed > -after.speed))
-    return; // an inexact finder may call a pair that moves apart
-  const double reduced_mass = a.mass * b.mass / (a.mass + b.mass);
-  const Vec3 impulse = reduced_mass * (speed + after.speed) * normal; // on b; a gets the opposite
-  kick(a.elements, -impulse / a.mass, frequencies_, rotation);
-  kick(b.elements, impulse / b.mass, frequencies_, rotation);
-
-  ++(after.fast ? tally.fast : tally.slow);
-  tally.energy_lost += 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
-  tally.edge_work += event.image.nx * box_.shear * box_.size_x * impulse.y();
-  tally.momentum_flux += relative.position.x() * impulse.y();
-  if (watch)
-    watch->collided({event.time, event.low_id, event.high_id, event.image, speed, after.fast});
-
-  changed(event.low, event.time);
-  changed(event.high, event.time);
-  search_again(event.low, event.high);
-}
-
-// A new orbit: stale events die by the stamp.
-void DriftPhase::changed(std::size_t i, double time) {
-  if (stamps_[i] == 0)
-    touched_.push_back(static_cast<std::uint32_t>(i));
-  last_change_[i] = time;
-  if (++stamps_[i] > most_collisions)
-    throw InvariantError(fmt::format(
-        "particle {} collided more than {} times in one step (an event storm); raise collisions.elastic_below",
-        particles_->ids[i], most_collisions));
-  neighbours_.changed(i);
-  finder_->changed(i);
-  if (watch)
-    watch->changed(i);
-}
-
-void DriftPhase::search_again(std::size_t i, std::size_t j) {
-  constexpr std::size_t nobody = ~std::size_t{0};
-  neighbours_.visit_partners(i, nobody, last_change_[i],
-                             [&](std::size_t k, const Image& image) { predict(i, k, image); });
-  // the pair itself, in all its images, has been searched
-  neighbours_.visit_partners(j, i, last_change_[j], [&](std::size_t k, const Image& image) { predict(j, k, image); });
+std::size_t DriftPhase::bytes() const {
+  std::size_t total = particles_->bodies.capacity() * sizeof(Body) + particles_->ids.capacity() * sizeof(std::uint64_t);
+  total += neighbours_.bytes() + last_change_.capacity() * sizeof(double);
+  total += (stamps_.capacity() + touched_.capacity()) * sizeof(std::uint32_t);
+  total += particles_->size() * finder_->bytes_per_particle();
+  for (const std::vector<Candidate>& block : candidates_)
+    total += block.capacity() * sizeof(Candidate) + sizeof block;
+  return total;
 }
 
 } // namespace keeler

@@ -6,25 +6,35 @@ namespace keeler {
 namespace {
 
 bool later(const Event& a, const Event& b) {
-  return b.key() < a.key();
+  return b < a;
 }
 
 } // namespace
 
-void EventQueue::add(const Event& event) {
-  heap_.push_back(event);
-  std::push_heap(heap_.begin(), heap_.end(), later);
+void EventQueue::clear() {
+  first_.clear();
+  next_ = 0;
+  later_.clear();
 }
 
 void EventQueue::assign(std::vector<Event>&& events) {
-  heap_ = std::move(events);
-  std::make_heap(heap_.begin(), heap_.end(), later);
+  later_.clear();
+  first_ = std::move(events);
+  next_ = 0;
+  std::sort(first_.begin(), first_.end());
+}
+
+void EventQueue::add(const Event& event) {
+  later_.push_back(event);
+  std::push_heap(later_.begin(), later_.end(), later);
 }
 
 Event EventQueue::take_first() {
-  std::pop_heap(heap_.begin(), heap_.end(), later);
-  const Event first = heap_.back();
-  heap_.pop_back();
+  if (later_.empty() || (next_ < first_.size() && first_[next_] < later_.front()))
+    return first_[next_++];
+  std::pop_heap(later_.begin(), later_.end(), later);
+  const Event first = later_.back();
+  later_.pop_back();
   return first;
 }
 

@@ -1,55 +1,39 @@
 #include <keeler/collision/neighbours.hpp>
 
-#include <keeler/core/error.hpp>
-#include <keeler/core/threads.hpp>
-
-#include <fmt/format.h>
+#include <algorithm>
 
 namespace keeler {
 namespace {
 
-constexpr int longest_window = 12;     // steps
-constexpr double window_path = 0.3;    // of a mean radius: what two particles may approach by in a window, on average
-constexpr double window_hits = 0.3;    // of a particle in a window: more, and lists are remade too often
-constexpr double fewest_reaches = 2.2; // that must fit into the box for the nearest image to be the only one
+constexpr double longest_window = 16.0; // steps
+constexpr double window_path = 0.4;     // of a mean radius: what two particles may approach by in a window, on average
+constexpr double window_hits = 0.3;     // of a particle in a window: more, and lists are remade too often
+constexpr double window_skin = 0.2;     // of a mean radius
+constexpr double farthest_stray = 1.0;  // of lines from their cells before a window ends
 
 } // namespace
 
-double Neighbours::reach_x(double eccentricity, double contact, double time) const {
-  return contact + time * frequencies_.kappa * eccentricity;
-}
-
-double Neighbours::reach_y(double eccentricity, double contact, double time) const {
-  const double guiding = reach_x(eccentricity, contact, time) + eccentricity;
-  return contact + time * (frequencies_.shear() * guiding + 2.0 * eccentricity);
-}
-
-Image Neighbours::nearest_image(std::size_t i, std::size_t j) const {
-  const Elements el = particles_->bodies[j].elements - particles_->bodies[i].elements;
+Image Neighbours::nearest_image(const Body& a, const Body& b) const {
+  const Elements el = b.elements - a.elements;
   const double x = el.guiding_x - el.e_cos, y = el.guiding_y + (2.0 / frequencies_.kappa) * el.e_sin;
   if (std::fabs(x) < 0.5 * box_.size_x && std::fabs(y) < 0.5 * box_.size_y)
     return {};
   return box_.image_into_cell(x, y, offset_);
 }
 
-bool Neighbours::may_touch(const StraightLineTest& test, std::size_t i, std::size_t j, const Image& image,
-                           double start) const {
-  const Vec3 shift = box_.displacement(image, offset_);
-  return test.may_touch(particles_->bodies[i], particles_->bodies[j], shift.x(), shift.y(), start);
-}
-
-void Neighbours::begin(const Particles& particles, const ShearingBox& box, double offset) {
-  const bool same = particles_ == &particles && binned_.size() == particles.size();
+bool Neighbours::begin(const Particles& particles, const ShearingBox& box, double offset) {
+  const bool same = particles_ == &particles && changed_.size() == particles.size();
   particles_ = &particles;
   box_ = box;
   offset_ = offset;
   ++at_step_;
-  if (!(goes_on_ && same && at_step_ < length_ && kick_path_ <= skin_))
+  if (!(goes_on_ && !over_ && same && at_step_ < length_ && kick_path_ <= skin_))
     open();
   goes_on_ = false;
-  const double size = box_.size_x + box_.size_y, half = 0.5 * step_, left = window_end() - since_open();
-  step_test_ = {frequencies_, half, half, 1e-13 * size};
-  window_test_ = {frequencies_, left, std::max(left, half), 2.0 * skin_ + 1e-13 * size};
+  const double half = 0.5 * step_;
+  to_middle_ = Rotation(frequencies_, -since_middle());
+  step_test_ = {frequencies_, half, half, 1e-13 * (box_.size_x + box_.size_y)};
+  return mirror_.one_image();
 }
 
 // The path of a kicked particle departs from its old one by at most |Δv| (t + t²) in a time t < 1.
@@ -57,90 +41,110 @@ void Neighbours::kicked(double largest) {
   const double time = length_ * step_;
   last_kick_ = largest;
   kick_path_ += largest * time * (1.0 + time);
-  largest_eccentricity_ += 2.0 / (frequencies_.kappa * frequencies_.kappa) * largest * (1.0 + 1e-9);
 }
 
-void Neighbours::changed(std::size_t i) {
-  const Elements& el = particles_->bodies[i].elements;
-  const State then = state_at(el, frequencies_, Rotation(frequencies_, -since_open()));
-  if (!(then.position.allFinite() && then.velocity.allFinite()))
-    throw InvariantError(
-        fmt::format("a collision left particle {} with elements that are not finite", particles_->ids[i]));
-  ++changes_[i];
-  ++hits_;
-  Vec3 stray = then.position - binned_[i];
-  if (at_step_ > 0) { // the particle may have been wrapped since
-    const double offset = offset_ - box_.shear * box_.size_x * since_open();
-    stray += box_.displacement(box_.image_into_cell(stray.x(), stray.y(), offset), offset);
-  }
-  largest_eccentricity_ = std::max(largest_eccentricity_, el.eccentricity());
-  largest_stray_ = std::max(largest_stray_, stray.cwiseAbs().maxCoeff());
+// What two kicks a step, a third larger than the last one, may add up to.
+double Neighbours::skin_for(int length) const {
+  const double time = length * step_;
+  return 2.6 * last_kick_ * length * time * (1.0 + time);
 }
 
-int Neighbours::length_for(double mean_eccentricity, double mean_radius) const {
-  const double steps_done = std::max(1, at_step_) * static_cast<double>(std::max<std::size_t>(1, binned_.size()));
+void Neighbours::choose_length() {
+  length_ = 1;
+  if (windows == 0)
+    return;
+  const MirrorMeans& means = mirror_.means();
+  const double steps_done = std::max(1, at_step_) * static_cast<double>(std::max<std::size_t>(1, changed_.size()));
   const double hits = static_cast<double>(hits_) / steps_done; // of a particle in a step of the last window
-  const double by_path = window_path * mean_radius / (2.0 * mean_eccentricity * step_);
-  const double by_hits = window_hits / hits;
-  return static_cast<int>(std::clamp(std::min(by_path, by_hits), 1.0, static_cast<double>(longest_window)));
+  const double by_path = window_path * means.radius / (2.0 * means.eccentricity * step_);
+  length_ = static_cast<int>(std::clamp(std::min(by_path, window_hits / hits), 1.0, longest_window));
+  while (length_ > 1 && skin_for(length_) > window_skin * means.radius)
+    --length_;
 }
 
 void Neighbours::open() {
-  const std::size_t count = particles_->size();
-  binned_.resize(count);
-  static const Rotation at_epoch;
-  parallel_for(count, [&](std::size_t k) {
-    binned_[k] = state_at(particles_->bodies[k].elements, frequencies_, at_epoch).position;
-  });
-  largest_radius_ = largest_eccentricity_ = largest_stray_ = 0.0;
-  double eccentricities = 0.0, radii = 0.0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const Body& body = particles_->bodies[k];
-    const double e = body.elements.eccentricity();
-    if (!(std::isfinite(e) && std::isfinite(body.elements.i_cos) && binned_[k].allFinite()))
-      throw InvariantError(fmt::format("particle {} has elements that are not finite", particles_->ids[k]));
-    largest_radius_ = std::max(largest_radius_, body.radius);
-    largest_eccentricity_ = std::max(largest_eccentricity_, e);
-    eccentricities += e, radii += body.radius;
-  }
-  const double number = static_cast<double>(count) + 1e-9;
-  length_ = every_candidate ? 1 : length_for(eccentricities / number, radii / number);
+  choose_length();
+  over_ = false;
   at_step_ = 0;
   hits_ = 0;
-
-  plain_eccentricity_ = 4.0 * (largest_eccentricity_ + largest_radius_);
-  const double e = plain_eccentricity_ + largest_eccentricity_;
-  const double far =
-      std::max(reach_x(e, 2.0 * largest_radius_, window_end()), reach_y(e, 2.0 * largest_radius_, window_end()));
-  listed_ = length_ > 1 && std::min(box_.size_x, box_.size_y) > fewest_reaches * far;
-  if (!listed_)
-    length_ = 1;
-  skin_ = listed_ ? 2.6 * last_kick_ * length_ * length_ * step_ * (1.0 + length_ * step_) : 0.0;
+  skin_ = length_ > 1 ? skin_for(length_) : 0.0;
   kick_path_ = 0.0;
-
-  const double cell = 2.0 * largest_radius_ + 2.0 * std::max(window_end(), 0.5 * step_) * largest_eccentricity_;
-  grid_.build(binned_, box_, offset_, cell);
+  mirror_.build(*particles_, box_, offset_, frequencies_, {-since_middle(), 0.5 * length_ * step_, skin_}, in_order);
+  ++windows;
+  changed_.assign(particles_->size(), 0);
   added_.clear();
-  changes_.assign(count, 0);
-  if (listed_)
+  lists_.clear();
+  if (mirror_.one_image())
     list_pairs();
 }
 
 void Neighbours::list_pairs() {
-  const StraightLineTest test{frequencies_, window_end(), window_end(),
-                              2.0 * skin_ + 1e-13 * (box_.size_x + box_.size_y)};
-  lists_.resize((binned_.size() + block_size - 1) / block_size);
+  lists_.resize((mirror_.size() + block_size - 1) / block_size);
+  std::vector<std::uint64_t> tests(lists_.size());
+  const double half = 0.5 * length_ * step_;
   parallel_for(
       lists_.size(),
       [&](std::size_t b) {
-        lists_[b].clear();
-        for (std::size_t i = b * block_size; i < std::min(binned_.size(), (b + 1) * block_size); ++i)
-          visit_grid(i, window_end(), [&](std::size_t j, const Image& image) {
-            if (particles_->ids[i] < particles_->ids[j] && may_touch(test, i, j, image, -0.5 * step_))
-              lists_[b].push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), 0, 0});
-          });
+        std::vector<std::uint32_t> buffer;
+        const std::size_t begin = b * block_size, end = std::min(mirror_.size(), begin + block_size);
+        tests[b] = mirror_.sweep_pairs(begin, end, span(-half, half), buffer, [&](std::size_t i, std::size_t j) {
+          lists_[b].push_back(entry(mirror_.place(i), mirror_.place(j)));
+        });
       },
       1);
+  for (std::size_t b = 0; b < lists_.size(); ++b) {
+    tested += tests[b];
+    listed += lists_[b].size();
+  }
+}
+
+void Neighbours::changed(std::size_t i) {
+  ++hits_;
+  changed_[i] = static_cast<std::uint8_t>(at_step_ + 1);
+  mirror_.replace(i, mirror_.line_of(particles_->bodies[i], to_middle_));
+}
+
+void Neighbours::settle(std::span<const std::uint32_t> particles) {
+  if (at_step_ + 1 >= length_)
+    return;
+  const auto too_fast = [&](std::uint32_t i) {
+    return !mirror_.one_image(mirror_.line_of(particles_->bodies[i], to_middle_));
+  };
+  if (mirror_.stray() > farthest_stray || std::any_of(particles.begin(), particles.end(), too_fast)) {
+    over_ = true;
+    return;
+  }
+  constexpr std::size_t chunk = 64;
+  std::vector<std::vector<Entry>> found((particles.size() + chunk - 1) / chunk);
+  const double now = since_middle();
+  const auto this_step = static_cast<std::uint8_t>(at_step_ + 1);
+  parallel_for(
+      found.size(),
+      [&](std::size_t c) {
+        std::vector<std::uint32_t> buffer;
+        for (std::size_t k = c * chunk; k < std::min(particles.size(), (c + 1) * chunk); ++k) {
+          const std::uint32_t i = particles[k];
+          const Line line = mirror_.line_of(particles_->bodies[i], to_middle_);
+          const std::size_t count = mirror_.near(line, span(now + 0.5 * step_, 0.5 * length_ * step_), buffer);
+          for (std::size_t n = 0; n < count; ++n) {
+            const std::uint32_t j = mirror_.place(buffer[n]);
+            if (j != i && !(changed_[j] == this_step && j < i)) // two that were hit find each other: one entry
+              found[c].push_back(entry(i, j));
+          }
+        }
+      },
+      1);
+  added_.emplace_back();
+  for (const std::vector<Entry>& entries : found)
+    added_.back().insert(added_.back().end(), entries.begin(), entries.end());
+}
+
+std::size_t Neighbours::bytes() const {
+  std::size_t total = mirror_.bytes() + changed_.capacity();
+  for (const auto* lists : {&lists_, &added_})
+    for (const std::vector<Entry>& list : *lists)
+      total += list.capacity() * sizeof(Entry) + sizeof list;
+  return total;
 }
 
 } // namespace keeler

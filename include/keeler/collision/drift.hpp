@@ -2,15 +2,14 @@
 // curved paths, in the order of events.hpp.
 //
 // Candidates come from bounds, kept over several steps (neighbours.hpp). A particle that was hit is searched again from
-// its new orbit.
-//
-// The answer is that of the sequential order, for any number of threads: searches are independent, events are not.
+// its new orbit. The answer is that of the sequential order, for any number of threads.
 #pragma once
 
 #include <keeler/box/shearing_box.hpp>
+#include <keeler/collision/contact_loop.hpp>
 #include <keeler/collision/costs.hpp>
-#include <keeler/collision/events.hpp>
 #include <keeler/collision/finders.hpp>
+#include <keeler/collision/grid_partners.hpp>
 #include <keeler/collision/neighbours.hpp>
 #include <keeler/collision/settings.hpp>
 #include <keeler/particles/store.hpp>
@@ -26,6 +25,7 @@ struct CollisionTally {
   double edge_work = 0.0;     ///< energy gained because pairs met across a sheared edge
   double momentum_flux = 0.0; ///< Σ (x_j − x_i)(p_y gained by j), kg m² rad⁻¹: the collisional viscosity
 
+  void add(const Contact& contact);
   void list_fields(FieldTable& table);
 };
 
@@ -59,14 +59,15 @@ public:
   void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally);
 
   const Finder& finder() const { return *finder_; }
-  const DriftCosts& costs() const { return costs_; }
+  DriftCosts costs() const;
 
-  /// Promises that keep neighbours over steps. Without the first the next collide() begins anew; no result depends on
-  /// it. The particles of the last collide() have moved on by one step and been wrapped, nothing else but kicks
-  /// happened.
+  /// Promises that keep neighbours over steps; no result depends on them. The particles of the last collide() have
+  /// moved on by one step and been wrapped, nothing else but kicks happened.
   void moved_on() { neighbours_.moved_on(); }
   /// All particles have been kicked by no more than this (m rad⁻¹).
   void kicked(double largest) { neighbours_.kicked(largest); }
+  /// Particles have changed their places in the store.
+  void sorted() { neighbours_.forget(); }
   /// Puts another finder in place of the settings' one: to measure finders.
   void use(std::unique_ptr<Finder> finder) { finder_ = std::move(finder); }
 
@@ -76,14 +77,17 @@ public:
   bool every_candidate = false;
 
 private:
+  struct InPlace;
+  /// A pair that may touch in the step: the lower id first, the image that of the higher.
+  struct Candidate {
+    std::uint32_t low, high;
+    Image image;
+  };
+
   void prepare();
-  void predict_all();
-  Query query_of(std::size_t i, std::size_t j, const Image& image) const;
-  Event event_of(const Query& query, double time, std::size_t i, const Image& image) const;
-  void predict(std::size_t i, std::size_t j, const Image& image);
-  void carry_out(const Event& event, CollisionTally& tally);
-  void changed(std::size_t i, double time);
-  void search_again(std::size_t i, std::size_t j);
+  void reject();
+  std::vector<Event> solve();
+  std::size_t bytes() const;
 
   CollisionSettings settings_;
   Frequencies frequencies_;
@@ -92,10 +96,12 @@ private:
 
   // the step at hand
   Particles* particles_ = nullptr;
-  ShearingBox box_;
-  double offset_ = 0.0;
-  DriftStep at_hand_;
+  StepAtHand step_at_hand_;
+  DriftStep finder_step_;
+  bool through_grid_ = false;
   Neighbours neighbours_;
+  GridPartners grid_;
+  std::vector<std::vector<Candidate>> candidates_;
   EventQueue events_;
   std::vector<double> last_change_;    // time of the last velocity change in this step
   std::vector<std::uint32_t> stamps_;  // velocity changes in this step

@@ -20,20 +20,29 @@ struct Event {
   std::uint32_t low_stamp = 0, high_stamp = 0; ///< velocity changes of each when predicted
 
   auto key() const { return std::tuple(time, low_id, high_id, image.nx, image.ny); }
+  friend bool operator<(const Event& a, const Event& b) {
+    return a.time != b.time ? a.time < b.time : a.key() < b.key();
+  }
 };
 
-/// A binary heap, earliest first. Stale events stay in it until they come up: the caller compares stamps.
+/// A sorted array of what was known at the start, and a small heap of what came later. Stale events stay until they
+/// come up: the caller compares stamps.
 class EventQueue {
 public:
-  void clear() { heap_.clear(); }
-  bool empty() const { return heap_.empty(); }
-  void add(const Event& event);
+  void clear();
+  bool empty() const { return next_ == first_.size() && later_.empty(); }
   /// Replaces everything by these events.
   void assign(std::vector<Event>&& events);
+  void add(const Event& event);
   Event take_first();
 
+  /// One of the events that are likely to come up soon, or null.
+  const Event* ahead(std::size_t by) const { return next_ + by < first_.size() ? &first_[next_ + by] : nullptr; }
+
 private:
-  std::vector<Event> heap_;
+  std::vector<Event> first_;
+  std::size_t next_ = 0;
+  std::vector<Event> later_; // a binary heap, earliest first
 };
 
 } // namespace keeler

@@ -1,22 +1,17 @@
 // Who may meet whom: candidate pairs from bounds, never from statistics, kept for a window of steps.
 //
-// At the first step of a window all places go into a grid, and every pair whose straight lines about that epoch may
-// come into contact before the window ends, with all that curvature, kicks (the skin) and rounding can add, goes into a
-// list. Later steps of the window only go through the list. A particle that was hit has a new orbit: its entries die,
-// and new ones are made from what its orbit can reach in the rest of the window. So at every step each pair that could
-// touch is visited exactly once, and no result depends on the length of windows.
+// At the first step of a window all particles go into a mirror, and every pair whose straight lines about the middle of
+// the window may come into contact before it ends, with all that curvature, kicks (the skin) and rounding can add, goes
+// into a list. Later steps of the window only go through the list. A particle that was hit has a new orbit: its entries
+// die, and new ones are made after the step from what its new line can reach in the rest of the window. So at every
+// step each pair that could touch is visited exactly once, and no result depends on the length of windows.
 //
-// How far a relative coordinate can change in a time T from the epoch of the grid:
-//   |Δx| <= T κ (e_i + e_j),   |Δy| <= T [S |ΔX| + 2 (e_i + e_j)],   |ΔX| <= |Δx| + e_i + e_j.
-// A new orbit is followed back to that epoch; how far it then stands from where the particle was binned (its stray)
-// widens the windows of later queries, as does what kicks have added.
-//
-// In a window of several steps the image of a partner is the nearest one; a box that is too small for that, or a step
-// that is too long, has windows of one step, and images come from the grid.
+// The image of a partner is the nearest one. A box that is too small for that is a matter for grid_partners.hpp.
 #pragma once
 
-#include <keeler/cells/grid.hpp>
+#include <keeler/collision/mirror.hpp>
 #include <keeler/collision/straight_line.hpp>
+#include <keeler/core/threads.hpp>
 
 #include <cstdint>
 #include <span>
@@ -29,50 +24,63 @@ public:
   Neighbours(const Frequencies& frequencies, double step) : frequencies_(frequencies), step_(step) {}
 
   /// A step begins. Opens a new window unless the last one can go on: see moved_on(). Throws InvariantError when
-  /// elements are not finite.
-  void begin(const Particles& particles, const ShearingBox& box, double offset);
+  /// elements are not finite. Returns false when the box is so small that pairs may meet through several images.
+  bool begin(const Particles& particles, const ShearingBox& box, double offset);
 
-  /// The particles of the last step have moved on by exactly one step and been wrapped; nothing else happened to them.
+  /// The particles of the last step have moved on by exactly one step and been wrapped; nothing else but kicks happened
+  /// to them.
   void moved_on() { goes_on_ = true; }
-
+  /// Particles have changed places in the store, or anything else has happened.
+  void forget() { goes_on_ = false; }
   /// Every particle has been kicked by at most this much (m rad⁻¹).
   void kicked(double largest);
 
-  /// Particle i has been hit and has a new orbit.
-  void changed(std::size_t i);
-
-  /// Visits every pair that may touch in this step as long as nothing changes: visit(i, j, image of j), ids[i] <
-  /// ids[j]. Blocks, of which there are blocks(), may be visited by several threads.
+  /// Calls visit(low, high, image of high) for every pair, the lower id first, that may touch in this step as long as
+  /// nothing changes. Blocks, of which there are blocks(), may be visited by several threads.
   template<class Visit> void visit_block(std::size_t block, const Visit& visit) const;
-  std::size_t blocks() const { return listed_ ? lists_.size() + 1 : (binned_.size() + block_size - 1) / block_size; }
+  std::size_t blocks() const { return lists_.size() + added_.size(); }
 
-  /// Visits every partner that particle i, which was hit, may meet in the rest of the step from `start` on: visit(j,
-  /// image). Notes those of the rest of the window. Leaves out `except`.
-  template<class Visit> void visit_partners(std::size_t i, std::size_t except, double start, const Visit& visit);
+  /// Calls visit(j, image of j) for every other particle that a particle with a new orbit may meet from `start` to the
+  /// end of the step, as the store and the mirror know them.
+  template<class Visit>
+  void visit_partners(std::size_t i, const Body& body, double start, std::vector<std::uint32_t>& buffer,
+                      const Visit& visit) const;
 
-  /// All that the grid's cells hold is visited, whether it may touch or not: to measure finders.
-  bool every_candidate = false;
+  /// Particle i has been hit and has a new orbit. May be called several times a step.
+  void changed(std::size_t i);
+  /// The step's collisions are over: what these particles may meet in the rest of the window. Each particle that was
+  /// changed once.
+  void settle(std::span<const std::uint32_t> particles);
+
+  /// Pairs in the same order for any number of threads.
+  bool in_order = false;
+
+  std::uint64_t windows = 0, tested = 0, listed = 0; ///< so far
+  std::size_t bytes() const;
 
 private:
-  static constexpr std::size_t block_size = 512; // of particles
+  static constexpr std::size_t block_size = 1024; // slots
 
-  /// Places, the lower id first. Alive as long as neither has changed since.
+  /// Places, the lower id first. Alive as long as neither has changed since it was made.
   struct Entry {
     std::uint32_t low, high;
-    std::uint32_t low_changes, high_changes;
   };
 
   void open();
-  int length_for(double mean_eccentricity, double mean_radius) const;
+  void choose_length();
+  double skin_for(int length) const;
   void list_pairs();
-  bool alive(const Entry& e) const { return changes_[e.low] == e.low_changes && changes_[e.high] == e.high_changes; }
-  double since_open() const { return at_step_ * step_; } // from the epoch of the grid to this step's
-  double window_end() const { return (length_ - 0.5) * step_; }
-  double reach_x(double eccentricity, double contact, double time) const;
-  double reach_y(double eccentricity, double contact, double time) const;
-  Image nearest_image(std::size_t i, std::size_t j) const;
-  bool may_touch(const StraightLineTest& test, std::size_t i, std::size_t j, const Image& image, double start) const;
-  template<class Visit> void visit_grid(std::size_t i, double time, const Visit& visit) const;
+  Entry entry(std::size_t i, std::size_t j) const {
+    const auto a = static_cast<std::uint32_t>(i), b = static_cast<std::uint32_t>(j);
+    return particles_->ids[i] < particles_->ids[j] ? Entry{a, b} : Entry{b, a};
+  }
+  double since_middle() const { return (at_step_ + 0.5 - 0.5 * length_) * step_; } // of the window, to this epoch
+  Image nearest_image(const Body& a, const Body& b) const;
+  template<class Visit> void visit_everywhere(std::size_t i, const Body& body, double start, const Visit& visit) const;
+  LineSpan span(double begin, double end) const {
+    const double rounding = 1e-6 * length_ * step_;
+    return {static_cast<float>(begin - rounding), static_cast<float>(end + rounding)};
+  }
 
   Frequencies frequencies_;
   double step_;
@@ -81,76 +89,80 @@ private:
   double offset_ = 0.0;
 
   // the window
-  bool goes_on_ = false, listed_ = false;
+  bool goes_on_ = false; // the promise of moved_on()
+  bool over_ = false;    // it ends with this step
   int at_step_ = 0, length_ = 0;
-  PeriodicGrid grid_;
-  std::vector<Vec3> binned_;           // places as the grid knows them
-  std::vector<std::uint32_t> changes_; // of each particle's orbit
+  Mirror mirror_;
+  Rotation to_middle_;                // from this step's epoch
+  std::vector<std::uint8_t> changed_; // 1 + the step of the window in which each particle was last hit; or 0
   std::vector<std::vector<Entry>> lists_;
-  std::vector<Entry> added_; // after collisions
-  double largest_radius_ = 0.0, largest_eccentricity_ = 0.0, largest_stray_ = 0.0;
-  double plain_eccentricity_ = 0.0;     // up to this one the nearest image is the only one in reach
-  double kick_path_ = 0.0, skin_ = 0.0; // how far kicks may have moved a particle; how far the lists allow
+  std::vector<std::vector<Entry>> added_; // after each step of the window so far
+  double kick_path_ = 0.0, skin_ = 0.0;   // how far kicks may have moved a particle; how far the lists allow
   double last_kick_ = 0.0;
   std::uint64_t hits_ = 0;
-  StraightLineTest step_test_, window_test_;
+  StraightLineTest step_test_;
 };
 
-template<class Visit> void Neighbours::visit_grid(std::size_t i, double time, const Visit& visit) const {
-  constexpr double wider = 1.0 + 1e-9;
-  const Body& body = particles_->bodies[i];
-  const double e = body.elements.eccentricity() + largest_eccentricity_;
-  const double contact = body.radius + largest_radius_;
-  const double stray = largest_stray_ + 2.0 * kick_path_ + 1e-12 * (box_.size_x + box_.size_y);
-  const double x = wider * reach_x(e, contact, time) + stray, y = wider * reach_y(e, contact, time) + stray;
-  const auto other = [&](std::size_t j, const Image& image) {
-    if (j != i)
-      visit(j, image);
-  };
-  const Vec3 place = at_step_ == 0
-                         ? state_at(body.elements, frequencies_, Rotation()).position
-                         : state_at(body.elements, frequencies_, Rotation(frequencies_, -since_open())).position;
-  if (every_candidate)
-    grid_.visit_touched_cells(place, x, y, other);
-  else
-    grid_.visit_near(place, x, y, other);
-}
-
 template<class Visit> void Neighbours::visit_block(std::size_t block, const Visit& visit) const {
+  const bool listed_first = block < lists_.size();
+  const std::size_t made = listed_first ? 0 : block - lists_.size() + 1;
   const double start = -0.5 * step_;
-  if (listed_) {
-    for (const Entry& e : block < lists_.size() ? lists_[block] : added_) {
-      const Image image = nearest_image(e.low, e.high);
-      if (may_touch(step_test_, e.low, e.high, image, start) && alive(e))
-        visit(e.low, e.high, image);
-    }
-    return;
+  for (const Entry& e : listed_first ? lists_[block] : added_[made - 1]) {
+    if (changed_[e.low] > made || changed_[e.high] > made)
+      continue;
+    const Body &a = particles_->bodies[e.low], &b = particles_->bodies[e.high];
+    const Image image = nearest_image(a, b);
+    const Vec3 shift = box_.displacement(image, offset_);
+    if (step_test_.may_touch(a, b, shift.x(), shift.y(), start))
+      visit(e.low, e.high, image);
   }
-  for (std::size_t i = block * block_size; i < std::min(binned_.size(), (block + 1) * block_size); ++i)
-    visit_grid(i, 0.5 * step_, [&](std::size_t j, const Image& image) {
-      if (particles_->ids[i] < particles_->ids[j] && (every_candidate || may_touch(step_test_, i, j, image, start)))
-        visit(i, j, image);
-    });
 }
 
 template<class Visit>
-void Neighbours::visit_partners(std::size_t i, std::size_t except, double start, const Visit& visit) {
-  if (particles_->bodies[i].elements.eccentricity() > plain_eccentricity_)
-    length_ = at_step_ + 1; // it may reach farther than the lists can tell images apart: a new window next step
-  const bool more_steps = at_step_ + 1 < length_;
-  const double time = more_steps ? window_end() : since_open() + 0.5 * step_;
-  visit_grid(i, time, [&](std::size_t j, const Image& image_then) {
-    if (j == except)
-      return;
-    const Image image = listed_ && at_step_ > 0 ? nearest_image(i, j) : image_then;
-    if (every_candidate || may_touch(step_test_, i, j, image, start))
+void Neighbours::visit_partners(std::size_t i, const Body& body, double start, std::vector<std::uint32_t>& buffer,
+                                const Visit& visit) const {
+  const Line line = mirror_.line_of(body, to_middle_);
+  if (!mirror_.one_image(line)) {
+    visit_everywhere(i, body, start, visit);
+    return;
+  }
+  const double now = since_middle();
+  const std::size_t count = mirror_.near(line, span(now + start, now + 0.5 * step_), buffer);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t j = mirror_.place(buffer[k]);
+    if (j == i)
+      continue;
+    const Image image = nearest_image(body, particles_->bodies[j]);
+    const Vec3 shift = box_.displacement(image, offset_);
+    if (step_test_.may_touch(body, particles_->bodies[j], shift.x(), shift.y(), start))
       visit(j, image);
-    if (more_steps && may_touch(window_test_, i, j, image, start)) {
-      const bool ordered = particles_->ids[i] < particles_->ids[j];
-      const auto low = static_cast<std::uint32_t>(ordered ? i : j), high = static_cast<std::uint32_t>(ordered ? j : i);
-      added_.push_back({low, high, changes_[low], changes_[high]});
-    }
-  });
+  }
+}
+
+// Every image of every other particle: for one that has become so fast that it may meet several.
+template<class Visit>
+void Neighbours::visit_everywhere(std::size_t i, const Body& body, double start, const Visit& visit) const {
+  const auto across = [&](double distance, double size) {
+    return static_cast<std::int32_t>(std::ceil(distance / size)) + 1;
+  };
+  const Frequencies& f = frequencies_;
+  for (std::size_t j = 0; j < particles_->size(); ++j) {
+    if (j == i)
+      continue;
+    const Body& other = particles_->bodies[j];
+    const Image nearest = nearest_image(body, other);
+    const double e = body.elements.eccentricity() + other.elements.eccentricity();
+    const double x = body.radius + other.radius + step_ * f.kappa * e;
+    const double y = body.radius + other.radius + step_ * (f.shear() * (x + e) + 2.0 * e);
+    const std::int32_t far_x = across(x, box_.size_x), far_y = across(y, box_.size_y);
+    for (std::int32_t nx = -far_x; nx <= far_x; ++nx)
+      for (std::int32_t ny = -far_y - std::abs(nx); ny <= far_y + std::abs(nx); ++ny) {
+        const Image image{nearest.nx + nx, nearest.ny + ny};
+        const Vec3 shift = box_.displacement(image, offset_);
+        if (step_test_.may_touch(body, other, shift.x(), shift.y(), start))
+          visit(j, image);
+      }
+  }
 }
 
 } // namespace keeler

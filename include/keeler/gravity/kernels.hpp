@@ -6,7 +6,7 @@
 // linker in its wide form, and then be met by a processor that lacks it).
 #pragma once
 
-#include <keeler/gravity/simd.hpp>
+#include <keeler/core/simd.hpp>
 
 #include <cstddef>
 

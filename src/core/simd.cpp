@@ -1,4 +1,4 @@
-#include <keeler/gravity/simd.hpp>
+#include <keeler/core/simd.hpp>
 
 #include <keeler/core/error.hpp>
 

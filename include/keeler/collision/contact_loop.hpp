@@ -1,0 +1,150 @@
+// The heart of a drift: take the earliest contact, give both particles their new orbits, search again around both (the
+// pair itself included), and so on until the step ends.
+//
+// Orbits is where the particles' present orbits are kept; a loop does not know whether it is the only one of a step. It
+// has
+//   const Body& body(place)      std::uint32_t stamp(place)      double last_change(place)      as they are now
+//   void change(place, elements, time)                                     a new orbit from that time on
+//   void visit_partners(place, visit)     visit(place, image) for all that its new orbit may bring into contact
+//   FinderResult find(query)
+//   void happened(const Contact&)
+#pragma once
+
+#include <keeler/collision/events.hpp>
+#include <keeler/collision/finder.hpp>
+#include <keeler/collision/settings.hpp>
+#include <keeler/core/error.hpp>
+
+#include <fmt/format.h>
+
+namespace keeler {
+
+/// The step that loops work on; the same for all.
+struct StepAtHand {
+  const Particles* particles = nullptr;
+  const CollisionSettings* settings = nullptr;
+  Frequencies frequencies;
+  double orbital_frequency = 0.0; ///< rad/s
+  ShearingBox box;
+  double offset = 0.0; ///< at the epoch, m
+  double begin = 0.0;  ///< rad
+};
+
+/// What one contact did. Energies in kg m² rad⁻².
+struct Contact {
+  Event event;
+  double normal_speed = 0.0; ///< of the approach, m rad⁻¹
+  double energy_lost = 0.0, edge_work = 0.0;
+  double momentum_flux = 0.0; ///< kg m² rad⁻¹
+  bool fast = false;          ///< faster than v_cut
+  bool again = false;         ///< the last contact of both particles was with each other, in this step
+};
+
+template<class Orbits> class ContactLoop {
+public:
+  ContactLoop(const StepAtHand& step, Orbits& orbits, EventQueue& events)
+      : step_(step), orbits_(orbits), events_(events) {}
+
+  /// Until nothing is pending. Throws InvariantError when a search meets numbers that are not finite or a particle
+  /// collides more than 100,000 times.
+  void run() {
+    while (!events_.empty()) {
+      prefetch();
+      const Event event = events_.take_first();
+      if (event.low_stamp == orbits_.stamp(event.low) && event.high_stamp == orbits_.stamp(event.high))
+        carry_out(event);
+    }
+  }
+
+  /// The lower id first; `image` is that of particle j.
+  Query query_of(std::size_t i, std::size_t j, const Image& image) const {
+    const bool ordered = step_.particles->ids[i] < step_.particles->ids[j];
+    const Vec3 shift = step_.box.displacement(ordered ? image : -image, step_.offset);
+    return {static_cast<std::uint32_t>(ordered ? i : j), static_cast<std::uint32_t>(ordered ? j : i), shift.x(),
+            shift.y(), std::max(orbits_.last_change(i), orbits_.last_change(j))};
+  }
+
+  /// `image` is that of the partner of particle i.
+  Event event_of(const Query& query, double time, std::size_t i, const Image& image) const {
+    const std::vector<std::uint64_t>& ids = step_.particles->ids;
+    return {time,      ids[query.low], ids[query.high],          query.low == i ? image : -image,
+            query.low, query.high,     orbits_.stamp(query.low), orbits_.stamp(query.high)};
+  }
+
+private:
+  static constexpr std::uint32_t most_collisions = 100000; // of one particle in one step: an event storm, not physics
+
+  void prefetch() const {
+    if (const Event* soon = events_.ahead(8)) {
+      __builtin_prefetch(&step_.particles->bodies[soon->low]);
+      __builtin_prefetch(&step_.particles->bodies[soon->high]);
+    }
+  }
+
+  // The impulse along the line of centres turns the normal approach speed into the rebound's.
+  void carry_out(const Event& event) {
+    const Frequencies& f = step_.frequencies;
+    Body a = orbits_.body(event.low), b = orbits_.body(event.high);
+    const Rotation rotation(f, event.time);
+    const State relative =
+        state_at(step_.box.image_of(b.elements, event.image, step_.offset) - a.elements, f, rotation);
+    const Vec3 normal = relative.position.normalized();
+    Contact contact;
+    contact.event = event;
+    const double speed = contact.normal_speed = -relative.velocity.dot(normal);
+    const Rebound after = rebound(*step_.settings, speed, a.radius + b.radius, step_.orbital_frequency);
+    if (!(speed > -after.speed))
+      return; // an inexact finder may call a pair that moves apart
+    const double reduced_mass = a.mass * b.mass / (a.mass + b.mass);
+    const Vec3 impulse = reduced_mass * (speed + after.speed) * normal; // on b; a gets the opposite
+    kick(a.elements, -impulse / a.mass, f, rotation);
+    kick(b.elements, impulse / b.mass, f, rotation);
+
+    contact.fast = after.fast;
+    contact.again = event.low_stamp > 0 && event.high_stamp > 0 &&
+                    orbits_.last_change(event.low) == orbits_.last_change(event.high);
+    contact.energy_lost = 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
+    contact.edge_work = event.image.nx * step_.box.shear * step_.box.size_x * impulse.y();
+    contact.momentum_flux = relative.position.x() * impulse.y();
+    orbits_.happened(contact);
+
+    change(event.low, a.elements, event.time);
+    change(event.high, b.elements, event.time);
+    search(event.low, nobody);
+    search(event.high, event.low); // the pair itself, in all its images, has been searched
+  }
+
+  void change(std::uint32_t i, const Elements& elements, double time) {
+    if (orbits_.stamp(i) == most_collisions)
+      throw InvariantError(fmt::format(
+          "particle {} collided more than {} times in one step (an event storm); raise collisions.elastic_below",
+          step_.particles->ids[i], most_collisions));
+    const State then = state_at(elements, step_.frequencies, Rotation());
+    if (!(then.position.allFinite() && then.velocity.allFinite()))
+      throw InvariantError(
+          fmt::format("a collision left particle {} with elements that are not finite", step_.particles->ids[i]));
+    orbits_.change(i, elements, time);
+  }
+
+  static constexpr std::size_t nobody = ~std::size_t{0};
+
+  void search(std::size_t i, std::size_t except) {
+    orbits_.visit_partners(i, [&](std::size_t j, const Image& image) {
+      if (j == except)
+        return;
+      const Query query = query_of(i, j, image);
+      const FinderResult result = orbits_.find(query);
+      if (result.exit == FinderExit::not_a_number)
+        throw InvariantError(fmt::format("the collision search of particles {} and {} met numbers that are not finite",
+                                         step_.particles->ids[query.low], step_.particles->ids[query.high]));
+      if (result.contact())
+        events_.add(event_of(query, result.time, i, image));
+    });
+  }
+
+  const StepAtHand& step_;
+  Orbits& orbits_;
+  EventQueue& events_;
+};
+
+} // namespace keeler

@@ -1,0 +1,194 @@
+// A copy of all particles for finding neighbours fast: the straight line of each about the middle of a window of steps,
+// in single precision, 28 bytes, sorted into cells. Nothing of a result is computed from it: it only says which pairs
+// cannot touch.
+//
+// Particles stand in levels by how far they reach in the window (radius and path, in octaves), each level with cells of
+// its own size; a particle looks into its own level and into all finer ones, so that a moonlet or a fast particle costs
+// what it reaches and nobody else anything. Cells are columns of a level, rows within a column, so that what a particle
+// can reach in a column is one or two ranges of the arrays.
+//
+// Invariant: a line stands within `stray` of its cell. Particles that were hit get a new line but keep their cell.
+#pragma once
+
+#include <keeler/box/shearing_box.hpp>
+#include <keeler/collision/line_sweep.hpp>
+#include <keeler/particles/store.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace keeler {
+
+/// The window, as seen from the epoch of the elements that a mirror is made of.
+struct MirrorWindow {
+  double middle = 0.0;      ///< rad after the epoch
+  double half_length = 0.0; ///< rad
+  double skin = 0.0;        ///< how far kicks may move a particle off its path, m
+};
+
+/// Means over the particles: what windows are chosen by.
+struct MirrorMeans {
+  double eccentricity = 0.0, radius = 0.0; ///< m
+};
+
+class Mirror {
+public:
+  /// Sorts all particles in. `offset` is the shear offset at the epoch. Throws InvariantError when elements are not
+  /// finite. `in_order`: particles of one cell stand in an order that no number of threads changes.
+  void build(const Particles& particles, const ShearingBox& box, double offset, const Frequencies& frequencies,
+             const MirrorWindow& window, bool in_order);
+
+  /// Whether no two particles may meet through more than one image, and that one is the nearest.
+  bool one_image() const { return one_image_; }
+  /// The same for one more line: a particle that was hit.
+  bool one_image(const Line& line) const;
+
+  const MirrorMeans& means() const { return means_; }
+  std::size_t size() const { return places_.size(); }
+  std::uint32_t place(std::size_t slot) const { return places_[slot]; }
+  std::uint32_t slot(std::size_t place) const { return slots_[place]; }
+
+  /// The line of a body whose elements' epoch stands `rotation.after` before the middle of the window; `offset` is the
+  /// shear offset at the middle.
+  Line line_of(const Body& body, const Rotation& rotation) const;
+
+  /// A particle has a new line.
+  void replace(std::size_t place, const Line& line);
+
+  /// How far lines may stand from their cells, in reaches of the finest level.
+  double stray() const;
+
+  /// Pairs of slots that may touch in the span, of the slots [begin, end) with all after them: found(slot, slot, ...).
+  /// Returns how many pairs were tested.
+  template<class Found>
+  std::uint64_t sweep_pairs(std::size_t begin, std::size_t end, const LineSpan& span,
+                            std::vector<std::uint32_t>& buffer, const Found& found) const;
+
+  /// Slots that may touch a line in the span, put into the buffer; returns how many.
+  std::size_t near(const Line& line, const LineSpan& span, std::vector<std::uint32_t>& buffer) const;
+
+  std::size_t bytes() const;
+
+private:
+  static constexpr int most_levels = 32;
+
+  struct Level {
+    std::uint64_t count = 0;
+    double reach_x = 0.0, reach_y = 0.0; ///< the farthest of its particles, m
+    std::int64_t columns = 1, rows = 1;
+    std::size_t first_cell = 0;
+    std::uint32_t begin = 0, end = 0; ///< slots
+  };
+  struct Measured;
+
+  void measure(const Particles& particles);
+  void lay_out_cells();
+  template<bool shared> void sort(const std::vector<Body>& bodies);
+  LineArrays lines() const { return {x_.data(), y_.data(), z_.data(), u_.data(), v_.data(), w_.data(), size_.data()}; }
+  int level_of(const Line& line) const;
+  std::size_t cell_of(const Line& line, const Level& level) const;
+  Line line_in(std::size_t slot) const {
+    return {x_[slot], y_[slot], z_[slot], u_[slot], v_[slot], w_[slot], size_[slot]};
+  }
+  double reach_x(const Line& line) const { return line.size + window_.half_length * std::fabs(line.u); }
+  double reach_y(const Line& line) const { return line.size + window_.half_length * std::fabs(line.v); }
+  template<class Range>
+  void ranges_in(const Level& level, const Line& line, std::uint32_t after, const Range& range) const;
+
+  ShearingBox box_;
+  Frequencies frequencies_;
+  MirrorWindow window_;
+  Rotation to_middle_;
+  double offset_ = 0.0; // at the middle
+  double least_radius_ = 0.0;
+  bool one_image_ = false;
+  MirrorMeans means_;
+  LineFrame frame_{};
+  double per_metre_x_ = 0.0, per_metre_y_ = 0.0; // box fractions, in units of 2⁻³²
+  double stray_x_ = 0.0, stray_y_ = 0.0;         // m
+  LineSweep sweep_ = line_sweep(choose_instruction_set());
+
+  std::vector<Level> levels_;         // the finest first; without empty ones
+  int level_index_[most_levels] = {}; // of an octave
+  std::vector<std::uint32_t> starts_; // first slot of each cell
+  std::vector<std::uint32_t> cells_;  // of each place
+  std::vector<std::uint32_t> slots_;  // of each place
+  std::vector<std::uint32_t> places_; // of each slot
+  std::vector<std::int32_t> x_, y_;   // lines, by slot
+  std::vector<float> z_, u_, v_, w_, size_;
+};
+
+// Slots from `after` on that lie in the level's cells within reach of the line.
+template<class Range>
+void Mirror::ranges_in(const Level& level, const Line& line, std::uint32_t after, const Range& range) const {
+  if (level.end <= after)
+    return;
+  const double reach_along_x = reach_x(line) + level.reach_x;
+  const double reach_along_y =
+      reach_y(line) + level.reach_y + box_.shear * window_.half_length * reach_along_x + stray_y_;
+  const std::int64_t rx = static_cast<std::int64_t>((reach_along_x + stray_x_) * per_metre_x_) + 4;
+  const std::int64_t ry = static_cast<std::int64_t>(reach_along_y * per_metre_y_) + 4;
+  const std::int64_t x = static_cast<std::int64_t>(line.x) + (std::int64_t{1} << 31);
+  std::int64_t first = (x - rx) * level.columns >> 32, last = (x + rx) * level.columns >> 32;
+  const bool round = last - first >= level.columns; // all columns, each once; images on either side
+  if (round)
+    first = 0, last = level.columns - 1;
+  const auto slots = [&](std::size_t from, std::size_t to) { // of cells
+    const std::uint32_t begin = std::max(starts_[from], after), end = starts_[to];
+    if (begin < end)
+      range(begin, end);
+  };
+  for (std::int64_t c = first; c <= last; ++c) {
+    std::int64_t boxes = 0, column = c;
+    if (c < 0)
+      column += level.columns, boxes = -1;
+    else if (c >= level.columns)
+      column -= level.columns, boxes = 1;
+    const std::size_t cell = level.first_cell + static_cast<std::size_t>(column * level.rows);
+    if (starts_[cell + static_cast<std::size_t>(level.rows)] <= after)
+      continue;
+    const auto across = static_cast<std::uint32_t>(line.y) + (std::uint32_t{1} << 31) +
+                        static_cast<std::uint32_t>(boxes) * static_cast<std::uint32_t>(frame_.offset_y);
+    const std::int64_t y = across;
+    const std::int64_t low = (y - ry) * level.rows >> 32, high = (y + ry) * level.rows >> 32;
+    if (round || high - low + 1 >= level.rows) {
+      slots(cell, cell + static_cast<std::size_t>(level.rows));
+    } else if (low < 0) {
+      slots(cell, cell + static_cast<std::size_t>(high + 1));
+      slots(cell + static_cast<std::size_t>(low + level.rows), cell + static_cast<std::size_t>(level.rows));
+    } else if (high >= level.rows) {
+      slots(cell, cell + static_cast<std::size_t>(high - level.rows + 1));
+      slots(cell + static_cast<std::size_t>(low), cell + static_cast<std::size_t>(level.rows));
+    } else {
+      slots(cell + static_cast<std::size_t>(low), cell + static_cast<std::size_t>(high + 1));
+    }
+  }
+}
+
+template<class Found>
+std::uint64_t Mirror::sweep_pairs(std::size_t begin, std::size_t end, const LineSpan& span,
+                                  std::vector<std::uint32_t>& buffer, const Found& found) const {
+  std::uint64_t tested = 0;
+  const LineArrays arrays = lines();
+  auto own = levels_.begin();
+  for (std::size_t slot = begin; slot < end; ++slot) {
+    while (slot >= own->end)
+      ++own;
+    const Line line = line_in(slot);
+    const auto range = [&](std::uint32_t from, std::uint32_t to) {
+      tested += to - from;
+      if (buffer.size() < to - from + LineArrays::padding)
+        buffer.resize(to - from + LineArrays::padding);
+      const std::size_t count = sweep_(line, arrays, frame_, span, from, to, buffer.data());
+      for (std::size_t k = 0; k < count; ++k)
+        found(slot, std::size_t{buffer[k]});
+    };
+    for (auto level = levels_.begin(); level != own; ++level)
+      ranges_in(*level, line, 0, range);
+    ranges_in(*own, line, static_cast<std::uint32_t>(slot) + 1, range);
+  }
+  return tested;
+}
+
+} // namespace keeler
