@@ -16,7 +16,7 @@ double ShearingBox::offset(std::int64_t half_steps, double half_step) const {
   return d < size_y ? d : 0.0;
 }
 
-Image ShearingBox::image_into_cell(double x, double y, double offset) const {
+Image ShearingBox::far_image_into_cell(double x, double y, double offset) const {
   Image image;
   image.nx = -static_cast<std::int32_t>(std::floor(x / size_x + 0.5));
   image.ny = -static_cast<std::int32_t>(std::floor((y - image.nx * offset) / size_y + 0.5));

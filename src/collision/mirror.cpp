@@ -43,11 +43,8 @@ Line Mirror::line_of(const Body& body, const Rotation& rotation) const {
   const double e2 = el.e_cos * el.e_cos + el.e_sin * el.e_sin, i2 = el.i_sin * el.i_sin + el.i_cos * el.i_cos;
   const double acceleration = std::sqrt(4.0 * kappa * kappa * e2 + nu2 * nu2 * i2);
   const double t = window_.half_length;
-  double x = s.position.x(), y = s.position.y();
-  if (!(std::fabs(x) < 0.5 * box_.size_x && std::fabs(y) < 0.5 * box_.size_y)) {
-    const Vec3 home = box_.displacement(box_.image_into_cell(x, y, offset_), offset_);
-    x += home.x(), y += home.y();
-  }
+  const Vec3 home = box_.displacement(box_.image_into_cell(s.position.x(), s.position.y(), offset_), offset_);
+  const double x = s.position.x() + home.x(), y = s.position.y() + home.y();
   const double beyond_shear = s.velocity.y() + box_.shear * s.position.x();
   const double path = t * (std::fabs(s.velocity.x()) + std::fabs(beyond_shear) + std::fabs(s.velocity.z()));
   const double grain = 4.0 / full_turn * (box_.size_x + box_.size_y);

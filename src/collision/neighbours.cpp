@@ -16,8 +16,6 @@ constexpr double farthest_stray = 1.0;  // of lines from their cells before a wi
 Image Neighbours::nearest_image(const Body& a, const Body& b) const {
   const Elements el = b.elements - a.elements;
   const double x = el.guiding_x - el.e_cos, y = el.guiding_y + (2.0 / frequencies_.kappa) * el.e_sin;
-  if (std::fabs(x) < 0.5 * box_.size_x && std::fabs(y) < 0.5 * box_.size_y)
-    return {};
   return box_.image_into_cell(x, y, offset_);
 }
 

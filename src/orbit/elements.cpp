@@ -125,10 +125,4 @@ FixedRotation::FixedRotation(double angle) {
 Rebase::Rebase(const Frequencies& f, double interval)
     : shift_(f.shear() * interval), e_(f.kappa * interval), i_(f.nu * interval) {}
 
-void Rebase::operator()(Elements& el) const {
-  el.guiding_y -= shift_ * el.guiding_x;
-  e_.turn(el.e_cos, el.e_sin);
-  i_.turn(el.i_cos, el.i_sin);
-}
-
 } // namespace keeler

@@ -1,5 +1,6 @@
 #include <keeler/simulation/simulation.hpp>
 
+#include <keeler/cells/order.hpp>
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/stopwatch.hpp>
@@ -13,6 +14,7 @@
 namespace keeler {
 namespace {
 
+constexpr double sorting_interval = 0.1; // orbits
 constexpr double allowed_overlap = 1e-8; // of a radius sum: where the inexact finders call a root; not what they miss
 
 SimulationState first_state(const Scene& scene, const Patch& start) {
@@ -60,6 +62,7 @@ Simulation::Simulation(const Scene& scene, SimulationState state)
 }
 
 void Simulation::advance() {
+  sort_when_due();
   if (kick_due())
     half_kick();
   {
@@ -72,6 +75,21 @@ void Simulation::advance() {
     accelerate();
     half_kick();
   }
+}
+
+// Memory order follows the places every tenth of an orbit. That depends on the step number alone: a restart goes on
+// with the same order.
+void Simulation::sort_when_due() {
+  const auto interval = static_cast<std::int64_t>(std::ceil(sorting_interval / scene_.time.step));
+  if (state_.step % interval != 0)
+    return;
+  const Stopwatch watch(split_.drift);
+  const std::vector<std::uint32_t> order = order_by_place(state_.particles, state_.box, state_.epoch_offset());
+  reorder(state_.particles.bodies, order);
+  reorder(state_.particles.ids, order);
+  if (!state_.accelerations.empty())
+    reorder(state_.accelerations, order);
+  drift_.sorted();
 }
 
 // To the epoch of the next step, and back into the cell by guiding centre.

@@ -8,6 +8,7 @@
 
 #include <keeler/orbit/elements.hpp>
 
+#include <cmath>
 #include <cstdint>
 
 namespace keeler {
@@ -48,7 +49,14 @@ struct ShearingBox {
   }
 
   /// The image whose guiding centre lies in [−L_x/2, L_x/2) × [−L_y/2, L_y/2), at the epoch of the given offset.
-  Image image_into_cell(double x, double y, double offset) const;
+  Image image_into_cell(double x, double y, double offset) const {
+    if (std::fabs(x) < 0.499 * size_x && std::fabs(y) < 0.499 * size_y) // almost always, and surely
+      return {};
+    return far_image_into_cell(x, y, offset);
+  }
+
+private:
+  Image far_image_into_cell(double x, double y, double offset) const;
 };
 
 } // namespace keeler

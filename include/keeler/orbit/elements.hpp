@@ -117,7 +117,11 @@ struct FixedRotation {
 class Rebase {
 public:
   Rebase(const Frequencies& f, double interval);
-  void operator()(Elements& el) const;
+  void operator()(Elements& el) const {
+    el.guiding_y -= shift_ * el.guiding_x;
+    e_.turn(el.e_cos, el.e_sin);
+    i_.turn(el.i_cos, el.i_sin);
+  }
 
 private:
   double shift_; // S × interval

@@ -46,6 +46,7 @@ private:
   void accelerate();
   void half_kick();
   void move_on();
+  void sort_when_due();
   bool kick_due() const { return solver_ && state_.step % scene_.gravity->kick_every == 0; }
 
   Scene scene_;
