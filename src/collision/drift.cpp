@@ -88,13 +88,35 @@ void DriftPhase::collide(Particles& particles, const ShearingBox& box, double of
   gave_up_ = 0;
   prepare();
   reject();
-  events_.assign(solve());
+  const std::vector<Event> first = solve();
   const Stopwatch stopwatch(costs_.events);
-  InPlace orbits{*this, tally, {}};
-  ContactLoop(step_at_hand_, orbits, events_).run();
+  if (!in_groups(first, tally)) {
+    events_.assign(first);
+    InPlace orbits{*this, tally, {}};
+    ContactLoop(step_at_hand_, orbits, events_).run();
+  }
   if (!through_grid_)
     neighbours_.settle(touched_);
   tally.gave_up += gave_up_;
+}
+
+// On several threads, when that is worth while and the result cannot tell.
+bool DriftPhase::in_groups(const std::vector<Event>& first, CollisionTally& tally) {
+  constexpr std::size_t fewest = 32;
+  if (threads() == 1 || first.size() < fewest || through_grid_ || watch || !finder_->exact() ||
+      !groups_.carry_out(step_at_hand_, *finder_, neighbours_, first))
+    return false;
+  for (const Contact* contact : groups_.contacts()) {
+    tally.add(*contact);
+    ++costs_.contacts;
+    costs_.recontacts += contact->again;
+  }
+  groups_.visit_members([&](const ContactGroups::Member& member) {
+    particles_->bodies[member.place].elements = member.body.elements;
+    neighbours_.changed(member.place);
+    touched_.push_back(member.place);
+  });
+  return true;
 }
 
 void DriftPhase::prepare() {
@@ -186,6 +208,8 @@ DriftCosts DriftPhase::costs() const {
   costs.windows = neighbours_.windows;
   costs.pairs_tested = neighbours_.tested;
   costs.listed = neighbours_.listed;
+  costs.conflicts = groups_.conflicts;
+  costs.repairs = groups_.repairs;
   if (particles_ && particles_->size())
     costs.bytes_per_particle = bytes() / particles_->size();
   return costs;
@@ -193,7 +217,7 @@ DriftCosts DriftPhase::costs() const {
 
 std::size_t DriftPhase::bytes() const {
   std::size_t total = particles_->bodies.capacity() * sizeof(Body) + particles_->ids.capacity() * sizeof(std::uint64_t);
-  total += neighbours_.bytes() + last_change_.capacity() * sizeof(double);
+  total += neighbours_.bytes() + groups_.bytes() + last_change_.capacity() * sizeof(double);
   total += (stamps_.capacity() + touched_.capacity()) * sizeof(std::uint32_t);
   total += particles_->size() * finder_->bytes_per_particle();
   for (const std::vector<Candidate>& block : candidates_)

@@ -17,9 +17,9 @@ void EventQueue::clear() {
   later_.clear();
 }
 
-void EventQueue::assign(std::vector<Event>&& events) {
+void EventQueue::assign(const std::vector<Event>& events) {
   later_.clear();
-  first_ = std::move(events);
+  first_ = events;
   next_ = 0;
   std::sort(first_.begin(), first_.end());
 }

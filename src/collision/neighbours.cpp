@@ -96,6 +96,14 @@ void Neighbours::list_pairs() {
   }
 }
 
+double Neighbours::departure(const Elements& change) const {
+  const Frequencies& f = frequencies_;
+  const State s = state_at(change, f, Rotation());
+  const double acceleration = 2.0 * f.kappa * change.eccentricity() + f.nu * f.nu * change.inclination();
+  const double half = 0.5 * step_;
+  return s.position.cwiseAbs().maxCoeff() + half * s.velocity.cwiseAbs().maxCoeff() + 0.5 * acceleration * half * half;
+}
+
 void Neighbours::changed(std::size_t i) {
   ++hits_;
   changed_[i] = static_cast<std::uint8_t>(at_step_ + 1);

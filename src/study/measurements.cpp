@@ -65,7 +65,7 @@ double run_seconds(const StudyState& state, const Scene& scene, bool every_candi
 // The certified finder's motion without the rejection that spares most calls the search.
 struct UnrejectedMotion : BoundedMotion {
   using BoundedMotion::BoundedMotion;
-  static bool surely_apart(const Query&, const DriftStep&) { return false; }
+  static bool surely_apart(const Query&, const Body&, const Body&, const DriftStep&) { return false; }
 };
 
 // The answers of a run, in order.

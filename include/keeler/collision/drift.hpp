@@ -6,11 +6,10 @@
 #pragma once
 
 #include <keeler/box/shearing_box.hpp>
-#include <keeler/collision/contact_loop.hpp>
+#include <keeler/collision/contact_groups.hpp>
 #include <keeler/collision/costs.hpp>
 #include <keeler/collision/finders.hpp>
 #include <keeler/collision/grid_partners.hpp>
-#include <keeler/collision/neighbours.hpp>
 #include <keeler/collision/settings.hpp>
 #include <keeler/particles/store.hpp>
 
@@ -85,6 +84,7 @@ private:
   };
 
   void prepare();
+  bool in_groups(const std::vector<Event>& first, CollisionTally& tally);
   void reject();
   std::vector<Event> solve();
   std::size_t bytes() const;
@@ -103,6 +103,7 @@ private:
   GridPartners grid_;
   std::vector<std::vector<Candidate>> candidates_;
   EventQueue events_;
+  ContactGroups groups_;
   std::vector<double> last_change_;    // time of the last velocity change in this step
   std::vector<std::uint32_t> stamps_;  // velocity changes in this step
   std::vector<std::uint32_t> touched_; // whose two are not those of a step's start

@@ -32,7 +32,7 @@ public:
   void clear();
   bool empty() const { return next_ == first_.size() && later_.empty(); }
   /// Replaces everything by these events.
-  void assign(std::vector<Event>&& events);
+  void assign(const std::vector<Event>& events);
   void add(const Event& event);
   Event take_first();
 

@@ -8,9 +8,12 @@
 // and may have
 //   std::optional<Separation> at_start()              the separation at pair.start from what is kept, if that can be:
 //                                                     no evaluation
-//   static bool surely_apart(const Query&, const DriftStep&)    proves a miss before a pair is even set up
+//   static bool surely_apart(const Query&, const Body& low, const Body& high, const DriftStep&)
+//                                                     proves a miss before a pair is even set up
 // Search: how guesses move to the first contact. It has
 //   template<class Motion> static FinderResult find(Motion&, const Pair&);
+// and, when it never errs and never gives up,
+//   static constexpr bool exact = true;
 // A new finder is one such file and one line in src/collision/finders.cpp: docs/dev/finders.md shows one.
 #pragma once
 
@@ -20,6 +23,7 @@
 #include <keeler/particles/store.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -50,25 +54,28 @@ struct Query {
   double start = 0.0;                  ///< rad
 };
 
-inline bool may_touch(const Query& q, const DriftStep& s) {
-  return s.straight_line.may_touch(s.bodies[q.low], s.bodies[q.high], q.shift_x, q.shift_y, q.start);
+inline bool may_touch(const Query& q, const Body& low, const Body& high, const DriftStep& s) {
+  return s.straight_line.may_touch(low, high, q.shift_x, q.shift_y, q.start);
 }
 
-inline Pair pair_of(const Query& q, const DriftStep& s) {
-  const Body &a = s.bodies[q.low], &b = s.bodies[q.high];
+inline Pair pair_of(const Query& q, const Body& low, const Body& high, const DriftStep& s) {
   Pair pair;
-  pair.lo = a.elements;
-  pair.hi = b.elements;
+  pair.lo = low.elements;
+  pair.hi = high.elements;
   pair.hi.guiding_x += q.shift_x;
   pair.hi.guiding_y += q.shift_y;
   pair.shift_x = q.shift_x;
   pair.shift_y = q.shift_y;
-  pair.reach = a.radius + b.radius;
-  pair.smaller = std::min(a.radius, b.radius);
+  pair.reach = low.radius + high.radius;
+  pair.smaller = std::min(low.radius, high.radius);
   pair.start = q.start;
   pair.end = s.end;
   pair.step = s.end - s.begin;
   return pair;
+}
+
+inline Pair pair_of(const Query& q, const DriftStep& s) {
+  return pair_of(q, s.bodies[q.low], s.bodies[q.high], s);
 }
 
 /// What the image of `hi` adds to the state of the particle itself at a time: images drift with the shear, exactly.
@@ -99,6 +106,15 @@ public:
   /// A contact's time lies in [query.start, end of the step): a root elsewhere is reported as `outside`.
   virtual FinderResult find(const Query& query) const = 0;
 
+  /// Whether the finder keeps nothing for each particle, never gives up and never errs. Only such a one may be asked
+  /// about orbits that are not those of the step, by several threads.
+  virtual bool exact() const { return false; }
+  /// The same question about these orbits in place of the step's. Only for exact finders.
+  virtual FinderResult find_between(const Query&, const Body& /*low*/, const Body& /*high*/) const {
+    assert(!exact());
+    return {};
+  }
+
   /// Kept for each particle beyond its elements.
   virtual std::size_t bytes_per_particle() const = 0;
 };
@@ -119,10 +135,21 @@ public:
   }
 
   FinderResult find(const Query& query) const override {
-    if constexpr (requires { Motion::surely_apart(query, *step_); })
-      if (Motion::surely_apart(query, *step_))
+    return find_between(query, step_->bodies[query.low], step_->bodies[query.high]);
+  }
+
+  bool exact() const override {
+    if constexpr (requires { Search::exact; })
+      return !remembers;
+    else
+      return false;
+  }
+
+  FinderResult find_between(const Query& query, const Body& low, const Body& high) const override {
+    if constexpr (requires { Motion::surely_apart(query, low, high, *step_); })
+      if (Motion::surely_apart(query, low, high, *step_))
         return {};
-    const Pair pair = pair_of(query, *step_);
+    const Pair pair = pair_of(query, low, high, *step_);
     Motion motion = motion_of(pair, query);
     FinderResult result = Search::find(motion, pair);
     if (result.contact() && !(result.time >= pair.start && result.time < pair.end))

@@ -68,6 +68,15 @@ public:
   /// Slots that may touch a line in the span, put into the buffer; returns how many.
   std::size_t near(const Line& line, const LineSpan& span, std::vector<std::uint32_t>& buffer) const;
 
+  /// Slots of all that can come into contact with a place in the window when the two go no farther than `off` (m) off
+  /// their lines: range(begin, end).
+  template<class Range> void visit_slots_near(std::size_t place, double off, const Range& range) const {
+    Line line = line_in(slots_[place]);
+    line.size += static_cast<float>(1.001 * off);
+    for (const Level& level : levels_)
+      ranges_in(level, line, 0, range);
+  }
+
   std::size_t bytes() const;
 
 private:

@@ -46,6 +46,27 @@ public:
   void visit_partners(std::size_t i, const Body& body, double start, std::vector<std::uint32_t>& buffer,
                       const Visit& visit) const;
 
+  /// Calls visit(image of b) for the nearest image if it may touch from `start` to the end of the step. For orbits that
+  /// have one_image().
+  template<class Visit> void visit_nearest(const Body& a, const Body& b, double start, const Visit& visit) const {
+    const Image image = nearest_image(a, b);
+    const Vec3 shift = box_.displacement(image, offset_);
+    if (step_test_.may_touch(a, b, shift.x(), shift.y(), start))
+      visit(image);
+  }
+  bool one_image(const Body& body) const { return mirror_.one_image(mirror_.line_of(body, to_middle_)); }
+
+  /// How far a particle can get off its path in this step when its elements change by this much, m.
+  double departure(const Elements& change) const;
+
+  /// Slots in which the mirror holds everything that can come into contact with particle i in this step, when the two
+  /// go no farther than this off the paths that the mirror knows: range(begin, end).
+  template<class Range> void visit_slots_near(std::size_t i, double off, const Range& range) const {
+    mirror_.visit_slots_near(i, off, range);
+  }
+  std::uint32_t slot(std::size_t i) const { return mirror_.slot(i); }
+  std::size_t size() const { return mirror_.size(); }
+
   /// Particle i has been hit and has a new orbit. May be called several times a step.
   void changed(std::size_t i);
   /// The step's collisions are over: what these particles may meet in the rest of the window. Each particle that was
@@ -110,11 +131,8 @@ template<class Visit> void Neighbours::visit_block(std::size_t block, const Visi
   for (const Entry& e : listed_first ? lists_[block] : added_[made - 1]) {
     if (changed_[e.low] > made || changed_[e.high] > made)
       continue;
-    const Body &a = particles_->bodies[e.low], &b = particles_->bodies[e.high];
-    const Image image = nearest_image(a, b);
-    const Vec3 shift = box_.displacement(image, offset_);
-    if (step_test_.may_touch(a, b, shift.x(), shift.y(), start))
-      visit(e.low, e.high, image);
+    visit_nearest(particles_->bodies[e.low], particles_->bodies[e.high], start,
+                  [&](const Image& image) { visit(e.low, e.high, image); });
   }
 }
 
@@ -130,12 +148,8 @@ void Neighbours::visit_partners(std::size_t i, const Body& body, double start, s
   const std::size_t count = mirror_.near(line, span(now + start, now + 0.5 * step_), buffer);
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t j = mirror_.place(buffer[k]);
-    if (j == i)
-      continue;
-    const Image image = nearest_image(body, particles_->bodies[j]);
-    const Vec3 shift = box_.displacement(image, offset_);
-    if (step_test_.may_touch(body, particles_->bodies[j], shift.x(), shift.y(), start))
-      visit(j, image);
+    if (j != i)
+      visit_nearest(body, particles_->bodies[j], start, [&](const Image& image) { visit(j, image); });
   }
 }
 

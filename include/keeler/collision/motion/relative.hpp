@@ -27,7 +27,9 @@ protected:
 
 class BoundedMotion : public RelativeMotion {
 public:
-  static bool surely_apart(const Query& query, const DriftStep& step) { return !may_touch(query, step); }
+  static bool surely_apart(const Query& query, const Body& low, const Body& high, const DriftStep& step) {
+    return !may_touch(query, low, high, step);
+  }
 
   BoundedMotion(const Pair& pair, const DriftStep& step) : RelativeMotion(pair, step) {
     const Frequencies& f = frequencies_;

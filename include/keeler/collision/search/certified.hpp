@@ -21,6 +21,7 @@ namespace keeler {
 
 /// `Motion` also has largest_speed(), largest_acceleration(), gap_error() and closing_error(): see BoundedMotion.
 struct CertifiedSearch {
+  static constexpr bool exact = true;
   template<class Motion> static FinderResult find(const Motion& motion, const Pair& pair);
 };
 
