@@ -2,8 +2,9 @@
 // one drives: the calls that the paper counted.
 #pragma once
 
+#include "unit/collision/ring.hpp"
+
 #include <keeler/collision/counts.hpp>
-#include <keeler/collision/drift.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/states/uniform.hpp>
 
@@ -25,37 +26,6 @@ inline Patch equilibrium_patch(std::size_t count, std::uint64_t seed) {
   request.seed = seed;
   return uniform_patch(request);
 }
-
-/// A patch that moves on step by step.
-struct Ring {
-  Particles particles;
-  ShearingBox box;
-  double step;
-  DriftPhase drift;
-  CollisionTally tally;
-  int steps = 0;
-
-  Ring(const Patch& patch, const CollisionSettings& settings, double step_length)
-      : particles(particles_from(patch, 0.5 * step_length)), box(patch.box), step(step_length),
-        drift(settings, patch.frequencies, 1.3175e-4, step_length) {}
-
-  void advance() {
-    drift.collide(particles, box, box.offset(2 * steps + 1, 0.5 * step), tally);
-    ++steps;
-    const double offset = box.offset(2 * steps + 1, 0.5 * step);
-    const Rebase rebase({1.0, 1.0}, step);
-    for (Body& body : particles.bodies) {
-      Elements& el = body.elements;
-      rebase(el);
-      el = box.image_of(el, box.image_into_cell(el.guiding_x, el.guiding_y, offset), offset);
-    }
-  }
-
-  Patch patch() const {
-    const double offset = box.offset(2 * steps, 0.5 * step);
-    return make_patch(particles, box, offset, {1.0, 1.0}, -0.5 * step);
-  }
-};
 
 /// Asks each finder what the driving one is asked, and compares.
 class AskAll final : public DriftWatch {

@@ -1,0 +1,190 @@
+// A result depends on the scene and the state alone: the same bits after many steps for any number of threads, for
+// neighbours kept or found anew at every step, and for any order of the particles in memory.
+#include "unit/collision/spheres.hpp"
+#include "unit/collision/twin.hpp"
+
+#include <keeler/core/threads.hpp>
+#include <keeler/simulation/simulation.hpp>
+
+#include <fmt/format.h>
+
+using namespace keeler;
+using test::Ring;
+using test::Scenario;
+
+namespace {
+
+struct Way {
+  int threads = 1;
+  bool keeps_neighbours = true;
+  bool shuffled = false; // in memory
+};
+
+constexpr Way ways[] = {{1, false, false}, {2, true, false}, {3, true, true}, {8, true, false}, {3, false, true}};
+
+// Number k goes to place (stride · k) mod count: far from its neighbours.
+template<class T> void shuffle(std::vector<T>& all) {
+  const std::size_t stride = 7919; // a prime that divides no count here
+  std::vector<T> moved(all.size());
+  for (std::size_t k = 0; k < all.size(); ++k)
+    moved[stride * k % all.size()] = all[k];
+  all = moved;
+}
+
+struct End {
+  Particles particles;
+  CollisionTally tally;
+};
+
+struct Walk {
+  double step;
+  int steps;
+  double kicks = 0.0; // m rad⁻¹, after every other step
+};
+
+End run(const Patch& patch, const CollisionSettings& settings, const Walk& walk, const Way& way) {
+  set_threads(way.threads);
+  Ring ring(patch, settings, walk.step);
+  ring.keeps_neighbours = way.keeps_neighbours;
+  if (way.shuffled) {
+    shuffle(ring.particles.bodies);
+    shuffle(ring.particles.ids);
+  }
+  for (int k = 0; k < walk.steps; ++k) {
+    ring.advance();
+    if (walk.kicks > 0.0 && k % 2 == 1)
+      ring.kick_all(walk.kicks);
+  }
+  return {ring.particles, ring.tally};
+}
+
+// The number of collisions.
+std::uint64_t same_any_way(const Patch& patch, const CollisionSettings& settings, const Walk& walk) {
+  const int before = threads();
+  const End first = run(patch, settings, walk, {});
+  for (const Way& way : ways) {
+    const End other = run(patch, settings, walk, way);
+    CAPTURE(way.threads);
+    CAPTURE(way.keeps_neighbours);
+    CAPTURE(way.shuffled);
+    CHECK(test::same_bits(first.particles, other.particles));
+    CHECK(test::same_bits(first.tally, other.tally));
+  }
+  set_threads(before);
+  return first.tally.fast + first.tally.slow;
+}
+
+} // namespace
+
+TEST_CASE("the same bits any way: uniform states, with and without kicks") {
+  Scenario s;
+  s.count = 4000;
+  s.smallest = 0.4;
+  s.step = two_pi * 2e-3;
+  const Patch patch = test::make_patch(s, 1);
+  CHECK(same_any_way(patch, {}, {s.step, 100}) > 4000);
+  CHECK(same_any_way(patch, {}, {s.step, 60, 0.2}) > 2000);
+}
+
+TEST_CASE("the same bits any way: dense states, where contacts follow from contacts") {
+  Scenario s;
+  s.count = 2500;
+  s.filling = 0.4, s.optical_depth = 1.5;
+  struct Case {
+    double step, restitution; // orbits
+    int steps;
+  };
+  for (const Case& c : {Case{1e-3, 0.0, 5}, Case{1e-3, 0.5, 25}, Case{1e-2, 0.0, 1}, Case{1e-2, 0.5, 15},
+                        Case{1e-2, 1.0, 15}, Case{5e-2, 0.5, 4}, Case{5e-2, 1.0, 3}}) {
+    CAPTURE(c.step);
+    CAPTURE(c.restitution);
+    s.step = two_pi * c.step;
+    s.restitution.value = c.restitution;
+    CHECK(same_any_way(test::make_patch(s, 2), test::settings_of(s), {s.step, c.steps}) > 1000);
+  }
+}
+
+TEST_CASE("the same bits any way: a moonlet, and particles that outrun the others") {
+  Patch patch = test::patch_of(test::swarm(1000, 5e-3, 0.15, 0.3, 3), 5.0, 4.0);
+  CHECK(same_any_way(patch, {}, {two_pi * 1e-3, 30}) > 200);
+  for (std::size_t k = 1; k < patch.size(); k += 200) {
+    patch.velocities[k] *= 30.0;
+    patch.masses[k] *= 1e3;
+  }
+  CHECK(same_any_way(patch, {}, {two_pi * 5e-4, 30}) > 100);
+}
+
+TEST_CASE("the same bits any way: rows of touching spheres, each hit at its end at the same instant") {
+  std::vector<test::Sphere> spheres;
+  for (int row = 0; row < 40; ++row)
+    for (int k = 0; k < 25; ++k)
+      spheres.push_back(
+          {{4.0 * row - 80.0, 2.0 * k + (k > 0 ? 0.5 : 0.0) - 25.0, 0.0}, {0.0, k > 0 ? 0.0 : 30.0, 0.0}});
+  for (const double restitution : {0.5, 1.0}) {
+    CollisionSettings settings;
+    settings.restitution.value = restitution;
+    CHECK(same_any_way(test::patch_of(spheres, 160.0, 70.0), settings, {two_pi * 5e-3, 3}) > 900);
+  }
+}
+
+// Threads, memory order, and a new Simulation from the state after every step.
+TEST_CASE("the same bits any way: a run with self-gravity") {
+  Scenario s;
+  s.count = 1000;
+  s.smallest = 0.5;
+  s.step = two_pi * 2e-3;
+  Patch patch = test::make_patch(s, 4);
+  for (double& mass : patch.masses)
+    mass *= 2.0;
+  const Scene scene = parse_scene(fmt::format(R"(
+[planet]
+preset = "saturn-b-ring"
+[box]
+size = [{}, {}]
+[particles]
+count = 1000
+density = 900.0
+sizes = {{ law = "equal", radius = 1.0 }}
+[gravity]
+solver = "tree"
+kick_every = 2
+[time]
+step = 2e-3
+end = 1.0
+)",
+                                              patch.box.size_x, patch.box.size_y),
+                                  "test scene");
+  constexpr int steps = 40;
+  const int before = threads();
+  set_threads(1);
+  Simulation first(scene, patch);
+  const SimulationState start = first.state();
+  for (int k = 0; k < steps; ++k)
+    first.advance();
+  CHECK(first.state().collisions.fast > 500);
+  for (const Way& way : ways) {
+    set_threads(way.threads);
+    SimulationState state = start;
+    if (way.shuffled) {
+      shuffle(state.particles.bodies);
+      shuffle(state.particles.ids);
+      shuffle(state.accelerations);
+    }
+    Simulation other(scene, state);
+    for (int k = 0; k < steps; ++k)
+      if (way.keeps_neighbours) {
+        other.advance();
+      } else {
+        Simulation again(scene, state);
+        again.advance();
+        state = again.state();
+      }
+    const SimulationState& end = way.keeps_neighbours ? other.state() : state;
+    CAPTURE(way.threads);
+    CAPTURE(way.keeps_neighbours);
+    CAPTURE(way.shuffled);
+    CHECK(test::same_bits(first.state().particles, end.particles));
+    CHECK(test::same_bits(first.state().collisions, end.collisions));
+  }
+  set_threads(before);
+}

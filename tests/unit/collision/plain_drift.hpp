@@ -1,0 +1,132 @@
+// The drift phase made obvious: all pairs in all images that their orbits can bring into contact, each asked of the
+// certified finder; one contact at a time; all pairs of the two particles again after it. No cells, lists, windows,
+// memory of earlier steps, heap or threads, and the same answers to the last bit.
+#pragma once
+
+#include <keeler/collision/drift.hpp>
+
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <vector>
+
+namespace keeler::test {
+
+class PlainDrift {
+public:
+  PlainDrift(const CollisionSettings& settings, const Frequencies& f, double orbital_frequency, double step)
+      : settings_(settings), f_(f), omega_(orbital_frequency), step_(step), at_hand_(f, -0.5 * step, 0.5 * step, 0.0),
+        finder_(make_finder("certified")) {}
+
+  std::vector<CollisionRecord> collide(Particles& particles, const ShearingBox& box, double offset,
+                                       CollisionTally& tally) {
+    particles_ = &particles, box_ = box, offset_ = offset;
+    begin();
+    last_.assign(particles.size(), -0.5 * step_);
+    pending_.clear();
+    for (std::size_t i = 0; i < particles.size(); ++i)
+      for (std::size_t j = i + 1; j < particles.size(); ++j)
+        look(i, j);
+    std::vector<CollisionRecord> records;
+    while (!pending_.empty()) {
+      const auto [key, places] = *pending_.begin();
+      pending_.erase(pending_.begin());
+      if (!bounce(key, places, tally, records))
+        continue;
+      const auto [i, j] = places;
+      for (auto it = pending_.begin(); it != pending_.end();)
+        it = involves(it->second, i) || involves(it->second, j) ? pending_.erase(it) : std::next(it);
+      for (std::size_t k = 0; k < particles.size(); ++k) {
+        if (k != i)
+          look(i, k);
+        if (k != i && k != j)
+          look(j, k);
+      }
+    }
+    return records;
+  }
+
+private:
+  using Key = std::tuple<double, std::uint64_t, std::uint64_t, int, int>;
+  using Places = std::pair<std::size_t, std::size_t>; // the lower id first
+
+  static bool involves(const Places& places, std::size_t k) { return places.first == k || places.second == k; }
+
+  // These two are all that knows how a finder is asked.
+  void begin() {
+    at_hand_ = DriftStep(f_, -0.5 * step_, 0.5 * step_, box_.size_x + box_.size_y);
+    at_hand_.bodies = particles_->bodies;
+    finder_->begin(at_hand_);
+  }
+  FinderResult ask(std::size_t low, std::size_t high, const Vec3& shift, double start) const {
+    return finder_->find(
+        {static_cast<std::uint32_t>(low), static_cast<std::uint32_t>(high), shift.x(), shift.y(), start});
+  }
+
+  void look(std::size_t i, std::size_t j) {
+    const bool ordered = particles_->ids[i] < particles_->ids[j];
+    const Places places{ordered ? i : j, ordered ? j : i};
+    const auto& [low, high] = places;
+    const Body &a = particles_->bodies[low], &b = particles_->bodies[high];
+    const Elements el = b.elements - a.elements;
+    const double start = std::max(last_[i], last_[j]), reach = a.radius + b.radius, e = el.eccentricity();
+    // from where they stand at the epoch, no farther than the fastest of their epicycle goes in half a step
+    const double half = 0.5 * step_, x = el.guiding_x - el.e_cos, y = el.guiding_y + 2.0 / f_.kappa * el.e_sin;
+    for (const int nx : within(x, box_.size_x, reach + half * f_.kappa * e)) {
+      const double fastest = f_.shear() * std::fabs(el.guiding_x + nx * box_.size_x) + 2.0 * e;
+      for (const int ny : within(y - nx * offset_, box_.size_y, reach + half * fastest)) {
+        const Image image{nx, ny};
+        const FinderResult result = ask(low, high, box_.displacement(image, offset_), start);
+        if (result.contact())
+          pending_[{result.time, particles_->ids[low], particles_->ids[high], nx, ny}] = places;
+      }
+    }
+  }
+
+  // All n with |place + n period| <= distance, and a little more.
+  static std::vector<int> within(double place, double period, double distance) {
+    const double wide = distance * (1.0 + 1e-9) + 1e-9 * period;
+    std::vector<int> all;
+    for (double n = std::ceil((-wide - place) / period); n <= (wide - place) / period; ++n)
+      all.push_back(static_cast<int>(n));
+    return all;
+  }
+
+  // The engine's arithmetic: to agree to the bit there is one way to write it.
+  bool bounce(const Key& key, const Places& places, CollisionTally& tally, std::vector<CollisionRecord>& records) {
+    const auto& [time, low_id, high_id, nx, ny] = key;
+    const Image image{nx, ny};
+    Body &a = particles_->bodies[places.first], &b = particles_->bodies[places.second];
+    const Rotation rotation(f_, time);
+    const State relative = state_at(box_.image_of(b.elements, image, offset_) - a.elements, f_, rotation);
+    const Vec3 normal = relative.position.normalized();
+    const double speed = -relative.velocity.dot(normal);
+    const Rebound after = rebound(settings_, speed, a.radius + b.radius, omega_);
+    if (!(speed > -after.speed))
+      return false;
+    const double reduced_mass = a.mass * b.mass / (a.mass + b.mass);
+    const Vec3 impulse = reduced_mass * (speed + after.speed) * normal;
+    kick(a.elements, -impulse / a.mass, f_, rotation);
+    kick(b.elements, impulse / b.mass, f_, rotation);
+    last_[places.first] = last_[places.second] = time;
+    ++(after.fast ? tally.fast : tally.slow);
+    tally.energy_lost += 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
+    tally.edge_work += nx * box_.shear * box_.size_x * impulse.y();
+    tally.momentum_flux += relative.position.x() * impulse.y();
+    records.push_back({time, low_id, high_id, image, speed, after.fast});
+    return true;
+  }
+
+  CollisionSettings settings_;
+  Frequencies f_;
+  double omega_, step_;
+  DriftStep at_hand_;
+  std::unique_ptr<Finder> finder_;
+  Particles* particles_ = nullptr;
+  ShearingBox box_;
+  double offset_ = 0.0;
+  std::vector<double> last_; // velocity change in this step
+  std::map<Key, Places> pending_;
+};
+
+} // namespace keeler::test

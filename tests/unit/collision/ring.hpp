@@ -1,0 +1,79 @@
+// A patch that moves on step by step, as a run does: drift with collisions, next epoch, back into the cell; and kicks
+// between steps, when a test wants some.
+#pragma once
+
+#include "unit/collision/scenario.hpp"
+
+#include <keeler/collision/drift.hpp>
+#include <keeler/core/random.hpp>
+#include <keeler/particles/patch.hpp>
+
+#include <algorithm>
+
+namespace keeler::test {
+
+struct Ring {
+  Particles particles;
+  ShearingBox box;
+  Frequencies frequencies;
+  double step;
+  DriftPhase drift;
+  CollisionTally tally;
+  std::int64_t steps = 0;
+  bool keeps_neighbours = false; ///< over several steps, as a run does
+
+  Ring(const Patch& patch, const CollisionSettings& settings, double step_length)
+      : particles(particles_from(patch, 0.5 * step_length)), box(patch.box), frequencies(patch.frequencies),
+        step(step_length), drift(settings, patch.frequencies, omega, step_length) {}
+
+  double epoch_offset() const { return box.offset(2 * steps + 1, 0.5 * step); }
+
+  void advance() {
+    drift.collide(particles, box, epoch_offset(), tally);
+    move_on();
+  }
+
+  void move_on() {
+    ++steps;
+    const double offset = epoch_offset();
+    const Rebase rebase(frequencies, step);
+    for (Body& body : particles.bodies) {
+      Elements& el = body.elements;
+      rebase(el);
+      el = box.image_of(el, box.image_into_cell(el.guiding_x, el.guiding_y, offset), offset);
+    }
+    if (keeps_neighbours)
+      drift.moved_on();
+  }
+
+  /// Random kicks at the boundary between steps, of no more than `largest` (m rad⁻¹) each.
+  void kick_all(double largest) {
+    const Rotation rotation(frequencies, -0.5 * step);
+    for (std::size_t k = 0; k < particles.size(); ++k) {
+      RandomStream random(static_cast<std::uint64_t>(steps), RandomPurpose::velocity, particles.ids[k]);
+      const Vec3 dv(2.0 * random.uniform() - 1.0, 2.0 * random.uniform() - 1.0, 2.0 * random.uniform() - 1.0);
+      kick(particles.bodies[k].elements, largest / std::sqrt(3.0) * dv, frequencies, rotation);
+    }
+    drift.kicked(largest);
+  }
+
+  /// At the present boundary between steps.
+  Patch patch() const {
+    return make_patch(particles, box, box.offset(2 * steps, 0.5 * step), frequencies, -0.5 * step);
+  }
+};
+
+/// Bodies in the order of their ids, whatever that of the memory: to compare states bit by bit.
+inline std::vector<Body> by_id(const Particles& particles) {
+  std::vector<std::size_t> places(particles.size());
+  for (std::size_t k = 0; k < places.size(); ++k)
+    places[k] = k;
+  std::sort(places.begin(), places.end(),
+            [&](std::size_t a, std::size_t b) { return particles.ids[a] < particles.ids[b]; });
+  std::vector<Body> bodies;
+  for (const std::size_t k : places)
+    bodies.push_back(particles.bodies[k]);
+  return bodies;
+}
+
+} // namespace keeler::test

@@ -1,0 +1,110 @@
+// A ring beside its plain twin: every step starts from the same state, and everything must come out with the same bits.
+#pragma once
+
+#include "unit/collision/plain_drift.hpp"
+#include "unit/collision/ring.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cstring>
+
+namespace keeler::test {
+
+struct Recorder : DriftWatch {
+  std::vector<CollisionRecord> records;
+  void collided(const CollisionRecord& record) override { records.push_back(record); }
+};
+
+inline bool same_bits(double a, double b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+inline bool same_bits(const Particles& a, const Particles& b) {
+  const std::vector<Body> left = by_id(a), right = by_id(b);
+  return left.size() == right.size() && std::memcmp(left.data(), right.data(), left.size() * sizeof(Body)) == 0;
+}
+
+inline bool same_bits(const CollisionTally& a, const CollisionTally& b) {
+  return a.fast == b.fast && a.slow == b.slow && a.gave_up == b.gave_up && same_bits(a.energy_lost, b.energy_lost) &&
+         same_bits(a.edge_work, b.edge_work) && same_bits(a.momentum_flux, b.momentum_flux);
+}
+
+/// Time and speed to the bit.
+inline bool same_bits(const CollisionRecord& a, const CollisionRecord& b) {
+  return same_bits(a.time, b.time) && a.low_id == b.low_id && a.high_id == b.high_id && a.image == b.image &&
+         same_bits(a.normal_speed, b.normal_speed) && a.fast == b.fast;
+}
+
+/// How many of the records, from the first on, are the same.
+inline std::size_t same_records(const std::vector<CollisionRecord>& a, const std::vector<CollisionRecord>& b) {
+  std::size_t k = 0;
+  while (k < std::min(a.size(), b.size()) && same_bits(a[k], b[k]))
+    ++k;
+  return k;
+}
+
+inline double total_energy(const Ring& ring) {
+  double sum = 0.0;
+  for (const Body& b : ring.particles.bodies)
+    sum += b.mass * energy(b.elements, ring.frequencies);
+  return sum;
+}
+
+/// What the energy is made of, kg m² rad⁻²: its rounding is some 1e-16 of this.
+inline double energy_scale(const Ring& ring) {
+  double sum = 0.0;
+  for (const Body& b : ring.particles.bodies) {
+    const Elements& el = b.elements;
+    const double vertical = ring.frequencies.nu * el.inclination();
+    sum += b.mass * (std::pow(std::fabs(el.guiding_x) + ring.box.size_x + el.eccentricity(), 2) + vertical * vertical);
+  }
+  return sum;
+}
+
+class Twin {
+public:
+  Twin(Ring& ring, const CollisionSettings& settings)
+      : ring_(ring), plain_(settings, ring.frequencies, omega, ring.step) {}
+
+  /// Drifts through one step and moves on; returns its collisions. Every other step nobody watches, so that threads
+  /// may work.
+  std::size_t advance() {
+    Particles copy = ring_.particles;
+    const bool watched = ring_.steps % 2 == 0;
+    Recorder recorder;
+    CollisionTally tally, plain_tally;
+    const double energy = total_energy(ring_), scale = energy_scale(ring_);
+    ring_.drift.watch = watched ? &recorder : nullptr;
+    ring_.drift.collide(ring_.particles, ring_.box, ring_.epoch_offset(), tally);
+    ring_.drift.watch = nullptr;
+    const auto expected = plain_.collide(copy, ring_.box, ring_.epoch_offset(), plain_tally);
+    INFO("step ", ring_.steps, ", ", expected.size(), " collisions");
+    if (watched) {
+      CHECK(recorder.records.size() == expected.size());
+      REQUIRE(same_records(recorder.records, expected) == expected.size());
+    }
+    REQUIRE(same_bits(ring_.particles, copy));
+    REQUIRE(same_bits(tally, plain_tally));
+    const double unbooked = total_energy(ring_) - energy + tally.energy_lost - tally.edge_work;
+    REQUIRE(std::fabs(unbooked) <= 1e-15 * scale * (10.0 + static_cast<double>(expected.size())));
+    last = expected;
+    ring_.move_on();
+    return expected.size();
+  }
+
+  /// The same many times.
+  std::size_t advance(int steps) {
+    std::size_t collisions = 0;
+    for (int k = 0; k < steps; ++k)
+      collisions += advance();
+    return collisions;
+  }
+
+  std::vector<CollisionRecord> last; ///< of the last step
+
+private:
+  Ring& ring_;
+  PlainDrift plain_;
+};
+
+} // namespace keeler::test
