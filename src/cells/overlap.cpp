@@ -4,6 +4,7 @@
 #include <keeler/core/threads.hpp>
 
 #include <algorithm>
+#include <numeric>
 
 namespace keeler {
 namespace {
@@ -15,23 +16,31 @@ bool deeper(const Overlap& a, const Overlap& b) {
   return std::pair(a.id_i, a.id_j) < std::pair(b.id_i, b.id_j);
 }
 
+// From the one with the lower id, so that the bits do not depend on who found whom.
+Overlap overlap_of(const Patch& patch, std::size_t low, std::size_t high, const Image& image_of_high) {
+  const Vec3 d = patch.positions[high] + patch.box.displacement(image_of_high, patch.offset) - patch.positions[low];
+  const double sum = patch.radii[low] + patch.radii[high];
+  return {(sum - d.norm()) / sum, patch.ids[low], patch.ids[high]};
+}
+
 } // namespace
 
+// The larger of two particles looks for the smaller one, so that few look far.
 Overlap largest_overlap(const Patch& patch) {
   if (patch.size() == 0)
     return {};
-  const double r_max = *std::max_element(patch.radii.begin(), patch.radii.end());
+  const std::vector<double>& radii = patch.radii;
+  const double mean = std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(patch.size());
   PeriodicGrid grid;
-  grid.build(patch.positions, patch.box, patch.offset, 2.0 * r_max);
+  grid.build(patch.positions, patch.box, patch.offset, 2.0 * mean);
   std::vector<Overlap> worst(patch.size());
   parallel_for(patch.size(), [&](std::size_t i) {
-    const double reach = patch.radii[i] + r_max;
+    const double reach = 2.0 * radii[i];
     grid.visit_near(patch.positions[i], reach, reach, [&](std::size_t j, const Image& image) {
-      if (patch.ids[j] <= patch.ids[i])
+      const bool lower = patch.ids[i] < patch.ids[j];
+      if (patch.ids[j] == patch.ids[i] || radii[j] > radii[i] || (radii[j] == radii[i] && !lower))
         return;
-      const Vec3 d = patch.positions[j] + patch.box.displacement(image, patch.offset) - patch.positions[i];
-      const double sum = patch.radii[i] + patch.radii[j];
-      const Overlap here{(sum - d.norm()) / sum, patch.ids[i], patch.ids[j]};
+      const Overlap here = lower ? overlap_of(patch, i, j, image) : overlap_of(patch, j, i, -image);
       if (here.depth > 0.0 && deeper(here, worst[i]))
         worst[i] = here;
     });

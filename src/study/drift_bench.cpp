@@ -1,104 +1,134 @@
 #include <keeler/study/drift_bench.hpp>
 
+#include "bench_states.hpp"
+#include "phase_progress.hpp"
+#include "yardsticks.hpp"
+
 #include <keeler/collision/finders.hpp>
-#include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
-#include <keeler/scene/derived.hpp>
 #include <keeler/simulation/simulation.hpp>
-#include <keeler/states/initial.hpp>
 #include <keeler/study/median.hpp>
 #include <keeler/study/pair_set.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-constexpr double least_seconds = 0.1; // of finder calls, for the time of one
+constexpr double least_call_seconds = 0.1; // of finder calls, for the time of one
+constexpr int untimed_steps = 10;          // in which buffers grow and the first window passes
+constexpr double least_steps = 20.0;       // in each repeat: more than a window
+constexpr double most_orbits = 0.1;        // in each repeat, beyond that many steps
+constexpr double enough_passes = 4e6;      // particles × steps in each repeat
 
-// Near c_x of the equilibrium at ε = 0.5, in rΩ: 2.82, 2.18 and 1.62 at τ = 0.1, 0.5 and 1; more where particles of
-// that dispersion could not be placed.
-double first_dispersion(double optical_depth) {
-  const double placed = 1.001 * dispersion_for_filling(optical_depth, {}, 1.0, largest_filling);
-  return std::max(3.0 * std::exp(-0.62 * optical_depth), placed);
+int timed_steps(double count, double step_orbits) {
+  const double most = std::max(least_steps, most_orbits / step_orbits);
+  return static_cast<int>(std::lround(std::clamp(enough_passes / count, least_steps, most)));
 }
 
-Scene bench_scene(const DriftBenchSettings& s) {
-  const double size = std::sqrt(pi * static_cast<double>(s.count) / s.optical_depth);
-  return parse_scene(fmt::format(R"(
-[planet]
-orbital_frequency = 1.9565e-4
-[box]
-size = [{0}, {0}]
-[particles]
-count = {1}
-density = 900.0
-velocity_dispersion = {2}
-sizes = {{ law = "equal", radius = 1.0 }}
-[collisions]
-finder = "{3}"
-restitution = {{ law = "constant", value = 0.5 }}
-[time]
-step = {4}
-end = {4}
-)",
-                                 size, s.count, first_dispersion(s.optical_depth), s.finder, s.step_orbits),
-                     "bench");
-}
-
-Patch equilibrium(Scene scene) {
-  constexpr int steps = 150;
-  scene.collisions.finder = "certified";
-  scene.time.step = 1.5 / steps;
-  Simulation simulation(scene, initial_patch(scene));
-  for (int k = 0; k < steps; ++k)
-    simulation.advance();
-  return simulation.patch();
-}
-
-double clock_now() {
-  static const auto start = std::chrono::steady_clock::now();
-  return threads() == 1 ? cpu_seconds()
-                        : std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double finder_time(const Scene& scene, const SimulationState& state, bool all_pairs, double& calls) {
+void time_calls(const DriftBenchSettings& settings, const Scene& scene, const SimulationState& state,
+                DriftBench& bench) {
   const PairSet pairs = PairSet::of(state.particles, state.box, state.epoch_offset(), scene.collisions,
-                                    scene.planet.frequencies, state.step_length, all_pairs);
-  calls = static_cast<double>(pairs.queries.size()) / static_cast<double>(state.particles.size());
-  return ns_per_call(pairs, *make_finder(scene.collisions.finder), least_seconds);
+                                    scene.planet.frequencies, state.step_length, settings.all_pairs);
+  const std::unique_ptr<Finder> finder = make_finder(scene.collisions.finder);
+  std::vector<double> times;
+  for (int repeat = 0; repeat < settings.repeats; ++repeat)
+    times.push_back(ns_per_call(pairs, *finder, least_call_seconds));
+  bench.ns_per_call = median(times);
+  bench.calls_per_particle_step = static_cast<double>(pairs.queries.size()) / static_cast<double>(bench.count);
+}
+
+// All clocks and counts of a run, as they stand.
+struct Reading {
+  double seconds = bench_seconds();
+  double advance;
+  CollisionTally tally;
+  DriftCosts costs;
+
+  explicit Reading(Simulation& simulation)
+      : advance(simulation.time_split().advance), tally(simulation.state().collisions),
+        costs(simulation.drift().costs()) {}
+  std::uint64_t contacts() const { return tally.fast + tally.slow; }
+};
+
+// The times of each repeat.
+struct Times {
+  std::vector<double> whole, advance, build, reject, solve, events, line, pair;
+
+  void add(const Reading& before, const Reading& after, double passes) {
+    const double ns = 1e9 / passes;
+    whole.push_back(ns * (after.seconds - before.seconds));
+    advance.push_back(ns * (after.advance - before.advance));
+    build.push_back(ns * (after.costs.build - before.costs.build));
+    reject.push_back(ns * (after.costs.reject - before.costs.reject));
+    solve.push_back(ns * (after.costs.solve - before.costs.solve));
+    events.push_back(ns * (after.costs.events - before.costs.events));
+  }
+};
+
+void take_times(const Times& times, DriftBench& bench) {
+  bench.ns_per_particle_step = median(times.whole);
+  bench.split = {median(times.advance), median(times.build), median(times.reject), median(times.solve),
+                 median(times.events)};
+  bench.yardsticks = {median(times.line), median(times.pair)};
+}
+
+void take_counts(const Reading& start, const Reading& end, double passes, double step_orbits, DriftBench& bench) {
+  const auto per_pass = [&](std::uint64_t before, std::uint64_t after) {
+    return static_cast<double>(after - before) / passes;
+  };
+  bench.pairs_per_particle = per_pass(start.costs.pairs_tested, end.costs.pairs_tested);
+  bench.survivors_per_particle = per_pass(start.costs.survivors, end.costs.survivors);
+  bench.collisions_per_particle_orbit = 2.0 * per_pass(start.tally.fast, end.tally.fast) / step_orbits;
+  bench.contacts = end.contacts() - start.contacts();
+  bench.recontacts = end.costs.recontacts - start.costs.recontacts;
+  bench.conflicts = end.costs.conflicts - start.costs.conflicts;
+  bench.repairs = end.costs.repairs - start.costs.repairs;
+  bench.windows = end.costs.windows - start.costs.windows;
+  bench.widest_list = end.costs.widest_list;
+  bench.bytes_per_particle = end.costs.bytes_per_particle;
+  if (bench.contacts == 0)
+    return;
+  const double passes_per_contact = passes / static_cast<double>(bench.contacts);
+  bench.ns_per_collision = bench.ns_per_particle_step * passes_per_contact;
+  bench.ns_events_per_collision = bench.split.events * passes_per_contact;
 }
 
 } // namespace
 
 DriftBench bench_drift(const DriftBenchSettings& settings) {
-  const Scene scene = bench_scene(settings);
-  const Patch start = equilibrium(scene);
-  const double count = static_cast<double>(settings.count);
+  PhaseProgress progress(settings.progress);
+  BenchState made = bench_state(settings, progress);
   DriftBench bench;
-  bench.steps = static_cast<int>(std::clamp(std::round(2e6 / count), 3.0, std::max(3.0, 0.1 / settings.step_orbits)));
-  bench.dispersion_r_omega = velocity_in_radii(start, velocity_dispersion(start)).x();
+  bench.count = made.patch.size();
+  bench.steps = timed_steps(static_cast<double>(bench.count), settings.step_orbits);
+  bench.dispersion_r_omega = velocity_in_radii(made.patch, velocity_dispersion(made.patch)).x();
 
-  std::vector<double> step_times, call_times;
+  Simulation simulation(made.scene, made.patch);
+  made.patch = {}; // room: a large state is held once
+  time_calls(settings, made.scene, simulation.state(), bench);
+  simulation.drift().every_candidate = settings.all_pairs;
+  const double passes = static_cast<double>(bench.count) * bench.steps;
+  progress.begin("timing", settings.repeats);
+  for (int k = 0; k < untimed_steps; ++k)
+    simulation.advance();
+  MemoryYardstick memory(bench.count);
+  Times times;
+  const Reading start(simulation);
   for (int repeat = 0; repeat < settings.repeats; ++repeat) {
-    Simulation simulation(scene, start);
-    simulation.drift().every_candidate = settings.all_pairs;
-    call_times.push_back(finder_time(scene, simulation.state(), settings.all_pairs, bench.calls_per_particle_step));
-    const double begin = clock_now();
+    times.line.push_back(memory.measure());
+    times.pair.push_back(pair_yardstick());
+    const Reading before(simulation);
     for (int k = 0; k < bench.steps; ++k)
       simulation.advance();
-    step_times.push_back(1e9 * (clock_now() - begin) / (count * bench.steps));
-    bench.collisions_per_particle_orbit =
-        2.0 * static_cast<double>(simulation.state().collisions.fast) / (count * simulation.orbits());
+    times.add(before, Reading(simulation), passes);
+    progress.add(1.0);
   }
-  bench.ns_per_particle_step = median(step_times);
-  bench.ns_per_call = median(call_times);
+  take_times(times, bench);
+  take_counts(start, Reading(simulation), passes * settings.repeats, settings.step_orbits, bench);
   return bench;
 }
 

@@ -7,6 +7,8 @@
 // report.html.
 #pragma once
 
+#include <keeler/study/progress.hpp>
+
 #include <atomic>
 #include <filesystem>
 #include <functional>
@@ -14,12 +16,6 @@
 #include <vector>
 
 namespace keeler {
-
-struct StudyProgress {
-  double share = 0.0; ///< of the work done, 0 … 1
-  double elapsed_s = 0.0, remaining_s = 0.0;
-  std::string what; ///< is being done
-};
 
 struct FinderStudySettings {
   std::filesystem::path folder;

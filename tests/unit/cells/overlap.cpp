@@ -27,7 +27,9 @@ Patch random_patch(std::uint64_t seed, int count) {
 
 TEST_CASE("the largest overlap is that of all pairs and images") {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
-    const Patch patch = random_patch(seed, 40);
+    Patch patch = random_patch(seed, 40);
+    if (seed % 2 == 0)
+      patch.radii[seed] = 6.0; // a giant among them
     double deepest = 0.0;
     for (std::size_t i = 0; i < patch.size(); ++i)
       for (std::size_t j = i + 1; j < patch.size(); ++j)
