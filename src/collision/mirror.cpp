@@ -18,9 +18,15 @@ constexpr double cells_per_particle = 2.0; // no more
 constexpr double single = 4e-6;            // of a path: what single precision may do to a line
 constexpr double full_turn = 4294967296.0; // 2³², the box
 
-// The nearest fraction of the box, the box taken round.
+// The nearest fraction of the box to a place, the box taken round.
 std::int32_t fraction(double value, double per_metre) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(std::llrint(value * per_metre)));
+}
+
+// The same for a place inside the cell, never taken round: beyond the edge in x the image would be another one.
+std::int32_t inside_fraction(double value, double per_metre) {
+  constexpr long long edge = 2147483647; // 2³¹ − 1
+  return static_cast<std::int32_t>(std::clamp(std::llrint(value * per_metre), -edge, edge));
 }
 
 template<class T> std::size_t bytes_of(const std::vector<T>& values) {
@@ -49,7 +55,7 @@ Line Mirror::line_of(const Body& body, const Rotation& rotation) const {
   const double path = t * (std::fabs(s.velocity.x()) + std::fabs(beyond_shear) + std::fabs(s.velocity.z()));
   const double grain = 4.0 / full_turn * (box_.size_x + box_.size_y);
   const double size = body.radius + 0.5 * acceleration * t * t + window_.skin;
-  return {fraction(x, per_metre_x_),
+  return {inside_fraction(x, per_metre_x_),
           fraction(y, per_metre_y_),
           static_cast<float>(s.position.z()),
           static_cast<float>(s.velocity.x()),

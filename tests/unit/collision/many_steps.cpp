@@ -288,6 +288,7 @@ end = 1.0
       INFO("step ", k);
       CHECK(recorder.records.size() == expected.size());
       REQUIRE(test::same_records(recorder.records, expected) == expected.size());
+      test::in_order_of(copy, state.particles);
       const Rebase rebase(f, step);
       for (Body& body : copy.bodies) {
         Elements& el = body.elements;

@@ -63,6 +63,16 @@ struct Ring {
   }
 };
 
+/// Puts particles into the memory order of others with the same ids 0, 1, 2 …
+inline void in_order_of(Particles& particles, const Particles& others) {
+  std::vector<Body> bodies(particles.size());
+  for (std::size_t k = 0; k < particles.size(); ++k)
+    bodies[particles.ids[k]] = particles.bodies[k];
+  for (std::size_t k = 0; k < particles.size(); ++k)
+    particles.bodies[k] = bodies[others.ids[k]];
+  particles.ids = others.ids;
+}
+
 /// Bodies in the order of their ids, whatever that of the memory: to compare states bit by bit.
 inline std::vector<Body> by_id(const Particles& particles) {
   std::vector<std::size_t> places(particles.size());
