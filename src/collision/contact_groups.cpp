@@ -95,8 +95,8 @@ struct ContactGroups::Orbits {
     member.body.elements = elements;
     member.last_change = time;
     ++member.stamp;
-    const double off = all.neighbours_->departure(elements - all.step_->particles->bodies[i].elements);
-    group.farthest = std::max(group.farthest, off);
+    member.off = std::max(member.off, all.neighbours_->departure(elements - all.step_->particles->bodies[i].elements));
+    group.farthest = std::max(group.farthest, member.off);
     group.too_large |= group.members.size() > most_members || !all.neighbours_->one_image(member.body);
   }
 
@@ -127,7 +127,7 @@ bool ContactGroups::carry_out(const StepAtHand& step, const Finder& finder, cons
   finder_ = &finder;
   neighbours_ = &neighbours;
   form(first);
-  for (;;) {
+  for (bool all_fresh = true;; all_fresh = false) {
     if (!run_fresh())
       return false;
     Pairs conflicting;
@@ -141,7 +141,7 @@ bool ContactGroups::carry_out(const StepAtHand& step, const Finder& finder, cons
         [&](std::size_t b) {
           for (std::size_t g = 16 * b; g < std::min(used_, 16 * b + 16); ++g)
             if (groups_[g].fresh)
-              look_around(static_cast<std::uint32_t>(g), farthest, seen[b]);
+              look_around(static_cast<std::uint32_t>(g), farthest, all_fresh, seen[b]);
         },
         1);
     for (const Pairs& pairs : seen)
@@ -249,62 +249,51 @@ void ContactGroups::claim(Pairs& conflicting) {
   }
 }
 
-// Conflicts of a group's members with others that were hit nearby.
-void ContactGroups::look_around(std::uint32_t g, double farthest, Pairs& conflicting) const {
+// Conflicts of a group's members with others that were hit nearby. When all groups look around, of two particles the
+// one that got farther off its path finds the other.
+void ContactGroups::look_around(std::uint32_t g, double farthest, bool all_fresh, Pairs& conflicting) const {
   const Group& group = groups_[g];
   for (const Member& i : group.members)
-    neighbours_->visit_slots_near(i.place, group.farthest + farthest, [&](std::uint32_t begin, std::uint32_t end) {
-      for (std::uint32_t slot = begin; slot < end; ++slot) {
-        if (claims_[slot] == 0 || claims_[slot] == g + 1)
-          continue;
-        std::uint32_t other = claims_[slot] - 1;
-        while (merged_in_[other] != other)
-          other = merged_in_[other];
-        if (other == g || (groups_[other].fresh && other < g)) // that one looks here
-          continue;
-        for (const Member& k : groups_[other].members)
-          if (neighbours_->slot(k.place) == slot && meet(group, i, groups_[other], k))
-            conflicting.emplace_back(g, other);
-      }
-    });
+    neighbours_->visit_slots_near(i.place, i.off + (all_fresh ? i.off : farthest),
+                                  [&](std::uint32_t begin, std::uint32_t end) {
+                                    for (std::uint32_t slot = begin; slot < end; ++slot) {
+                                      if (claims_[slot] == 0 || claims_[slot] == g + 1)
+                                        continue;
+                                      std::uint32_t other = claims_[slot] - 1;
+                                      while (merged_in_[other] != other)
+                                        other = merged_in_[other];
+                                      if (other == g)
+                                        continue;
+                                      for (const Member& k : groups_[other].members)
+                                        if (neighbours_->slot(k.place) == slot && meet(group, i, groups_[other], k))
+                                          conflicting.emplace_back(g, other);
+                                    }
+                                  });
 }
 
-// Whether any two pieces of their paths, other than the two first ones, bring two particles into contact.
+// Whether any two new pieces of their paths bring two particles into contact.
 bool ContactGroups::meet(const Group& a, const Member& i, const Group& b, const Member& k) const {
-  const std::vector<std::uint64_t>& ids = step_->particles->ids;
-  const bool ordered = ids[i.place] < ids[k.place];
-  const auto orbit = [&](const Group& group, const Member& member, std::int32_t piece) {
-    Body body = member.body;
-    body.elements = piece < 0 ? step_->particles->bodies[member.place].elements : group.pieces[piece].elements;
-    return body;
-  };
-  const auto begin_of = [&](const Group& group, std::int32_t piece) {
-    return piece < 0 ? step_->begin : group.pieces[piece].begin;
-  };
+  const bool ordered = step_->particles->ids[i.place] < step_->particles->ids[k.place];
+  Body first = i.body, second = k.body;
   double end_a = HUGE_VAL;
-  for (std::int32_t pa = i.piece;; pa = a.pieces[pa].earlier) {
-    const Body first = orbit(a, i, pa);
+  for (std::int32_t pa = i.piece; pa >= 0; pa = a.pieces[pa].earlier) {
+    first.elements = a.pieces[pa].elements;
     double end_b = HUGE_VAL;
-    for (std::int32_t pb = k.piece;; pb = b.pieces[pb].earlier) {
-      const double begin = std::max(begin_of(a, pa), begin_of(b, pb)), end = std::min(end_a, end_b);
-      if ((pa >= 0 || pb >= 0) && begin <= end) {
-        const Body second = orbit(b, k, pb);
-        bool contact = false;
+    for (std::int32_t pb = k.piece; pb >= 0; pb = b.pieces[pb].earlier) {
+      second.elements = b.pieces[pb].elements;
+      const double begin = std::max(a.pieces[pa].begin, b.pieces[pb].begin), end = std::min(end_a, end_b);
+      bool contact = false;
+      if (begin <= end)
         neighbours_->visit_nearest(first, second, begin, [&](const Image& image) {
           const Vec3 shift = step_->box.displacement(ordered ? image : -image, step_->offset);
           const Query query{ordered ? i.place : k.place, ordered ? k.place : i.place, shift.x(), shift.y(), begin};
           const FinderResult result = finder_->find_between(query, ordered ? first : second, ordered ? second : first);
-          contact |= (result.contact() && result.time <= end) || result.exit == FinderExit::not_a_number;
+          contact = (result.contact() && result.time <= end) || result.exit == FinderExit::not_a_number;
         });
-        if (contact)
-          return true;
-      }
-      if (pb < 0)
-        break;
+      if (contact)
+        return true;
       end_b = b.pieces[pb].begin;
     }
-    if (pa < 0)
-      break;
     end_a = a.pieces[pa].begin;
   }
   return false;
@@ -333,6 +322,7 @@ void ContactGroups::merge(const Pairs& conflicting) {
 // A contact made at its maker's own time may have a smaller key; it comes right after its maker all the same.
 std::vector<const Contact*> ContactGroups::contacts() const {
   struct Ranked {
+    double time;
     const Event* rank;
     const Contact* contact;
   };
@@ -342,10 +332,14 @@ std::vector<const Contact*> ContactGroups::contacts() const {
     for (const Contact& contact : groups_[g].contacts) {
       if (!largest || *largest < contact.event)
         largest = &contact.event;
-      ranked.push_back({largest, &contact});
+      ranked.push_back({largest->time, largest, &contact});
     }
   }
-  std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) { return *a.rank < *b.rank; });
+  std::sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) {
+    if (a.time != b.time)
+      return a.time < b.time;
+    return a.rank == b.rank ? a.contact < b.contact : *a.rank < *b.rank; // contacts of a group stand in their order
+  });
   std::vector<const Contact*> all;
   for (const Ranked& r : ranked)
     all.push_back(r.contact);

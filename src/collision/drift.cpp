@@ -113,9 +113,9 @@ bool DriftPhase::in_groups(const std::vector<Event>& first, CollisionTally& tall
   }
   groups_.visit_members([&](const ContactGroups::Member& member) {
     particles_->bodies[member.place].elements = member.body.elements;
-    neighbours_.changed(member.place);
     touched_.push_back(member.place);
   });
+  neighbours_.changed(touched_);
   return true;
 }
 

@@ -36,7 +36,7 @@ template<class T> std::size_t bytes_of(const std::vector<T>& values) {
 } // namespace
 
 struct Mirror::Measured {
-  double eccentricities = 0.0, radii = 0.0;
+  double eccentricities = 0.0, radii = 0.0, least_radius = HUGE_VAL;
   std::array<std::uint64_t, most_levels> counts{};
   std::array<double, most_levels> reach_x{}, reach_y{};
   std::size_t broken = ~std::size_t{0};
@@ -89,32 +89,22 @@ void Mirror::build(const Particles& particles, const ShearingBox& box, double of
   per_metre_y_ = full_turn / box.size_y;
   frame_ = {static_cast<float>(box.size_x / full_turn), static_cast<float>(box.size_y / full_turn),
             static_cast<float>(box.shear), fraction(offset_, per_metre_y_)};
-  measure(particles);
+  take_lines(particles);
   lay_out_cells();
   if (threads() > 1 && !in_order)
-    sort<true>(particles.bodies);
+    sort<true>();
   else
-    sort<false>(particles.bodies);
+    sort<false>();
 }
 
-// Levels, how far each reaches, and means.
-void Mirror::measure(const Particles& particles) {
+// All lines, levels and how far each reaches, and means.
+void Mirror::take_lines(const Particles& particles) {
   const std::vector<Body>& bodies = particles.bodies;
-  const std::size_t blocks = (bodies.size() + block_size - 1) / block_size;
-  std::vector<double> least(blocks);
+  least_radius_ = next_least_radius_;
+  unsorted_.resize(bodies.size());
+  std::vector<Measured> measured((bodies.size() + block_size - 1) / block_size);
   parallel_for(
-      blocks,
-      [&](std::size_t b) {
-        least[b] = HUGE_VAL;
-        for (std::size_t k = b * block_size; k < std::min(bodies.size(), (b + 1) * block_size); ++k)
-          least[b] = std::min(least[b], bodies[k].radius);
-      },
-      1);
-  least_radius_ = blocks ? *std::min_element(least.begin(), least.end()) : 1.0;
-
-  std::vector<Measured> measured(blocks);
-  parallel_for(
-      blocks,
+      measured.size(),
       [&](std::size_t b) {
         Measured& m = measured[b];
         for (std::size_t k = b * block_size; k < std::min(bodies.size(), (b + 1) * block_size); ++k) {
@@ -123,13 +113,14 @@ void Mirror::measure(const Particles& particles) {
             m.broken = std::min(m.broken, k);
             continue;
           }
-          const Line line = line_of(bodies[k], to_middle_);
+          const Line line = unsorted_[k] = line_of(bodies[k], to_middle_);
           const int level = level_of(line);
           ++m.counts[level];
           m.reach_x[level] = std::max(m.reach_x[level], reach_x(line));
           m.reach_y[level] = std::max(m.reach_y[level], reach_y(line));
           m.eccentricities += el.eccentricity();
           m.radii += bodies[k].radius;
+          m.least_radius = std::min(m.least_radius, bodies[k].radius);
         }
       },
       1);
@@ -138,6 +129,7 @@ void Mirror::measure(const Particles& particles) {
     all.broken = std::min(all.broken, m.broken);
     all.eccentricities += m.eccentricities;
     all.radii += m.radii;
+    all.least_radius = std::min(all.least_radius, m.least_radius);
     for (int l = 0; l < most_levels; ++l) {
       all.counts[l] += m.counts[l];
       all.reach_x[l] = std::max(all.reach_x[l], m.reach_x[l]);
@@ -148,6 +140,7 @@ void Mirror::measure(const Particles& particles) {
     throw InvariantError(fmt::format("particle {} has elements that are not finite", particles.ids[all.broken]));
   const double count = static_cast<double>(bodies.size()) + 1e-9;
   means_ = {all.eccentricities / count, all.radii / count};
+  next_least_radius_ = bodies.empty() ? 1.0 : all.least_radius;
   levels_.clear();
   for (int l = 0; l < most_levels; ++l) {
     level_index_[l] = static_cast<int>(levels_.size());
@@ -193,8 +186,8 @@ bool Mirror::one_image(const Line& line) const {
 
 // A counting sort. While it runs, starts_[c + 1] is where the next particle of cell c goes; in the end, where cell
 // c + 1 begins.
-template<bool shared> void Mirror::sort(const std::vector<Body>& bodies) {
-  const std::size_t count = bodies.size(), blocks = (count + block_size - 1) / block_size;
+template<bool shared> void Mirror::sort() {
+  const std::size_t count = unsorted_.size(), blocks = (count + block_size - 1) / block_size;
   cells_.resize(count);
   slots_.resize(count);
   places_.resize(count);
@@ -220,14 +213,14 @@ template<bool shared> void Mirror::sort(const std::vector<Body>& bodies) {
         block(b);
   };
   for_all([&](std::size_t k) {
-    const Line line = line_of(bodies[k], to_middle_);
+    const Line& line = unsorted_[k];
     cells_[k] = static_cast<std::uint32_t>(cell_of(line, levels_[level_index_[level_of(line)]]));
     next(cells_[k] + 2);
   });
   for (std::size_t c = 2; c < starts_.size(); ++c)
     starts_[c] += starts_[c - 1];
   for_all([&](std::size_t k) {
-    const Line line = line_of(bodies[k], to_middle_);
+    const Line& line = unsorted_[k];
     const std::uint32_t slot = next(cells_[k] + 1);
     slots_[k] = slot;
     places_[slot] = static_cast<std::uint32_t>(k);
@@ -241,7 +234,7 @@ template<bool shared> void Mirror::sort(const std::vector<Body>& bodies) {
   }
 }
 
-void Mirror::replace(std::size_t place, const Line& line) {
+Mirror::Outgrown Mirror::replace(std::size_t place, const Line& line) {
   const std::size_t slot = slots_[place], cell = cells_[place];
   x_[slot] = line.x, y_[slot] = line.y, z_[slot] = line.z;
   u_[slot] = line.u, v_[slot] = line.v, w_[slot] = line.w;
@@ -249,8 +242,6 @@ void Mirror::replace(std::size_t place, const Line& line) {
   auto level = levels_.begin();
   while (slot >= level->end)
     ++level;
-  level->reach_x = std::max(level->reach_x, reach_x(line));
-  level->reach_y = std::max(level->reach_y, reach_y(line));
   // how far outside of its cell; the image that stands nearest to it
   const auto from_middle = [](std::int32_t value, std::size_t part, std::int64_t parts) {
     const double size = full_turn / static_cast<double>(parts);
@@ -263,8 +254,16 @@ void Mirror::replace(std::size_t place, const Line& line) {
   const auto outside = [](double off, std::int64_t parts) {
     return std::max(0.0, std::fabs(std::remainder(off, full_turn)) - 0.5 * full_turn / static_cast<double>(parts));
   };
-  stray_x_ = std::max(stray_x_, outside(off_x, level->columns) / per_metre_x_);
-  stray_y_ = std::max(stray_y_, outside(off_y, level->rows) / per_metre_y_);
+  return {static_cast<std::size_t>(level - levels_.begin()), reach_x(line), reach_y(line),
+          outside(off_x, level->columns) / per_metre_x_, outside(off_y, level->rows) / per_metre_y_};
+}
+
+void Mirror::grow(const Outgrown& outgrown) {
+  Level& level = levels_[outgrown.level];
+  level.reach_x = std::max(level.reach_x, outgrown.reach_x);
+  level.reach_y = std::max(level.reach_y, outgrown.reach_y);
+  stray_x_ = std::max(stray_x_, outgrown.stray_x);
+  stray_y_ = std::max(stray_y_, outgrown.stray_y);
 }
 
 std::size_t Mirror::near(const Line& line, const LineSpan& span, std::vector<std::uint32_t>& buffer) const {
@@ -286,8 +285,8 @@ double Mirror::stray() const {
 }
 
 std::size_t Mirror::bytes() const {
-  return bytes_of(starts_) + bytes_of(cells_) + bytes_of(slots_) + bytes_of(places_) + bytes_of(x_) + bytes_of(y_) +
-         bytes_of(z_) + bytes_of(u_) + bytes_of(v_) + bytes_of(w_) + bytes_of(size_);
+  return bytes_of(starts_) + bytes_of(cells_) + bytes_of(slots_) + bytes_of(places_) + bytes_of(unsorted_) +
+         bytes_of(x_) + bytes_of(y_) + bytes_of(z_) + bytes_of(u_) + bytes_of(v_) + bytes_of(w_) + bytes_of(size_);
 }
 
 } // namespace keeler

@@ -71,19 +71,18 @@ void Neighbours::open() {
   ++windows;
   changed_.assign(particles_->size(), 0);
   added_.clear();
-  lists_.clear();
-  if (mirror_.one_image())
-    list_pairs();
+  list_pairs();
 }
 
 void Neighbours::list_pairs() {
-  lists_.resize((mirror_.size() + block_size - 1) / block_size);
+  lists_.resize(mirror_.one_image() ? (mirror_.size() + block_size - 1) / block_size : 0);
   std::vector<std::uint64_t> tests(lists_.size());
   const double half = 0.5 * length_ * step_;
   parallel_for(
       lists_.size(),
       [&](std::size_t b) {
         std::vector<std::uint32_t> buffer;
+        lists_[b].clear();
         const std::size_t begin = b * block_size, end = std::min(mirror_.size(), begin + block_size);
         tests[b] = mirror_.sweep_pairs(begin, end, span(-half, half), buffer, [&](std::size_t i, std::size_t j) {
           lists_[b].push_back(entry(mirror_.place(i), mirror_.place(j)));
@@ -104,10 +103,22 @@ double Neighbours::departure(const Elements& change) const {
   return s.position.cwiseAbs().maxCoeff() + half * s.velocity.cwiseAbs().maxCoeff() + 0.5 * acceleration * half * half;
 }
 
+Mirror::Outgrown Neighbours::renew(std::size_t i) {
+  changed_[i] = static_cast<std::uint8_t>(at_step_ + 1);
+  return mirror_.replace(i, mirror_.line_of(particles_->bodies[i], to_middle_));
+}
+
 void Neighbours::changed(std::size_t i) {
   ++hits_;
-  changed_[i] = static_cast<std::uint8_t>(at_step_ + 1);
-  mirror_.replace(i, mirror_.line_of(particles_->bodies[i], to_middle_));
+  mirror_.grow(renew(i));
+}
+
+void Neighbours::changed(std::span<const std::uint32_t> particles) {
+  hits_ += particles.size();
+  std::vector<Mirror::Outgrown> outgrown(particles.size());
+  parallel_for(particles.size(), [&](std::size_t k) { outgrown[k] = renew(particles[k]); });
+  for (const Mirror::Outgrown& each : outgrown)
+    mirror_.grow(each);
 }
 
 void Neighbours::settle(std::span<const std::uint32_t> particles) {

@@ -2,10 +2,11 @@
 //
 // The first contacts of a step fall into groups that share no particle. Each group is carried out on its own, as if
 // nobody else were hit: a pure function of the orbits at the step's start and of the group's first contacts, which
-// keeps the new orbits to itself. That is speculation. Then every two particles that were hit in different groups are
-// searched against each other, all pieces of their paths that overlap in time, exactly as the sequential order would
-// have: a contact before both pieces end is a conflict. So is a particle of another group's first contacts that a
-// group has hit. Groups in conflict become one, which is carried out anew from the step's start, until none is left.
+// keeps the new orbits to itself. That is speculation. A particle of another group that a group has hit is a conflict.
+// Beyond that, every two particles that were hit in different groups are searched against each other, all new pieces of
+// their paths that overlap in time, exactly as the sequential order would have: a contact before both pieces end is a
+// conflict, too. (A new piece against the path of a particle before it was hit has been searched by the group itself.)
+// Groups in conflict become one, which is carried out anew from the step's start, until none is left.
 // What remains is then the history that the sequential order gives: by induction over its events, no pending contact is
 // missing and none is made up. Groups may merge without need, never be apart that touch, so ties count as conflicts.
 //
@@ -30,6 +31,7 @@ public:
     Body body;               ///< with its last orbit
     double last_change = 0.0;
     std::int32_t piece = -1; ///< its newest; −1: that of the step's start
+    double off = 0.0;        ///< how far it got off the path it had at the step's start, m
   };
 
   /// Carries out everything that follows from the first contacts of a step. The store is only read. Returns false when
@@ -64,7 +66,7 @@ private:
     std::vector<Member> members;
     std::vector<Piece> pieces;
     std::vector<Contact> contacts;
-    double farthest = 0.0; // that a member went off the path it had, m
+    double farthest = 0.0; // that a member got off its path, m
     bool fresh = false, too_large = false;
     std::string failure;
   };
@@ -76,7 +78,7 @@ private:
   void run(Group& group) const;
   bool run_fresh();
   void claim(Pairs& conflicting);
-  void look_around(std::uint32_t group, double farthest, Pairs& conflicting) const;
+  void look_around(std::uint32_t group, double farthest, bool all_fresh, Pairs& conflicting) const;
   bool meet(const Group& a, const Member& i, const Group& b, const Member& k) const;
   void merge(const Pairs& conflicting);
   std::uint32_t root(std::uint32_t group);

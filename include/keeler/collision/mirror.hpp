@@ -53,8 +53,15 @@ public:
   /// shear offset at the middle.
   Line line_of(const Body& body, const Rotation& rotation) const;
 
-  /// A particle has a new line.
-  void replace(std::size_t place, const Line& line);
+  /// How far a new line reaches beyond what the mirror was laid out for.
+  struct Outgrown {
+    std::size_t level = 0;
+    double reach_x = 0.0, reach_y = 0.0, stray_x = 0.0, stray_y = 0.0; // m
+  };
+  /// A particle has a new line. Several threads may replace those of different particles; what that comes to must be
+  /// passed to grow() before anything is looked up.
+  Outgrown replace(std::size_t place, const Line& line);
+  void grow(const Outgrown& outgrown);
 
   /// How far lines may stand from their cells, in reaches of the finest level.
   double stray() const;
@@ -91,9 +98,9 @@ private:
   };
   struct Measured;
 
-  void measure(const Particles& particles);
+  void take_lines(const Particles& particles);
   void lay_out_cells();
-  template<bool shared> void sort(const std::vector<Body>& bodies);
+  template<bool shared> void sort();
   LineArrays lines() const { return {x_.data(), y_.data(), z_.data(), u_.data(), v_.data(), w_.data(), size_.data()}; }
   int level_of(const Line& line) const;
   std::size_t cell_of(const Line& line, const Level& level) const;
@@ -109,8 +116,8 @@ private:
   Frequencies frequencies_;
   MirrorWindow window_;
   Rotation to_middle_;
-  double offset_ = 0.0; // at the middle
-  double least_radius_ = 0.0;
+  double offset_ = 0.0;                                 // at the middle
+  double least_radius_ = 1.0, next_least_radius_ = 1.0; // of the last build's particles: where levels begin, no more
   bool one_image_ = false;
   MirrorMeans means_;
   LineFrame frame_{};
@@ -118,6 +125,7 @@ private:
   double stray_x_ = 0.0, stray_y_ = 0.0;         // m
   LineSweep sweep_ = line_sweep(choose_instruction_set());
 
+  std::vector<Line> unsorted_;        // by place, while building
   std::vector<Level> levels_;         // the finest first; without empty ones
   int level_index_[most_levels] = {}; // of an octave
   std::vector<std::uint32_t> starts_; // first slot of each cell

@@ -67,8 +67,10 @@ public:
   std::uint32_t slot(std::size_t i) const { return mirror_.slot(i); }
   std::size_t size() const { return mirror_.size(); }
 
-  /// Particle i has been hit and has a new orbit. May be called several times a step.
+  /// A particle has been hit and has a new orbit. May be called several times a step.
   void changed(std::size_t i);
+  /// The same for many at once, each of them named once.
+  void changed(std::span<const std::uint32_t> particles);
   /// The step's collisions are over: what these particles may meet in the rest of the window. Each particle that was
   /// changed once.
   void settle(std::span<const std::uint32_t> particles);
@@ -87,6 +89,7 @@ private:
     std::uint32_t low, high;
   };
 
+  Mirror::Outgrown renew(std::size_t i);
   void open();
   void choose_length();
   double skin_for(int length) const;
