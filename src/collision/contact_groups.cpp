@@ -118,6 +118,8 @@ struct ContactGroups::Orbits {
     return all.finder_->find_between(query, body(query.low), body(query.high));
   }
 
+  void prefetch(std::size_t, int) const {} // a group's contacts are too few
+
   void happened(const Contact& contact) { group.contacts.push_back(contact); }
 };
 
@@ -217,15 +219,28 @@ void ContactGroups::run(Group& group) const {
   }
 }
 
+void ContactGroups::prefetch(const Group& group, int stage) const {
+  for (const Event& event : group.first)
+    for (const std::uint32_t place : {event.low, event.high}) {
+      if (stage == 0)
+        __builtin_prefetch(&step_->particles->bodies[place]);
+      neighbours_->prefetch(place, stage);
+    }
+}
+
 // Returns false when a group has become too large.
 bool ContactGroups::run_fresh() {
+  constexpr std::size_t apart = 3;
   parallel_for(
       used_,
       [&](std::size_t g) {
+        for (int stage = 0; stage < 3; ++stage)
+          if (const std::size_t soon = g + (3 - stage) * apart; soon < used_)
+            prefetch(groups_[soon], stage);
         if (groups_[g].fresh)
           run(groups_[g]);
       },
-      16);
+      32);
   for (std::size_t g = 0; g < used_; ++g)
     if (groups_[g].fresh && (groups_[g].too_large || !groups_[g].failure.empty()))
       return false; // the sequential loop meets the failure too, if it is one, in its order

@@ -62,6 +62,11 @@ struct DriftPhase::InPlace {
       drift.neighbours_.visit_partners(i, body(i), last_change(i), buffer, visit);
   }
 
+  void prefetch(std::size_t i, int stage) const {
+    if (!drift.through_grid_)
+      drift.neighbours_.prefetch(i, stage);
+  }
+
   FinderResult find(const Query& query) const {
     const FinderResult result = drift.finder_->find(query);
     if (drift.watch)

@@ -13,6 +13,35 @@ typedef float Floats __attribute__((vector_size(32)));
 typedef std::int32_t Integers __attribute__((vector_size(32)));
 typedef std::uint32_t Unsigned __attribute__((vector_size(32)));
 
+struct Fields {
+  Integers x, y;
+  Floats z, u, v, w, size;
+};
+
+// Eight lines of eight numbers, transposed.
+inline Fields load(const Line* from) {
+  __m256 r[8], t[8];
+  for (int k = 0; k < 8; ++k)
+    r[k] = _mm256_load_ps(reinterpret_cast<const float*>(from + k));
+  for (int k = 0; k < 8; k += 2) {
+    t[k] = _mm256_unpacklo_ps(r[k], r[k + 1]);
+    t[k + 1] = _mm256_unpackhi_ps(r[k], r[k + 1]);
+  }
+  for (int k = 0; k < 8; k += 4) {
+    r[k] = _mm256_shuffle_ps(t[k], t[k + 2], 0x44);
+    r[k + 1] = _mm256_shuffle_ps(t[k], t[k + 2], 0xee);
+    r[k + 2] = _mm256_shuffle_ps(t[k + 1], t[k + 3], 0x44);
+    r[k + 3] = _mm256_shuffle_ps(t[k + 1], t[k + 3], 0xee);
+  }
+  return {reinterpret_cast<Integers>(_mm256_permute2f128_ps(r[0], r[4], 0x20)),
+          reinterpret_cast<Integers>(_mm256_permute2f128_ps(r[1], r[5], 0x20)),
+          _mm256_permute2f128_ps(r[2], r[6], 0x20),
+          _mm256_permute2f128_ps(r[3], r[7], 0x20),
+          _mm256_permute2f128_ps(r[0], r[4], 0x31),
+          _mm256_permute2f128_ps(r[1], r[5], 0x31),
+          _mm256_permute2f128_ps(r[2], r[6], 0x31)};
+}
+
 inline unsigned nonzero(const Integers& mask) {
   return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(mask)));
 }

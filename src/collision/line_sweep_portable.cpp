@@ -11,6 +11,21 @@ typedef float Floats __attribute__((vector_size(16)));
 typedef std::int32_t Integers __attribute__((vector_size(16)));
 typedef std::uint32_t Unsigned __attribute__((vector_size(16)));
 
+struct Fields {
+  Integers x, y;
+  Floats z, u, v, w, size;
+};
+
+inline Fields load(const Line* from) {
+  Fields f;
+  for (std::size_t k = 0; k < lanes; ++k) {
+    f.x[k] = from[k].x, f.y[k] = from[k].y, f.z[k] = from[k].z;
+    f.u[k] = from[k].u, f.v[k] = from[k].v, f.w[k] = from[k].w;
+    f.size[k] = from[k].size;
+  }
+  return f;
+}
+
 inline unsigned nonzero(const Integers& mask) {
   unsigned bits = 0;
   for (std::size_t k = 0; k < lanes; ++k)

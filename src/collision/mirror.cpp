@@ -61,7 +61,8 @@ Line Mirror::line_of(const Body& body, const Rotation& rotation) const {
           static_cast<float>(s.velocity.x()),
           static_cast<float>(beyond_shear),
           static_cast<float>(s.velocity.z()),
-          static_cast<float>(size + single * (size + path + std::fabs(s.position.z())) + grain)};
+          static_cast<float>(size + single * (size + path + std::fabs(s.position.z())) + grain),
+          0};
 }
 
 int Mirror::level_of(const Line& line) const {
@@ -113,7 +114,9 @@ void Mirror::take_lines(const Particles& particles) {
             m.broken = std::min(m.broken, k);
             continue;
           }
-          const Line line = unsorted_[k] = line_of(bodies[k], to_middle_);
+          Line& line = unsorted_[k];
+          line = line_of(bodies[k], to_middle_);
+          line.place = static_cast<std::uint32_t>(k);
           const int level = level_of(line);
           ++m.counts[level];
           m.reach_x[level] = std::max(m.reach_x[level], reach_x(line));
@@ -190,11 +193,7 @@ template<bool shared> void Mirror::sort() {
   const std::size_t count = unsorted_.size(), blocks = (count + block_size - 1) / block_size;
   cells_.resize(count);
   slots_.resize(count);
-  places_.resize(count);
-  for (auto* values : {&x_, &y_})
-    values->resize(count + LineArrays::padding);
-  for (auto* values : {&z_, &u_, &v_, &w_, &size_})
-    values->resize(count + LineArrays::padding);
+  lines_.resize(count + sweep_padding);
   const auto next = [&](std::size_t entry) {
     if constexpr (shared)
       return std::atomic_ref(starts_[entry]).fetch_add(1, std::memory_order_relaxed);
@@ -220,13 +219,9 @@ template<bool shared> void Mirror::sort() {
   for (std::size_t c = 2; c < starts_.size(); ++c)
     starts_[c] += starts_[c - 1];
   for_all([&](std::size_t k) {
-    const Line& line = unsorted_[k];
     const std::uint32_t slot = next(cells_[k] + 1);
     slots_[k] = slot;
-    places_[slot] = static_cast<std::uint32_t>(k);
-    x_[slot] = line.x, y_[slot] = line.y, z_[slot] = line.z;
-    u_[slot] = line.u, v_[slot] = line.v, w_[slot] = line.w;
-    size_[slot] = line.size;
+    lines_[slot] = unsorted_[k];
   });
   for (Level& level : levels_) {
     level.begin = starts_[level.first_cell];
@@ -236,9 +231,8 @@ template<bool shared> void Mirror::sort() {
 
 Mirror::Outgrown Mirror::replace(std::size_t place, const Line& line) {
   const std::size_t slot = slots_[place], cell = cells_[place];
-  x_[slot] = line.x, y_[slot] = line.y, z_[slot] = line.z;
-  u_[slot] = line.u, v_[slot] = line.v, w_[slot] = line.w;
-  size_[slot] = line.size;
+  lines_[slot] = line;
+  lines_[slot].place = static_cast<std::uint32_t>(place);
   auto level = levels_.begin();
   while (slot >= level->end)
     ++level;
@@ -268,15 +262,35 @@ void Mirror::grow(const Outgrown& outgrown) {
 
 std::size_t Mirror::near(const Line& line, const LineSpan& span, std::vector<std::uint32_t>& buffer) const {
   std::size_t count = 0;
-  const LineArrays arrays = lines();
   for (const Level& level : levels_)
     ranges_in(level, line, 0, [&](std::uint32_t begin, std::uint32_t end) {
-      const std::size_t room = count + (end - begin) + LineArrays::padding;
+      const std::size_t room = count + (end - begin) + sweep_padding;
       if (buffer.size() < room)
         buffer.resize(2 * room);
-      count += sweep_(line, arrays, frame_, span, begin, end, buffer.data() + count);
+      count += sweep_(line, lines_.data(), frame_, span, begin, end, buffer.data() + count);
     });
   return count;
+}
+
+void Mirror::prefetch(std::size_t place, int stage) const {
+  if (stage == 0) {
+    __builtin_prefetch(&slots_[place]);
+    __builtin_prefetch(&cells_[place]);
+    return;
+  }
+  const std::size_t slot = slots_[place], cell = cells_[place];
+  auto level = levels_.begin();
+  while (slot >= level->end)
+    ++level;
+  const auto rows = static_cast<std::size_t>(level->rows);
+  for (const std::size_t column : {cell - rows, cell, cell + rows}) { // the first may wrap around
+    const std::size_t near = std::min(column, starts_.size() - 1);
+    if (stage == 1)
+      __builtin_prefetch(&starts_[near]);
+    else
+      for (std::size_t k = 0; k < 4; k += 2)
+        __builtin_prefetch(&lines_[std::min<std::size_t>(starts_[near] + k, lines_.size() - 1)]);
+  }
 }
 
 double Mirror::stray() const {
@@ -285,8 +299,7 @@ double Mirror::stray() const {
 }
 
 std::size_t Mirror::bytes() const {
-  return bytes_of(starts_) + bytes_of(cells_) + bytes_of(slots_) + bytes_of(places_) + bytes_of(unsorted_) +
-         bytes_of(x_) + bytes_of(y_) + bytes_of(z_) + bytes_of(u_) + bytes_of(v_) + bytes_of(w_) + bytes_of(size_);
+  return bytes_of(starts_) + bytes_of(cells_) + bytes_of(slots_) + bytes_of(unsorted_) + bytes_of(lines_);
 }
 
 } // namespace keeler

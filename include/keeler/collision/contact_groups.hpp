@@ -76,6 +76,7 @@ private:
 
   void form(const std::vector<Event>& first);
   void run(Group& group) const;
+  void prefetch(const Group& group, int stage) const;
   bool run_fresh();
   void claim(Pairs& conflicting);
   void look_around(std::uint32_t group, double farthest, bool all_fresh, Pairs& conflicting) const;

@@ -7,6 +7,7 @@
 //   void change(place, elements, time)                                     a new orbit from that time on
 //   void visit_partners(place, visit)     visit(place, image) for all that its new orbit may bring into contact
 //   FinderResult find(query)
+//   void prefetch(place, stage)           a contact is to come: stages 0, 1 and 2, some contacts apart
 //   void happened(const Contact&)
 #pragma once
 
@@ -75,10 +76,16 @@ private:
   static constexpr std::uint32_t most_collisions = 100000; // of one particle in one step: an event storm, not physics
 
   void prefetch() const {
-    if (const Event* soon = events_.ahead(8)) {
-      __builtin_prefetch(&step_.particles->bodies[soon->low]);
-      __builtin_prefetch(&step_.particles->bodies[soon->high]);
-    }
+    constexpr std::size_t apart = 6;
+    for (int stage = 0; stage < 3; ++stage)
+      if (const Event* soon = events_.ahead((3 - stage) * apart)) {
+        if (stage == 0) {
+          __builtin_prefetch(&step_.particles->bodies[soon->low]);
+          __builtin_prefetch(&step_.particles->bodies[soon->high]);
+        }
+        orbits_.prefetch(soon->low, stage);
+        orbits_.prefetch(soon->high, stage);
+      }
   }
 
   // The impulse along the line of centres turns the normal approach speed into the rebound's.

@@ -14,16 +14,11 @@
 
 namespace keeler {
 
-struct Line {
-  std::int32_t x, y;
-  float z, u, v, w, size;
-};
-
-/// Lines as arrays, readable for `padding` entries beyond the last.
-struct LineArrays {
-  static constexpr std::size_t padding = 16;
-  const std::int32_t *x, *y;
-  const float *z, *u, *v, *w, *size;
+/// A particle's line; half a line of cache.
+struct alignas(32) Line {
+  std::int32_t x = 0, y = 0;
+  float z = 0.0f, u = 0.0f, v = 0.0f, w = 0.0f, size = 0.0f;
+  std::uint32_t place = 0; ///< in the store
 };
 
 /// What turns fractions of the box into metres, and the shear: S, and the offset of images across the x edge as a
@@ -40,9 +35,10 @@ struct LineSpan {
 };
 
 /// Writes the indices in [begin, end) of lines that may touch the given one; returns how many. `found` must have room
-/// for all of them and 16 more.
-using LineSweep = std::size_t (*)(const Line& line, const LineArrays& lines, const LineFrame& frame,
-                                  const LineSpan& span, std::size_t begin, std::size_t end, std::uint32_t* found);
+/// for all of them, and 16 lines beyond the last must be readable.
+using LineSweep = std::size_t (*)(const Line& line, const Line* lines, const LineFrame& frame, const LineSpan& span,
+                                  std::size_t begin, std::size_t end, std::uint32_t* found);
+inline constexpr std::size_t sweep_padding = 16;
 
 LineSweep line_sweep(InstructionSet set);
 

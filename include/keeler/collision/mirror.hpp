@@ -45,8 +45,8 @@ public:
   bool one_image(const Line& line) const;
 
   const MirrorMeans& means() const { return means_; }
-  std::size_t size() const { return places_.size(); }
-  std::uint32_t place(std::size_t slot) const { return places_[slot]; }
+  std::size_t size() const { return cells_.size(); }
+  std::uint32_t place(std::size_t slot) const { return lines_[slot].place; }
   std::uint32_t slot(std::size_t place) const { return slots_[place]; }
 
   /// The line of a body whose elements' epoch stands `rotation.after` before the middle of the window; `offset` is the
@@ -78,11 +78,14 @@ public:
   /// Slots of all that can come into contact with a place in the window when the two go no farther than `off` (m) off
   /// their lines: range(begin, end).
   template<class Range> void visit_slots_near(std::size_t place, double off, const Range& range) const {
-    Line line = line_in(slots_[place]);
+    Line line = lines_[slots_[place]];
     line.size += static_cast<float>(1.001 * off);
     for (const Level& level : levels_)
       ranges_in(level, line, 0, range);
   }
+
+  /// Three calls for a place, some time apart, bring what looking around it needs into the cache.
+  void prefetch(std::size_t place, int stage) const;
 
   std::size_t bytes() const;
 
@@ -101,12 +104,8 @@ private:
   void take_lines(const Particles& particles);
   void lay_out_cells();
   template<bool shared> void sort();
-  LineArrays lines() const { return {x_.data(), y_.data(), z_.data(), u_.data(), v_.data(), w_.data(), size_.data()}; }
   int level_of(const Line& line) const;
   std::size_t cell_of(const Line& line, const Level& level) const;
-  Line line_in(std::size_t slot) const {
-    return {x_[slot], y_[slot], z_[slot], u_[slot], v_[slot], w_[slot], size_[slot]};
-  }
   double reach_x(const Line& line) const { return line.size + window_.half_length * std::fabs(line.u); }
   double reach_y(const Line& line) const { return line.size + window_.half_length * std::fabs(line.v); }
   template<class Range>
@@ -131,9 +130,7 @@ private:
   std::vector<std::uint32_t> starts_; // first slot of each cell
   std::vector<std::uint32_t> cells_;  // of each place
   std::vector<std::uint32_t> slots_;  // of each place
-  std::vector<std::uint32_t> places_; // of each slot
-  std::vector<std::int32_t> x_, y_;   // lines, by slot
-  std::vector<float> z_, u_, v_, w_, size_;
+  std::vector<Line> lines_;           // by slot
 };
 
 // Slots from `after` on that lie in the level's cells within reach of the line.
@@ -187,17 +184,16 @@ template<class Found>
 std::uint64_t Mirror::sweep_pairs(std::size_t begin, std::size_t end, const LineSpan& span,
                                   std::vector<std::uint32_t>& buffer, const Found& found) const {
   std::uint64_t tested = 0;
-  const LineArrays arrays = lines();
   auto own = levels_.begin();
   for (std::size_t slot = begin; slot < end; ++slot) {
     while (slot >= own->end)
       ++own;
-    const Line line = line_in(slot);
+    const Line& line = lines_[slot];
     const auto range = [&](std::uint32_t from, std::uint32_t to) {
       tested += to - from;
-      if (buffer.size() < to - from + LineArrays::padding)
-        buffer.resize(to - from + LineArrays::padding);
-      const std::size_t count = sweep_(line, arrays, frame_, span, from, to, buffer.data());
+      if (buffer.size() < to - from + sweep_padding)
+        buffer.resize(to - from + sweep_padding);
+      const std::size_t count = sweep_(line, lines_.data(), frame_, span, from, to, buffer.data());
       for (std::size_t k = 0; k < count; ++k)
         found(slot, std::size_t{buffer[k]});
     };

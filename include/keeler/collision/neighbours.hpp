@@ -65,6 +65,7 @@ public:
     mirror_.visit_slots_near(i, off, range);
   }
   std::uint32_t slot(std::size_t i) const { return mirror_.slot(i); }
+  void prefetch(std::size_t i, int stage) const { mirror_.prefetch(i, stage); }
   std::size_t size() const { return mirror_.size(); }
 
   /// A particle has been hit and has a new orbit. May be called several times a step.
