@@ -92,23 +92,24 @@ struct ContactGroups::Orbits {
     Member& member = group.members[m];
     group.pieces.push_back({time, elements, member.piece});
     member.piece = static_cast<std::int32_t>(group.pieces.size()) - 1;
+    member.off += all.neighbours_->departure(elements - member.body.elements);
     member.body.elements = elements;
     member.last_change = time;
     ++member.stamp;
-    member.off = std::max(member.off, all.neighbours_->departure(elements - all.step_->particles->bodies[i].elements));
     group.farthest = std::max(group.farthest, member.off);
-    group.too_large |= group.members.size() > most_members || !all.neighbours_->one_image(member.body);
+    group.too_large |= group.members.size() > most_members;
   }
 
   template<class Visit> void visit_partners(std::size_t i, const Visit& visit) {
     if (group.too_large)
       return;
-    const Body own = body(i);
+    const Body& own = body(i);
     const double start = last_change(i);
-    all.neighbours_->visit_partners(i, own, start, scratch.buffer, [&](std::size_t j, const Image& image) {
+    const auto others = [&](std::size_t j, const Image& image) {
       if (scratch.table.find(static_cast<std::uint32_t>(j)) == nobody)
         visit(j, image);
-    });
+    };
+    group.too_large |= !all.neighbours_->visit_partners(i, own, start, scratch.buffer, others);
     for (const Member& other : group.members)
       if (other.place != i)
         all.neighbours_->visit_nearest(own, other.body, start, [&](const Image& image) { visit(other.place, image); });
@@ -230,7 +231,7 @@ void ContactGroups::prefetch(const Group& group, int stage) const {
 
 // Returns false when a group has become too large.
 bool ContactGroups::run_fresh() {
-  constexpr std::size_t apart = 3;
+  constexpr std::size_t apart = 5;
   parallel_for(
       used_,
       [&](std::size_t g) {
@@ -332,6 +333,16 @@ void ContactGroups::merge(const Pairs& conflicting) {
     from.fresh = false;
     ++repairs;
   }
+}
+
+void ContactGroups::write(std::vector<Body>& bodies) const {
+  parallel_for(
+      used_,
+      [&](std::size_t g) {
+        for (const Member& member : groups_[g].members)
+          bodies[member.place].elements = member.body.elements;
+      },
+      64);
 }
 
 // A contact made at its maker's own time may have a smaller key; it comes right after its maker all the same.

@@ -58,8 +58,8 @@ struct DriftPhase::InPlace {
   template<class Visit> void visit_partners(std::size_t i, const Visit& visit) {
     if (drift.through_grid_)
       drift.grid_.visit_partners(i, last_change(i), visit);
-    else
-      drift.neighbours_.visit_partners(i, body(i), last_change(i), buffer, visit);
+    else if (!drift.neighbours_.visit_partners(i, body(i), last_change(i), buffer, visit))
+      drift.neighbours_.visit_everywhere(i, body(i), last_change(i), visit);
   }
 
   void prefetch(std::size_t i, int stage) const {
@@ -116,10 +116,8 @@ bool DriftPhase::in_groups(const std::vector<Event>& first, CollisionTally& tall
     ++costs_.contacts;
     costs_.recontacts += contact->again;
   }
-  groups_.visit_members([&](const ContactGroups::Member& member) {
-    particles_->bodies[member.place].elements = member.body.elements;
-    touched_.push_back(member.place);
-  });
+  groups_.visit_members([&](const ContactGroups::Member& member) { touched_.push_back(member.place); });
+  groups_.write(particles_->bodies);
   neighbours_.changed(touched_);
   return true;
 }

@@ -49,6 +49,9 @@ public:
         visit(member);
   }
 
+  /// Gives all these particles their last orbits.
+  void write(std::vector<Body>& bodies) const;
+
   std::uint64_t conflicts = 0, repairs = 0; ///< so far
   std::size_t bytes() const;
 

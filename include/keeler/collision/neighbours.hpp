@@ -41,10 +41,13 @@ public:
   std::size_t blocks() const { return lists_.size() + added_.size(); }
 
   /// Calls visit(j, image of j) for every other particle that a particle with a new orbit may meet from `start` to the
-  /// end of the step, as the store and the mirror know them.
+  /// end of the step, as the store and the mirror know them. Returns false, having visited nobody, when the orbit is so
+  /// fast that it may meet another one through several images.
   template<class Visit>
-  void visit_partners(std::size_t i, const Body& body, double start, std::vector<std::uint32_t>& buffer,
+  bool visit_partners(std::size_t i, const Body& body, double start, std::vector<std::uint32_t>& buffer,
                       const Visit& visit) const;
+  /// The same for such an orbit, all images of all particles tried.
+  template<class Visit> void visit_everywhere(std::size_t i, const Body& body, double start, const Visit& visit) const;
 
   /// Calls visit(image of b) for the nearest image if it may touch from `start` to the end of the step. For orbits that
   /// have one_image().
@@ -54,9 +57,7 @@ public:
     if (step_test_.may_touch(a, b, shift.x(), shift.y(), start))
       visit(image);
   }
-  bool one_image(const Body& body) const { return mirror_.one_image(mirror_.line_of(body, to_middle_)); }
-
-  /// How far a particle can get off its path in this step when its elements change by this much, m.
+  /// How far a particle can get off its path within a step when a kick changes its elements by this much, m.
   double departure(const Elements& change) const;
 
   /// Slots in which the mirror holds everything that can come into contact with particle i in this step, when the two
@@ -101,7 +102,6 @@ private:
   }
   double since_middle() const { return (at_step_ + 0.5 - 0.5 * length_) * step_; } // of the window, to this epoch
   Image nearest_image(const Body& a, const Body& b) const;
-  template<class Visit> void visit_everywhere(std::size_t i, const Body& body, double start, const Visit& visit) const;
   LineSpan span(double begin, double end) const {
     const double rounding = 1e-6 * length_ * step_;
     return {static_cast<float>(begin - rounding), static_cast<float>(end + rounding)};
@@ -141,13 +141,11 @@ template<class Visit> void Neighbours::visit_block(std::size_t block, const Visi
 }
 
 template<class Visit>
-void Neighbours::visit_partners(std::size_t i, const Body& body, double start, std::vector<std::uint32_t>& buffer,
+bool Neighbours::visit_partners(std::size_t i, const Body& body, double start, std::vector<std::uint32_t>& buffer,
                                 const Visit& visit) const {
   const Line line = mirror_.line_of(body, to_middle_);
-  if (!mirror_.one_image(line)) {
-    visit_everywhere(i, body, start, visit);
-    return;
-  }
+  if (!mirror_.one_image(line))
+    return false;
   const double now = since_middle();
   const std::size_t count = mirror_.near(line, span(now + start, now + 0.5 * step_), buffer);
   for (std::size_t k = 0; k < count; ++k) {
@@ -155,9 +153,9 @@ void Neighbours::visit_partners(std::size_t i, const Body& body, double start, s
     if (j != i)
       visit_nearest(body, particles_->bodies[j], start, [&](const Image& image) { visit(j, image); });
   }
+  return true;
 }
 
-// Every image of every other particle: for one that has become so fast that it may meet several.
 template<class Visit>
 void Neighbours::visit_everywhere(std::size_t i, const Body& body, double start, const Visit& visit) const {
   const auto across = [&](double distance, double size) {
