@@ -92,12 +92,13 @@ struct ContactGroups::Orbits {
     Member& member = group.members[m];
     group.pieces.push_back({time, elements, member.piece});
     member.piece = static_cast<std::int32_t>(group.pieces.size()) - 1;
-    member.off += all.neighbours_->departure(elements - member.body.elements);
+    const Body& at_start = all.step_->particles->bodies[i];
+    member.off = std::max(member.off, all.neighbours_->departure(elements - at_start.elements));
     member.body.elements = elements;
     member.last_change = time;
     ++member.stamp;
     group.farthest = std::max(group.farthest, member.off);
-    group.too_large |= group.members.size() > most_members;
+    group.too_large |= group.members.size() > most_members || group.contacts.size() > most_contacts;
   }
 
   template<class Visit> void visit_partners(std::size_t i, const Visit& visit) {
@@ -130,8 +131,8 @@ bool ContactGroups::carry_out(const StepAtHand& step, const Finder& finder, cons
   finder_ = &finder;
   neighbours_ = &neighbours;
   form(first);
-  for (bool all_fresh = true;; all_fresh = false) {
-    if (!run_fresh())
+  for (int round = 0;; ++round) {
+    if (round == most_rounds || !run_fresh())
       return false;
     Pairs conflicting;
     claim(conflicting);
@@ -144,7 +145,7 @@ bool ContactGroups::carry_out(const StepAtHand& step, const Finder& finder, cons
         [&](std::size_t b) {
           for (std::size_t g = 16 * b; g < std::min(used_, 16 * b + 16); ++g)
             if (groups_[g].fresh)
-              look_around(static_cast<std::uint32_t>(g), farthest, all_fresh, seen[b]);
+              look_around(static_cast<std::uint32_t>(g), farthest, round == 0, seen[b]);
         },
         1);
     for (const Pairs& pairs : seen)
@@ -291,26 +292,27 @@ void ContactGroups::look_around(std::uint32_t g, double farthest, bool all_fresh
 bool ContactGroups::meet(const Group& a, const Member& i, const Group& b, const Member& k) const {
   const bool ordered = step_->particles->ids[i.place] < step_->particles->ids[k.place];
   Body first = i.body, second = k.body;
-  double end_a = HUGE_VAL;
-  for (std::int32_t pa = i.piece; pa >= 0; pa = a.pieces[pa].earlier) {
-    first.elements = a.pieces[pa].elements;
-    double end_b = HUGE_VAL;
-    for (std::int32_t pb = k.piece; pb >= 0; pb = b.pieces[pb].earlier) {
-      second.elements = b.pieces[pb].elements;
-      const double begin = std::max(a.pieces[pa].begin, b.pieces[pb].begin), end = std::min(end_a, end_b);
-      bool contact = false;
-      if (begin <= end)
-        neighbours_->visit_nearest(first, second, begin, [&](const Image& image) {
-          const Vec3 shift = step_->box.displacement(ordered ? image : -image, step_->offset);
-          const Query query{ordered ? i.place : k.place, ordered ? k.place : i.place, shift.x(), shift.y(), begin};
-          const FinderResult result = finder_->find_between(query, ordered ? first : second, ordered ? second : first);
-          contact = (result.contact() && result.time <= end) || result.exit == FinderExit::not_a_number;
-        });
-      if (contact)
-        return true;
-      end_b = b.pieces[pb].begin;
-    }
-    end_a = a.pieces[pa].begin;
+  double end = HUGE_VAL;
+  for (std::int32_t pa = i.piece, pb = k.piece; pa >= 0 && pb >= 0;) { // from the last pieces back
+    const Piece &one = a.pieces[pa], &other = b.pieces[pb];
+    if (one.begin == other.begin)
+      return true; // a tie: let the group's order settle it
+    first.elements = one.elements, second.elements = other.elements;
+    const double begin = std::max(one.begin, other.begin);
+    bool contact = false;
+    neighbours_->visit_nearest(first, second, begin, [&](const Image& image) {
+      const Vec3 shift = step_->box.displacement(ordered ? image : -image, step_->offset);
+      const Query query{ordered ? i.place : k.place, ordered ? k.place : i.place, shift.x(), shift.y(), begin};
+      const FinderResult result = finder_->find_between(query, ordered ? first : second, ordered ? second : first);
+      contact = (result.contact() && result.time <= end) || result.exit == FinderExit::not_a_number;
+    });
+    if (contact)
+      return true;
+    end = begin;
+    if (one.begin > other.begin)
+      pa = one.earlier;
+    else
+      pb = other.earlier;
   }
   return false;
 }

@@ -95,10 +95,12 @@ void Neighbours::list_pairs() {
   }
 }
 
-// κ|Δe| and ν|Δi| bound the velocity change; a path departs by no more than (t + t²) times that along an axis.
 double Neighbours::departure(const Elements& change) const {
-  const double speed = frequencies_.kappa * change.eccentricity() + frequencies_.nu * change.inclination();
-  return 1.01 * speed * step_ * (1.0 + step_);
+  const Frequencies& f = frequencies_;
+  const State s = state_at(change, f, Rotation());
+  const double acceleration = 2.0 * f.kappa * change.eccentricity() + f.nu * f.nu * change.inclination();
+  const double half = 0.5 * step_;
+  return s.position.cwiseAbs().maxCoeff() + half * s.velocity.cwiseAbs().maxCoeff() + 0.5 * acceleration * half * half;
 }
 
 Mirror::Outgrown Neighbours::renew(std::size_t i) {

@@ -10,7 +10,8 @@
 // What remains is then the history that the sequential order gives: by induction over its events, no pending contact is
 // missing and none is made up. Groups may merge without need, never be apart that touch, so ties count as conflicts.
 //
-// A step whose contacts hang together in one large group is left to the sequential loop; nothing has happened by then.
+// A step whose contacts hang together in one large group, or whose repairs do not come to an end soon, is left to the
+// sequential loop; nothing has happened by then.
 #pragma once
 
 #include <keeler/collision/contact_loop.hpp>
@@ -56,7 +57,9 @@ public:
   std::size_t bytes() const;
 
 private:
-  static constexpr std::size_t most_members = 256;
+  // of a group, and rounds of repair: beyond, the sequence is the better way
+  static constexpr std::size_t most_members = 256, most_contacts = 1024;
+  static constexpr int most_rounds = 12;
 
   /// An orbit from a time on.
   struct Piece {

@@ -57,7 +57,8 @@ public:
     if (step_test_.may_touch(a, b, shift.x(), shift.y(), start))
       visit(image);
   }
-  /// How far a particle can get off its path within a step when a kick changes its elements by this much, m.
+  /// How far a particle is off the path it had at the step's start, at any time of the step, when its elements have
+  /// changed by this much, m.
   double departure(const Elements& change) const;
 
   /// Slots in which the mirror holds everything that can come into contact with particle i in this step, when the two
