@@ -24,6 +24,9 @@ std::vector<std::uint32_t> order_by_place(const Particles& particles, const Shea
   std::vector<std::uint32_t> cell_of(count);
   parallel_for(count, [&](std::size_t k) {
     Vec3 place = state_at(particles.bodies[k].elements, {}, Rotation()).position;
+    cell_of[k] = 0;
+    if (!place.allFinite())
+      return; // no matter where: whoever uses it will refuse it
     place += box.displacement(box.image_into_cell(place.x(), place.y(), offset), offset);
     cell_of[k] =
         static_cast<std::uint32_t>(part(place.x(), box.size_x, columns) * rows + part(place.y(), box.size_y, rows));

@@ -102,8 +102,10 @@ struct ContactGroups::Orbits {
   }
 
   template<class Visit> void visit_partners(std::size_t i, const Visit& visit) {
-    if (group.too_large)
+    if (group.too_large) {
+      scratch.events.clear();
       return;
+    }
     const Body& own = body(i);
     const double start = last_change(i);
     const auto others = [&](std::size_t j, const Image& image) {
@@ -130,7 +132,8 @@ bool ContactGroups::carry_out(const StepAtHand& step, const Finder& finder, cons
   step_ = &step;
   finder_ = &finder;
   neighbours_ = &neighbours;
-  form(first);
+  if (!form(first))
+    return false;
   for (int round = 0;; ++round) {
     if (round == most_rounds || !run_fresh())
       return false;
@@ -157,8 +160,8 @@ bool ContactGroups::carry_out(const StepAtHand& step, const Finder& finder, cons
   }
 }
 
-// First contacts that share a particle belong together.
-void ContactGroups::form(const std::vector<Event>& first) {
+// First contacts that share a particle belong together. Returns false when too many do.
+bool ContactGroups::form(const std::vector<Event>& first) {
   if (claims_.size() == neighbours_->size())
     for (const std::uint32_t slot : claimed_)
       claims_[slot] = 0;
@@ -190,11 +193,14 @@ void ContactGroups::form(const std::vector<Event>& first) {
       groups_[used_ - 1].fresh = true;
     }
     groups_[group_of[r]].first.push_back(first[e]);
+    if (groups_[group_of[r]].first.size() > most_members)
+      return false;
   }
   for (const std::uint32_t slot : claimed_)
     claims_[slot] = group_of[root(claims_[slot] - 1)] + 1;
   merged_in_.resize(used_);
   std::iota(merged_in_.begin(), merged_in_.end(), 0u);
+  return true;
 }
 
 std::uint32_t ContactGroups::root(std::uint32_t group) {
@@ -210,15 +216,17 @@ void ContactGroups::run(Group& group) const {
   group.contacts.clear();
   group.farthest = 0.0;
   group.too_large = false;
-  group.failure.clear();
+  group.failed = false;
   scratch.table.clear();
   scratch.events.assign(group.first);
   Orbits orbits{*this, group, scratch};
+  ContactLoop loop(*step_, orbits, scratch.events);
   try {
-    ContactLoop(*step_, orbits, scratch.events).run();
-  } catch (const InvariantError& error) {
-    group.failure = error.what();
+    loop.run();
+  } catch (const InvariantError&) {
+    group.failed = true;
   }
+  group.most_partners = loop.most_partners();
 }
 
 void ContactGroups::prefetch(const Group& group, int stage) const {
@@ -244,8 +252,8 @@ bool ContactGroups::run_fresh() {
       },
       32);
   for (std::size_t g = 0; g < used_; ++g)
-    if (groups_[g].fresh && (groups_[g].too_large || !groups_[g].failure.empty()))
-      return false; // the sequential loop meets the failure too, if it is one, in its order
+    if (groups_[g].fresh && (groups_[g].too_large || groups_[g].failed))
+      return false;
   return true;
 }
 
@@ -374,11 +382,29 @@ std::vector<const Contact*> ContactGroups::contacts() const {
   return all;
 }
 
+std::uint64_t ContactGroups::most_partners() const {
+  std::uint64_t most = 0;
+  for (std::size_t g = 0; g < used_; ++g)
+    most = std::max(most, groups_[g].most_partners);
+  return most;
+}
+
+std::size_t ContactGroups::Group::bytes() const {
+  return sizeof *this + first.capacity() * sizeof(Event) + members.capacity() * sizeof(Member) +
+         pieces.capacity() * sizeof(Piece) + contacts.capacity() * sizeof(Contact);
+}
+
+void ContactGroups::trim() {
+  constexpr std::size_t usual = 1500; // bytes: two or three contacts
+  for (Group& group : groups_)
+    if (group.bytes() > usual)
+      group = Group();
+}
+
 std::size_t ContactGroups::bytes() const {
   std::size_t total = (claims_.capacity() + claimed_.capacity() + merged_in_.capacity()) * sizeof(std::uint32_t);
-  for (const Group& g : groups_)
-    total += sizeof g + g.first.capacity() * sizeof(Event) + g.members.capacity() * sizeof(Member) +
-             g.pieces.capacity() * sizeof(Piece) + g.contacts.capacity() * sizeof(Contact);
+  for (const Group& group : groups_)
+    total += group.bytes();
   return total;
 }
 

@@ -98,19 +98,27 @@ void DriftPhase::collide(Particles& particles, const ShearingBox& box, double of
   if (!in_groups(first, tally)) {
     events_.assign(first);
     InPlace orbits{*this, tally, {}};
-    ContactLoop(step_at_hand_, orbits, events_).run();
+    ContactLoop loop(step_at_hand_, orbits, events_);
+    loop.run();
+    costs_.widest_list = std::max(costs_.widest_list, loop.most_partners());
   }
   if (!through_grid_)
     neighbours_.settle(touched_);
   tally.gave_up += gave_up_;
 }
 
-// On several threads, when that is worth while and the result cannot tell.
+// On several threads, when the result cannot tell and it is likely to be faster: with enough contacts to share, and
+// few enough of all particles hit for groups to stay small.
 bool DriftPhase::in_groups(const std::vector<Event>& first, CollisionTally& tally) {
-  constexpr std::size_t fewest = 32;
-  if (threads() == 1 || first.size() < fewest || through_grid_ || watch || !finder_->exact() ||
-      !groups_.carry_out(step_at_hand_, *finder_, neighbours_, first))
+  constexpr std::size_t fewest = 256;
+  constexpr double largest_share = 0.01; // of the particles, times threads
+  const double share = static_cast<double>(first.size()) / static_cast<double>(particles_->size() + 1);
+  if (through_grid_ || watch || !finder_->exact())
     return false;
+  const bool worth_while = threads() > 1 && first.size() >= fewest && share <= largest_share * threads();
+  if (!(worth_while || always_in_groups) || !groups_.carry_out(step_at_hand_, *finder_, neighbours_, first))
+    return false;
+  costs_.widest_list = std::max(costs_.widest_list, groups_.most_partners());
   for (const Contact* contact : groups_.contacts()) {
     tally.add(*contact);
     ++costs_.contacts;
@@ -118,6 +126,7 @@ bool DriftPhase::in_groups(const std::vector<Event>& first, CollisionTally& tall
   }
   groups_.visit_members([&](const ContactGroups::Member& member) { touched_.push_back(member.place); });
   groups_.write(particles_->bodies);
+  groups_.trim();
   neighbours_.changed(touched_);
   return true;
 }
@@ -136,8 +145,9 @@ void DriftPhase::prepare() {
   }
   touched_.clear();
   const ShearingBox& box = step_at_hand_.box;
-  neighbours_.in_order = watch;
-  through_grid_ = every_candidate || !neighbours_.begin(*particles_, box, step_at_hand_.offset);
+  if (every_candidate)
+    neighbours_.forget();
+  through_grid_ = every_candidate || !neighbours_.begin(*particles_, box, step_at_hand_.offset, watch);
   if (through_grid_)
     grid_.begin(*particles_, box, step_at_hand_.offset, every_candidate);
   finder_step_ = DriftStep(frequencies_, -0.5 * step_, 0.5 * step_, box.size_x + box.size_y);
@@ -220,7 +230,7 @@ DriftCosts DriftPhase::costs() const {
 
 std::size_t DriftPhase::bytes() const {
   std::size_t total = particles_->bodies.capacity() * sizeof(Body) + particles_->ids.capacity() * sizeof(std::uint64_t);
-  total += neighbours_.bytes() + groups_.bytes() + last_change_.capacity() * sizeof(double);
+  total += neighbours_.bytes() + groups_.bytes() + events_.bytes() + last_change_.capacity() * sizeof(double);
   total += (stamps_.capacity() + touched_.capacity()) * sizeof(std::uint32_t);
   total += particles_->size() * finder_->bytes_per_particle();
   for (const std::vector<Candidate>& block : candidates_)

@@ -11,12 +11,6 @@ bool later(const Event& a, const Event& b) {
 
 } // namespace
 
-void EventQueue::clear() {
-  first_.clear();
-  next_ = 0;
-  later_.clear();
-}
-
 void EventQueue::assign(const std::vector<Event>& events) {
   later_.clear();
   first_ = events;

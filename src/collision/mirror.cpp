@@ -180,9 +180,11 @@ void Mirror::lay_out_cells() {
 }
 
 bool Mirror::one_image(const Line& line) const {
-  const Level& farthest = levels_.back();
-  const double reach = std::max(reach_x(line), reach_y(line)) + std::max(farthest.reach_x, farthest.reach_y) +
-                       std::max(stray_x_, stray_y_);
+  const double own = std::max(reach_x(line), reach_y(line));
+  double farthest = own; // another that was hit may reach as far
+  for (const Level& level : levels_)
+    farthest = std::max({farthest, level.reach_x, level.reach_y});
+  const double reach = own + farthest + std::max(stray_x_, stray_y_);
   const double sheared = 1.0 + box_.shear * window_.half_length;
   return reach * sheared < nearest_share * std::min(box_.size_x, box_.size_y);
 }
@@ -294,6 +296,8 @@ void Mirror::prefetch(std::size_t place, int stage) const {
 }
 
 double Mirror::stray() const {
+  if (levels_.empty())
+    return 0.0;
   const Level& finest = levels_.front();
   return std::max(stray_x_ / finest.reach_x, stray_y_ / finest.reach_y);
 }

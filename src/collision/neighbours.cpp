@@ -5,11 +5,12 @@
 namespace keeler {
 namespace {
 
-constexpr double longest_window = 16.0; // steps
-constexpr double window_path = 0.4;     // of a mean radius: what two particles may approach by in a window, on average
-constexpr double window_hits = 0.3;     // of a particle in a window: more, and lists are remade too often
-constexpr double window_skin = 0.2;     // of a mean radius
-constexpr double farthest_stray = 1.0;  // of lines from their cells before a window ends
+constexpr double most_steps = 16.0;    // of a window
+constexpr double longest_window = 1.0; // rad: bounds and rounding are good for that long
+constexpr double window_path = 0.4;    // of a mean radius: what two particles may approach by in a window, on average
+constexpr double window_hits = 0.3;    // of a particle in a window: more, and lists are remade too often
+constexpr double window_skin = 0.2;    // of a mean radius
+constexpr double farthest_stray = 1.0; // of lines from their cells before a window ends
 
 } // namespace
 
@@ -19,11 +20,14 @@ Image Neighbours::nearest_image(const Body& a, const Body& b) const {
   return box_.image_into_cell(x, y, offset_);
 }
 
-bool Neighbours::begin(const Particles& particles, const ShearingBox& box, double offset) {
+bool Neighbours::begin(const Particles& particles, const ShearingBox& box, double offset, bool in_order) {
   const bool same = particles_ == &particles && changed_.size() == particles.size();
   particles_ = &particles;
   box_ = box;
   offset_ = offset;
+  if (in_order != in_order_)
+    forget();
+  in_order_ = in_order;
   ++at_step_;
   if (!(goes_on_ && !over_ && same && at_step_ < length_ && kick_path_ <= skin_))
     open();
@@ -49,13 +53,14 @@ double Neighbours::skin_for(int length) const {
 
 void Neighbours::choose_length() {
   length_ = 1;
-  if (windows == 0)
+  if (windows == 0 || particles_->size() == 0)
     return;
   const MirrorMeans& means = mirror_.means();
   const double steps_done = std::max(1, at_step_) * static_cast<double>(std::max<std::size_t>(1, changed_.size()));
   const double hits = static_cast<double>(hits_) / steps_done; // of a particle in a step of the last window
   const double by_path = window_path * means.radius / (2.0 * means.eccentricity * step_);
-  length_ = static_cast<int>(std::clamp(std::min(by_path, window_hits / hits), 1.0, longest_window));
+  const double longest = std::max(1.0, std::min(most_steps, longest_window / step_));
+  length_ = static_cast<int>(std::clamp(std::min(by_path, window_hits / hits), 1.0, longest));
   while (length_ > 1 && skin_for(length_) > window_skin * means.radius)
     --length_;
 }
@@ -67,7 +72,7 @@ void Neighbours::open() {
   hits_ = 0;
   skin_ = length_ > 1 ? skin_for(length_) : 0.0;
   kick_path_ = 0.0;
-  mirror_.build(*particles_, box_, offset_, frequencies_, {-since_middle(), 0.5 * length_ * step_, skin_}, in_order);
+  mirror_.build(*particles_, box_, offset_, frequencies_, {-since_middle(), 0.5 * length_ * step_, skin_}, in_order_);
   ++windows;
   changed_.assign(particles_->size(), 0);
   added_.clear();
@@ -154,6 +159,11 @@ void Neighbours::settle(std::span<const std::uint32_t> particles) {
   added_.emplace_back();
   for (const std::vector<Entry>& entries : found)
     added_.back().insert(added_.back().end(), entries.begin(), entries.end());
+}
+
+void Neighbours::release() {
+  forget();
+  mirror_.release();
 }
 
 std::size_t Neighbours::bytes() const {

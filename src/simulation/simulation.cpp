@@ -84,12 +84,12 @@ void Simulation::sort_when_due() {
   if (state_.step % interval != 0)
     return;
   const Stopwatch watch(split_.drift);
+  drift_.sorted();
   const std::vector<std::uint32_t> order = order_by_place(state_.particles, state_.box, state_.epoch_offset());
   reorder(state_.particles.bodies, order);
   reorder(state_.particles.ids, order);
   if (!state_.accelerations.empty())
     reorder(state_.accelerations, order);
-  drift_.sorted();
 }
 
 // To the epoch of the next step, and back into the cell by guiding centre.
@@ -142,7 +142,8 @@ void Simulation::half_kick() {
   const double half = 0.5 * state_.step_length * scene_.gravity->kick_every;
   double largest = 0.0;
   for (const Vec3& a : state_.accelerations)
-    largest = std::max(largest, a.squaredNorm());
+    if (!(a.squaredNorm() <= largest)) // what is not a number stays
+      largest = a.squaredNorm();
   drift_.kicked(half * std::sqrt(largest));
   state_.energy.kick_work += ordered_sum(state_.particles.size(), [&](std::size_t k) {
     Body& body = state_.particles.bodies[k];

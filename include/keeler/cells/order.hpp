@@ -11,7 +11,7 @@
 namespace keeler {
 
 /// Which particle comes first, second …: column by column of small cells, by id within a cell. `offset` is the shear
-/// offset at the epoch of the elements, which must be finite.
+/// offset at the epoch of the elements.
 std::vector<std::uint32_t> order_by_place(const Particles& particles, const ShearingBox& box, double offset);
 
 /// Puts values into that order.

@@ -17,7 +17,6 @@
 #include <keeler/collision/contact_loop.hpp>
 #include <keeler/collision/neighbours.hpp>
 
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -36,7 +35,7 @@ public:
   };
 
   /// Carries out everything that follows from the first contacts of a step. The store is only read. Returns false when
-  /// that should be done in sequence instead. Throws InvariantError as the loop does.
+  /// that should be done in sequence instead: also when a loop has failed, so that it fails in its order.
   bool carry_out(const StepAtHand& step, const Finder& finder, const Neighbours& neighbours,
                  const std::vector<Event>& first);
 
@@ -49,6 +48,11 @@ public:
       for (const Member& member : groups_[g].members)
         visit(member);
   }
+
+  /// Of one particle in one search of this step.
+  std::uint64_t most_partners() const;
+  /// Gives back what unusually large groups have needed.
+  void trim();
 
   /// Gives all these particles their last orbits.
   void write(std::vector<Body>& bodies) const;
@@ -74,13 +78,15 @@ private:
     std::vector<Contact> contacts;
     double farthest = 0.0; // that a member got off its path, m
     bool fresh = false, too_large = false;
-    std::string failure;
+    bool failed = false;
+    std::uint64_t most_partners = 0;
+    std::size_t bytes() const;
   };
   struct Orbits;
   struct Scratch;
   using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-  void form(const std::vector<Event>& first);
+  bool form(const std::vector<Event>& first);
   void run(Group& group) const;
   void prefetch(const Group& group, int stage) const;
   bool run_fresh();

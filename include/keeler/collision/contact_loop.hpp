@@ -57,7 +57,13 @@ public:
     }
   }
 
-  /// The lower id first; `image` is that of particle j.
+  /// Of one particle in one search so far.
+  std::uint64_t most_partners() const { return most_partners_; }
+
+private:
+  static constexpr std::uint32_t most_collisions = 100000; // of one particle in one step: an event storm, not physics
+
+  // The lower id first; `image` is that of particle j.
   Query query_of(std::size_t i, std::size_t j, const Image& image) const {
     const bool ordered = step_.particles->ids[i] < step_.particles->ids[j];
     const Vec3 shift = step_.box.displacement(ordered ? image : -image, step_.offset);
@@ -65,15 +71,12 @@ public:
             shift.y(), std::max(orbits_.last_change(i), orbits_.last_change(j))};
   }
 
-  /// `image` is that of the partner of particle i.
+  // `image` is that of the partner of particle i.
   Event event_of(const Query& query, double time, std::size_t i, const Image& image) const {
     const std::vector<std::uint64_t>& ids = step_.particles->ids;
     return {time,      ids[query.low], ids[query.high],          query.low == i ? image : -image,
             query.low, query.high,     orbits_.stamp(query.low), orbits_.stamp(query.high)};
   }
-
-private:
-  static constexpr std::uint32_t most_collisions = 100000; // of one particle in one step: an event storm, not physics
 
   void prefetch() const {
     constexpr std::size_t apart = 6;
@@ -136,7 +139,9 @@ private:
   static constexpr std::size_t nobody = ~std::size_t{0};
 
   void search(std::size_t i, std::size_t except) {
+    std::uint64_t partners = 0;
     orbits_.visit_partners(i, [&](std::size_t j, const Image& image) {
+      ++partners;
       if (j == except)
         return;
       const Query query = query_of(i, j, image);
@@ -147,11 +152,13 @@ private:
       if (result.contact())
         events_.add(event_of(query, result.time, i, image));
     });
+    most_partners_ = std::max(most_partners_, partners);
   }
 
   const StepAtHand& step_;
   Orbits& orbits_;
   EventQueue& events_;
+  std::uint64_t most_partners_ = 0;
 };
 
 } // namespace keeler

@@ -9,8 +9,8 @@ namespace keeler {
 
 struct DriftCosts {
   // wall time, s
-  double build = 0.0;  ///< sorting places into cells
-  double reject = 0.0; ///< finding out which pairs cannot touch
+  double build = 0.0;  ///< beginning steps; at the first of a window, sorting particles and listing pairs
+  double reject = 0.0; ///< going through the lists for pairs that may touch in the step
   double solve = 0.0;  ///< searches at the start of steps
   double events = 0.0; ///< carrying out contacts and all searches that follow
 

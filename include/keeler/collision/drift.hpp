@@ -65,12 +65,15 @@ public:
   void moved_on() { neighbours_.moved_on(); }
   /// All particles have been kicked by no more than this (m rad⁻¹).
   void kicked(double largest) { neighbours_.kicked(largest); }
-  /// Particles have changed their places in the store.
-  void sorted() { neighbours_.forget(); }
+  /// Particles are about to change their places in the store.
+  void sorted() { neighbours_.release(); }
   /// Puts another finder in place of the settings' one: to measure finders.
   void use(std::unique_ptr<Finder> finder) { finder_ = std::move(finder); }
 
   DriftWatch* watch = nullptr; ///< searches then run on one thread
+
+  /// Carry out contacts in groups whenever that is allowed, worth while or not: to test them.
+  bool always_in_groups = false;
 
   /// Hand all that the grid's cells hold to the finder, without rejecting any first: to measure finders.
   bool every_candidate = false;

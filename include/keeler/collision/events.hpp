@@ -29,12 +29,17 @@ struct Event {
 /// come up: the caller compares stamps.
 class EventQueue {
 public:
-  void clear();
   bool empty() const { return next_ == first_.size() && later_.empty(); }
   /// Replaces everything by these events.
   void assign(const std::vector<Event>& events);
   void add(const Event& event);
   Event take_first();
+  void clear() {
+    next_ = first_.size();
+    later_.clear();
+  }
+
+  std::size_t bytes() const { return (first_.capacity() + later_.capacity()) * sizeof(Event); }
 
   /// One of the events that are likely to come up soon, or null.
   const Event* ahead(std::size_t by) const { return next_ + by < first_.size() ? &first_[next_ + by] : nullptr; }

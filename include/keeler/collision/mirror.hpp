@@ -84,6 +84,12 @@ public:
       ranges_in(level, line, 0, range);
   }
 
+  /// Gives back most of the memory; a build must follow before anything else.
+  void release() {
+    lines_ = {};
+    unsorted_ = {};
+  }
+
   /// Three calls for a place, some time apart, bring what looking around it needs into the cache.
   void prefetch(std::size_t place, int stage) const;
 

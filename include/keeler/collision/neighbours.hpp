@@ -24,14 +24,17 @@ public:
   Neighbours(const Frequencies& frequencies, double step) : frequencies_(frequencies), step_(step) {}
 
   /// A step begins. Opens a new window unless the last one can go on: see moved_on(). Throws InvariantError when
-  /// elements are not finite. Returns false when the box is so small that pairs may meet through several images.
-  bool begin(const Particles& particles, const ShearingBox& box, double offset);
+  /// elements are not finite. `in_order`: pairs come in the same order for any number of threads. Returns false when
+  /// the box is so small that pairs may meet through several images.
+  bool begin(const Particles& particles, const ShearingBox& box, double offset, bool in_order);
 
   /// The particles of the last step have moved on by exactly one step and been wrapped; nothing else but kicks happened
   /// to them.
   void moved_on() { goes_on_ = true; }
-  /// Particles have changed places in the store, or anything else has happened.
+  /// Anything else has happened.
   void forget() { goes_on_ = false; }
+  /// The same; the memory is not needed for a while.
+  void release();
   /// Every particle has been kicked by at most this much (m rad⁻¹).
   void kicked(double largest);
 
@@ -78,9 +81,6 @@ public:
   /// changed once.
   void settle(std::span<const std::uint32_t> particles);
 
-  /// Pairs in the same order for any number of threads.
-  bool in_order = false;
-
   std::uint64_t windows = 0, tested = 0, listed = 0; ///< so far
   std::size_t bytes() const;
 
@@ -116,7 +116,8 @@ private:
 
   // the window
   bool goes_on_ = false; // the promise of moved_on()
-  bool over_ = false;    // it ends with this step
+  bool in_order_ = false;
+  bool over_ = false; // it ends with this step
   int at_step_ = 0, length_ = 0;
   Mirror mirror_;
   Rotation to_middle_;                // from this step's epoch

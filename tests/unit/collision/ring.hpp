@@ -6,6 +6,7 @@
 
 #include <keeler/collision/drift.hpp>
 #include <keeler/core/random.hpp>
+#include <keeler/core/threads.hpp>
 #include <keeler/particles/patch.hpp>
 
 #include <algorithm>
@@ -29,6 +30,7 @@ struct Ring {
   double epoch_offset() const { return box.offset(2 * steps + 1, 0.5 * step); }
 
   void advance() {
+    drift.always_in_groups = threads() > 1;
     drift.collide(particles, box, epoch_offset(), tally);
     move_on();
   }
