@@ -85,7 +85,6 @@ void Mirror::build(const Particles& particles, const ShearingBox& box, double of
   window_ = window;
   to_middle_ = Rotation(frequencies, window.middle);
   offset_ = std::fmod(offset + box.shear * box.size_x * window.middle, box.size_y);
-  stray_x_ = stray_y_ = 0.0;
   per_metre_x_ = full_turn / box.size_x;
   per_metre_y_ = full_turn / box.size_y;
   frame_ = {static_cast<float>(box.size_x / full_turn), static_cast<float>(box.size_y / full_turn),
@@ -183,8 +182,8 @@ bool Mirror::one_image(const Line& line) const {
   const double own = std::max(reach_x(line), reach_y(line));
   double farthest = own; // another that was hit may reach as far
   for (const Level& level : levels_)
-    farthest = std::max({farthest, level.reach_x, level.reach_y});
-  const double reach = own + farthest + std::max(stray_x_, stray_y_);
+    farthest = std::max({farthest, level.reach_x + level.stray_x, level.reach_y + level.stray_y});
+  const double reach = own + farthest;
   const double sheared = 1.0 + box_.shear * window_.half_length;
   return reach * sheared < nearest_share * std::min(box_.size_x, box_.size_y);
 }
@@ -258,8 +257,8 @@ void Mirror::grow(const Outgrown& outgrown) {
   Level& level = levels_[outgrown.level];
   level.reach_x = std::max(level.reach_x, outgrown.reach_x);
   level.reach_y = std::max(level.reach_y, outgrown.reach_y);
-  stray_x_ = std::max(stray_x_, outgrown.stray_x);
-  stray_y_ = std::max(stray_y_, outgrown.stray_y);
+  level.stray_x = std::max(level.stray_x, outgrown.stray_x);
+  level.stray_y = std::max(level.stray_y, outgrown.stray_y);
 }
 
 std::size_t Mirror::near(const Line& line, const LineSpan& span, std::vector<std::uint32_t>& buffer) const {
@@ -296,10 +295,10 @@ void Mirror::prefetch(std::size_t place, int stage) const {
 }
 
 double Mirror::stray() const {
-  if (levels_.empty())
-    return 0.0;
-  const Level& finest = levels_.front();
-  return std::max(stray_x_ / finest.reach_x, stray_y_ / finest.reach_y);
+  double most = 0.0;
+  for (const Level& level : levels_)
+    most = std::max({most, level.stray_x / level.reach_x, level.stray_y / level.reach_y});
+  return most;
 }
 
 std::size_t Mirror::bytes() const {

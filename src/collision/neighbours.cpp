@@ -7,10 +7,9 @@ namespace {
 
 constexpr double most_steps = 16.0;    // of a window
 constexpr double longest_window = 1.0; // rad: bounds and rounding are good for that long
-constexpr double window_path = 0.4;    // of a mean radius: what two particles may approach by in a window, on average
 constexpr double window_hits = 0.3;    // of a particle in a window: more, and lists are remade too often
 constexpr double window_skin = 0.2;    // of a mean radius
-constexpr double farthest_stray = 1.0; // of lines from their cells before a window ends
+constexpr double farthest_stray = 2.0; // of lines from their cells before a window ends
 
 } // namespace
 
@@ -51,18 +50,28 @@ double Neighbours::skin_for(int length) const {
   return 2.6 * last_kick_ * length * time * (1.0 + time);
 }
 
-void Neighbours::choose_length() {
-  length_ = 1;
-  if (windows == 0 || particles_->size() == 0)
-    return;
+// The length that costs least by what the last window came to: a mirror is made once a window and the pairs tested grow
+// with the square of what particles reach, the lists with the window. Costs are in units of testing a pair.
+double Neighbours::cost_of(int length) const {
+  constexpr double mirror = 14.0, listed_pair = 2.0; // a particle; a pair and step
   const MirrorMeans& means = mirror_.means();
+  const auto reach = [&](int steps) { return means.radius + 0.5 * steps * step_ * means.eccentricity; };
+  const double growth = reach(length) / reach(length_);
+  const double pairs = last_tested_ * growth * growth, list = last_listed_ * length / length_;
+  return (mirror + pairs) / length + listed_pair * list;
+}
+
+void Neighbours::choose_length() {
+  const int last = length_;
   const double steps_done = std::max(1, at_step_) * static_cast<double>(std::max<std::size_t>(1, changed_.size()));
   const double hits = static_cast<double>(hits_) / steps_done; // of a particle in a step of the last window
-  const double by_path = window_path * means.radius / (2.0 * means.eccentricity * step_);
-  const double longest = std::max(1.0, std::min(most_steps, longest_window / step_));
-  length_ = static_cast<int>(std::clamp(std::min(by_path, window_hits / hits), 1.0, longest));
-  while (length_ > 1 && skin_for(length_) > window_skin * means.radius)
-    --length_;
+  int best = 1;
+  if (windows > 0 && last > 0 && particles_->size() > 0)
+    for (int length = 2; length <= most_steps && length * step_ <= longest_window; ++length)
+      if (length * hits <= window_hits && skin_for(length) <= window_skin * mirror_.means().radius &&
+          cost_of(length) < cost_of(best))
+        best = length;
+  length_ = best;
 }
 
 void Neighbours::open() {
@@ -72,8 +81,16 @@ void Neighbours::open() {
   hits_ = 0;
   skin_ = length_ > 1 ? skin_for(length_) : 0.0;
   kick_path_ = 0.0;
-  mirror_.build(*particles_, box_, offset_, frequencies_, {-since_middle(), 0.5 * length_ * step_, skin_}, in_order_);
-  ++windows;
+  const auto build = [&] {
+    mirror_.build(*particles_, box_, offset_, frequencies_, {-since_middle(), 0.5 * length_ * step_, skin_}, in_order_);
+    ++windows;
+  };
+  build();
+  if (!mirror_.one_image() && length_ > 1) { // one step may be short enough
+    length_ = 1;
+    skin_ = 0.0;
+    build();
+  }
   changed_.assign(particles_->size(), 0);
   added_.clear();
   list_pairs();
@@ -94,10 +111,16 @@ void Neighbours::list_pairs() {
         });
       },
       1);
+  std::uint64_t tests_now = 0, listed_now = 0;
   for (std::size_t b = 0; b < lists_.size(); ++b) {
-    tested += tests[b];
-    listed += lists_[b].size();
+    tests_now += tests[b];
+    listed_now += lists_[b].size();
   }
+  tested += tests_now;
+  listed += listed_now;
+  const double count = static_cast<double>(mirror_.size()) + 1e-9;
+  last_tested_ = static_cast<double>(tests_now) / count;
+  last_listed_ = static_cast<double>(listed_now) / count;
 }
 
 double Neighbours::departure(const Elements& change) const {

@@ -1,5 +1,5 @@
 // A copy of all particles for finding neighbours fast: the straight line of each about the middle of a window of steps,
-// in single precision, 28 bytes, sorted into cells. Nothing of a result is computed from it: it only says which pairs
+// in single precision, 32 bytes, sorted into cells. Nothing of a result is computed from it: it only says which pairs
 // cannot touch.
 //
 // Particles stand in levels by how far they reach in the window (radius and path, in octaves), each level with cells of
@@ -7,7 +7,8 @@
 // what it reaches and nobody else anything. Cells are columns of a level, rows within a column, so that what a particle
 // can reach in a column is one or two ranges of the arrays.
 //
-// Invariant: a line stands within `stray` of its cell. Particles that were hit get a new line but keep their cell.
+// Invariant: a line stands within its level's stray of its cell. Particles that were hit get a new line but keep their
+// cell.
 #pragma once
 
 #include <keeler/box/shearing_box.hpp>
@@ -63,7 +64,7 @@ public:
   Outgrown replace(std::size_t place, const Line& line);
   void grow(const Outgrown& outgrown);
 
-  /// How far lines may stand from their cells, in reaches of the finest level.
+  /// How far lines may stand from their cells, in reaches of their level.
   double stray() const;
 
   /// Pairs of slots that may touch in the span, of the slots [begin, end) with all after them: found(slot, slot, ...).
@@ -101,6 +102,7 @@ private:
   struct Level {
     std::uint64_t count = 0;
     double reach_x = 0.0, reach_y = 0.0; ///< the farthest of its particles, m
+    double stray_x = 0.0, stray_y = 0.0; ///< how far their lines may stand from their cells, m
     std::int64_t columns = 1, rows = 1;
     std::size_t first_cell = 0;
     std::uint32_t begin = 0, end = 0; ///< slots
@@ -127,7 +129,6 @@ private:
   MirrorMeans means_;
   LineFrame frame_{};
   double per_metre_x_ = 0.0, per_metre_y_ = 0.0; // box fractions, in units of 2⁻³²
-  double stray_x_ = 0.0, stray_y_ = 0.0;         // m
   LineSweep sweep_ = line_sweep(choose_instruction_set());
 
   std::vector<Line> unsorted_;        // by place, while building
@@ -146,8 +147,8 @@ void Mirror::ranges_in(const Level& level, const Line& line, std::uint32_t after
     return;
   const double reach_along_x = reach_x(line) + level.reach_x;
   const double reach_along_y =
-      reach_y(line) + level.reach_y + box_.shear * window_.half_length * reach_along_x + stray_y_;
-  const std::int64_t rx = static_cast<std::int64_t>((reach_along_x + stray_x_) * per_metre_x_) + 4;
+      reach_y(line) + level.reach_y + box_.shear * window_.half_length * reach_along_x + level.stray_y;
+  const std::int64_t rx = static_cast<std::int64_t>((reach_along_x + level.stray_x) * per_metre_x_) + 4;
   const std::int64_t ry = static_cast<std::int64_t>(reach_along_y * per_metre_y_) + 4;
   const std::int64_t x = static_cast<std::int64_t>(line.x) + (std::int64_t{1} << 31);
   std::int64_t first = (x - rx) * level.columns >> 32, last = (x + rx) * level.columns >> 32;

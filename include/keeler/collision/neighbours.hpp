@@ -95,6 +95,7 @@ private:
   Mirror::Outgrown renew(std::size_t i);
   void open();
   void choose_length();
+  double cost_of(int length) const;
   double skin_for(int length) const;
   void list_pairs();
   Entry entry(std::size_t i, std::size_t j) const {
@@ -127,6 +128,7 @@ private:
   double kick_path_ = 0.0, skin_ = 0.0;   // how far kicks may have moved a particle; how far the lists allow
   double last_kick_ = 0.0;
   std::uint64_t hits_ = 0;
+  double last_tested_ = 0.0, last_listed_ = 0.0; // pairs a particle, when the window began
   StraightLineTest step_test_;
 };
 
