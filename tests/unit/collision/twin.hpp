@@ -21,7 +21,8 @@ inline bool same_bits(double a, double b) {
 
 inline bool same_bits(const Particles& a, const Particles& b) {
   const std::vector<Body> left = by_id(a), right = by_id(b);
-  return left.size() == right.size() && std::memcmp(left.data(), right.data(), left.size() * sizeof(Body)) == 0;
+  return left.size() == right.size() &&
+         (left.empty() || std::memcmp(left.data(), right.data(), left.size() * sizeof(Body)) == 0);
 }
 
 inline bool same_bits(const CollisionTally& a, const CollisionTally& b) {

@@ -1,0 +1,155 @@
+// The sweep of straight lines in single precision, in every instruction set, against the same in double precision.
+#include <keeler/collision/line_sweep.hpp>
+
+#include "unit/collision/spheres.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace keeler;
+
+namespace {
+
+constexpr double full_turn = 4294967296.0; // 2³², the box
+constexpr double single = 4e-6;            // of a path: what sizes allow for single precision, as the mirror's do
+constexpr std::size_t number = 61;         // lines, no multiple of any vector's length
+
+std::int32_t wrapped(double fraction) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(std::llround(fraction)));
+}
+
+// One line, and a row of others: half of them anywhere, half so that they pass the one at about the contact's distance
+// some time in the span, many through an edge of the box. All reach less than 0.45 of the box, as the sweep asks.
+struct Row {
+  test::RandomVectors random;
+  double size_x, size_y, shear, offset, speed, half; // m, m, -, m, m/rad, rad
+  LineFrame frame;
+  Line one;
+  std::vector<double> radii; // of the others
+  std::vector<Line> others;
+  static constexpr double radius = 1.0; // of the one, and the largest
+
+  explicit Row(std::uint64_t seed) : random(seed) {
+    shear = 1.0 + random.uniform();
+    half = decades(-5.0, 0.5);
+    speed = decades(-3.0, 1.0) / half;
+    const double reach = (2.0 * radius + 4.0 * half * speed) * (1.0 + shear * half) / 0.45;
+    size_x = reach * (1.0 + 1e-3 + decades(-3.0, 4.0));
+    size_y = reach * (1.0 + 1e-3 + decades(-3.0, 4.0));
+    offset = size_y * (random.uniform() - 0.5);
+    frame = {static_cast<float>(size_x / full_turn), static_cast<float>(size_y / full_turn), static_cast<float>(shear),
+             wrapped(offset / size_y * full_turn)};
+    one = line(anywhere(), radius);
+    if (random.uniform() < 0.6) // about an edge
+      one.x = static_cast<std::int32_t>((random.uniform() < 0.5 ? -1.0 : 1.0) *
+                                        (0.5 * full_turn - 1.0 - random.uniform() * radius / size_x * full_turn));
+    for (std::size_t k = 0; k < number; ++k) {
+      radii.push_back(radius * decades(-2.0, 0.0));
+      others.push_back(line(k % 2 ? passing(radii.back()) : anywhere(), radii.back()));
+    }
+    others.resize(number + sweep_padding);
+  }
+
+  double decades(double least, double most) { return std::pow(10.0, least + (most - least) * random.uniform()); }
+
+  // Fields of a line without its size.
+  Line anywhere() {
+    const Vec3 v = speed * random.uniform() * random.direction();
+    return {wrapped(full_turn * (random.uniform() - 0.5)),
+            wrapped(full_turn * (random.uniform() - 0.5)),
+            static_cast<float>(4.0 * radius * (random.uniform() - 0.5)),
+            static_cast<float>(v.x()),
+            static_cast<float>(v.y()),
+            static_cast<float>(v.z()),
+            0.0f,
+            0};
+  }
+
+  // At a distance of about the contact at some time. An image n boxes outward stands behind by n offsets.
+  Line passing(double r) {
+    Line line = anywhere();
+    const double off = (random.uniform() < 0.5 ? -1.0 : 1.0) * decades(-8.0, -1.0),
+                 time = half * (2.2 * random.uniform() - 1.1);
+    const Vec3 near = (radius + r) * (1.0 + off) * random.direction();
+    const Vec3 v(line.u - one.u, line.v - one.v, line.w - one.w);
+    const double x = near.x() - time * v.x(), y = near.y() - time * (v.y() - shear * x), z = near.z() - time * v.z();
+    const double fraction = one.x + x / size_x * full_turn, box = std::floor(fraction / full_turn + 0.5);
+    line.x = wrapped(fraction - box * full_turn);
+    line.y = wrapped(one.y + (y + box * offset) / size_y * full_turn);
+    line.z = static_cast<float>(one.z + z);
+    return line;
+  }
+
+  Line line(const Line& without_size, double r) const {
+    Line line = without_size;
+    const double path = half * (std::fabs(line.u) + std::fabs(line.v) + std::fabs(line.w));
+    const double grain = 4.0 / full_turn * (size_x + size_y);
+    line.size = static_cast<float>(r + single * (r + path + std::fabs(line.z)) + grain);
+    return line;
+  }
+
+  // The smallest distance in the span, of all images beside the box.
+  double nearest(const Line& other) const {
+    double least = HUGE_VAL;
+    for (const int n : {-1, 0, 1}) {
+      const double x = (static_cast<double>(other.x) - one.x) / full_turn * size_x + n * size_x;
+      const double y = std::remainder((static_cast<double>(other.y) - one.y) / full_turn * size_y - n * offset, size_y);
+      const Vec3 d(x, y, static_cast<double>(other.z) - one.z);
+      const Vec3 v(static_cast<double>(other.u) - one.u, static_cast<double>(other.v) - one.v - shear * x,
+                   static_cast<double>(other.w) - one.w);
+      const double time = std::clamp(-d.dot(v) / (v.squaredNorm() + 1e-300), -half, half);
+      least = std::min(least, (d + time * v).norm());
+    }
+    return least;
+  }
+
+  std::vector<std::uint32_t> sweep(InstructionSet set, std::size_t begin, std::size_t end) const {
+    std::vector<std::uint32_t> found(end - begin + sweep_padding);
+    const LineSpan span{static_cast<float>(-half * (1.0 + 1e-6)), static_cast<float>(half * (1.0 + 1e-6))};
+    found.resize(line_sweep(set)(one, others.data(), frame, span, begin, end, found.data()));
+    return found;
+  }
+};
+
+} // namespace
+
+TEST_CASE("no line that comes into contact is left out, and few others are kept") {
+  std::size_t contacts = 0, across = 0, kept = 0;
+  for (std::uint64_t seed = 1; seed <= 4000; ++seed) {
+    const Row row(seed);
+    const std::vector<std::uint32_t> found = row.sweep(InstructionSet::portable, 0, number);
+    for (std::uint32_t k = 0; k < number; ++k) {
+      const double distance = row.nearest(row.others[k]), contact = Row::radius + row.radii[k];
+      const bool listed = std::binary_search(found.begin(), found.end(), k);
+      contacts += distance <= contact;
+      across += distance <= contact && std::fabs(static_cast<double>(row.others[k].x) - row.one.x) > 0.5 * full_turn;
+      kept += listed;
+      if (distance <= contact && !listed) {
+        CAPTURE(seed);
+        CAPTURE(k);
+        CHECK(distance > contact);
+      }
+    }
+  }
+  CHECK(contacts > 100000);
+  CHECK(across > 15000);
+  CHECK(static_cast<double>(kept) < 1.01 * static_cast<double>(contacts));
+}
+
+TEST_CASE("all instruction sets leave out the same lines, of any stretch of a row") {
+  for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+    Row row(seed);
+    const auto begin = static_cast<std::size_t>(row.random.uniform() * number);
+    const auto some = begin + static_cast<std::size_t>(row.random.uniform() * static_cast<double>(number + 1 - begin));
+    const std::size_t end = seed % 3 ? std::min(begin + seed % 20, number) : some;
+    const std::vector<std::uint32_t> expected = row.sweep(InstructionSet::portable, begin, end);
+    for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512})
+      if (supports(set)) {
+        CAPTURE(seed);
+        CAPTURE(instruction_set_name(set));
+        CHECK((row.sweep(set, begin, end) == expected));
+      }
+  }
+}

@@ -1,0 +1,64 @@
+// What a run holds in memory: bounded, and no more than `keeler check` says beforehand.
+#include <keeler/core/threads.hpp>
+#include <keeler/core/units.hpp>
+#include <keeler/scene/derived.hpp>
+#include <keeler/simulation/simulation.hpp>
+#include <keeler/states/initial.hpp>
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+
+using namespace keeler;
+
+namespace {
+
+// Optical depth 1.
+Scene scene_of(std::size_t count, double step) {
+  return parse_scene(fmt::format(R"(
+[planet]
+orbital_frequency = 1.9565e-4
+[box]
+size = [{0}, {0}]
+[particles]
+count = {1}
+density = 900.0
+velocity_dispersion = 2.0
+sizes = {{ law = "equal", radius = 1.0 }}
+[time]
+step = {2}
+end = 1.0
+)",
+                                 std::sqrt(pi * static_cast<double>(count)), count, step),
+                     "test scene");
+}
+
+} // namespace
+
+TEST_CASE("the drift phase holds no more than 240 bytes a particle, and a scene's estimate has room for them") {
+  constexpr std::size_t count = 20000, large = 2000000;
+  constexpr double most = 240.0;    // bytes
+  constexpr double patch = 9 * 8.0; // a copy of a particle for output: r, v, R, m and id
+  const Patch start = initial_patch(scene_of(count, 1e-3));
+  const int before = threads();
+  for (const double step : {1e-3, 1e-2})
+    for (const int several : {1, 2}) {
+      CAPTURE(step);
+      CAPTURE(several);
+      set_threads(several);
+      const Scene scene = scene_of(count, step);
+      Simulation simulation(scene, start);
+      for (int k = 0; k < 30; ++k)
+        simulation.advance();
+      const auto held = static_cast<double>(simulation.drift().costs().bytes_per_particle);
+      CHECK(held > 100.0); // bodies, ids and lines alone
+      CHECK(held <= most);
+      const double memory = 1e6 * derive(scene).memory_mb;
+      CHECK(memory >= held * count);
+      // beyond what does not grow with their number; a snapshot's copy and the file made of it come on top
+      const double more = (1e6 * derive(scene_of(large, step)).memory_mb - memory) / static_cast<double>(large - count);
+      CHECK(more >= held + 2.0 * patch);
+    }
+  set_threads(before);
+}
