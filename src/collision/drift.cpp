@@ -6,7 +6,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <tuple>
+
 namespace keeler {
+
 void CollisionTally::list_fields(FieldTable& table) {
   table.scalar("collisions_fast", fast, "1", "collisions faster than v_cut");
   table.scalar("collisions_slow", slow, "1", "contacts slower than v_cut, bounced elastically");
@@ -55,7 +59,22 @@ struct DriftPhase::InPlace {
       drift.watch->changed(i);
   }
 
+  // Who watches sees partners in the order of their ids and images.
   template<class Visit> void visit_partners(std::size_t i, const Visit& visit) {
+    if (!drift.watch) {
+      visit_unordered(i, visit);
+      return;
+    }
+    std::vector<Candidate> partners;
+    visit_unordered(i, [&](std::size_t j, const Image& image) {
+      partners.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), image});
+    });
+    drift.put_in_order(partners);
+    for (const Candidate& c : partners)
+      visit(c.high, c.image);
+  }
+
+  template<class Visit> void visit_unordered(std::size_t i, const Visit& visit) {
     if (drift.through_grid_)
       drift.grid_.visit_partners(i, last_change(i), visit);
     else if (!drift.neighbours_.visit_partners(i, body(i), last_change(i), buffer, visit))
@@ -147,7 +166,7 @@ void DriftPhase::prepare() {
   const ShearingBox& box = step_at_hand_.box;
   if (every_candidate)
     neighbours_.forget();
-  through_grid_ = every_candidate || !neighbours_.begin(*particles_, box, step_at_hand_.offset, watch);
+  through_grid_ = every_candidate || !neighbours_.begin(*particles_, box, step_at_hand_.offset);
   if (through_grid_)
     grid_.begin(*particles_, box, step_at_hand_.offset, every_candidate);
   finder_step_ = DriftStep(frequencies_, -0.5 * step_, 0.5 * step_, box.size_x + box.size_y);
@@ -176,6 +195,21 @@ void DriftPhase::reject() {
       1);
   for (const std::vector<Candidate>& block : candidates_)
     costs_.survivors += block.size();
+  if (watch && !every_candidate) { // no window and no number of threads shows in what is watched
+    for (std::size_t b = 1; b < candidates_.size(); ++b)
+      candidates_[0].insert(candidates_[0].end(), candidates_[b].begin(), candidates_[b].end());
+    candidates_.resize(std::min<std::size_t>(candidates_.size(), 1));
+    for (std::vector<Candidate>& all : candidates_)
+      put_in_order(all);
+  }
+}
+
+void DriftPhase::put_in_order(std::vector<Candidate>& candidates) const {
+  const auto key = [&](const Candidate& c) {
+    return std::tuple(particles_->ids[c.low], particles_->ids[c.high], c.image.nx, c.image.ny);
+  };
+  std::sort(candidates.begin(), candidates.end(),
+            [&](const Candidate& a, const Candidate& b) { return key(a) < key(b); });
 }
 
 // All contacts as long as nothing has changed. Blocks are joined in order, so threads do not matter.

@@ -79,7 +79,7 @@ std::size_t Mirror::cell_of(const Line& line, const Level& level) const {
 }
 
 void Mirror::build(const Particles& particles, const ShearingBox& box, double offset, const Frequencies& frequencies,
-                   const MirrorWindow& window, bool in_order) {
+                   const MirrorWindow& window) {
   box_ = box;
   frequencies_ = frequencies;
   window_ = window;
@@ -91,7 +91,7 @@ void Mirror::build(const Particles& particles, const ShearingBox& box, double of
             static_cast<float>(box.shear), fraction(offset_, per_metre_y_)};
   take_lines(particles);
   lay_out_cells();
-  if (threads() > 1 && !in_order)
+  if (threads() > 1)
     sort<true>();
   else
     sort<false>();

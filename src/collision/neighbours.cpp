@@ -19,14 +19,11 @@ Image Neighbours::nearest_image(const Body& a, const Body& b) const {
   return box_.image_into_cell(x, y, offset_);
 }
 
-bool Neighbours::begin(const Particles& particles, const ShearingBox& box, double offset, bool in_order) {
+bool Neighbours::begin(const Particles& particles, const ShearingBox& box, double offset) {
   const bool same = particles_ == &particles && changed_.size() == particles.size();
   particles_ = &particles;
   box_ = box;
   offset_ = offset;
-  if (in_order != in_order_)
-    forget();
-  in_order_ = in_order;
   ++at_step_;
   if (!(goes_on_ && !over_ && same && at_step_ < length_ && kick_path_ <= skin_))
     open();
@@ -82,7 +79,7 @@ void Neighbours::open() {
   skin_ = length_ > 1 ? skin_for(length_) : 0.0;
   kick_path_ = 0.0;
   const auto build = [&] {
-    mirror_.build(*particles_, box_, offset_, frequencies_, {-since_middle(), 0.5 * length_ * step_, skin_}, in_order_);
+    mirror_.build(*particles_, box_, offset_, frequencies_, {-since_middle(), 0.5 * length_ * step_, skin_});
     ++windows;
   };
   build();

@@ -84,7 +84,7 @@ void Simulation::sort_when_due() {
   if (state_.step % interval != 0)
     return;
   const Stopwatch watch(split_.drift);
-  drift_.sorted();
+  drift_.forget();
   const std::vector<std::uint32_t> order = order_by_place(state_.particles, state_.box, state_.epoch_offset());
   reorder(state_.particles.bodies, order);
   reorder(state_.particles.ids, order);

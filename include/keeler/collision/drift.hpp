@@ -65,8 +65,8 @@ public:
   void moved_on() { neighbours_.moved_on(); }
   /// All particles have been kicked by no more than this (m rad⁻¹).
   void kicked(double largest) { neighbours_.kicked(largest); }
-  /// Particles are about to change their places in the store.
-  void sorted() { neighbours_.release(); }
+  /// Anything else is about to happen to them: a change of their places in the store, say.
+  void forget() { neighbours_.release(); }
   /// Puts another finder in place of the settings' one: to measure finders.
   void use(std::unique_ptr<Finder> finder) { finder_ = std::move(finder); }
 
@@ -89,6 +89,7 @@ private:
   void prepare();
   bool in_groups(const std::vector<Event>& first, CollisionTally& tally);
   void reject();
+  void put_in_order(std::vector<Candidate>& candidates) const;
   std::vector<Event> solve();
   std::size_t bytes() const;
 

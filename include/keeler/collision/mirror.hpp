@@ -36,9 +36,9 @@ struct MirrorMeans {
 class Mirror {
 public:
   /// Sorts all particles in. `offset` is the shear offset at the epoch. Throws InvariantError when elements are not
-  /// finite. `in_order`: particles of one cell stand in an order that no number of threads changes.
+  /// finite. Particles of one cell stand in any order.
   void build(const Particles& particles, const ShearingBox& box, double offset, const Frequencies& frequencies,
-             const MirrorWindow& window, bool in_order);
+             const MirrorWindow& window);
 
   /// Whether no two particles may meet through more than one image, and that one is the nearest.
   bool one_image() const { return one_image_; }

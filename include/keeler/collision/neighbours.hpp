@@ -24,9 +24,8 @@ public:
   Neighbours(const Frequencies& frequencies, double step) : frequencies_(frequencies), step_(step) {}
 
   /// A step begins. Opens a new window unless the last one can go on: see moved_on(). Throws InvariantError when
-  /// elements are not finite. `in_order`: pairs come in the same order for any number of threads. Returns false when
-  /// the box is so small that pairs may meet through several images.
-  bool begin(const Particles& particles, const ShearingBox& box, double offset, bool in_order);
+  /// elements are not finite. Returns false when the box is so small that pairs may meet through several images.
+  bool begin(const Particles& particles, const ShearingBox& box, double offset);
 
   /// The particles of the last step have moved on by exactly one step and been wrapped; nothing else but kicks happened
   /// to them.
@@ -117,8 +116,7 @@ private:
 
   // the window
   bool goes_on_ = false; // the promise of moved_on()
-  bool in_order_ = false;
-  bool over_ = false; // it ends with this step
+  bool over_ = false;    // it ends with this step
   int at_step_ = 0, length_ = 0;
   Mirror mirror_;
   Rotation to_middle_;                // from this step's epoch
