@@ -129,12 +129,13 @@ void DriftPhase::collide(Particles& particles, const ShearingBox& box, double of
 // On several threads, when the result cannot tell and it is likely to be faster: with enough contacts to share, and
 // few enough of all particles hit for groups to stay small.
 bool DriftPhase::in_groups(const std::vector<Event>& first, CollisionTally& tally) {
-  constexpr std::size_t fewest = 256;
+  constexpr std::size_t fewest = 2048;   // with two threads
   constexpr double largest_share = 0.01; // of the particles, times threads
   const double share = static_cast<double>(first.size()) / static_cast<double>(particles_->size() + 1);
   if (through_grid_ || watch || !finder_->exact())
     return false;
-  const bool worth_while = threads() > 1 && first.size() >= fewest && share <= largest_share * threads();
+  const bool worth_while =
+      threads() > 1 && first.size() * (threads() - 1) >= fewest && share <= largest_share * threads();
   if (!(worth_while || always_in_groups) || !groups_.carry_out(step_at_hand_, *finder_, neighbours_, first))
     return false;
   costs_.widest_list = std::max(costs_.widest_list, groups_.most_partners());
