@@ -17,8 +17,8 @@ constexpr double tree_ns = 500.0;          // per particle and kick, 9 boxes, op
 constexpr double direct_pair_ns = 1.0;     // per pair and image
 constexpr double program_bytes = 33e6;     // code, libraries, buffers that do not grow with N
 constexpr double file_bytes = 260.0;       // files are built in memory before they are written
-constexpr double drift_bytes = 168.0;      // lines, cells, lists, stamps, and the scratch of sorting: at most 240 with state
-constexpr double tree_node_bytes = 120;    // box, mass, centre, quadrupole, links
+constexpr double drift_bytes = 168.0; // lines, cells, lists, stamps, and the scratch of sorting: at most 240 with state
+constexpr double tree_node_bytes = 120; // box, mass, centre, quadrupole, links
 constexpr double nodes_per_particle = 0.5;
 } // namespace cost
 

@@ -12,9 +12,7 @@ struct Recorder : DriftWatch {
   const DriftStep* step = nullptr;
   bool before_events = true;
 
-  void begins(const DriftStep& now) override {
-    step = &now;
-  }
+  void begins(const DriftStep& now) override { step = &now; }
   void searched(const Query& query, const FinderResult&) override {
     if (before_events)
       queries.push_back(query);
