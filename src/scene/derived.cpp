@@ -11,8 +11,8 @@ namespace {
 // What a run costs, for the estimates alone. Rough figures for one core of 2023; nothing but the estimate uses them.
 namespace cost {
 // Measured on one core with AVX-512: `keeler run` of both examples, and peak memory at N = 10⁵ and 4 × 10⁵.
-constexpr double drift_ns = 300.0;         // per particle and step, uniform patch
-constexpr double clumped_drift_ns = 800.0; // the same among self-gravity wakes
+constexpr double drift_ns = 150.0;         // per particle and step, uniform patch
+constexpr double clumped_drift_ns = 250.0; // the same among self-gravity wakes
 constexpr double tree_ns = 500.0;          // per particle and kick, 9 boxes, opening angle 0.6
 constexpr double direct_pair_ns = 1.0;     // per pair and image
 constexpr double program_bytes = 33e6;     // code, libraries, buffers that do not grow with N
