@@ -5,8 +5,8 @@
 namespace keeler::KEELER_KERNEL_SPACE {
 namespace {
 
-inline Floats metres(const Integers& fraction) {
-  return __builtin_convertvector(fraction, Floats);
+inline Floats floats(const Integers& values) {
+  return __builtin_convertvector(values, Floats);
 }
 
 // Differences wrap: those of unsigned integers, to be defined in C++.
@@ -22,8 +22,8 @@ inline unsigned near(const Line& line, const Fields& other, const LineFrame& fra
   const Integers outward = ~(across >> 31);
   const Integers wrapped = ((other.x ^ x) & (other.x ^ across)) >> 31;
   const Integers behind = minus(outward, offset ^ outward) & wrapped;
-  const Floats dx = frame.metres_x * metres(across);
-  const Floats dy = frame.metres_y * metres(minus(minus(other.y, y), behind));
+  const Floats dx = frame.metres_x * floats(across);
+  const Floats dy = frame.metres_y * floats(minus(minus(other.y, y), behind));
   const Floats dz = other.z - line.z;
   const Floats du = other.u - line.u;
   const Floats dv = other.v - line.v - frame.shear * dx;

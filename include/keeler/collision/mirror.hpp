@@ -118,6 +118,13 @@ private:
   double reach_y(const Line& line) const { return line.size + window_.half_length * std::fabs(line.v); }
   template<class Range>
   void ranges_in(const Level& level, const Line& line, std::uint32_t after, const Range& range) const;
+  template<class Slots>
+  void rows_in(const Level& level, std::size_t cell, std::uint32_t y, std::int64_t far, const Slots& slots) const;
+  // Where a line looks for those whose images stand so many boxes outward, as a fraction of the box.
+  std::uint32_t image_y(const Line& line, int boxes) const {
+    return static_cast<std::uint32_t>(line.y) + (std::uint32_t{1} << 31) +
+           static_cast<std::uint32_t>(boxes) * static_cast<std::uint32_t>(frame_.offset_y);
+  }
 
   ShearingBox box_;
   Frequencies frequencies_;
@@ -145,45 +152,48 @@ template<class Range>
 void Mirror::ranges_in(const Level& level, const Line& line, std::uint32_t after, const Range& range) const {
   if (level.end <= after)
     return;
-  const double reach_along_x = reach_x(line) + level.reach_x;
-  const double reach_along_y =
-      reach_y(line) + level.reach_y + box_.shear * window_.half_length * reach_along_x + level.stray_y;
-  const std::int64_t rx = static_cast<std::int64_t>((reach_along_x + level.stray_x) * per_metre_x_) + 4;
-  const std::int64_t ry = static_cast<std::int64_t>(reach_along_y * per_metre_y_) + 4;
+  const double metres_x = reach_x(line) + level.reach_x;
+  const double metres_y = reach_y(line) + level.reach_y + box_.shear * window_.half_length * metres_x + level.stray_y;
+  const std::int64_t far_x = static_cast<std::int64_t>((metres_x + level.stray_x) * per_metre_x_) + 4;
+  const std::int64_t far_y = static_cast<std::int64_t>(metres_y * per_metre_y_) + 4;
   const std::int64_t x = static_cast<std::int64_t>(line.x) + (std::int64_t{1} << 31);
-  std::int64_t first = (x - rx) * level.columns >> 32, last = (x + rx) * level.columns >> 32;
-  const bool round = last - first >= level.columns; // all columns, each once; images on either side
-  if (round)
-    first = 0, last = level.columns - 1;
+  const std::int64_t first = (x - far_x) * level.columns >> 32, last = (x + far_x) * level.columns >> 32;
   const auto slots = [&](std::size_t from, std::size_t to) { // of cells
     const std::uint32_t begin = std::max(starts_[from], after), end = starts_[to];
     if (begin < end)
       range(begin, end);
   };
+  if (last - first >= level.columns) { // all columns, each once: images on either side
+    slots(level.first_cell, level.first_cell + static_cast<std::size_t>(level.columns * level.rows));
+    return;
+  }
   for (std::int64_t c = first; c <= last; ++c) {
-    std::int64_t boxes = 0, column = c;
-    if (c < 0)
-      column += level.columns, boxes = -1;
-    else if (c >= level.columns)
-      column -= level.columns, boxes = 1;
-    const std::size_t cell = level.first_cell + static_cast<std::size_t>(column * level.rows);
-    if (starts_[cell + static_cast<std::size_t>(level.rows)] <= after)
-      continue;
-    const auto across = static_cast<std::uint32_t>(line.y) + (std::uint32_t{1} << 31) +
-                        static_cast<std::uint32_t>(boxes) * static_cast<std::uint32_t>(frame_.offset_y);
-    const std::int64_t y = across;
-    const std::int64_t low = (y - ry) * level.rows >> 32, high = (y + ry) * level.rows >> 32;
-    if (round || high - low + 1 >= level.rows) {
-      slots(cell, cell + static_cast<std::size_t>(level.rows));
-    } else if (low < 0) {
-      slots(cell, cell + static_cast<std::size_t>(high + 1));
-      slots(cell + static_cast<std::size_t>(low + level.rows), cell + static_cast<std::size_t>(level.rows));
-    } else if (high >= level.rows) {
-      slots(cell, cell + static_cast<std::size_t>(high - level.rows + 1));
-      slots(cell + static_cast<std::size_t>(low), cell + static_cast<std::size_t>(level.rows));
-    } else {
-      slots(cell + static_cast<std::size_t>(low), cell + static_cast<std::size_t>(high + 1));
-    }
+    const int boxes = c < 0 ? -1 : c >= level.columns ? 1 : 0; // outward
+    const std::size_t cell = level.first_cell + static_cast<std::size_t>((c - boxes * level.columns) * level.rows);
+    if (starts_[cell + static_cast<std::size_t>(level.rows)] > after)
+      rows_in(level, cell, image_y(line, boxes), far_y, slots);
+  }
+}
+
+// The cells of one column, the first of which is `cell`, within reach of a place along the orbit; the box is round.
+template<class Slots>
+void Mirror::rows_in(const Level& level, std::size_t cell, std::uint32_t y, std::int64_t far,
+                     const Slots& slots) const {
+  const std::int64_t rows = level.rows;
+  const std::int64_t low = (std::int64_t{y} - far) * rows >> 32, high = (std::int64_t{y} + far) * rows >> 32;
+  const auto of_column = [&](std::int64_t from, std::int64_t to) {
+    slots(cell + static_cast<std::size_t>(from), cell + static_cast<std::size_t>(to));
+  };
+  if (high - low + 1 >= rows) {
+    of_column(0, rows);
+  } else if (low < 0) {
+    of_column(0, high + 1);
+    of_column(low + rows, rows);
+  } else if (high >= rows) {
+    of_column(0, high - rows + 1);
+    of_column(low, rows);
+  } else {
+    of_column(low, high + 1);
   }
 }
 

@@ -131,14 +131,20 @@ private:
 };
 
 template<class Visit> void Neighbours::visit_block(std::size_t block, const Visit& visit) const {
+  constexpr std::size_t ahead = 12; // entries
   const bool listed_first = block < lists_.size();
   const std::size_t made = listed_first ? 0 : block - lists_.size() + 1;
-  const double start = -0.5 * step_;
-  for (const Entry& e : listed_first ? lists_[block] : added_[made - 1]) {
-    if (changed_[e.low] > made || changed_[e.high] > made)
-      continue;
-    visit_nearest(particles_->bodies[e.low], particles_->bodies[e.high], start,
-                  [&](const Image& image) { visit(e.low, e.high, image); });
+  const std::vector<Entry>& list = listed_first ? lists_[block] : added_[made - 1];
+  const std::vector<Body>& bodies = particles_->bodies;
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    if (k + ahead < list.size()) {
+      __builtin_prefetch(&bodies[list[k + ahead].low]);
+      __builtin_prefetch(&bodies[list[k + ahead].high]);
+    }
+    const Entry e = list[k];
+    if (changed_[e.low] <= made && changed_[e.high] <= made)
+      visit_nearest(bodies[e.low], bodies[e.high], -0.5 * step_,
+                    [&](const Image& image) { visit(e.low, e.high, image); });
   }
 }
 

@@ -10,8 +10,8 @@
 
 namespace keeler {
 
-/// Elements (m) at the common epoch, radius (m) and mass (kg).
-struct Body {
+/// Elements (m) at the common epoch, radius (m) and mass (kg). Aligned: in memory, one line of cache.
+struct alignas(64) Body {
   Elements elements;
   double radius = 0.0;
   double mass = 0.0;
