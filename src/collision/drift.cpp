@@ -136,8 +136,12 @@ bool DriftPhase::in_groups(const std::vector<Event>& first, CollisionTally& tall
     return false;
   const bool worth_while =
       threads() > 1 && first.size() * (threads() - 1) >= fewest && share <= largest_share * threads();
-  if (!(worth_while || always_in_groups) || !groups_.carry_out(step_at_hand_, *finder_, neighbours_, first))
+  if (!(worth_while || always_in_groups))
     return false;
+  if (!groups_.carry_out(step_at_hand_, *finder_, neighbours_, first)) {
+    groups_.trim();
+    return false;
+  }
   costs_.widest_list = std::max(costs_.widest_list, groups_.most_partners());
   for (const Contact* contact : groups_.contacts()) {
     tally.add(*contact);

@@ -51,8 +51,8 @@ public:
   /// The same for such an orbit, all images of all particles tried.
   template<class Visit> void visit_everywhere(std::size_t i, const Body& body, double start, const Visit& visit) const;
 
-  /// Calls visit(image of b) for the nearest image if it may touch from `start` to the end of the step. For orbits that
-  /// have one_image().
+  /// Calls visit(image of b) for the nearest image if it may touch from `start` to the end of the step. For orbits
+  /// that visit_partners() takes.
   template<class Visit> void visit_nearest(const Body& a, const Body& b, double start, const Visit& visit) const {
     const Image image = nearest_image(a, b);
     const Vec3 shift = box_.displacement(image, offset_);
