@@ -273,7 +273,7 @@ std::size_t DriftPhase::bytes() const {
   total += (stamps_.capacity() + touched_.capacity()) * sizeof(std::uint32_t);
   total += particles_->size() * finder_->bytes_per_particle();
   for (const std::vector<Candidate>& block : candidates_)
-    total += block.capacity() * sizeof(Candidate) + sizeof block;
+    total += block.capacity() * sizeof(Candidate) + sizeof(std::vector<Candidate>);
   return total;
 }
 

@@ -190,7 +190,7 @@ std::size_t Neighbours::bytes() const {
   std::size_t total = mirror_.bytes() + changed_.capacity();
   for (const auto* lists : {&lists_, &added_})
     for (const std::vector<Entry>& list : *lists)
-      total += list.capacity() * sizeof(Entry) + sizeof list;
+      total += list.capacity() * sizeof(Entry) + sizeof(std::vector<Entry>);
   return total;
 }
 
