@@ -64,7 +64,7 @@ TEST_CASE("what is at rest stays at rest: one orbit shared by all, touching or n
   // at rest in the turning frame each falls along an epicycle of its own
   std::vector<Sphere> spheres;
   for (int k = 0; k < 64; ++k) {
-    const Vec3 place(2.3 * (k % 4) - 4.0, 2.3 * (k / 4 % 4) - 4.0, 2.3 * (k / 16) - 4.0);
+    const Vec3 place(2.3 * (k % 4) - 4.0, 2.3 * (test::quotient(k, 4) % 4) - 4.0, 2.3 * (test::quotient(k, 16)) - 4.0);
     spheres.push_back({place, {0.0, 1.5 * place.x(), 0.0}});
   }
   CHECK(walk(spheres, 60.0, two_pi * 5e-3, 60) > 100);
@@ -75,7 +75,7 @@ TEST_CASE("a lattice at filling 0.6: no storm, and nothing sinks in") {
   test::RandomVectors random(1);
   std::vector<Sphere> spheres;
   for (int k = 0; k < 3 * 3 * 2 * 4; ++k) {
-    const Vec3 corner(k / 4 % 3 - 1.5, k / 12 % 3 - 1.5, k / 36 - 1.0);
+    const Vec3 corner(test::quotient(k, 4) % 3 - 1.5, test::quotient(k, 12) % 3 - 1.5, test::quotient(k, 36) - 1.0);
     const Vec3 faces[] = {{0.25, 0.25, 0.25}, {0.75, 0.75, 0.25}, {0.75, 0.25, 0.75}, {0.25, 0.75, 0.75}};
     spheres.push_back({side * (corner + faces[k % 4]), 3.0 * random.direction()});
   }
@@ -95,8 +95,8 @@ TEST_CASE("jammed rows, hit from above: no storm, and nothing sinks in") {
     const double spacing = closed ? 2.0 + 1e-6 : 2.0;
     std::vector<Sphere> spheres;
     for (int k = 0; k < 60; ++k) // e = 0 and X apart by √3: the shear moves whole rows
-      spheres.push_back(
-          {{1.7320508075688774 * spacing / 2.0 * (k / 20) - 1.8, spacing * (k % 20 - 10 + 0.5 * (k / 20)), 0.0}});
+      spheres.push_back({{1.7320508075688774 * spacing / 2.0 * (test::quotient(k, 20)) - 1.8,
+                          spacing * (k % 20 - 10 + 0.5 * (test::quotient(k, 20))), 0.0}});
     for (int k = 0; k < 10; ++k)
       spheres.push_back({{0.1, 4.0 * k - 19.3, 3.0}, {0.1, 0.0, -10.0}});
     Ring ring(test::patch_of(spheres, 12.0, closed ? 20 * spacing : 60.0), {}, two_pi * 2e-3);
@@ -154,7 +154,8 @@ TEST_CASE("elastic spheres keep their energy to rounding in each of 10^4 collisi
   std::vector<Sphere> column, gas;
   for (int k = 0; k < count; ++k) {
     column.push_back({{0.0, 0.0, 2.1 * (k - 4.5)}, {0.0, 0.0, 40.0 * (random.uniform() - 0.5)}});
-    gas.push_back({{2.4 * (k % 2), 2.4 * (k / 2 % 2), 2.4 * (k / 4) - 2.5}, 3.0 * random.direction()});
+    gas.push_back({{2.4 * (k % 2), 2.4 * (test::quotient(k, 2) % 2), 2.4 * (test::quotient(k, 4)) - 2.5},
+                   3.0 * random.direction()});
   }
   Ring rings[] = {Ring(test::patch_of(column, 50.0, 50.0), elastic, two_pi * 0.05),
                   Ring(test::patch_of(gas, 5.5, 5.5, {2.0, 1.0}), elastic, two_pi * 0.02)};
@@ -200,7 +201,8 @@ TEST_CASE("a box of 10^5 radii, with all particles about its corner") {
     test::RandomVectors random(4);
     std::vector<Sphere> spheres;
     for (int k = 0; k < 80; ++k) {
-      const Vec3 place(3.0 * (k % 4) - 4.5, 3.0 * (k / 4 % 4) - 4.5, 3.0 * (k / 16) - 6.0);
+      const Vec3 place(3.0 * (k % 4) - 4.5, 3.0 * (test::quotient(k, 4) % 4) - 4.5,
+                       3.0 * (test::quotient(k, 16)) - 6.0);
       const Vec3 corner(place.x() < 0.0 ? 0.5 * side : -0.5 * side, place.y() < 0.0 ? 0.5 * side : -0.5 * side, 0.0);
       spheres.push_back({place + corner, 3.0 * random.direction()});
     }

@@ -108,7 +108,7 @@ TEST_CASE("the same bits as the plain twin: one particle outruns the others' bou
   // quiet lists for some steps, and then something fast comes flying in
   std::vector<test::Sphere> spheres;
   for (int k = 0; k < 60; ++k)
-    spheres.push_back({{4.0 * (k % 8 - 4), 4.0 * (k / 8 - 4), 0.0}, Vec3::Zero(), 1.0, 1.0});
+    spheres.push_back({{4.0 * (k % 8 - 4), 4.0 * (test::quotient(k, 8) - 4), 0.0}, Vec3::Zero(), 1.0, 1.0});
   for (const double speed : {200.0, 2000.0, 30000.0}) {
     CAPTURE(speed);
     std::vector<test::Sphere> shot = spheres;

@@ -43,7 +43,7 @@ std::vector<Sphere> ball(double radius) {
   const double side = std::cbrt(4.0 * (4.0 / 3.0 * pi) / 0.6);
   std::vector<Sphere> spheres;
   for (int k = 0; k < 8 * 8 * 8 * 4; ++k) {
-    const Vec3 corner(k / 4 % 8 - 4, k / 32 % 8 - 4, k / 256 - 4);
+    const Vec3 corner(test::quotient(k, 4) % 8 - 4, test::quotient(k, 32) % 8 - 4, test::quotient(k, 256) - 4);
     const Vec3 faces[] = {{0.0, 0.0, 0.1}, {0.5, 0.5, 0.1}, {0.5, 0.0, 0.6}, {0.0, 0.5, 0.6}};
     const Vec3 place = side * (corner + faces[k % 4]);
     if (place.norm() < radius)

@@ -11,6 +11,11 @@
 
 namespace keeler::test {
 
+/// a / b in whole numbers: rows and layers of numbered spheres.
+inline int quotient(int a, int b) {
+  return a / b;
+}
+
 struct Sphere {
   Vec3 position;
   Vec3 velocity = Vec3::Zero(); ///< beyond the shear
