@@ -59,7 +59,7 @@ void let_threads_sleep(char** argv) {
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT"))
     return;
   setenv("OMP_WAIT_POLICY", "passive", 1);
-  setenv("GOMP_SPINCOUNT", "2000", 1); // some microseconds: steps have many short loops
+  setenv("GOMP_SPINCOUNT", "6000", 1); // some tens of microseconds: steps have many short loops
   execv("/proc/self/exe", argv);
 }
 

@@ -42,13 +42,15 @@ struct DriftPhase::InPlace {
   CollisionTally& tally;
 
   const Body& body(std::size_t i) const { return drift.particles_->bodies[i]; }
-  std::uint32_t stamp(std::size_t i) const { return drift.stamps_[i]; }
-  double last_change(std::size_t i) const { return drift.last_change_[i]; }
+  std::uint32_t stamp(std::size_t i) const { return drift.so_far_.stamp(i); }
+  double last_change(std::size_t i) const { return drift.so_far_.last_change(i); }
+  bool is_due(const Event& event) const { return drift.so_far_.holds(event); }
+  bool keeps(const Event&) const { return true; }
 
   void change(std::uint32_t i, const Elements& elements, double time) {
-    if (drift.stamps_[i]++ == 0)
+    if (stamp(i) == 0)
       drift.touched_.push_back(i);
-    drift.last_change_[i] = time;
+    drift.so_far_.change(i, time);
     drift.particles_->bodies[i].elements = elements;
     if (drift.through_grid_)
       drift.grid_.changed(i);
@@ -77,13 +79,13 @@ struct DriftPhase::InPlace {
   template<class Visit> void visit_unordered(std::size_t i, const Visit& visit) {
     if (drift.through_grid_)
       drift.grid_.visit_partners(i, last_change(i), visit);
-    else if (!drift.neighbours_.visit_partners(i, body(i), last_change(i), buffer, visit))
-      drift.neighbours_.visit_everywhere(i, body(i), last_change(i), visit);
+    else if (!drift.neighbours_.visit_partners(drift.neighbours_.mirror().whole(), i, last_change(i), buffer, visit))
+      drift.neighbours_.visit_everywhere(i, last_change(i), visit);
   }
 
   void prefetch(std::size_t i, int stage) const {
     if (!drift.through_grid_)
-      drift.neighbours_.prefetch(i, stage);
+      drift.neighbours_.mirror().prefetch(i, stage);
   }
 
   FinderResult find(const Query& query) const {
@@ -94,13 +96,12 @@ struct DriftPhase::InPlace {
     return result;
   }
 
-  void happened(const Contact& contact) {
+  void happened(const Event& event, const Contact& contact) {
     tally.add(contact);
     ++drift.costs_.contacts;
     drift.costs_.recontacts += contact.again;
     if (drift.watch)
-      drift.watch->collided({contact.event.time, contact.event.low_id, contact.event.high_id, contact.event.image,
-                             contact.normal_speed, contact.fast});
+      drift.watch->collided({event.time, event.low_id, event.high_id, event.image, contact.normal_speed, contact.fast});
   }
 
   std::vector<std::uint32_t> buffer;
@@ -112,9 +113,10 @@ void DriftPhase::collide(Particles& particles, const ShearingBox& box, double of
   gave_up_ = 0;
   prepare();
   reject();
-  const std::vector<Event> first = solve();
+  std::vector<Event> first = solve();
   const Stopwatch stopwatch(costs_.events);
-  if (!in_groups(first, tally)) {
+  const std::uint64_t contacts_before = costs_.contacts;
+  if (!in_strips(first, tally)) {
     events_.assign(first);
     InPlace orbits{*this, tally, {}};
     ContactLoop loop(step_at_hand_, orbits, events_);
@@ -122,51 +124,41 @@ void DriftPhase::collide(Particles& particles, const ShearingBox& box, double of
     costs_.widest_list = std::max(costs_.widest_list, loop.most_partners());
   }
   if (!through_grid_)
-    neighbours_.settle(touched_);
+    neighbours_.settle(touched_, costs_.contacts - contacts_before);
   tally.gave_up += gave_up_;
 }
 
-// On several threads, when the result cannot tell and it is likely to be faster: with enough contacts to share, and
-// few enough of all particles hit for groups to stay small.
-bool DriftPhase::in_groups(const std::vector<Event>& first, CollisionTally& tally) {
-  constexpr std::size_t fewest = 2048;   // with two threads
-  constexpr double largest_share = 0.01; // of the particles, times threads
-  const double share = static_cast<double>(first.size()) / static_cast<double>(particles_->size() + 1);
+// On several threads, when the result cannot tell and it is likely to be faster: with enough contacts for each strip,
+// few enough of all particles hit for conflicts to be rare, and room between the strips' edges.
+bool DriftPhase::in_strips(const std::vector<Event>& first, CollisionTally& tally) {
+  constexpr std::size_t fewest_contacts = 50, fewest_columns = 16; // of a strip
+  constexpr std::size_t largest_share = 16;                        // one in so many particles
   if (through_grid_ || watch || !finder_->exact())
     return false;
-  const bool worth_while =
-      threads() > 1 && first.size() * (threads() - 1) >= fewest && share <= largest_share * threads();
-  if (!(worth_while || always_in_groups))
-    return false;
-  if (!groups_.carry_out(step_at_hand_, *finder_, neighbours_, first)) {
-    groups_.trim();
-    return false;
+  auto strips = std::min(Strips::most_strips, static_cast<std::size_t>(threads()));
+  if (!always_in_strips) {
+    if (first.size() * largest_share > particles_->size())
+      return false;
+    strips = std::min({strips, first.size() / fewest_contacts, neighbours_.mirror().columns() / fewest_columns});
+    if (strips < 2)
+      return false;
   }
-  costs_.widest_list = std::max(costs_.widest_list, groups_.most_partners());
-  for (const Contact* contact : groups_.contacts()) {
+  if (!strips_.carry_out(step_at_hand_, *particles_, so_far_, *finder_, neighbours_, first, strips))
+    return false;
+  costs_.widest_list = std::max(costs_.widest_list, strips_.most_partners());
+  for (const Contact* contact : strips_.contacts()) {
     tally.add(*contact);
     ++costs_.contacts;
     costs_.recontacts += contact->again;
   }
-  groups_.visit_members([&](const ContactGroups::Member& member) { touched_.push_back(member.place); });
-  groups_.write(particles_->bodies);
-  groups_.trim();
-  neighbours_.changed(touched_);
+  strips_.list_touched(touched_);
   return true;
 }
 
 void DriftPhase::prepare() {
   const Stopwatch stopwatch(costs_.build);
   ++costs_.steps;
-  if (stamps_.size() != particles_->size()) {
-    last_change_.assign(particles_->size(), -0.5 * step_);
-    stamps_.assign(particles_->size(), 0);
-  } else {
-    for (const std::uint32_t k : touched_) {
-      last_change_[k] = -0.5 * step_;
-      stamps_[k] = 0;
-    }
-  }
+  so_far_.begin_step(particles_->size(), -0.5 * step_);
   touched_.clear();
   const ShearingBox& box = step_at_hand_.box;
   if (every_candidate)
@@ -181,23 +173,28 @@ void DriftPhase::prepare() {
     watch->begins(finder_step_);
 }
 
+// First those blocks that follow each other in space: each thread meets the same part of the box again.
+template<class Body> void DriftPhase::for_each_block(const Body& body) const {
+  const std::size_t first = through_grid_ ? candidates_.size() : neighbours_.first_blocks();
+  parallel_for(first, body, 1);
+  parallel_for(
+      candidates_.size() - first, [&](std::size_t b) { body(first + b); }, 1);
+}
+
 // The pairs that the finder has to be asked about, block by block.
 void DriftPhase::reject() {
   const Stopwatch stopwatch(costs_.reject);
   candidates_.resize(through_grid_ ? grid_.blocks() : neighbours_.blocks());
-  parallel_for(
-      candidates_.size(),
-      [&](std::size_t b) {
-        candidates_[b].clear();
-        const auto keep = [&](std::size_t low, std::size_t high, const Image& image) {
-          candidates_[b].push_back({static_cast<std::uint32_t>(low), static_cast<std::uint32_t>(high), image});
-        };
-        if (through_grid_)
-          grid_.visit_block(b, keep);
-        else
-          neighbours_.visit_block(b, keep);
-      },
-      1);
+  for_each_block([&](std::size_t b) {
+    candidates_[b].clear();
+    const auto keep = [&](std::size_t low, std::size_t high, const Image& image) {
+      candidates_[b].push_back({static_cast<std::uint32_t>(low), static_cast<std::uint32_t>(high), image});
+    };
+    if (through_grid_)
+      grid_.visit_block(b, keep);
+    else
+      neighbours_.visit_block(b, keep);
+  });
   for (const std::vector<Candidate>& block : candidates_)
     costs_.survivors += block.size();
   if (watch && !every_candidate) { // no window and no number of threads shows in what is watched
@@ -244,7 +241,7 @@ std::vector<Event> DriftPhase::solve() {
     for (std::size_t b = 0; b < found.size(); ++b)
       search_block(b);
   else
-    parallel_for(found.size(), search_block, 1);
+    for_each_block(search_block);
   std::vector<Event> all;
   for (const Found& f : found) {
     all.insert(all.end(), f.events.begin(), f.events.end());
@@ -260,8 +257,8 @@ DriftCosts DriftPhase::costs() const {
   costs.windows = neighbours_.windows;
   costs.pairs_tested = neighbours_.tested;
   costs.listed = neighbours_.listed;
-  costs.conflicts = groups_.conflicts;
-  costs.repairs = groups_.repairs;
+  costs.conflicts = strips_.conflicts;
+  costs.repairs = strips_.repairs;
   if (particles_ && particles_->size())
     costs.bytes_per_particle = bytes() / particles_->size();
   return costs;
@@ -269,8 +266,8 @@ DriftCosts DriftPhase::costs() const {
 
 std::size_t DriftPhase::bytes() const {
   std::size_t total = particles_->bodies.capacity() * sizeof(Body) + particles_->ids.capacity() * sizeof(std::uint64_t);
-  total += neighbours_.bytes() + groups_.bytes() + events_.bytes() + last_change_.capacity() * sizeof(double);
-  total += (stamps_.capacity() + touched_.capacity()) * sizeof(std::uint32_t);
+  total += neighbours_.bytes() + strips_.bytes() + events_.bytes() + so_far_.bytes();
+  total += touched_.capacity() * sizeof(std::uint32_t);
   total += particles_->size() * finder_->bytes_per_particle();
   for (const std::vector<Candidate>& block : candidates_)
     total += block.capacity() * sizeof(Candidate) + sizeof(std::vector<Candidate>);

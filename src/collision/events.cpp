@@ -11,11 +11,11 @@ bool later(const Event& a, const Event& b) {
 
 } // namespace
 
-void EventQueue::assign(const std::vector<Event>& events) {
-  later_.clear();
+void EventQueue::assign(std::span<Event> events) {
+  std::sort(events.begin(), events.end());
   first_ = events;
   next_ = 0;
-  std::sort(first_.begin(), first_.end());
+  later_.clear();
 }
 
 void EventQueue::add(const Event& event) {

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <atomic>
 #include <cmath>
 
 namespace keeler {
@@ -14,7 +13,8 @@ namespace {
 
 constexpr std::size_t block_size = 4096;   // particles
 constexpr double nearest_share = 0.45;     // of the box: what reaches less far has one image in reach
-constexpr double cells_per_particle = 2.0; // no more
+constexpr double cells_per_particle = 2.0; // no more,
+constexpr double fewest_cells = 64.0;      // unless these are: columns, so that strips find edges
 constexpr double single = 4e-6;            // of a path: what single precision may do to a line
 constexpr double full_turn = 4294967296.0; // 2³², the box
 
@@ -70,7 +70,7 @@ int Mirror::level_of(const Line& line) const {
   return reach < 2.0 * least_radius_ ? 0 : std::min(std::ilogb(reach / least_radius_), most_levels - 1);
 }
 
-std::size_t Mirror::cell_of(const Line& line, const Level& level) const {
+std::size_t Mirror::cell_of(const Line& line, const MirrorLevel& level) const {
   const auto part = [](std::int32_t value, std::int64_t parts) {
     return (static_cast<std::int64_t>(value) + (std::int64_t{1} << 31)) * parts >> 32;
   };
@@ -91,10 +91,7 @@ void Mirror::build(const Particles& particles, const ShearingBox& box, double of
             static_cast<float>(box.shear), fraction(offset_, per_metre_y_)};
   take_lines(particles);
   lay_out_cells();
-  if (threads() > 1)
-    sort<true>();
-  else
-    sort<false>();
+  sort();
 }
 
 // All lines, levels and how far each reaches, and means.
@@ -143,30 +140,29 @@ void Mirror::take_lines(const Particles& particles) {
   const double count = static_cast<double>(bodies.size()) + 1e-9;
   means_ = {all.eccentricities / count, all.radii / count};
   next_least_radius_ = bodies.empty() ? 1.0 : all.least_radius;
-  levels_.clear();
+  whole_.levels.clear();
   for (int l = 0; l < most_levels; ++l) {
-    level_index_[l] = static_cast<int>(levels_.size());
+    level_index_[l] = static_cast<int>(whole_.levels.size());
     if (all.counts[l]) {
-      levels_.emplace_back();
-      levels_.back().count = all.counts[l];
-      levels_.back().reach_x = all.reach_x[l];
-      levels_.back().reach_y = all.reach_y[l];
+      whole_.levels.emplace_back();
+      whole_.levels.back().count = all.counts[l];
+      whole_.levels.back().reach_x = all.reach_x[l];
+      whole_.levels.back().reach_y = all.reach_y[l];
     }
   }
 }
 
 // Columns as wide as two particles of the level reach together, rows of half of that: ranges end close to what is in
-// reach.
+// reach. Where that makes too many cells, they are larger; where particles are few, longer.
 void Mirror::lay_out_cells() {
   std::size_t cells = 0;
   double two_farthest[2] = {0.0, 0.0};
-  for (Level& level : levels_) {
-    const double number = static_cast<double>(level.count);
+  for (MirrorLevel& level : whole_.levels) {
+    const double most = std::max(cells_per_particle * static_cast<double>(level.count), fewest_cells);
     double columns = box_.size_x / (2.0 * level.reach_x), rows = box_.size_y / level.reach_y;
-    const double too_many = std::sqrt(std::max(1.0, columns * rows / (cells_per_particle * number)));
-    columns = std::max(1.0, columns / too_many), rows = std::max(1.0, rows / too_many);
-    level.columns = static_cast<std::int64_t>(std::min(columns, 2.0 * number));
-    level.rows = static_cast<std::int64_t>(std::min(rows, 2.0 * number));
+    columns = std::min(columns, std::max(fewest_cells, columns / std::sqrt(std::max(1.0, columns * rows / most))));
+    level.columns = static_cast<std::int64_t>(std::max(1.0, columns));
+    level.rows = static_cast<std::int64_t>(std::max(1.0, std::min(rows, most / static_cast<double>(level.columns))));
     level.first_cell = cells;
     cells += static_cast<std::size_t>(level.columns * level.rows);
     const double reach = std::max(level.reach_x, level.reach_y);
@@ -178,10 +174,10 @@ void Mirror::lay_out_cells() {
   one_image_ = (two_farthest[0] + two_farthest[1]) * sheared < nearest_share * std::min(box_.size_x, box_.size_y);
 }
 
-bool Mirror::one_image(const Line& line) const {
+bool Mirror::one_image(const Line& line, const MirrorPart& part) const {
   const double own = std::max(reach_x(line), reach_y(line));
   double farthest = own; // another that was hit may reach as far
-  for (const Level& level : levels_)
+  for (const MirrorLevel& level : part.levels)
     farthest = std::max({farthest, level.reach_x + level.stray_x, level.reach_y + level.stray_y});
   const double reach = own + farthest;
   const double sheared = 1.0 + box_.shear * window_.half_length;
@@ -189,87 +185,139 @@ bool Mirror::one_image(const Line& line) const {
 }
 
 // A counting sort. While it runs, starts_[c + 1] is where the next particle of cell c goes; in the end, where cell
-// c + 1 begins.
-template<bool shared> void Mirror::sort() {
-  const std::size_t count = unsorted_.size(), blocks = (count + block_size - 1) / block_size;
+// c + 1 begins. Each thread counts and places the particles of some cells.
+void Mirror::sort() {
+  const std::size_t count = unsorted_.size(), parts = static_cast<std::size_t>(threads());
   cells_.resize(count);
   slots_.resize(count);
   lines_.resize(count + sweep_padding);
-  const auto next = [&](std::size_t entry) {
-    if constexpr (shared)
-      return std::atomic_ref(starts_[entry]).fetch_add(1, std::memory_order_relaxed);
-    else
-      return starts_[entry]++;
-  };
+  parallel_for(
+      count,
+      [&](std::size_t k) {
+        const Line& line = unsorted_[k];
+        cells_[k] = static_cast<std::uint32_t>(cell_of(line, whole_.levels[level_index_[level_of(line)]]));
+      },
+      block_size);
   const auto for_all = [&](const auto& body) {
-    const auto block = [&](std::size_t b) {
-      for (std::size_t k = b * block_size; k < std::min(count, (b + 1) * block_size); ++k)
-        body(k);
-    };
-    if constexpr (shared)
-      parallel_for(blocks, block, 1);
-    else
-      for (std::size_t b = 0; b < blocks; ++b)
-        block(b);
+    parallel_for(
+        parts,
+        [&](std::size_t p) {
+          const std::size_t cells = starts_.size(), begin = cells * p / parts, end = cells * (p + 1) / parts;
+          for (std::size_t k = 0; k < count; ++k)
+            if (cells_[k] - begin < end - begin)
+              body(k);
+        },
+        1);
   };
-  for_all([&](std::size_t k) {
-    const Line& line = unsorted_[k];
-    cells_[k] = static_cast<std::uint32_t>(cell_of(line, levels_[level_index_[level_of(line)]]));
-    next(cells_[k] + 2);
-  });
+  for_all([&](std::size_t k) { ++starts_[cells_[k] + 2]; });
   for (std::size_t c = 2; c < starts_.size(); ++c)
     starts_[c] += starts_[c - 1];
   for_all([&](std::size_t k) {
-    const std::uint32_t slot = next(cells_[k] + 1);
-    slots_[k] = slot;
-    lines_[slot] = unsorted_[k];
+    slots_[k] = starts_[cells_[k] + 1]++;
+    lines_[slots_[k]] = unsorted_[k];
   });
-  for (Level& level : levels_) {
+  for (MirrorLevel& level : whole_.levels) {
     level.begin = starts_[level.first_cell];
     level.end = starts_[level.first_cell + static_cast<std::size_t>(level.columns * level.rows)];
   }
 }
 
-Mirror::Outgrown Mirror::replace(std::size_t place, const Line& line) {
+void Mirror::replace(MirrorPart& part, std::size_t place, const Line& line) {
   const std::size_t slot = slots_[place], cell = cells_[place];
   lines_[slot] = line;
   lines_[slot].place = static_cast<std::uint32_t>(place);
-  auto level = levels_.begin();
+  auto level = part.levels.begin();
   while (slot >= level->end)
     ++level;
   // how far outside of its cell; the image that stands nearest to it
-  const auto from_middle = [](std::int32_t value, std::size_t part, std::int64_t parts) {
-    const double size = full_turn / static_cast<double>(parts);
-    return static_cast<double>(value) + 0.5 * full_turn - (static_cast<double>(part) + 0.5) * size;
+  const auto from_middle = [](std::int32_t value, std::size_t cell_number, std::int64_t cells) {
+    const double size = full_turn / static_cast<double>(cells);
+    return static_cast<double>(value) + 0.5 * full_turn - (static_cast<double>(cell_number) + 0.5) * size;
   };
   const auto rows = static_cast<std::size_t>(level->rows);
   const double off_x = from_middle(line.x, (cell - level->first_cell) / rows, level->columns);
-  const double outward = -std::round(off_x / full_turn);
+  const double outward = -std::rint(off_x / full_turn);
   const double off_y = from_middle(line.y, (cell - level->first_cell) % rows, level->rows) - outward * frame_.offset_y;
-  const auto outside = [](double off, std::int64_t parts) {
-    return std::max(0.0, std::fabs(std::remainder(off, full_turn)) - 0.5 * full_turn / static_cast<double>(parts));
+  const auto outside = [](double off, std::int64_t cells) {
+    const double nearest = off - full_turn * std::rint(off / full_turn);
+    return std::max(0.0, std::fabs(nearest) - 0.5 * full_turn / static_cast<double>(cells));
   };
-  return {static_cast<std::size_t>(level - levels_.begin()), reach_x(line), reach_y(line),
-          outside(off_x, level->columns) / per_metre_x_, outside(off_y, level->rows) / per_metre_y_};
+  level->reach_x = std::max(level->reach_x, reach_x(line));
+  level->reach_y = std::max(level->reach_y, reach_y(line));
+  level->stray_x = std::max(level->stray_x, outside(off_x, level->columns) / per_metre_x_);
+  level->stray_y = std::max(level->stray_y, outside(off_y, level->rows) / per_metre_y_);
 }
 
-void Mirror::grow(const Outgrown& outgrown) {
-  Level& level = levels_[outgrown.level];
-  level.reach_x = std::max(level.reach_x, outgrown.reach_x);
-  level.reach_y = std::max(level.reach_y, outgrown.reach_y);
-  level.stray_x = std::max(level.stray_x, outgrown.stray_x);
-  level.stray_y = std::max(level.stray_y, outgrown.stray_y);
+void Mirror::join(const MirrorPart& part) {
+  for (std::size_t l = 0; l < part.levels.size(); ++l) {
+    MirrorLevel& level = whole_.levels[l];
+    level.reach_x = std::max(level.reach_x, part.levels[l].reach_x);
+    level.reach_y = std::max(level.reach_y, part.levels[l].reach_y);
+    level.stray_x = std::max(level.stray_x, part.levels[l].stray_x);
+    level.stray_y = std::max(level.stray_y, part.levels[l].stray_y);
+  }
 }
 
-std::size_t Mirror::near(const Line& line, const LineSpan& span, std::vector<std::uint32_t>& buffer) const {
+MirrorPart Mirror::part(std::uint32_t begin, std::uint64_t width) const {
+  MirrorPart part{whole_.levels, width};
+  for (MirrorLevel& level : part.levels) {
+    const auto columns = static_cast<std::uint64_t>(level.columns);
+    level.first_column = static_cast<std::int64_t>((begin * columns + 0xffffffff) >> 32);
+    level.last_column = static_cast<std::int64_t>((begin + width) * columns >> 32) - 1;
+    const auto slot = [&](std::int64_t column) {
+      return starts_[level.first_cell + static_cast<std::size_t>(std::min(column, level.columns) * level.rows)];
+    };
+    level.own_begin = slot(level.first_column);
+    level.own_end = slot(level.last_column + 1);
+    level.own_end_beyond = slot(std::max<std::int64_t>(0, level.last_column + 1 - level.columns));
+  }
+  return part;
+}
+
+MirrorColumn Mirror::column_of(std::size_t place) const {
+  const std::size_t cell = cells_[place];
+  const std::vector<MirrorLevel>& levels = whole_.levels;
+  std::size_t level = 0;
+  while (level + 1 < levels.size() && cell >= levels[level + 1].first_cell)
+    ++level;
+  return {level, static_cast<std::int64_t>(cell - levels[level].first_cell) / levels[level].rows};
+}
+
+bool Mirror::encloses(const MirrorPart& part, const Line& line) const {
+  if (part.whole())
+    return true;
+  return std::all_of(part.levels.begin(), part.levels.end(), [&](const MirrorLevel& level) {
+    const auto [first, last] = columns_near(level, line);
+    const std::int64_t turn = first < level.first_column ? level.columns : 0;
+    return first + turn >= level.first_column && last + turn <= level.last_column;
+  });
+}
+
+std::size_t Mirror::near(const MirrorPart& part, const Line& line, const LineSpan& span,
+                         std::vector<std::uint32_t>& buffer) const {
   std::size_t count = 0;
-  for (const Level& level : levels_)
+  for (const MirrorLevel& level : part.levels)
     ranges_in(level, line, 0, [&](std::uint32_t begin, std::uint32_t end) {
       const std::size_t room = count + (end - begin) + sweep_padding;
       if (buffer.size() < room)
         buffer.resize(2 * room);
-      count += sweep_(line, lines_.data(), frame_, span, begin, end, buffer.data() + count);
+      const std::uint32_t own_end = begin >= level.own_begin ? level.own_end : level.own_end_beyond;
+      if (part.whole() || end + sweep_padding <= own_end)
+        count += sweep_(line, lines_.data(), frame_, span, begin, end, buffer.data() + count);
+      else
+        count += sweep_copy(line, span, begin, end, buffer.data() + count);
     });
+  return count;
+}
+
+// A sweep reads on behind its range: not so here, where the lines may be another thread's.
+std::size_t Mirror::sweep_copy(const Line& line, const LineSpan& span, std::uint32_t begin, std::uint32_t end,
+                               std::uint32_t* found) const {
+  std::vector<Line> copy(lines_.begin() + begin, lines_.begin() + end);
+  copy.resize(copy.size() + sweep_padding);
+  const std::size_t count = sweep_(line, copy.data(), frame_, span, 0, end - begin, found);
+  for (std::size_t k = 0; k < count; ++k)
+    found[k] += begin;
   return count;
 }
 
@@ -280,7 +328,7 @@ void Mirror::prefetch(std::size_t place, int stage) const {
     return;
   }
   const std::size_t slot = slots_[place], cell = cells_[place];
-  auto level = levels_.begin();
+  auto level = whole_.levels.begin();
   while (slot >= level->end)
     ++level;
   const auto rows = static_cast<std::size_t>(level->rows);
@@ -296,7 +344,7 @@ void Mirror::prefetch(std::size_t place, int stage) const {
 
 double Mirror::stray() const {
   double most = 0.0;
-  for (const Level& level : levels_)
+  for (const MirrorLevel& level : whole_.levels)
     most = std::max({most, level.stray_x / level.reach_x, level.stray_y / level.reach_y});
   return most;
 }

@@ -89,29 +89,37 @@ void Neighbours::open() {
     build();
   }
   changed_.assign(particles_->size(), 0);
-  added_.clear();
   list_pairs();
 }
 
+void Neighbours::use_lists(std::size_t count) {
+  used_lists_ = count;
+  if (lists_.size() < count)
+    lists_.resize(count);
+}
+
 void Neighbours::list_pairs() {
-  lists_.resize(mirror_.one_image() ? (mirror_.size() + block_size - 1) / block_size : 0);
-  std::vector<std::uint64_t> tests(lists_.size());
+  first_lists_ = mirror_.one_image() ? (mirror_.size() + block_size - 1) / block_size : 0;
+  use_lists(first_lists_);
+  std::vector<std::uint64_t> tests(first_lists_);
   const double half = 0.5 * length_ * step_;
   parallel_for(
-      lists_.size(),
+      first_lists_,
       [&](std::size_t b) {
         std::vector<std::uint32_t> buffer;
-        lists_[b].clear();
+        std::vector<Entry>& list = lists_[b].entries;
+        list.clear();
+        lists_[b].made = 0;
         const std::size_t begin = b * block_size, end = std::min(mirror_.size(), begin + block_size);
         tests[b] = mirror_.sweep_pairs(begin, end, span(-half, half), buffer, [&](std::size_t i, std::size_t j) {
-          lists_[b].push_back(entry(mirror_.place(i), mirror_.place(j)));
+          list.push_back(entry(mirror_.place(i), mirror_.place(j)));
         });
       },
       1);
   std::uint64_t tests_now = 0, listed_now = 0;
-  for (std::size_t b = 0; b < lists_.size(); ++b) {
+  for (std::size_t b = 0; b < first_lists_; ++b) {
     tests_now += tests[b];
-    listed_now += lists_[b].size();
+    listed_now += lists_[b].entries.size();
   }
   tested += tests_now;
   listed += listed_now;
@@ -125,60 +133,55 @@ double Neighbours::departure(const Elements& change) const {
   const State s = state_at(change, f, Rotation());
   const double acceleration = 2.0 * f.kappa * change.eccentricity() + f.nu * f.nu * change.inclination();
   const double half = 0.5 * step_;
-  return s.position.cwiseAbs().maxCoeff() + half * s.velocity.cwiseAbs().maxCoeff() + 0.5 * acceleration * half * half;
+  return s.position.norm() + half * s.velocity.norm() + 0.5 * acceleration * half * half;
 }
 
-Mirror::Outgrown Neighbours::renew(std::size_t i) {
+void Neighbours::changed(MirrorPart& part, std::size_t i) {
   changed_[i] = static_cast<std::uint8_t>(at_step_ + 1);
-  return mirror_.replace(i, mirror_.line_of(particles_->bodies[i], to_middle_));
+  mirror_.replace(part, i, line_of(particles_->bodies[i]));
 }
 
-void Neighbours::changed(std::size_t i) {
-  ++hits_;
-  mirror_.grow(renew(i));
+void Neighbours::restore(MirrorPart& part, std::size_t i, const Line& line, Mark mark) {
+  changed_[i] = mark;
+  mirror_.replace(part, i, line);
 }
 
-void Neighbours::changed(std::span<const std::uint32_t> particles) {
-  hits_ += particles.size();
-  std::vector<Mirror::Outgrown> outgrown(particles.size());
-  parallel_for(particles.size(), [&](std::size_t k) { outgrown[k] = renew(particles[k]); });
-  for (const Mirror::Outgrown& each : outgrown)
-    mirror_.grow(each);
-}
-
-void Neighbours::settle(std::span<const std::uint32_t> particles) {
+void Neighbours::settle(std::span<const std::uint32_t> particles, std::uint64_t collisions) {
+  hits_ += 2 * collisions;
   if (at_step_ + 1 >= length_)
     return;
-  const auto too_fast = [&](std::uint32_t i) {
-    return !mirror_.one_image(mirror_.line_of(particles_->bodies[i], to_middle_));
-  };
-  if (mirror_.stray() > farthest_stray || std::any_of(particles.begin(), particles.end(), too_fast)) {
+  if (mirror_.stray() > farthest_stray) {
     over_ = true;
     return;
   }
-  constexpr std::size_t chunk = 64;
-  std::vector<std::vector<Entry>> found((particles.size() + chunk - 1) / chunk);
-  const double now = since_middle();
+  constexpr std::size_t chunk = 128;
+  const std::size_t before = used_lists_, more = (particles.size() + chunk - 1) / chunk;
+  use_lists(before + more);
+  std::vector<std::uint8_t> too_fast(more);
+  const LineSpan rest = span(since_middle() + 0.5 * step_, 0.5 * length_ * step_);
   const auto this_step = static_cast<std::uint8_t>(at_step_ + 1);
   parallel_for(
-      found.size(),
+      more,
       [&](std::size_t c) {
         std::vector<std::uint32_t> buffer;
+        std::vector<Entry>& list = lists_[before + c].entries;
+        list.clear();
+        lists_[before + c].made = this_step;
         for (std::size_t k = c * chunk; k < std::min(particles.size(), (c + 1) * chunk); ++k) {
           const std::uint32_t i = particles[k];
-          const Line line = mirror_.line_of(particles_->bodies[i], to_middle_);
-          const std::size_t count = mirror_.near(line, span(now + 0.5 * step_, 0.5 * length_ * step_), buffer);
+          const Line& line = mirror_.line(i);
+          if (!mirror_.one_image(line, mirror_.whole()))
+            too_fast[c] = 1;
+          const std::size_t count = mirror_.near(mirror_.whole(), line, rest, buffer);
           for (std::size_t n = 0; n < count; ++n) {
             const std::uint32_t j = mirror_.place(buffer[n]);
             if (j != i && !(changed_[j] == this_step && j < i)) // two that were hit find each other: one entry
-              found[c].push_back(entry(i, j));
+              list.push_back(entry(i, j));
           }
         }
       },
       1);
-  added_.emplace_back();
-  for (const std::vector<Entry>& entries : found)
-    added_.back().insert(added_.back().end(), entries.begin(), entries.end());
+  over_ |= std::find(too_fast.begin(), too_fast.end(), 1) != too_fast.end();
 }
 
 void Neighbours::release() {
@@ -188,9 +191,8 @@ void Neighbours::release() {
 
 std::size_t Neighbours::bytes() const {
   std::size_t total = mirror_.bytes() + changed_.capacity();
-  for (const auto* lists : {&lists_, &added_})
-    for (const std::vector<Entry>& list : *lists)
-      total += list.capacity() * sizeof(Entry) + sizeof(std::vector<Entry>);
+  for (const List& list : lists_)
+    total += list.entries.capacity() * sizeof(Entry) + sizeof list;
   return total;
 }
 

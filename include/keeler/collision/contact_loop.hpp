@@ -4,11 +4,13 @@
 // Orbits is where the particles' present orbits are kept; a loop does not know whether it is the only one of a step. It
 // has
 //   const Body& body(place)      std::uint32_t stamp(place)      double last_change(place)      as they are now
+//   bool is_due(event)           whether it still holds, and is for this loop to carry out
 //   void change(place, elements, time)                                     a new orbit from that time on
+//   bool keeps(event)                      after both changes: false has undone it all, for somebody else to carry out
 //   void visit_partners(place, visit)     visit(place, image) for all that its new orbit may bring into contact
 //   FinderResult find(query)
 //   void prefetch(place, stage)           a contact is to come: stages 0, 1 and 2, some contacts apart
-//   void happened(const Contact&)
+//   void happened(const Event&, const Contact&)     right before the changes
 #pragma once
 
 #include <keeler/collision/events.hpp>
@@ -17,6 +19,8 @@
 #include <keeler/core/error.hpp>
 
 #include <fmt/format.h>
+
+#include <vector>
 
 namespace keeler {
 
@@ -31,9 +35,44 @@ struct StepAtHand {
   double begin = 0.0;  ///< rad
 };
 
+/// What has happened to the particles in the step so far, by place.
+class StepSoFar {
+public:
+  void begin_step(std::size_t particles, double begin) {
+    ++step_;
+    begin_ = begin;
+    if (entries_.size() != particles)
+      entries_.assign(particles, {});
+  }
+
+  /// Velocity changes.
+  std::uint32_t stamp(std::size_t i) const { return entries_[i].step == step_ ? entries_[i].stamp : 0; }
+  /// The last of them, or the begin of the step.
+  double last_change(std::size_t i) const { return entries_[i].step == step_ ? entries_[i].time : begin_; }
+  bool holds(const Event& event) const {
+    return event.low_stamp == stamp(event.low) && event.high_stamp == stamp(event.high);
+  }
+
+  void change(std::size_t i, double time) { entries_[i] = {time, step_, stamp(i) + 1}; }
+  /// Undoes the last change; `time` is that of the one before.
+  void take_back(std::size_t i, double time) { entries_[i] = {time, step_, stamp(i) - 1}; }
+
+  std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
+
+private:
+  struct Entry {
+    double time = 0.0;
+    std::uint32_t step = 0; // that the rest is of
+    std::uint32_t stamp = 0;
+  };
+  std::uint32_t step_ = 0;
+  double begin_ = 0.0;
+  std::vector<Entry> entries_;
+};
+
 /// What one contact did. Energies in kg m² rad⁻².
 struct Contact {
-  Event event;
+  double time = 0.0;
   double normal_speed = 0.0; ///< of the approach, m rad⁻¹
   double energy_lost = 0.0, edge_work = 0.0;
   double momentum_flux = 0.0; ///< kg m² rad⁻¹
@@ -52,7 +91,7 @@ public:
     while (!events_.empty()) {
       prefetch();
       const Event event = events_.take_first();
-      if (event.low_stamp == orbits_.stamp(event.low) && event.high_stamp == orbits_.stamp(event.high))
+      if (orbits_.is_due(event))
         carry_out(event);
     }
   }
@@ -100,7 +139,7 @@ private:
         state_at(step_.box.image_of(b.elements, event.image, step_.offset) - a.elements, f, rotation);
     const Vec3 normal = relative.position.normalized();
     Contact contact;
-    contact.event = event;
+    contact.time = event.time;
     const double speed = contact.normal_speed = -relative.velocity.dot(normal);
     const Rebound after = rebound(*step_.settings, speed, a.radius + b.radius, step_.orbital_frequency);
     if (!(speed > -after.speed))
@@ -116,10 +155,12 @@ private:
     contact.energy_lost = 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
     contact.edge_work = event.image.nx * step_.box.shear * step_.box.size_x * impulse.y();
     contact.momentum_flux = relative.position.x() * impulse.y();
-    orbits_.happened(contact);
+    orbits_.happened(event, contact);
 
     change(event.low, a.elements, event.time);
     change(event.high, b.elements, event.time);
+    if (!orbits_.keeps(event))
+      return;
     search(event.low, nobody);
     search(event.high, event.low); // the pair itself, in all its images, has been searched
   }

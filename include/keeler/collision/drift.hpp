@@ -6,11 +6,11 @@
 #pragma once
 
 #include <keeler/box/shearing_box.hpp>
-#include <keeler/collision/contact_groups.hpp>
 #include <keeler/collision/costs.hpp>
 #include <keeler/collision/finders.hpp>
 #include <keeler/collision/grid_partners.hpp>
 #include <keeler/collision/settings.hpp>
+#include <keeler/collision/strips.hpp>
 #include <keeler/particles/store.hpp>
 
 namespace keeler {
@@ -72,8 +72,8 @@ public:
 
   DriftWatch* watch = nullptr; ///< searches then run on one thread
 
-  /// Carry out contacts in groups whenever that is allowed, worth while or not: to test them.
-  bool always_in_groups = false;
+  /// Carry out contacts in strips whenever that is allowed, worth while or not: to test them.
+  bool always_in_strips = false;
 
   /// Hand all that the grid's cells hold to the finder, without rejecting any first: to measure finders.
   bool every_candidate = false;
@@ -87,7 +87,8 @@ private:
   };
 
   void prepare();
-  bool in_groups(const std::vector<Event>& first, CollisionTally& tally);
+  bool in_strips(const std::vector<Event>& first, CollisionTally& tally);
+  template<class Body> void for_each_block(const Body& body) const;
   void reject();
   void put_in_order(std::vector<Candidate>& candidates) const;
   std::vector<Event> solve();
@@ -107,10 +108,9 @@ private:
   GridPartners grid_;
   std::vector<std::vector<Candidate>> candidates_;
   EventQueue events_;
-  ContactGroups groups_;
-  std::vector<double> last_change_;    // time of the last velocity change in this step
-  std::vector<std::uint32_t> stamps_;  // velocity changes in this step
-  std::vector<std::uint32_t> touched_; // whose two are not those of a step's start
+  Strips strips_;
+  StepSoFar so_far_;
+  std::vector<std::uint32_t> touched_; // who has changed in this step
   std::uint64_t gave_up_ = 0;
   DriftCosts costs_;
 };

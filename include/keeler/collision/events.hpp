@@ -6,6 +6,7 @@
 #include <keeler/box/shearing_box.hpp>
 
 #include <cstdint>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -30,22 +31,23 @@ struct Event {
 class EventQueue {
 public:
   bool empty() const { return next_ == first_.size() && later_.empty(); }
-  /// Replaces everything by these events.
-  void assign(const std::vector<Event>& events);
+  /// Replaces everything by these events, which are sorted and must stay where they are.
+  void assign(std::span<Event> events);
   void add(const Event& event);
   Event take_first();
   void clear() {
-    next_ = first_.size();
+    first_ = {};
+    next_ = 0;
     later_.clear();
   }
 
-  std::size_t bytes() const { return (first_.capacity() + later_.capacity()) * sizeof(Event); }
+  std::size_t bytes() const { return later_.capacity() * sizeof(Event); }
 
   /// One of the events that are likely to come up soon, or null.
   const Event* ahead(std::size_t by) const { return next_ + by < first_.size() ? &first_[next_ + by] : nullptr; }
 
 private:
-  std::vector<Event> first_;
+  std::span<const Event> first_;
   std::size_t next_ = 0;
   std::vector<Event> later_; // a binary heap, earliest first
 };

@@ -33,36 +33,84 @@ struct MirrorMeans {
   double eccentricity = 0.0, radius = 0.0; ///< m
 };
 
+/// Particles of similar reach, in cells of their own. Aligned: threads have copies, in lines of cache of their own.
+struct alignas(64) MirrorLevel {
+  std::uint64_t count = 0;
+  double reach_x = 0.0, reach_y = 0.0; ///< the farthest of its particles, m
+  double stray_x = 0.0, stray_y = 0.0; ///< how far their lines may stand from their cells, m
+  std::int64_t columns = 1, rows = 1;
+  std::size_t first_cell = 0;
+  std::uint32_t begin = 0, end = 0; ///< slots
+  // in a part of the mirror:
+  std::int64_t first_column = 0, last_column = 0; ///< that lie in it; those beyond the box's edge count on
+  /// Their slots: from here to there, and those of the columns beyond the box's edge from the level's first to the
+  /// last.
+  std::uint32_t own_begin = 0, own_end = 0, own_end_beyond = 0;
+};
+
+/// A column of cells.
+struct MirrorColumn {
+  std::size_t level;
+  std::int64_t number;
+};
+
+/// A mirror from one edge to another across the box, for one thread that changes nothing outside of it.
+struct MirrorPart {
+  std::vector<MirrorLevel> levels; ///< the finest first; without empty ones; how far those of this part reach and stray
+  std::uint64_t width = std::uint64_t{1} << 32; ///< as a fraction of the box, 2⁻³²
+
+  bool whole() const { return width >> 32 != 0; }
+  bool holds(const MirrorColumn& column) const {
+    const MirrorLevel& level = levels[column.level];
+    const std::int64_t number = column.number + (column.number < level.first_column ? level.columns : 0);
+    return whole() || number <= level.last_column;
+  }
+};
+
 class Mirror {
 public:
   /// Sorts all particles in. `offset` is the shear offset at the epoch. Throws InvariantError when elements are not
-  /// finite. Particles of one cell stand in any order.
+  /// finite.
   void build(const Particles& particles, const ShearingBox& box, double offset, const Frequencies& frequencies,
              const MirrorWindow& window);
 
   /// Whether no two particles may meet through more than one image, and that one is the nearest.
   bool one_image() const { return one_image_; }
   /// The same for one more line: a particle that was hit.
-  bool one_image(const Line& line) const;
+  bool one_image(const Line& line, const MirrorPart& part) const;
 
   const MirrorMeans& means() const { return means_; }
   std::size_t size() const { return cells_.size(); }
   std::uint32_t place(std::size_t slot) const { return lines_[slot].place; }
-  std::uint32_t slot(std::size_t place) const { return slots_[place]; }
+  const Line& line(std::size_t place) const { return lines_[slots_[place]]; }
 
   /// The line of a body whose elements' epoch stands `rotation.after` before the middle of the window; `offset` is the
   /// shear offset at the middle.
   Line line_of(const Body& body, const Rotation& rotation) const;
 
-  /// How far a new line reaches beyond what the mirror was laid out for.
-  struct Outgrown {
-    std::size_t level = 0;
-    double reach_x = 0.0, reach_y = 0.0, stray_x = 0.0, stray_y = 0.0; // m
-  };
-  /// A particle has a new line. Several threads may replace those of different particles; what that comes to must be
-  /// passed to grow() before anything is looked up.
-  Outgrown replace(std::size_t place, const Line& line);
-  void grow(const Outgrown& outgrown);
+  /// All of it.
+  MirrorPart& whole() { return whole_; }
+  const MirrorPart& whole() const { return whole_; }
+  /// What lies between two places across the box, as fractions of it (2⁻³²).
+  MirrorPart part(std::uint32_t begin, std::uint64_t width) const;
+  /// The whole widens its levels to those of a part.
+  void join(const MirrorPart& part);
+  /// Where a line stands across the box.
+  static std::uint32_t across(const Line& line) {
+    return static_cast<std::uint32_t>(line.x) + (std::uint32_t{1} << 31);
+  }
+  /// That of a particle.
+  MirrorColumn column_of(std::size_t place) const;
+  /// Whether everything that a line may touch lies in a part.
+  bool encloses(const MirrorPart& part, const Line& line) const;
+
+  /// A particle of a part has a new line.
+  void replace(MirrorPart& part, std::size_t place, const Line& line);
+
+  /// Of the coarsest level.
+  std::size_t columns() const {
+    return whole_.levels.empty() ? 0 : static_cast<std::size_t>(whole_.levels.back().columns);
+  }
 
   /// How far lines may stand from their cells, in reaches of their level.
   double stray() const;
@@ -73,17 +121,9 @@ public:
   std::uint64_t sweep_pairs(std::size_t begin, std::size_t end, const LineSpan& span,
                             std::vector<std::uint32_t>& buffer, const Found& found) const;
 
-  /// Slots that may touch a line in the span, put into the buffer; returns how many.
-  std::size_t near(const Line& line, const LineSpan& span, std::vector<std::uint32_t>& buffer) const;
-
-  /// Slots of all that can come into contact with a place in the window when the two go no farther than `off` (m) off
-  /// their lines: range(begin, end).
-  template<class Range> void visit_slots_near(std::size_t place, double off, const Range& range) const {
-    Line line = lines_[slots_[place]];
-    line.size += static_cast<float>(1.001 * off);
-    for (const Level& level : levels_)
-      ranges_in(level, line, 0, range);
-  }
+  /// Slots that may touch a line in the span, put into the buffer; returns how many. The part encloses the line.
+  std::size_t near(const MirrorPart& part, const Line& line, const LineSpan& span,
+                   std::vector<std::uint32_t>& buffer) const;
 
   /// Gives back most of the memory; a build must follow before anything else.
   void release() {
@@ -99,27 +139,25 @@ public:
 private:
   static constexpr int most_levels = 32;
 
-  struct Level {
-    std::uint64_t count = 0;
-    double reach_x = 0.0, reach_y = 0.0; ///< the farthest of its particles, m
-    double stray_x = 0.0, stray_y = 0.0; ///< how far their lines may stand from their cells, m
-    std::int64_t columns = 1, rows = 1;
-    std::size_t first_cell = 0;
-    std::uint32_t begin = 0, end = 0; ///< slots
-  };
   struct Measured;
 
   void take_lines(const Particles& particles);
   void lay_out_cells();
-  template<bool shared> void sort();
+  void sort();
   int level_of(const Line& line) const;
-  std::size_t cell_of(const Line& line, const Level& level) const;
+  std::size_t cell_of(const Line& line, const MirrorLevel& level) const;
   double reach_x(const Line& line) const { return line.size + window_.half_length * std::fabs(line.u); }
   double reach_y(const Line& line) const { return line.size + window_.half_length * std::fabs(line.v); }
+  struct Columns {
+    std::int64_t first, last; // beyond the box's edges they count on
+  };
+  Columns columns_near(const MirrorLevel& level, const Line& line) const;
+  std::size_t sweep_copy(const Line& line, const LineSpan& span, std::uint32_t begin, std::uint32_t end,
+                         std::uint32_t* found) const;
   template<class Range>
-  void ranges_in(const Level& level, const Line& line, std::uint32_t after, const Range& range) const;
+  void ranges_in(const MirrorLevel& level, const Line& line, std::uint32_t after, const Range& range) const;
   template<class Slots>
-  void rows_in(const Level& level, std::size_t cell, std::uint32_t y, std::int64_t far, const Slots& slots) const;
+  void rows_in(const MirrorLevel& level, std::size_t cell, std::uint32_t y, std::int64_t far, const Slots& slots) const;
   // Where a line looks for those whose images stand so many boxes outward, as a fraction of the box.
   std::uint32_t image_y(const Line& line, int boxes) const {
     return static_cast<std::uint32_t>(line.y) + (std::uint32_t{1} << 31) +
@@ -138,8 +176,8 @@ private:
   double per_metre_x_ = 0.0, per_metre_y_ = 0.0; // box fractions, in units of 2⁻³²
   LineSweep sweep_ = line_sweep(choose_instruction_set());
 
-  std::vector<Line> unsorted_;        // by place, while building
-  std::vector<Level> levels_;         // the finest first; without empty ones
+  std::vector<Line> unsorted_; // by place, while building
+  MirrorPart whole_;
   int level_index_[most_levels] = {}; // of an octave
   std::vector<std::uint32_t> starts_; // first slot of each cell
   std::vector<std::uint32_t> cells_;  // of each place
@@ -147,17 +185,21 @@ private:
   std::vector<Line> lines_;           // by slot
 };
 
+inline Mirror::Columns Mirror::columns_near(const MirrorLevel& level, const Line& line) const {
+  const double metres = reach_x(line) + level.reach_x + level.stray_x;
+  const std::int64_t far = static_cast<std::int64_t>(metres * per_metre_x_) + 4, x = across(line);
+  return {(x - far) * level.columns >> 32, (x + far) * level.columns >> 32};
+}
+
 // Slots from `after` on that lie in the level's cells within reach of the line.
 template<class Range>
-void Mirror::ranges_in(const Level& level, const Line& line, std::uint32_t after, const Range& range) const {
+void Mirror::ranges_in(const MirrorLevel& level, const Line& line, std::uint32_t after, const Range& range) const {
   if (level.end <= after)
     return;
   const double metres_x = reach_x(line) + level.reach_x;
   const double metres_y = reach_y(line) + level.reach_y + box_.shear * window_.half_length * metres_x + level.stray_y;
-  const std::int64_t far_x = static_cast<std::int64_t>((metres_x + level.stray_x) * per_metre_x_) + 4;
   const std::int64_t far_y = static_cast<std::int64_t>(metres_y * per_metre_y_) + 4;
-  const std::int64_t x = static_cast<std::int64_t>(line.x) + (std::int64_t{1} << 31);
-  const std::int64_t first = (x - far_x) * level.columns >> 32, last = (x + far_x) * level.columns >> 32;
+  const auto [first, last] = columns_near(level, line);
   const auto slots = [&](std::size_t from, std::size_t to) { // of cells
     const std::uint32_t begin = std::max(starts_[from], after), end = starts_[to];
     if (begin < end)
@@ -177,7 +219,7 @@ void Mirror::ranges_in(const Level& level, const Line& line, std::uint32_t after
 
 // The cells of one column, the first of which is `cell`, within reach of a place along the orbit; the box is round.
 template<class Slots>
-void Mirror::rows_in(const Level& level, std::size_t cell, std::uint32_t y, std::int64_t far,
+void Mirror::rows_in(const MirrorLevel& level, std::size_t cell, std::uint32_t y, std::int64_t far,
                      const Slots& slots) const {
   const std::int64_t rows = level.rows;
   const std::int64_t low = (std::int64_t{y} - far) * rows >> 32, high = (std::int64_t{y} + far) * rows >> 32;
@@ -201,7 +243,7 @@ template<class Found>
 std::uint64_t Mirror::sweep_pairs(std::size_t begin, std::size_t end, const LineSpan& span,
                                   std::vector<std::uint32_t>& buffer, const Found& found) const {
   std::uint64_t tested = 0;
-  auto own = levels_.begin();
+  auto own = whole_.levels.begin();
   for (std::size_t slot = begin; slot < end; ++slot) {
     while (slot >= own->end)
       ++own;
@@ -214,7 +256,7 @@ std::uint64_t Mirror::sweep_pairs(std::size_t begin, std::size_t end, const Line
       for (std::size_t k = 0; k < count; ++k)
         found(slot, std::size_t{buffer[k]});
     };
-    for (auto level = levels_.begin(); level != own; ++level)
+    for (auto level = whole_.levels.begin(); level != own; ++level)
       ranges_in(*level, line, 0, range);
     ranges_in(*own, line, static_cast<std::uint32_t>(slot) + 1, range);
   }

@@ -40,16 +40,23 @@ public:
   /// Calls visit(low, high, image of high) for every pair, the lower id first, that may touch in this step as long as
   /// nothing changes. Blocks, of which there are blocks(), may be visited by several threads.
   template<class Visit> void visit_block(std::size_t block, const Visit& visit) const;
-  std::size_t blocks() const { return lists_.size() + added_.size(); }
+  std::size_t blocks() const { return used_lists_; }
+  /// The first of these are of the window's begin, in the order of places; the others are of later steps.
+  std::size_t first_blocks() const { return first_lists_; }
 
-  /// Calls visit(j, image of j) for every other particle that a particle with a new orbit may meet from `start` to the
-  /// end of the step, as the store and the mirror know them. Returns false, having visited nobody, when the orbit is so
-  /// fast that it may meet another one through several images.
+  /// Calls visit(j, image of j) for every other particle that one with a new orbit may meet from `start` to the end of
+  /// the step, as the store and the mirror know them. Returns false, having visited nobody, when its orbit is so fast
+  /// that it may meet another one through several images. The part encloses it.
   template<class Visit>
-  bool visit_partners(std::size_t i, const Body& body, double start, std::vector<std::uint32_t>& buffer,
+  bool visit_partners(const MirrorPart& part, std::size_t i, double start, std::vector<std::uint32_t>& buffer,
                       const Visit& visit) const;
   /// The same for such an orbit, all images of all particles tried.
-  template<class Visit> void visit_everywhere(std::size_t i, const Body& body, double start, const Visit& visit) const;
+  template<class Visit> void visit_everywhere(std::size_t i, double start, const Visit& visit) const;
+  /// Calls visit(j) for every other particle that particle i may meet from `start` to the end of the step when j has
+  /// been no farther than this (m) off its present path.
+  template<class Visit>
+  void visit_around(const MirrorPart& part, std::size_t i, double start, double off, std::vector<std::uint32_t>& buffer,
+                    const Visit& visit) const;
 
   /// Calls visit(image of b) for the nearest image if it may touch from `start` to the end of the step. For orbits
   /// that visit_partners() takes.
@@ -59,26 +66,26 @@ public:
     if (step_test_.may_touch(a, b, shift.x(), shift.y(), start))
       visit(image);
   }
-  /// How far a particle is off the path it had at the step's start, at any time of the step, when its elements have
-  /// changed by this much, m.
+  /// How far two paths that differ by these elements are apart at any time of the step, m.
   double departure(const Elements& change) const;
 
-  /// Slots in which the mirror holds everything that can come into contact with particle i in this step, when the two
-  /// go no farther than this off the paths that the mirror knows: range(begin, end).
-  template<class Range> void visit_slots_near(std::size_t i, double off, const Range& range) const {
-    mirror_.visit_slots_near(i, off, range);
-  }
-  std::uint32_t slot(std::size_t i) const { return mirror_.slot(i); }
-  void prefetch(std::size_t i, int stage) const { mirror_.prefetch(i, stage); }
-  std::size_t size() const { return mirror_.size(); }
+  const Mirror& mirror() const { return mirror_; }
+  Line line_of(const Body& body) const { return mirror_.line_of(body, to_middle_); }
 
-  /// A particle has been hit and has a new orbit. May be called several times a step.
-  void changed(std::size_t i);
-  /// The same for many at once, each of them named once.
-  void changed(std::span<const std::uint32_t> particles);
-  /// The step's collisions are over: what these particles may meet in the rest of the window. Each particle that was
-  /// changed once.
-  void settle(std::span<const std::uint32_t> particles);
+  /// A particle has been hit and has a new orbit. May be called several times a step; for particles of different parts
+  /// at the same time.
+  void changed(MirrorPart& part, std::size_t i);
+  void changed(std::size_t i) { changed(mirror_.whole(), i); }
+  /// To undo that: the particle's line and this mark of before.
+  using Mark = std::uint8_t;
+  Mark mark(std::size_t i) const { return changed_[i]; }
+  void restore(MirrorPart& part, std::size_t i, const Line& line, Mark mark);
+  /// The whole learns what a part has changed.
+  void join(const MirrorPart& part) { mirror_.join(part); }
+
+  /// The step's collisions are over, so many: what these particles may meet in the rest of the window. Each particle
+  /// that was changed once.
+  void settle(std::span<const std::uint32_t> particles, std::uint64_t collisions);
 
   std::uint64_t windows = 0, tested = 0, listed = 0; ///< so far
   std::size_t bytes() const;
@@ -90,13 +97,17 @@ private:
   struct Entry {
     std::uint32_t low, high;
   };
+  struct alignas(64) List {
+    std::vector<Entry> entries;
+    std::uint8_t made = 0; // after so many steps of the window
+  };
 
-  Mirror::Outgrown renew(std::size_t i);
   void open();
   void choose_length();
   double cost_of(int length) const;
   double skin_for(int length) const;
   void list_pairs();
+  void use_lists(std::size_t count);
   Entry entry(std::size_t i, std::size_t j) const {
     const auto a = static_cast<std::uint32_t>(i), b = static_cast<std::uint32_t>(j);
     return particles_->ids[i] < particles_->ids[j] ? Entry{a, b} : Entry{b, a};
@@ -119,11 +130,11 @@ private:
   bool over_ = false;    // it ends with this step
   int at_step_ = 0, length_ = 0;
   Mirror mirror_;
-  Rotation to_middle_;                // from this step's epoch
-  std::vector<std::uint8_t> changed_; // 1 + the step of the window in which each particle was last hit; or 0
-  std::vector<std::vector<Entry>> lists_;
-  std::vector<std::vector<Entry>> added_; // after each step of the window so far
-  double kick_path_ = 0.0, skin_ = 0.0;   // how far kicks may have moved a particle; how far the lists allow
+  Rotation to_middle_;        // from this step's epoch
+  std::vector<Mark> changed_; // 1 + the step of the window in which each particle was last hit; or 0
+  std::vector<List> lists_;   // of which so many are of this window; the others keep their memory
+  std::size_t used_lists_ = 0, first_lists_ = 0;
+  double kick_path_ = 0.0, skin_ = 0.0; // how far kicks may have moved a particle; how far the lists allow
   double last_kick_ = 0.0;
   std::uint64_t hits_ = 0;
   double last_tested_ = 0.0, last_listed_ = 0.0; // pairs a particle, when the window began
@@ -132,9 +143,7 @@ private:
 
 template<class Visit> void Neighbours::visit_block(std::size_t block, const Visit& visit) const {
   constexpr std::size_t ahead = 12; // entries
-  const bool listed_first = block < lists_.size();
-  const std::size_t made = listed_first ? 0 : block - lists_.size() + 1;
-  const std::vector<Entry>& list = listed_first ? lists_[block] : added_[made - 1];
+  const auto& [list, made] = lists_[block];
   const std::vector<Body>& bodies = particles_->bodies;
   for (std::size_t k = 0; k < list.size(); ++k) {
     if (k + ahead < list.size()) {
@@ -149,13 +158,14 @@ template<class Visit> void Neighbours::visit_block(std::size_t block, const Visi
 }
 
 template<class Visit>
-bool Neighbours::visit_partners(std::size_t i, const Body& body, double start, std::vector<std::uint32_t>& buffer,
+bool Neighbours::visit_partners(const MirrorPart& part, std::size_t i, double start, std::vector<std::uint32_t>& buffer,
                                 const Visit& visit) const {
-  const Line line = mirror_.line_of(body, to_middle_);
-  if (!mirror_.one_image(line))
+  const Line& line = mirror_.line(i);
+  if (!mirror_.one_image(line, part))
     return false;
+  const Body& body = particles_->bodies[i];
   const double now = since_middle();
-  const std::size_t count = mirror_.near(line, span(now + start, now + 0.5 * step_), buffer);
+  const std::size_t count = mirror_.near(part, line, span(now + start, now + 0.5 * step_), buffer);
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t j = mirror_.place(buffer[k]);
     if (j != i)
@@ -165,7 +175,19 @@ bool Neighbours::visit_partners(std::size_t i, const Body& body, double start, s
 }
 
 template<class Visit>
-void Neighbours::visit_everywhere(std::size_t i, const Body& body, double start, const Visit& visit) const {
+void Neighbours::visit_around(const MirrorPart& part, std::size_t i, double start, double off,
+                              std::vector<std::uint32_t>& buffer, const Visit& visit) const {
+  Line line = mirror_.line(i);
+  line.size += static_cast<float>(1.001 * off);
+  const double now = since_middle();
+  const std::size_t count = mirror_.near(part, line, span(now + start, now + 0.5 * step_), buffer);
+  for (std::size_t k = 0; k < count; ++k)
+    if (const std::size_t j = mirror_.place(buffer[k]); j != i)
+      visit(j);
+}
+
+template<class Visit> void Neighbours::visit_everywhere(std::size_t i, double start, const Visit& visit) const {
+  const Body& body = particles_->bodies[i];
   const auto across = [&](double distance, double size) {
     return static_cast<std::int32_t>(std::ceil(distance / size)) + 1;
   };

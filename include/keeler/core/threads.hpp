@@ -2,7 +2,10 @@
 // and sums are made in an order that depends on the length alone.
 #pragma once
 
+#include <omp.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <vector>
 
@@ -14,10 +17,33 @@ int threads();
 
 /// Calls body(k) once for each k in [0, count), in no promised order; body must write only what belongs to k.
 /// Exceptions must not leave body. What fits in one chunk runs on the calling thread.
-template<class Body> void parallel_for(std::size_t count, const Body& body, int chunk = 256) {
-#pragma omp parallel for schedule(dynamic, chunk) if (count > static_cast <std::size_t>(chunk))
-  for (std::size_t k = 0; k < count; ++k)
-    body(k);
+///
+/// Each thread begins with a range of its own, the same one in every loop of that length, so that it meets its memory
+/// again; then it helps the others, a chunk at a time.
+template<class Body> void parallel_for(std::size_t count, const Body& body, std::size_t chunk = 256) {
+  struct alignas(64) Range {
+    std::atomic<std::size_t> next = 0;
+    std::size_t end = 0;
+  };
+  const auto work_on = [&](Range& range) {
+    for (std::size_t begin; (begin = range.next.fetch_add(chunk, std::memory_order_relaxed)) < range.end;)
+      for (std::size_t k = begin; k < std::min(begin + chunk, range.end); ++k)
+        body(k);
+  };
+  const auto ranges_count = static_cast<std::size_t>(threads());
+  if (ranges_count == 1 || count <= chunk) {
+    for (std::size_t k = 0; k < count; ++k)
+      body(k);
+    return;
+  }
+  std::vector<Range> ranges(ranges_count);
+  for (std::size_t r = 0; r < ranges_count; ++r) {
+    ranges[r].next = count * r / ranges_count;
+    ranges[r].end = count * (r + 1) / ranges_count;
+  }
+#pragma omp parallel
+  for (std::size_t r = 0; r < ranges_count; ++r)
+    work_on(ranges[(static_cast<std::size_t>(omp_get_thread_num()) + r) % ranges_count]);
 }
 
 /// Sum of term(k) over [0, count): blocks of fixed length, added in order, so the bits do not depend on the threads.

@@ -30,7 +30,7 @@ struct Ring {
   double epoch_offset() const { return box.offset(2 * steps + 1, 0.5 * step); }
 
   void advance() {
-    drift.always_in_groups = threads() > 1;
+    drift.always_in_strips = threads() > 1;
     drift.collide(particles, box, epoch_offset(), tally);
     move_on();
   }

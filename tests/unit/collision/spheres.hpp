@@ -56,12 +56,15 @@ inline std::vector<Sphere> swarm(std::size_t count, double small, double thickne
   RandomVectors random(seed);
   std::vector<Sphere> spheres{{Vec3::Zero()}};
   while (spheres.size() <= count) {
-    const Vec3 place = (1.0 + small + thickness * (1e-6 + random.uniform())) * random.direction();
+    const double distance = 1.0 + small + thickness * (1e-6 + random.uniform());
+    const Vec3 place = distance * random.direction();
     const bool free = std::none_of(spheres.begin(), spheres.end(), [&](const Sphere& s) {
       return (s.position - place).norm() < 1.0001 * (s.radius + small);
     });
-    if (free)
-      spheres.push_back({place, speed * random.uniform() * random.direction(), small, small * small * small});
+    if (!free)
+      continue;
+    const double own_speed = speed * random.uniform();
+    spheres.push_back({place, own_speed * random.direction(), small, small * small * small});
   }
   return spheres;
 }
