@@ -33,6 +33,10 @@ struct Strips::Orbits {
 
   // Of two particles that were just changed.
   bool keeps(const Event& event) {
+    if (too_fast(event.low) || too_fast(event.high)) {
+      strip.failed = true;
+      return false;
+    }
     if (!(lies_inside(event.low) && lies_inside(event.high))) {
       strip.contacts.pop_back();
       all.take_back(strip);
@@ -45,6 +49,11 @@ struct Strips::Orbits {
       search_past(event.high, event.time);
     }
     return true;
+  }
+
+  bool too_fast(std::uint32_t i) const {
+    const Mirror& mirror = all.neighbours_->mirror();
+    return !mirror.one_image(mirror.line(i), strip.part);
   }
 
   bool lies_inside(std::uint32_t i) const {
@@ -232,7 +241,7 @@ void Strips::run(std::size_t row) {
         ContactLoop loop(*step_, orbits, strip.events);
         try {
           loop.run();
-        } catch (const InvariantError&) {
+        } catch (...) {
           strip.failed = true; // the sequence will throw it in its order
         }
         strip.most_partners = loop.most_partners();
