@@ -86,8 +86,8 @@ TEST_CASE("the same bits as the plain twin: a moonlet among spheres a thousandth
     for (const double side : {3.0, 50.0}) { // one where the moonlet's images are near, one where cells can be small
       CAPTURE(step);
       CAPTURE(side);
-      Ring ring = ring_of(test::swarm(120, 1e-3, 0.02, 0.05, 7), side, two_pi * step);
-      CHECK(walk(ring, 50) > 20);
+      Ring ring = ring_of(test::swarm(240, 1e-3, 0.02, 0.05, 7), side, two_pi * step);
+      CHECK(walk(ring, 50) > 30);
     }
 }
 
