@@ -195,3 +195,31 @@ TEST_CASE("forces do not jump when the offset wraps") {
     CHECK(change < 1e-12 * whole);
   }
 }
+
+TEST_CASE("seen from random origins, errors average out instead of adding up") {
+  const Bodies bodies = layer(4000, 0.37);
+  const std::vector<Vec3> exact = bodies.accelerations({.solver = GravitySettings::Solver::direct});
+  for (const Candidate& candidate : candidates()) {
+    if (candidate.settings.solver == GravitySettings::Solver::direct)
+      continue;
+    constexpr int origins = 25;
+    std::vector<Vec3> mean(exact.size(), Vec3::Zero());
+    double single = 0.0, averaged = 0.0;
+    for (std::uint64_t o = 0; o < origins; ++o) {
+      RandomStream random(3, RandomPurpose::gravity_origin, o);
+      Bodies moved = bodies;
+      const double x = random.uniform() * bodies.box.size_x, y = random.uniform() * bodies.box.size_y;
+      for (Vec3& p : moved.positions)
+        p -= Vec3(x, y, 0.0);
+      const std::vector<Vec3> a = moved.accelerations(candidate.settings);
+      for (std::size_t k = 0; k < a.size(); ++k) {
+        single += (a[k] - exact[k]).squaredNorm() / origins;
+        mean[k] += a[k] / origins;
+      }
+    }
+    for (std::size_t k = 0; k < mean.size(); ++k)
+      averaged += (mean[k] - exact[k]).squaredNorm();
+    MESSAGE(candidate.name << ": errors of the mean over those of one, squared: " << averaged / single);
+    CHECK(averaged < 0.2 * single); // 1/25 if errors were independent
+  }
+}
