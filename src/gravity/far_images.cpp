@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <complex>
 
 namespace keeler {
 namespace {
@@ -78,12 +79,19 @@ Eigen::MatrixXd chebyshev_in_powers(int highest) {
 class FarPotential {
 public:
   FarPotential(const ShearingBox& box, double offset, int rings)
-      : box_(box), lattice_(box, offset, tolerance), near_(near_images(box, offset, {rings, true})) {
+      : box_(box), lattice_(box, offset, tolerance, 0.14), near_(near_images(box, offset, {rings, true})) {
     const double across = lattice_.reach() + std::hypot(box.size_x, box.size_y);
     for (const Vec3& shift : lattice_.shifts_within(across))
       if (std::none_of(near_.begin(), near_.end(),
                        [&](const Vec3& n) { return (n - shift).norm() < 0.5 * shortest(); }))
         others_.push_back(shift);
+    for (int n = 0; n < nodes; ++n) {
+      const double at = chebyshev_node(n, nodes);
+      for (const LatticeWave& wave : lattice_.waves()) {
+        along_x_[n].push_back(std::polar(1.0, wave.kx * at * box.size_x));
+        along_y_[n].push_back(std::polar(1.0, wave.ky * at * box.size_y));
+      }
+    }
   }
 
   /// Rows: nodes along x; columns: nodes along y.
@@ -98,7 +106,12 @@ public:
           const auto row = static_cast<int>(i);
           for (int j = 0; j < nodes; ++j) {
             const Vec3 place(chebyshev_node(row, nodes) * box_.size_x, chebyshev_node(j, nodes) * box_.size_y, z);
-            values(row, j) = values(nodes - 1 - row, nodes - 1 - j) = at(place, amplitudes);
+            double sum = lattice_.sheet_potential(z) + images_at(place);
+            for (std::size_t k = 0; k < amplitudes.size(); ++k) {
+              const std::complex<double>&u = along_x_[i][k], &v = along_y_[j][k];
+              sum += amplitudes[k] * (u.real() * v.real() - u.imag() * v.imag()); // cos(kx x + ky y)
+            }
+            values(row, j) = values(nodes - 1 - row, nodes - 1 - j) = sum;
           }
         },
         1);
@@ -108,19 +121,15 @@ public:
 private:
   double shortest() const { return std::min(box_.size_x, box_.size_y); }
 
-  double at(const Vec3& place, const std::vector<double>& amplitudes) const {
-    double sum = lattice_.sheet_potential(place.z());
-    for (std::size_t k = 0; k < amplitudes.size(); ++k) {
-      const LatticeWave& wave = lattice_.waves()[k];
-      sum += amplitudes[k] * std::cos(wave.kx * place.x() + wave.ky * place.y());
-    }
-    const double per_split = 0.5 / lattice_.split_length();
+  double images_at(const Vec3& place) const {
+    double sum = 0.0;
+    const double per_split = 0.5 / lattice_.split_length(), reach = lattice_.reach();
     for (const Vec3& shift : others_)
-      if (const double d = (place - shift).norm(); d < lattice_.reach())
+      if (const double d = (place - shift).norm(); d < reach)
         sum -= std::erfc(per_split * d) / d;
     for (const Vec3& shift : near_) {
       const double d = (place - shift).norm();
-      sum += d > 0.0 ? std::erf(per_split * d) / d : 2.0 * per_split / std::sqrt(pi);
+      sum += d > reach ? 1.0 / d : d > 0.0 ? std::erf(per_split * d) / d : 2.0 * per_split / std::sqrt(pi);
     }
     return sum;
   }
@@ -128,6 +137,7 @@ private:
   ShearingBox box_;
   Lattice lattice_;
   std::vector<Vec3> near_, others_;
+  std::array<std::vector<std::complex<double>>, nodes> along_x_, along_y_; // e^{ikx} of each wave at each node
 };
 
 } // namespace
@@ -137,6 +147,14 @@ std::vector<Vec3> near_images(const ShearingBox& box, double offset, const Image
     return image_shifts(box, offset, images.rings, images.rings);
   const int rings = std::max(images.rings, 1);
   return image_shifts(box, offset, rings_for(rings, box.size_y, box.size_x), rings_for(rings, box.size_x, box.size_y));
+}
+
+Vec3 far_pull(const Lattice& lattice, const std::vector<Vec3>& near, const Vec3& displacement) {
+  Vec3 sum = lattice.acceleration(displacement);
+  for (const Vec3& shift : near)
+    if (const Vec3 d = displacement - shift; d.squaredNorm() > 0.0)
+      sum += d / (d.squaredNorm() * d.norm());
+  return sum;
 }
 
 FarImages::FarImages(const ShearingBox& box, double offset, int rings, double height) {

@@ -21,8 +21,8 @@ double gaussian_range(double tolerance) {
 
 } // namespace
 
-Lattice::Lattice(const ShearingBox& box, double offset, double tolerance)
-    : box_(box), offset_(folded_offset(box, offset)), split_(0.237 * std::sqrt(box.area())), // as many images as waves
+Lattice::Lattice(const ShearingBox& box, double offset, double tolerance, double relative_split)
+    : box_(box), offset_(folded_offset(box, offset)), split_(relative_split * std::sqrt(box.area())),
       reach_(2.0 * split_ * gaussian_range(tolerance)),
       near_(shifts_within(reach_ + 0.5 * std::hypot(box.size_x, box.size_y))) {
   const double highest = gaussian_range(tolerance) / split_;

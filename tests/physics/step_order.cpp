@@ -26,6 +26,7 @@ velocity_dispersion = 5.0
 restitution = {{ law = "constant", value = {} }}
 [gravity]
 solver = "direct"
+images = "rings"
 kick_every = {}
 [time]
 step = {:.17g}

@@ -15,6 +15,7 @@
 #include <keeler/core/threads.hpp>
 #include <keeler/core/vector.hpp>
 #include <keeler/gravity/far_kernels.hpp>
+#include <keeler/gravity/lattice.hpp>
 #include <keeler/gravity/solver.hpp>
 
 #include <algorithm>
@@ -100,6 +101,12 @@ std::vector<Vec3> FarImages::attractions(const std::vector<Body>& bodies, Instru
   return result;
 }
 
+/// So few are dealt with pair by pair: a fit costs as much as some hundred exact pulls.
+inline constexpr std::size_t few_bodies = 10;
+
+/// Pull of the far images of a unit mass at a displacement from it, exactly, G = 1, 1/m².
+Vec3 far_pull(const Lattice& lattice, const std::vector<Vec3>& near, const Vec3& displacement);
+
 /// What the far images add to the acceleration of each body, m rad^-2; nothing where they do not count. Bodies stand in
 /// an order that depends on the problem alone.
 template<class Real, class Body>
@@ -107,11 +114,22 @@ std::vector<Vec3> far_accelerations(const GravityProblem& problem, double offset
                                     const std::vector<Body>& bodies, InstructionSet set) {
   if (!images.far)
     return std::vector<Vec3>(bodies.size(), Vec3::Zero());
+  std::vector<Vec3> result;
+  if (bodies.size() <= few_bodies) {
+    const Lattice lattice(problem.box, offset);
+    const std::vector<Vec3> near = near_images(problem.box, offset, images);
+    for (const Body& a : bodies) {
+      result.push_back(Vec3::Zero());
+      for (const Body& b : bodies)
+        result.back() += problem.newton_g * b.mass * far_pull(lattice, near, {a.x - b.x, a.y - b.y, a.z - b.z});
+    }
+    return result;
+  }
   double height = 0.0;
   for (const Body& body : bodies)
     height = std::max(height, std::fabs(body.z));
   const FarImages far(problem.box, offset, images.rings, height);
-  std::vector<Vec3> result = far.attractions<Real>(bodies, set);
+  result = far.attractions<Real>(bodies, set);
   for (Vec3& a : result)
     a *= problem.newton_g;
   return result;

@@ -21,7 +21,9 @@ struct LatticeWave {
 class Lattice {
 public:
   /// The lattice of a box at a shear offset. Terms below `tolerance` of the largest are left out; 0 < tolerance < 1.
-  Lattice(const ShearingBox& box, double offset, double tolerance = 1e-15);
+  /// The split length is given in sides of a square box of the same area and changes no result, only whether there are
+  /// more images to sum or more waves; with the default as many of one as of the other.
+  Lattice(const ShearingBox& box, double offset, double tolerance = 1e-15, double relative_split = 0.237);
 
   /// Acceleration (1/m²) at a displacement from the mass. An image that stands exactly there does not act.
   Vec3 acceleration(const Vec3& displacement) const;
