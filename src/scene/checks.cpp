@@ -106,9 +106,8 @@ void check_contradictions(const Document& document) {
                                              entry.path, other));
     if (!condition_holds(document, entry.path)) {
       const KeyCondition& needs = key->only_with;
-      fail_at(entry.key_place,
-              fmt::format("{0} has no meaning here (it belongs to {1}{2}); remove it or give {1}{2}", entry.path,
-                          needs.key, needs.value.empty() ? "" : fmt::format(" = \"{}\"", needs.value)));
+      fail_at(entry.key_place, fmt::format("{0} has no meaning here (it belongs to {1}{2}); remove it or give {1}{2}",
+                                           entry.path, needs.key, needs.words()));
     }
   }
 }
@@ -148,12 +147,12 @@ bool condition_holds(const Document& document, const std::string& path) {
   if (key.only_with.key.empty())
     return true;
   const Entry* entry = find_entry(document, key.only_with.key);
-  if (key.only_with.value.empty())
+  if (key.only_with.values.empty())
     return entry != nullptr;
   const Value value =
       entry ? entry->value : parse_override_value(find_key(key.only_with.key)->fallback, "", "")[0].value;
   const auto* word = std::get_if<std::string>(&value);
-  return word && *word == key.only_with.value;
+  return word && key.only_with.allows(*word);
 }
 
 void check_document(const Document& document, const std::string& name) {

@@ -16,10 +16,8 @@ std::string meaning_words(const Key& key) {
   std::string words = fmt::format("{}; {}", key.meaning, allowed_words(key));
   for (const std::string& other : key.alternatives)
     words += fmt::format("; or {}", find_key(other)->name());
-  if (!key.only_with.value.empty())
-    words += fmt::format("; with {} = \"{}\"", find_key(key.only_with.key)->name(), key.only_with.value);
-  else if (!key.only_with.key.empty())
-    words += fmt::format("; with {}", find_key(key.only_with.key)->name());
+  if (!key.only_with.key.empty())
+    words += fmt::format("; with {}{}", find_key(key.only_with.key)->name(), key.only_with.words());
   return words;
 }
 

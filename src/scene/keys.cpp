@@ -51,14 +51,14 @@ std::vector<Key> make_keys() {
        .unit = "Omega",
        .meaning = "epicyclic frequency kappa",
        .range = {.low = 0, .high = 2, .low_open = true, .high_open = true},
-       .only_with = {"planet.orbital_frequency", ""}},
+       .only_with = {"planet.orbital_frequency", {}}},
       {.path = "planet.vertical_ratio",
        .type = number,
        .fallback = "1.0",
        .unit = "Omega",
        .meaning = "vertical frequency nu",
        .range = above(0),
-       .only_with = {"planet.orbital_frequency", ""}},
+       .only_with = {"planet.orbital_frequency", {}}},
 
       {.path = "box.size",
        .type = pair,
@@ -125,33 +125,33 @@ std::vector<Key> make_keys() {
        .unit = "m",
        .meaning = "radius of every particle",
        .range = above(0),
-       .only_with = {"particles.sizes.law", "equal"}},
+       .only_with = {"particles.sizes.law", {"equal"}}},
       {.path = "particles.sizes.exponent",
        .type = number,
        .example = "2.9",
        .unit = "1",
        .meaning = "q of the power law n(r) dr ~ r^-q dr",
        .range = {.low = -10, .high = 10},
-       .only_with = {"particles.sizes.law", "power"}},
+       .only_with = {"particles.sizes.law", {"power"}}},
       {.path = "particles.sizes.min",
        .type = number,
        .example = "0.5",
        .unit = "m",
        .meaning = "smallest radius of the power law",
        .range = above(0),
-       .only_with = {"particles.sizes.law", "power"}},
+       .only_with = {"particles.sizes.law", {"power"}}},
       {.path = "particles.sizes.max",
        .type = number,
        .example = "5.0",
        .unit = "m",
        .meaning = "largest radius of the power law",
        .range = above(0),
-       .only_with = {"particles.sizes.law", "power"}},
+       .only_with = {"particles.sizes.law", {"power"}}},
       {.path = "particles.sizes.path",
        .type = path,
        .example = "\"radii.txt\"",
        .meaning = "file of radii in m, one a line, # starts a comment; relative to the scene file",
-       .only_with = {"particles.sizes.law", "file"}},
+       .only_with = {"particles.sizes.law", {"file"}}},
       {.path = "particles.streamlines.waves",
        .type = integer,
        .example = "1",
@@ -193,14 +193,14 @@ std::vector<Key> make_keys() {
        .unit = "1",
        .meaning = "c in min(1, c (v / 1 cm/s)^-0.234) (Bridges et al. 1984)",
        .range = above(0),
-       .only_with = {"collisions.restitution.law", "bridges"}},
+       .only_with = {"collisions.restitution.law", {"bridges"}}},
       {.path = "collisions.restitution.value",
        .type = number,
        .example = "0.5",
        .unit = "1",
        .meaning = "the constant coefficient",
        .range = {.low = 0, .high = 1},
-       .only_with = {"collisions.restitution.law", "constant"}},
+       .only_with = {"collisions.restitution.law", {"constant"}}},
 
       {.path = "gravity.solver",
        .type = choice,
@@ -213,7 +213,7 @@ std::vector<Key> make_keys() {
        .unit = "1",
        .meaning = "a cell is opened when its size exceeds this times its distance",
        .range = {.low = 0, .high = 1, .low_open = true},
-       .only_with = {"gravity.solver", "tree"}},
+       .only_with = {"gravity.solver", {"tree"}}},
       {.path = "gravity.images",
        .type = choice,
        .fallback = "\"periodic\"",
@@ -270,6 +270,14 @@ std::vector<Key> make_keys() {
 
 bool KeyRange::contains(double value) const {
   return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+}
+
+bool KeyCondition::allows(const std::string& value) const {
+  return std::find(values.begin(), values.end(), value) != values.end();
+}
+
+std::string KeyCondition::words() const {
+  return values.empty() ? "" : fmt::format(" = \"{}\"", fmt::join(values, "\" or \""));
 }
 
 std::string KeyRange::words() const {

@@ -53,7 +53,7 @@ void drop_contradictions(Document& document, const Entry& by, std::vector<std::s
     const auto& others = overriding->alternatives;
     const bool was_alternative = std::find(others.begin(), others.end(), condition) != others.end();
     const std::string* value = std::get_if<std::string>(&by.value);
-    if (was_alternative || (condition == by.path && value && *value != key.only_with.value))
+    if (was_alternative || (condition == by.path && value && !key.only_with.allows(*value)))
       drop_from_file(document, key.path, by.value_place, notices);
   }
 }

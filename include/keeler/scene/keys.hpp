@@ -22,10 +22,14 @@ struct KeyRange {
   std::string words() const;
 };
 
-/// A key that has a meaning only when another one is given, and has one value where `value` is not empty.
+/// A key that has a meaning only when another one is given, and has one of `values` where there are any.
 struct KeyCondition {
   std::string key;
-  std::string value;
+  std::vector<std::string> values;
+
+  bool allows(const std::string& value) const;
+  /// " = "a" or "b"", or nothing.
+  std::string words() const;
 };
 
 struct Key {
