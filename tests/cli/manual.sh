@@ -48,6 +48,11 @@ names() {
 }
 accepts "bench" bench drift --count 200 --repeats 1 --json
 names bench
+accepts "bench gravity" bench gravity --count 200 --state uniform --solver tree --repeats 1 --json
+sed -i 's/^      "/    "/' "$work/out" # of its rows
+names bench
+accepts "bench step" bench step --count 200 --repeats 1 --json
+names bench
 runs 0 run "$work/scene.toml" -o "$work/run" --set time.end=0.004 --json
 names run
 accepts "check" check "$work/scene.toml" --json

@@ -1,8 +1,7 @@
 #!/bin/bash
-# study.sh KEELER SOURCE_DIR: the finders' study from start to report, interrupted and continued; the bench's numbers.
+# study.sh KEELER SOURCE_DIR: the finders' study from start to report, interrupted and continued.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
-number='-?[0-9.]+(e[-+]?[0-9]+)?'
 folder=$work/study
 
 # Stopped once in the middle, then continued.
@@ -51,20 +50,5 @@ if command -v gnuplot >/dev/null; then
   done
 fi
 grep -q 'src="[^d]' "$folder/report.html" && fail "the page needs other files"
-
-accepts "bench" bench drift --count 500 --step 2e-3 --repeats 2 --json
-for key in ns_per_particle_step cost_per_orbit_us ns_per_collision ns_per_call pairs_per_particle survivors_per_particle \
-  bytes_per_particle collisions_per_particle_orbit dispersion_r_omega advance build reject solve events line_ns pair_ns; do
-  grep -qE "\"$key\": $number,?$" "$work/out" || fail "bench: no $key in: $(cat "$work/out")"
-done
-accepts "bench of another finder" bench drift --count 500 --repeats 1 --finder original --all-pairs --threads 2
-prints "bench" "ns per particle and step"
-accepts "bench with a moonlet" bench drift --count 400 --optical-depth 0.02 --sizes moonlet --repeats 1 --json
-grep -qF '"sizes": "moonlet"' "$work/out" || fail "bench: no moonlet in: $(cat "$work/out")"
-refuses "too few for a moonlet" "raise --count" bench drift --count 500 --sizes moonlet
-refuses "unknown sizes" "--sizes" bench drift --sizes huge
-refuses "an unknown finder" "'guess'" bench drift --finder guess
-refuses "bench without a kernel" "keeler --help" bench
-refuses "no particles" "--count" bench drift --count 0
 
 report
