@@ -21,19 +21,13 @@ struct GravityOptions {
 void print_json(const GravityOptions& options, const GravityBench& b) {
   nlohmann::ordered_json json;
   json["rows"] = nlohmann::ordered_json::array();
-  for (const GravityBenchRow& row : b.rows)
-    json["rows"].push_back({{"solver", row.choice.solver},
-                            {"settings", row.choice.text},
-                            {"error_rms", row.errors.rms},
-                            {"error_p999", row.errors.p999},
-                            {"error_x", row.errors.component_rms[0]},
-                            {"error_y", row.errors.component_rms[1]},
-                            {"error_z", row.errors.component_rms[2]},
-                            {"error_edge", row.errors.edge_rms},
-                            {"edge_pull", row.errors.edge_pull},
-                            {"net_force", row.net_force},
-                            {"ns_per_particle", row.ns_per_particle},
-                            {"threads", threads()}});
+  for (const GravityBenchRow& row : b.rows) {
+    nlohmann::ordered_json line = {{"solver", row.choice.solver}, {"settings", row.choice.text}};
+    for (const auto& [name, value] : row.numbers())
+      line[name] = value;
+    line["threads"] = threads();
+    json["rows"].push_back(line);
+  }
   json["state"] = options.state;
   json["count"] = b.count;
   json["box_m"] = {b.size_x_m, b.size_y_m};

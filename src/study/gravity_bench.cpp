@@ -84,6 +84,18 @@ std::vector<GravityChoice> chosen(const GravityBenchSettings& settings, std::siz
 
 } // namespace
 
+std::vector<std::pair<std::string, double>> GravityBenchRow::numbers() const {
+  return {{"error_rms", errors.rms},
+          {"error_p999", errors.p999},
+          {"error_x", errors.component_rms[0]},
+          {"error_y", errors.component_rms[1]},
+          {"error_z", errors.component_rms[2]},
+          {"error_edge", errors.edge_rms},
+          {"edge_pull", errors.edge_pull},
+          {"net_force", net_force},
+          {"ns_per_particle", ns_per_particle}};
+}
+
 GravityBench bench_gravity(const GravityBenchSettings& settings) {
   PhaseProgress progress(settings.progress);
   const GravityState kind = settings.clumped ? GravityState::clumped : GravityState::uniform;

@@ -12,13 +12,13 @@ GravityChoice tree(double opening_angle) {
   GravitySettings settings;
   settings.solver = GravitySettings::Solver::tree;
   settings.opening_angle = opening_angle;
-  return {"tree", fmt::format("opening_angle {:.3g}", opening_angle), settings};
+  return {"tree", fmt::format("opening_angle {:.3g}", opening_angle), "opening angle", opening_angle, settings};
 }
 
 GravityChoice direct() {
   GravitySettings settings;
   settings.solver = GravitySettings::Solver::direct;
-  return {"direct", "all pairs", settings};
+  return {"direct", "all pairs", "", 0.0, settings};
 }
 
 } // namespace

@@ -1,5 +1,5 @@
 #!/bin/bash
-# study.sh KEELER SOURCE_DIR: the finders' study from start to report, interrupted and continued.
+# study.sh KEELER SOURCE_DIR: studies from start to report; that of the finders interrupted and continued.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 folder=$work/study
@@ -50,5 +50,29 @@ if command -v gnuplot >/dev/null; then
   done
 fi
 grep -q 'src="[^d]' "$folder/report.html" && fail "the page needs other files"
+
+# The gravity study, as small as it can be.
+folder=$work/gravity
+runs 0 study gravity --count 100 --repeats 1 -o "$folder"
+for name in report.md report.html gravity.csv gravity.json figures; do
+  prints "study gravity" "$folder/$name"
+  [ -e "$folder/$name" ] || fail "study gravity: no $name"
+done
+expected=solver,settings,parameter,value,error_rms,error_p999,error_x,error_y,error_z,error_edge,edge_pull,net_force,ns_per_particle
+[ "$(head -n 1 "$folder/gravity.csv")" = "$expected" ] || fail "gravity.csv begins: $(head -n 1 "$folder/gravity.csv")"
+awk -F, 'NR > 1 && !($5 >= 0 && $5 < 0.1 && $13 > 0) { wrong = 1 } END { exit wrong || NR < 10 }' "$folder/gravity.csv" ||
+  fail "gravity.csv: $(cat "$folder/gravity.csv")"
+for words in "Error against cost" "Convergence" "Every setting" "opening_angle 0.6"; do
+  grep -qF "$words" "$folder/report.md" || fail "the gravity report has no '$words'"
+done
+if command -v gnuplot >/dev/null; then
+  for name in pareto convergence; do
+    [ -s "$folder/figures/$name.svg" ] || fail "no $name.svg"
+  done
+fi
+cp "$folder/measurements.jsonl" "$work/kept"
+runs 0 study gravity --count 100 --repeats 1 -o "$folder"
+cmp "$work/kept" "$folder/measurements.jsonl" || fail "a finished gravity study does measurements again"
+refuses "other repeats" "another repeats" study gravity --count 100 --repeats 2 -o "$folder"
 
 report

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace keeler {
@@ -29,6 +30,9 @@ struct GravityBenchRow {
   ForceErrors errors;     ///< against the sum over all pairs and images, on the sample
   double net_force = 0.0; ///< |Σ m a| / Σ m |a|, of all particles
   double ns_per_particle = 0.0;
+
+  /// All of these under the names that JSON and CSV have.
+  std::vector<std::pair<std::string, double>> numbers() const;
 };
 
 struct GravityBench {

@@ -10,8 +10,10 @@ namespace keeler {
 
 /// A solver with settings, and how they are called.
 struct GravityChoice {
-  std::string solver; ///< as GravitySolver::name() and a scene have it
-  std::string text;   ///< of the settings
+  std::string solver;    ///< as GravitySolver::name() and a scene have it
+  std::string text;      ///< of the settings
+  std::string parameter; ///< what the solver's error converges with, "opening angle"; empty: with nothing
+  double value = 0.0;    ///< of that parameter
   GravitySettings settings;
 };
 
