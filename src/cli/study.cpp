@@ -5,6 +5,7 @@
 #include "signals.hpp"
 
 #include <keeler/study/finder_study.hpp>
+#include <keeler/study/gravity_study.hpp>
 
 #include <fmt/format.h>
 
@@ -13,42 +14,73 @@
 namespace keeler {
 namespace {
 
-ExitCode study(FinderStudySettings& settings) {
+// Carries out a study and prints what it wrote.
+template<class Settings, class Study>
+ExitCode carry_out(Settings& settings, const Study& study, const std::vector<const char*>& results) {
   bool finished = false;
   {
     ProgressLine line;
     settings.notice = [&](const std::string& text) { line.note(text); };
     settings.progress = [&](const StudyProgress& progress) { line.show(progress); };
-    finished = study_finders(settings, requests_from_signals().stop);
+    finished = study(settings, requests_from_signals().stop);
   }
-  const std::string folder = settings.folder.string();
   if (!finished) {
     fmt::print(stderr, "keeler: stopped; the same command goes on from here\n");
     return ExitCode::stopped;
   }
-  for (const char* name : {"report.md", "report.html", "finders.csv", "finders.json", "figures"})
-    fmt::print("{}/{}\n", folder, name);
+  for (const char* name : results)
+    fmt::print("{}/{}\n", settings.folder.string(), name);
   return ExitCode::done;
 }
 
-} // namespace
+template<class Settings> void add_folder(CLI::App& command, Settings& settings) {
+  command.add_option("-o,--output", settings.folder, "the folder for the results; a study in it is continued")
+      ->required();
+}
 
-void add_study(CLI::App& program, Action& action, const std::vector<std::string>& arguments) {
+void add_finders(CLI::App& command, Action& action, const std::vector<std::string>& arguments) {
   const auto settings = std::make_shared<FinderStudySettings>();
-  CLI::App& command = *program.add_subcommand("study", "carry out an experiment and write a report on it");
-  command.require_subcommand(1);
   CLI::App& finders = *command.add_subcommand(
       "finders", "the collision finders: time, truth and the paper's claims, on four states; stopped (exit 75), the "
                  "same command goes on");
-  finders.add_option("-o,--output", settings->folder, "the folder for the results; a study in it is continued")
-      ->required();
+  add_folder(finders, *settings);
   finders.add_option("--count", settings->count, "particles of equal size (default: 10000, some 95 minutes)")
       ->check(positive_number());
   finders.add_flag("--quick", settings->quick, "3000 particles, three steps, two repeats: a few minutes");
   finders.callback([settings, arguments, &action] {
     settings->arguments = arguments;
-    action = [settings] { return study(*settings); };
+    action = [settings] {
+      return carry_out(*settings, study_finders,
+                       {"report.md", "report.html", "finders.csv", "finders.json", "figures"});
+    };
   });
+}
+
+void add_gravity(CLI::App& command, Action& action, const std::vector<std::string>& arguments) {
+  const auto settings = std::make_shared<GravityStudySettings>();
+  CLI::App& gravity = *command.add_subcommand(
+      "gravity", "the gravity solvers: error against cost, in self-gravity wakes; stopped (exit 75), the same command "
+                 "goes on");
+  add_folder(gravity, *settings);
+  gravity.add_option("--count", settings->count, "particles of the state (default: 100000)")->check(positive_number());
+  gravity.add_option("--repeats", settings->repeats, "times measured; medians are given (default: 5)")
+      ->check(positive_number());
+  gravity.callback([settings, arguments, &action] {
+    settings->arguments = arguments;
+    action = [settings] {
+      return carry_out(*settings, study_gravity,
+                       {"report.md", "report.html", "gravity.csv", "gravity.json", "figures"});
+    };
+  });
+}
+
+} // namespace
+
+void add_study(CLI::App& program, Action& action, const std::vector<std::string>& arguments) {
+  CLI::App& command = *program.add_subcommand("study", "carry out an experiment and write a report on it");
+  command.require_subcommand(1);
+  add_finders(command, action, arguments);
+  add_gravity(command, action, arguments);
 }
 
 } // namespace keeler

@@ -147,7 +147,7 @@ void Simulation::accelerate() {
 
 // Half a kick interval's velocity change, at the boundary between steps. Two half kicks are always two additions.
 void Simulation::half_kick() {
-  const Stopwatch watch(split_.gravity);
+  const Stopwatch watch(split_.gravity), kick_watch(split_.kick);
   const Frequencies& f = scene_.planet.frequencies;
   const Rotation rotation(f, -0.5 * state_.step_length);
   const double half = 0.5 * state_.step_length * scene_.gravity->kick_every;

@@ -2,19 +2,16 @@
 
 #include "finder_report.hpp"
 #include "measurements.hpp"
+#include "study_folder.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
-#include <keeler/io/files.hpp>
-#include <keeler/io/provenance.hpp>
 #include <keeler/study/median.hpp>
 #include <keeler/study/perturbed_ring.hpp>
 
 #include <keeler/runs/folder_lock.hpp>
 
 #include <fmt/format.h>
-
-#include <fstream>
 
 namespace keeler {
 namespace {
@@ -35,35 +32,12 @@ Plan plan_of(const FinderStudySettings& settings) {
   return {settings.count, {1e-4, 1.0 / 3000.0, 1e-3, 1.0 / 300.0, 1e-2}, 6, 100.0};
 }
 
-// A study is continued only with the settings that began it. Returns what is written of it, its builder included.
-Json require_same_study(const fs::path& folder, const Plan& plan, const std::map<std::string, std::string>& made) {
-  const Json now = {{"study", "finders"},
-                    {"count", plan.count},
-                    {"steps_orbits", plan.steps},
-                    {"repeats", plan.repeats},
-                    {"finders", all_finders()}};
-  const fs::path file = folder / "study.json";
-  if (!fs::exists(file)) {
-    if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
-      throw UsageError(fmt::format("'{}' is not empty and holds no study; name another folder", folder.string()));
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error)
-      throw IoError(fmt::format("cannot make the folder '{}': {}; name another", folder.string(), error.message()));
-    Json begun = now;
-    for (const auto& [key, value] : made)
-      begun[key] = value;
-    write_text(file, begun.dump(2) + "\n");
-    return begun;
-  }
-  const Json before = Json::parse(read_text(file), nullptr, false);
-  for (const auto& [key, value] : now.items())
-    if (!before.is_object() || !before.contains(key) || before[key] != value)
-      throw UsageError(fmt::format("'{}' holds a study with another {} ({}); give the same options or name another "
-                                   "folder",
-                                   folder.string(), key,
-                                   before.is_object() && before.contains(key) ? before[key].dump() : "none"));
-  return before;
+Json options_of(const Plan& plan) {
+  return {{"study", "finders"},
+          {"count", plan.count},
+          {"steps_orbits", plan.steps},
+          {"repeats", plan.repeats},
+          {"finders", all_finders()}};
 }
 
 // Times of different builds or machines do not compare. Whatever else is missing may be measured by a newer program:
@@ -83,20 +57,6 @@ void require_same_build(const Json& begun, const std::map<std::string, std::stri
       throw UsageError(fmt::format("the timed runs of '{}' were begun with another {} ({}), and such times do not "
                                    "compare; go on there with that one or name another folder",
                                    folder.string(), key, begun.value(key, "")));
-}
-
-std::string processor() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);)
-    if (line.starts_with("model name"))
-      return line.substr(line.find(':') + 2);
-  return "unknown";
-}
-
-std::map<std::string, std::string> builder(const std::vector<std::string>& arguments) {
-  const Provenance p = collect_provenance(arguments);
-  return {{"command", p.at("arguments")}, {"host", p.at("host")},   {"processor", processor()},
-          {"compiler", p.at("compiler")}, {"flags", p.at("flags")}, {"commit", p.at("commit")}};
 }
 
 std::size_t missing(const std::vector<Job>& jobs, const JobList& list) {
@@ -253,8 +213,8 @@ bool study_finders(const FinderStudySettings& settings, const std::atomic<bool>&
     throw UsageError(
         fmt::format("a study of {} particles is not possible; --count takes {} to {}", settings.count, fewest, most));
   const Plan plan = plan_of(settings);
-  const std::map<std::string, std::string> made = builder(settings.arguments);
-  const Json begun = require_same_study(settings.folder, plan, made);
+  const std::map<std::string, std::string> made = study_builder(settings.arguments);
+  const Json begun = open_study_folder(settings.folder, options_of(plan), made);
   const FolderLock lock(settings.folder);
   const std::optional<std::vector<StudyState>> states =
       study_states(settings.folder / "states", plan.count, settings.notice, stop);

@@ -1,5 +1,6 @@
 #include "finder_report.hpp"
 #include "measurements.hpp"
+#include "study_folder.hpp"
 
 #include <keeler/io/files.hpp>
 
@@ -19,13 +20,6 @@ Json row_of(const FinderStudyData& data, const StudyState& state, double step, c
   return row;
 }
 
-std::string csv_line(const Json& row, bool names) {
-  std::string line;
-  for (const auto& [key, value] : row.items())
-    line += (line.empty() ? "" : ",") + (names ? key : value.is_string() ? value.get<std::string>() : value.dump());
-  return line + "\n";
-}
-
 } // namespace
 
 void write_finder_tables(const FinderStudyData& data) {
@@ -35,10 +29,7 @@ void write_finder_tables(const FinderStudyData& data) {
       for (const double step : data.steps)
         for (const std::string& finder : all_finders())
           rows.push_back(row_of(data, state, step, finder, repeat));
-  std::string csv = csv_line(rows.front(), true);
-  for (const Json& row : rows)
-    csv += csv_line(row, false);
-  write_text(data.folder / "finders.csv", csv);
+  write_text(data.folder / "finders.csv", csv_of(rows));
 
   Json other = Json::object(); // everything that is no timed run, by its name
   for (const auto& [name, result] : data.results)

@@ -2,7 +2,7 @@
 // a line of a file as soon as it is known. Started again on the same file, the list does only what is missing.
 #pragma once
 
-#include <keeler/study/finder_study.hpp>
+#include <keeler/study/progress.hpp>
 
 #include <nlohmann/json.hpp>
 

@@ -68,10 +68,23 @@ struct UnrejectedMotion : BoundedMotion {
   static bool surely_apart(const Query&, const Body&, const Body&, const DriftStep&) { return false; }
 };
 
-// The answers of a run, in order.
-struct TapeRecorder : DriftWatch {
-  std::vector<FinderResult> answers;
-  void searched(const Query&, const FinderResult& result) override { answers.push_back(result); }
+// A finder whose answers are kept in the order of the calls. A watch would see them in another order than a run
+// without one makes them in.
+class TapeRecorder final : public Finder {
+public:
+  TapeRecorder(std::unique_ptr<Finder> finder, std::vector<FinderResult>& answers)
+      : finder_(std::move(finder)), answers_(answers) {}
+  void begin(const DriftStep& step) override { finder_->begin(step); }
+  void changed(std::size_t particle) override { finder_->changed(particle); }
+  FinderResult find(const Query& query) const override {
+    answers_.push_back(finder_->find(query));
+    return answers_.back();
+  }
+  std::size_t bytes_per_particle() const override { return finder_->bytes_per_particle(); }
+
+private:
+  std::unique_ptr<Finder> finder_;
+  std::vector<FinderResult>& answers_;
 };
 
 // Gives recorded answers again, for a run of the same calls: what such a run costs is everything but the finder.
@@ -80,7 +93,7 @@ public:
   explicit Tape(const std::vector<FinderResult>& answers) : answers_(answers) {}
   void begin(const DriftStep&) override {}
   void changed(std::size_t) override {}
-  FinderResult find(const Query&) const override { return answers_[next_++]; }
+  FinderResult find(const Query&) const override { return answers_.at(next_++); }
   std::size_t bytes_per_particle() const override { return 0; }
 
 private:
@@ -190,11 +203,11 @@ Json audited_run(const StudyState& state, double step, const std::string& finder
 
 Json finder_share(const StudyState& state, double step, const std::string& finder, int repeats) {
   const Scene scene = state.timed(step, finder);
-  TapeRecorder recorder;
+  std::vector<FinderResult> answers;
   {
     Simulation simulation(scene, state.patch);
     simulation.drift().every_candidate = true;
-    simulation.drift().watch = &recorder;
+    simulation.drift().use(std::make_unique<TapeRecorder>(make_finder(finder), answers));
     run_seconds(simulation, step);
   }
   std::vector<double> with, without;
@@ -202,7 +215,7 @@ Json finder_share(const StudyState& state, double step, const std::string& finde
     with.push_back(run_seconds(state, scene, true));
     Simulation simulation(scene, state.patch);
     simulation.drift().every_candidate = true;
-    simulation.drift().use(std::make_unique<Tape>(recorder.answers));
+    simulation.drift().use(std::make_unique<Tape>(answers));
     without.push_back(run_seconds(simulation, step));
   }
   return {{"cpu_s", median(with)}, {"cpu_s_without_finder", median(without)}};

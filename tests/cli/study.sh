@@ -1,8 +1,7 @@
 #!/bin/bash
-# study.sh KEELER SOURCE_DIR: the finders' study from start to report, interrupted and continued; the bench's numbers.
+# study.sh KEELER SOURCE_DIR: studies from start to report; that of the finders interrupted and continued.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
-number='-?[0-9.]+(e[-+]?[0-9]+)?'
 folder=$work/study
 
 # Stopped once in the middle, then continued.
@@ -52,19 +51,28 @@ if command -v gnuplot >/dev/null; then
 fi
 grep -q 'src="[^d]' "$folder/report.html" && fail "the page needs other files"
 
-accepts "bench" bench drift --count 500 --step 2e-3 --repeats 2 --json
-for key in ns_per_particle_step cost_per_orbit_us ns_per_collision ns_per_call pairs_per_particle survivors_per_particle \
-  bytes_per_particle collisions_per_particle_orbit dispersion_r_omega advance build reject solve events line_ns pair_ns; do
-  grep -qE "\"$key\": $number,?$" "$work/out" || fail "bench: no $key in: $(cat "$work/out")"
+# The gravity study, as small as it can be.
+folder=$work/gravity
+runs 0 study gravity --count 100 --repeats 1 -o "$folder"
+for name in report.md report.html gravity.csv gravity.json figures; do
+  prints "study gravity" "$folder/$name"
+  [ -e "$folder/$name" ] || fail "study gravity: no $name"
 done
-accepts "bench of another finder" bench drift --count 500 --repeats 1 --finder original --all-pairs --threads 2
-prints "bench" "ns per particle and step"
-accepts "bench with a moonlet" bench drift --count 400 --optical-depth 0.02 --sizes moonlet --repeats 1 --json
-grep -qF '"sizes": "moonlet"' "$work/out" || fail "bench: no moonlet in: $(cat "$work/out")"
-refuses "too few for a moonlet" "raise --count" bench drift --count 500 --sizes moonlet
-refuses "unknown sizes" "--sizes" bench drift --sizes huge
-refuses "an unknown finder" "'guess'" bench drift --finder guess
-refuses "bench without a kernel" "keeler --help" bench
-refuses "no particles" "--count" bench drift --count 0
+expected=solver,settings,parameter,value,error_rms,error_p999,error_x,error_y,error_z,error_edge,edge_pull,net_force,ns_per_particle
+[ "$(head -n 1 "$folder/gravity.csv")" = "$expected" ] || fail "gravity.csv begins: $(head -n 1 "$folder/gravity.csv")"
+awk -F, 'NR > 1 && !($5 >= 0 && $5 < 0.1 && $13 > 0) { wrong = 1 } END { exit wrong || NR < 10 }' "$folder/gravity.csv" ||
+  fail "gravity.csv: $(cat "$folder/gravity.csv")"
+for words in "Error against cost" "Convergence" "Every setting" "opening_angle 0.6"; do
+  grep -qF "$words" "$folder/report.md" || fail "the gravity report has no '$words'"
+done
+if command -v gnuplot >/dev/null; then
+  for name in pareto convergence; do
+    [ -s "$folder/figures/$name.svg" ] || fail "no $name.svg"
+  done
+fi
+cp "$folder/measurements.jsonl" "$work/kept"
+runs 0 study gravity --count 100 --repeats 1 -o "$folder"
+cmp "$work/kept" "$folder/measurements.jsonl" || fail "a finished gravity study does measurements again"
+refuses "other repeats" "another repeats" study gravity --count 100 --repeats 2 -o "$folder"
 
 report

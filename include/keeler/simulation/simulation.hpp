@@ -15,6 +15,7 @@ struct TimeSplit {
   double drift = 0.0;
   double advance = 0.0; ///< of the drift: to the next epoch and back into the cell
   double gravity = 0.0;
+  double kick = 0.0; ///< of gravity: the half kicks
 };
 
 class Simulation {

@@ -1,0 +1,42 @@
+// The parts of keeler bench: each registers a subcommand of it.
+#pragma once
+
+#include "command.hpp"
+#include "common_options.hpp"
+#include "progress_line.hpp"
+
+namespace keeler {
+
+void add_bench_drift(CLI::App& bench, Action& action);
+void add_bench_gravity(CLI::App& bench, Action& action);
+void add_bench_step(CLI::App& bench, Action& action);
+
+/// --threads N for a bench: one unless given.
+struct BenchThreadOption {
+  int count = 1;
+
+  void add_to(CLI::App& command) {
+    command
+        .add_option("--threads", count,
+                    "threads to use (default: 1); with one, processor time is measured, with more, wall time")
+        ->check(positive_number());
+  }
+
+  void apply() const { set_threads(count); }
+};
+
+/// --repeats N.
+inline void add_repeats(CLI::App& command, int& repeats) {
+  command.add_option("--repeats", repeats, "times measured; medians are given (default: 5)")->check(positive_number());
+}
+
+/// Progress of a bench that takes so long that one wonders; a short one says nothing.
+inline std::function<void(const StudyProgress&)> patient_progress(ProgressLine& line) {
+  constexpr double patience_s = 5.0;
+  return [&line](const StudyProgress& progress) {
+    if (progress.elapsed_s > patience_s)
+      line.show(progress);
+  };
+}
+
+} // namespace keeler

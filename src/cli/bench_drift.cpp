@@ -1,0 +1,144 @@
+// keeler bench drift: the drift phase.
+#include "bench.hpp"
+
+#include <keeler/collision/finders.hpp>
+#include <keeler/study/drift_bench.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <map>
+#include <memory>
+
+namespace keeler {
+namespace {
+
+const std::map<std::string, BenchSizes> sizes_by_name = {
+    {"equal", BenchSizes::equal}, {"power", BenchSizes::power}, {"moonlet", BenchSizes::moonlet}};
+
+struct DriftOptions {
+  DriftBenchSettings drift;
+  std::string sizes = "equal";
+  bool json = false;
+  BenchThreadOption threads;
+};
+
+double cost_per_orbit_us(const DriftBenchSettings& s, const DriftBench& b) {
+  return 1e-3 * b.ns_per_particle_step / s.step_orbits;
+}
+
+CLI::Validator finder_name() {
+  const auto refusal = [](const std::string& name) {
+    return make_finder(name) ? std::string() : "there is no finder '" + name + "' (docs/manual/scene.md lists them)";
+  };
+  return CLI::Validator(refusal, "");
+}
+
+DriftBench measure(DriftBenchSettings settings) {
+  ProgressLine line;
+  settings.progress = patient_progress(line);
+  return bench_drift(settings);
+}
+
+void print_json(const DriftBenchSettings& s, const std::string& sizes, const DriftBench& b) {
+  nlohmann::ordered_json json;
+  json["ns_per_particle_step"] = b.ns_per_particle_step;
+  json["split"] = {{"advance", b.split.advance},
+                   {"build", b.split.build},
+                   {"reject", b.split.reject},
+                   {"solve", b.split.solve},
+                   {"events", b.split.events}};
+  json["cost_per_orbit_us"] = cost_per_orbit_us(s, b);
+  json["ns_per_collision"] = b.ns_per_collision;
+  json["ns_events_per_collision"] = b.ns_events_per_collision;
+  json["ns_per_call"] = b.ns_per_call;
+  json["calls_per_particle_step"] = b.calls_per_particle_step;
+  json["pairs_per_particle"] = b.pairs_per_particle;
+  json["survivors_per_particle"] = b.survivors_per_particle;
+  json["collisions_per_particle_orbit"] = b.collisions_per_particle_orbit;
+  json["contacts"] = b.contacts;
+  json["recontacts"] = b.recontacts;
+  json["windows"] = b.windows;
+  json["conflicts"] = b.conflicts;
+  json["repairs"] = b.repairs;
+  json["widest_list"] = b.widest_list;
+  json["bytes_per_particle"] = b.bytes_per_particle;
+  json["yardsticks"] = {{"line_ns", b.yardsticks.line_ns}, {"pair_ns", b.yardsticks.pair_ns}};
+  json["dispersion_r_omega"] = b.dispersion_r_omega;
+  json["count"] = b.count;
+  json["step_orbits"] = s.step_orbits;
+  json["optical_depth"] = s.optical_depth;
+  json["sizes"] = sizes;
+  json["finder"] = s.finder;
+  json["all_pairs"] = s.all_pairs;
+  json["threads"] = threads();
+  json["repeats"] = s.repeats;
+  json["steps"] = b.steps;
+  fmt::print("{}\n", json.dump(2));
+}
+
+void print_text(const DriftBenchSettings& s, const DriftBench& b) {
+  fmt::print("ns per particle and step            {:.1f} (median of {} times {} steps, {} particles, {} thread{})\n",
+             b.ns_per_particle_step, s.repeats, b.steps, b.count, threads(), threads() == 1 ? "" : "s");
+  fmt::print("  of these                          advance {:.1f}, build {:.1f}, reject {:.1f}, solve {:.1f}, "
+             "events {:.1f}\n",
+             b.split.advance, b.split.build, b.split.reject, b.split.solve, b.split.events);
+  fmt::print("  over what the machine can do      {:.1f} times {:.2f} ns for a line of memory, {:.1f} times {:.2f} ns "
+             "for a pair's |d|^2 and d.v\n",
+             b.ns_per_particle_step / b.yardsticks.line_ns, b.yardsticks.line_ns,
+             b.ns_per_particle_step / b.yardsticks.pair_ns, b.yardsticks.pair_ns);
+  fmt::print("us per particle and orbit           {:.3g}\n", cost_per_orbit_us(s, b));
+  if (b.contacts > 0)
+    fmt::print("ns per collision                    {:.0f} for all of that time, {:.0f} for the events alone\n",
+               b.ns_per_collision, b.ns_events_per_collision);
+  if (b.calls_per_particle_step > 0.0)
+    fmt::print("ns per finder call                  {:.1f}, {:.3g} calls per particle at the start of a step\n",
+               b.ns_per_call, b.calls_per_particle_step);
+  else
+    fmt::print("ns per finder call                  none: no pair came to the finder\n");
+  fmt::print("pairs per particle and step         {:.3g} tested, {:.3g} handed to the finder\n", b.pairs_per_particle,
+             b.survivors_per_particle);
+  fmt::print("collisions per particle and orbit   {:.3g} faster than v_cut\n", b.collisions_per_particle_orbit);
+  fmt::print("bytes per particle                  {}\n", b.bytes_per_particle);
+  fmt::print("dispersion c_x                      {:.3g} r Omega\n", b.dispersion_r_omega);
+}
+
+ExitCode bench(const DriftOptions& options) {
+  options.threads.apply();
+  DriftBenchSettings settings = options.drift;
+  settings.sizes = sizes_by_name.at(options.sizes);
+  const DriftBench b = measure(settings);
+  if (options.json)
+    print_json(settings, options.sizes, b);
+  else
+    print_text(settings, b);
+  return ExitCode::done;
+}
+
+} // namespace
+
+void add_bench_drift(CLI::App& bench_command, Action& action) {
+  const auto options = std::make_shared<DriftOptions>();
+  CLI::App& drift = *bench_command.add_subcommand(
+      "drift", "the drift phase: spheres in collisional equilibrium, restitution 0.5, no gravity");
+  DriftBenchSettings& s = options->drift;
+  drift.add_option("--count", s.count, "particles (default: 10000)")->check(positive_number());
+  drift.add_option("--step", s.step_orbits, "step in orbits (default: 0.001)")->check(positive_number());
+  drift.add_option("--optical-depth", s.optical_depth, "optical depth, up to 10 (default: 0.5)")
+      ->check(CLI::Range(1e-6, 10.0).description(""));
+  drift
+      .add_option("--sizes", options->sizes,
+                  "equal: all of 1 m; power: n(r) ~ r^-3 from 1 m to 100 m; moonlet: 1 m, and one of 100 m (default: "
+                  "equal)")
+      ->check(CLI::IsMember(sizes_by_name).description(""));
+  drift.add_option("--finder", s.finder, "collision finder, a name of the manual's scene keys (default: certified)")
+      ->check(finder_name());
+  add_repeats(drift, s.repeats);
+  drift.add_flag("--all-pairs", s.all_pairs,
+                 "hand every candidate of the grid to the finder, without rejecting any first");
+  options->threads.add_to(drift);
+  drift.add_flag("--json", options->json, "print the numbers as JSON");
+  drift.callback([options, &action] { action = [options] { return bench(*options); }; });
+}
+
+} // namespace keeler

@@ -1,0 +1,95 @@
+// keeler bench gravity: every solver with every setting, its error and its cost.
+#include "bench.hpp"
+
+#include <keeler/study/gravity_bench.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <memory>
+
+namespace keeler {
+namespace {
+
+struct GravityOptions {
+  GravityBenchSettings bench;
+  std::string state = "clumped";
+  bool json = false;
+  BenchThreadOption threads;
+};
+
+void print_json(const GravityOptions& options, const GravityBench& b) {
+  nlohmann::ordered_json json;
+  json["rows"] = nlohmann::ordered_json::array();
+  for (const GravityBenchRow& row : b.rows) {
+    nlohmann::ordered_json line = {{"solver", row.choice.solver}, {"settings", row.choice.text}};
+    for (const auto& [name, value] : row.numbers())
+      line[name] = value;
+    line["threads"] = threads();
+    json["rows"].push_back(line);
+  }
+  json["state"] = options.state;
+  json["count"] = b.count;
+  json["box_m"] = {b.size_x_m, b.size_y_m};
+  json["offset_m"] = b.offset_m;
+  json["sample"] = b.sample;
+  json["edge_sample"] = b.edge_sample;
+  json["edge_width_m"] = b.edge_width_m;
+  json["threads"] = threads();
+  json["repeats"] = options.bench.repeats;
+  fmt::print("{}\n", json.dump(2));
+}
+
+void print_text(const GravityOptions& options, const GravityBench& b) {
+  fmt::print("{} particles, {}, box {:.4g} m x {:.4g} m, shear offset {:.4g} m, {} thread{}\n", b.count, options.state,
+             b.size_x_m, b.size_y_m, b.offset_m, threads(), threads() == 1 ? "" : "s");
+  fmt::print("errors of {} particles' forces over the rms force, of {} within {:g} m of the edges; medians of {} "
+             "times\n\n",
+             b.sample, b.edge_sample, b.edge_width_m, options.bench.repeats);
+  fmt::print("{:<8}{:<22}{:>12}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>10}{:>10}\n", "solver", "settings", "ns/particle",
+             "rms", "99.9 %", "x", "y", "z", "edge", "edge pull", "net force");
+  for (const GravityBenchRow& row : b.rows) {
+    const ForceErrors& e = row.errors;
+    fmt::print("{:<8}{:<22}{:>12.0f}{:>9.1e}{:>9.1e}{:>9.1e}{:>9.1e}{:>9.1e}{:>9.1e}{:>10.1e}{:>10.1e}\n",
+               row.choice.solver, row.choice.text, row.ns_per_particle, e.rms, e.p999, e.component_rms[0],
+               e.component_rms[1], e.component_rms[2], e.edge_rms, e.edge_pull, row.net_force);
+  }
+}
+
+ExitCode bench(GravityOptions& options) {
+  options.threads.apply();
+  options.bench.clumped = options.state == "clumped";
+  GravityBench result;
+  {
+    ProgressLine line;
+    options.bench.progress = patient_progress(line);
+    result = bench_gravity(options.bench);
+  }
+  if (options.json)
+    print_json(options, result);
+  else
+    print_text(options, result);
+  return ExitCode::done;
+}
+
+} // namespace
+
+void add_bench_gravity(CLI::App& bench_command, Action& action) {
+  const auto options = std::make_shared<GravityOptions>();
+  CLI::App& gravity = *bench_command.add_subcommand(
+      "gravity", "the gravity solvers: cost and error of each setting, in a patch of Saturn's A ring");
+  gravity
+      .add_option("--solver", options->bench.solver, "one solver (default: all, direct for up to 10000 particles only)")
+      ->check(CLI::IsMember(gravity_solver_names()).description(""));
+  gravity.add_option("--count", options->bench.count, "particles (default: 100000)")->check(positive_number());
+  gravity
+      .add_option("--state", options->state,
+                  "clumped: self-gravity wakes stand; uniform: a fresh patch (default: clumped)")
+      ->check(CLI::IsMember(std::vector<std::string>{"clumped", "uniform"}).description(""));
+  add_repeats(gravity, options->bench.repeats);
+  options->threads.add_to(gravity);
+  gravity.add_flag("--json", options->json, "print the numbers as JSON");
+  gravity.callback([options, &action] { action = [options] { return bench(*options); }; });
+}
+
+} // namespace keeler

@@ -1,0 +1,71 @@
+#include "study_folder.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/io/files.hpp>
+#include <keeler/io/provenance.hpp>
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+namespace keeler {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.starts_with("model name"))
+      return line.substr(line.find(':') + 2);
+  return "unknown";
+}
+
+std::string csv_line(const Json& row, bool names) {
+  std::string line;
+  for (const auto& [key, value] : row.items())
+    line += (line.empty() ? "" : ",") + (names ? key : value.is_string() ? value.get<std::string>() : value.dump());
+  return line + "\n";
+}
+
+} // namespace
+
+std::map<std::string, std::string> study_builder(const std::vector<std::string>& arguments) {
+  const Provenance p = collect_provenance(arguments);
+  return {{"command", p.at("arguments")}, {"host", p.at("host")},   {"processor", processor()},
+          {"compiler", p.at("compiler")}, {"flags", p.at("flags")}, {"commit", p.at("commit")}};
+}
+
+Json open_study_folder(const fs::path& folder, const Json& options, const std::map<std::string, std::string>& builder) {
+  const fs::path file = folder / "study.json";
+  if (!fs::exists(file)) {
+    if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
+      throw UsageError(fmt::format("'{}' is not empty and holds no study; name another folder", folder.string()));
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error)
+      throw IoError(fmt::format("cannot make the folder '{}': {}; name another", folder.string(), error.message()));
+    Json begun = options;
+    for (const auto& [key, value] : builder)
+      begun[key] = value;
+    write_text(file, begun.dump(2) + "\n");
+    return begun;
+  }
+  const Json before = Json::parse(read_text(file), nullptr, false);
+  for (const auto& [key, value] : options.items())
+    if (!before.is_object() || !before.contains(key) || before[key] != value)
+      throw UsageError(fmt::format("'{}' holds a study with another {} ({}); give the same options or name another "
+                                   "folder",
+                                   folder.string(), key,
+                                   before.is_object() && before.contains(key) ? before[key].dump() : "none"));
+  return before;
+}
+
+std::string csv_of(const Json& rows) {
+  std::string csv = csv_line(rows.front(), true);
+  for (const Json& row : rows)
+    csv += csv_line(row, false);
+  return csv;
+}
+
+} // namespace keeler

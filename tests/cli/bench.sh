@@ -1,0 +1,54 @@
+#!/bin/bash
+# bench.sh KEELER SOURCE_DIR: the numbers that benches print, on states as small as they can be.
+# shellcheck source=tests/cli/helpers.sh
+source "$(dirname "$0")/helpers.sh"
+number='-?[0-9.]+(e[-+]?[0-9]+)?'
+
+# has_numbers WHAT KEY...: the JSON that was printed has these keys, with numbers
+has_numbers() {
+  local key what=$1
+  shift
+  for key in "$@"; do
+    grep -qE "\"$key\": $number,?$" "$work/out" || fail "$what: no $key in: $(cat "$work/out")"
+  done
+}
+
+runs 0 bench drift --count 500 --step 2e-3 --repeats 2 --json
+has_numbers "bench" ns_per_particle_step cost_per_orbit_us ns_per_collision ns_per_call pairs_per_particle \
+  survivors_per_particle bytes_per_particle collisions_per_particle_orbit dispersion_r_omega advance build reject solve \
+  events line_ns pair_ns
+runs 0 bench drift --count 500 --repeats 1 --finder original --all-pairs --threads 2
+prints "bench" "ns per particle and step"
+runs 0 bench drift --count 400 --optical-depth 0.02 --sizes moonlet --repeats 1 --json
+grep -qF '"sizes": "moonlet"' "$work/out" || fail "bench: no moonlet in: $(cat "$work/out")"
+refuses "too few for a moonlet" "raise --count" bench drift --count 500 --sizes moonlet
+refuses "unknown sizes" "--sizes" bench drift --sizes huge
+refuses "an unknown finder" "'guess'" bench drift --finder guess
+refuses "bench without a kernel" "keeler --help" bench
+refuses "no particles" "--count" bench drift --count 0
+
+runs 0 bench gravity --count 100 --state uniform --repeats 1 --json
+has_numbers "bench gravity" error_rms error_p999 error_x error_y error_z error_edge edge_pull net_force ns_per_particle \
+  threads count sample
+for row in '"solver": "direct"' '"solver": "tree"' '"settings": "opening_angle 0.6"' '"state": "uniform"'; do
+  grep -qF "$row" "$work/out" || fail "bench gravity: no $row in: $(cat "$work/out")"
+done
+errors() { grep -E '"(error|edge|net)_' "$work/out"; }
+runs 0 bench gravity --count 100 --repeats 1 --json --solver tree
+errors >"$work/one"
+grep -q '"solver": "direct"' "$work/out" && fail "bench gravity --solver tree has other solvers"
+runs 0 bench gravity --count 100 --repeats 1 --json --solver tree --threads 2
+errors | cmp - "$work/one" || fail "errors depend on the threads"
+runs 0 bench gravity --count 100 --state uniform --repeats 1 --solver tree
+prints "bench gravity as text" "edge pull"
+refuses "an unknown solver" "--solver" bench gravity --solver guess
+refuses "an unknown state" "--state" bench gravity --state lumpy
+
+runs 0 bench step --count 100 --repeats 1 --kick-every 3 --json
+has_numbers "bench step" ns_per_particle_step drift advance gravity kick collisions_per_particle_step kick_every count steps
+[ $(($(sed -nE 's/^  "steps": ([0-9]+)$/\1/p' "$work/out") % 3)) -eq 0 ] || fail "bench step: no whole kick intervals"
+runs 0 bench step --count 100 --repeats 1
+prints "bench step as text" "collisions per particle and step"
+refuses "no interval" "--kick-every" bench step --kick-every 0
+
+report
