@@ -6,6 +6,7 @@ namespace keeler::KEELER_KERNEL_SPACE {
 namespace {
 
 constexpr std::size_t float_lanes = 2 * KEELER_LANES;
+typedef float HalfFloats __attribute__((vector_size(4 * KEELER_LANES), may_alias));
 
 inline Lanes load(const double* from) {
   return *reinterpret_cast<const Lanes*>(from);
@@ -66,12 +67,14 @@ void points(TargetBlock& t, std::size_t target_count, const PointSource* sources
   }
 }
 
-// Adds a register's sums to their doubles and empties it.
-inline void flush(Floats& sum, double* to) {
+// Adds a register's sums, times a number, to their doubles and empties it.
+inline void flush(Floats& sum, double* to, double scale = 1.0) {
   alignas(64) float values[float_lanes];
   *reinterpret_cast<Floats*>(values) = sum;
-  for (std::size_t k = 0; k < float_lanes; ++k)
-    to[k] += values[k];
+  for (std::size_t k = 0; k < float_lanes; k += KEELER_LANES) {
+    const HalfFloats& half = *reinterpret_cast<const HalfFloats*>(values + k);
+    store(to + k, load(to + k) + scale * __builtin_convertvector(half, Lanes));
+  }
   sum = Floats{};
 }
 
@@ -79,8 +82,9 @@ void points_single(SingleTargetBlock& t, std::size_t target_count, const SingleP
                    std::size_t range_count) {
   constexpr std::size_t chunk = 128;
   constexpr float nearest = same_place_single * same_place_single;
-  constexpr auto c0 = static_cast<float>(inverse3), c1 = static_cast<float>(1.5 * inverse3 / middle),
-                 c2 = static_cast<float>(1.875 * inverse3 / (middle * middle));
+  // 1/|d|³ = v³ scale (offset + h (tilt + h)), the expansion of (1 − h/middle)^(−3/2)
+  constexpr double scale = 1.875 * inverse3 / (middle * middle);
+  constexpr auto tilt = static_cast<float>(0.8 * middle), offset = static_cast<float>(middle * middle / 1.875);
   for (std::size_t b = 0; b < target_count; b += float_lanes) {
     const Floats x = load(t.x + b), y = load(t.y + b), z = load(t.z + b);
     const Floats xl = load(t.x_low + b), yl = load(t.y_low + b), zl = load(t.z_low + b);
@@ -99,22 +103,22 @@ void points_single(SingleTargetBlock& t, std::size_t target_count, const SingleP
           first_root<float, Ints>(d2, v);
           const Floats v2 = v * v;
           const Floats h = static_cast<float>(middle) - d2 * v2;
-          const Floats weight = (s->mass * v) * v2 * (c0 + h * (c1 + h * c2));
+          const Floats weight = (s->mass * v) * v2 * (offset + h * (tilt + h));
           ax += weight * dx;
           ay += weight * dy;
           az += weight * dz;
         }
         gathered += part;
         if (gathered >= chunk) {
-          flush(ax, t.ax + b);
-          flush(ay, t.ay + b);
-          flush(az, t.az + b);
+          flush(ax, t.ax + b, scale);
+          flush(ay, t.ay + b, scale);
+          flush(az, t.az + b, scale);
           gathered = 0;
         }
       }
-    flush(ax, t.ax + b);
-    flush(ay, t.ay + b);
-    flush(az, t.az + b);
+    flush(ax, t.ax + b, scale);
+    flush(ay, t.ay + b, scale);
+    flush(az, t.az + b, scale);
   }
 }
 

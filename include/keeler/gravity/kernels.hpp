@@ -49,7 +49,7 @@ struct PointRange {
 /// Up to `capacity` targets and what they have gathered so far. Entries behind the last target must be finite up to
 /// the next multiple of `widest`.
 struct TargetBlock {
-  static constexpr std::size_t capacity = 64;
+  static constexpr std::size_t capacity = 128;
   static constexpr std::size_t widest = 8;
   alignas(64) double x[capacity], y[capacity], z[capacity];
   alignas(64) double ax[capacity], ay[capacity], az[capacity];

@@ -23,6 +23,8 @@ private:
   int image_rings_;
   AttractionKernels kernels_;
   CellTree tree_;
+  std::vector<std::uint32_t> places_;
+  std::vector<PointSource> in_cell_;
 };
 
 } // namespace keeler

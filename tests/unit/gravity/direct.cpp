@@ -1,5 +1,7 @@
 #include <keeler/gravity/direct.hpp>
 
+#include <keeler/core/threads.hpp>
+
 #include "clumped_state.hpp"
 
 #include <doctest/doctest.h>
@@ -69,6 +71,32 @@ TEST_CASE("the direct sum equals the triple loop in extended precision") {
       const std::vector<Vec3> plain = without_sheet(accelerations(solver, state.problem()), state.problem(), rings);
       CHECK(rms_error(plain, naive(state.problem(), rings)) < 1e-14);
     }
+}
+
+TEST_CASE("in single precision the direct sum is good to a few 1e-7, for equal spheres and for 1:1000") {
+  for (const double size_range : {1.0, 1000.0}) {
+    const ClumpedState state = clumped_state(1500, 7, size_range);
+    DirectSolver exact = direct(1), fast(1, choose_instruction_set(), Precision::single_precision);
+    const double error = rms_error(accelerations(fast, state.problem()), accelerations(exact, state.problem()));
+    MESSAGE("radii 1:" << size_range << ", rms error of single precision: " << error);
+    CHECK(error < 1e-6);
+  }
+}
+
+TEST_CASE("single precision too gives the same bits for all threads and instruction sets") {
+  const ClumpedState state = clumped_state(700, 8, 10.0);
+  const int before = threads();
+  set_threads(1);
+  DirectSolver portable(1, InstructionSet::portable, Precision::single_precision);
+  const std::vector<Vec3> expected = accelerations(portable, state.problem());
+  for (const InstructionSet set : {InstructionSet::portable, InstructionSet::avx2, InstructionSet::avx512}) {
+    if (!supports(set))
+      continue;
+    set_threads(2);
+    DirectSolver solver(1, set, Precision::single_precision);
+    CHECK(accelerations(solver, state.problem()) == expected);
+  }
+  set_threads(before);
 }
 
 TEST_CASE("a contact across the sheared edge counts at its true distance") {

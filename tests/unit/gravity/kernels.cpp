@@ -135,7 +135,7 @@ TEST_CASE("kernels of all instruction sets give the same bits, for every number 
     kernels.far_cells(terms, far, 45);
     kernels.local(in_float, count, terms);
   };
-  for (const std::size_t count : {1u, 2u, 7u, 8u, 9u, 63u, 64u}) {
+  for (const std::size_t count : {1u, 2u, 7u, 8u, 9u, 17u, 64u, 127u, 128u}) {
     TargetBlock expected = start;
     SingleTargetBlock expected_single = in_single(start);
     run(InstructionSet::portable, count, expected, expected_single);

@@ -112,8 +112,8 @@ TEST_CASE("a particle far from all others feels them as they are") {
   double scale = 0.0;
   for (const Vec3& v : exact)
     scale += v.norm() / 1000.0;
-  // all share the correction that keeps the momentum: some 1e-4 of what the others feel
-  CHECK((a[17] - exact[17]).norm() < 4e-6 * exact[17].norm() + 3e-4 * scale);
+  // all share the correction that keeps the momentum: some 3e-4 of what the others feel
+  CHECK((a[17] - exact[17]).norm() < 4e-6 * exact[17].norm() + 5e-4 * scale);
 }
 
 TEST_CASE("a particle alone feels nothing: its own images cancel") {
