@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace keeler {
 namespace {
@@ -76,9 +77,21 @@ struct Cells {
   std::vector<TreeCell> cells;
   std::vector<CellBox> boxes;
   std::vector<CellMoments> moments;
+
+  void reserve(std::size_t count) {
+    cells.reserve(count);
+    boxes.reserve(count);
+    moments.reserve(count);
+  }
+
+  void append(const Cells& others) {
+    cells.insert(cells.end(), others.cells.begin(), others.cells.end());
+    boxes.insert(boxes.end(), others.boxes.begin(), others.boxes.end());
+    moments.insert(moments.end(), others.moments.begin(), others.moments.end());
+  }
 };
 
-// Where a subtree's cells begin, and its moments.
+// Grows subtrees, and writes the particles of their leaves to where they belong.
 class Grower {
 public:
   Grower(std::span<const PointSource> input, std::span<const std::uint32_t> places, std::span<const std::uint64_t> ids,
@@ -223,9 +236,7 @@ CellBox around(const CellBox& a, const CellBox& b) {
 // Appends the subtree that starts with `next` at this depth: depths, left to right, tell the shape of a binary tree.
 Moments join(const Grower& grower, Cells& to, std::vector<Piece>::const_iterator& next, int depth) {
   if (next->depth == depth) {
-    to.cells.insert(to.cells.end(), next->cells.cells.begin(), next->cells.cells.end());
-    to.boxes.insert(to.boxes.end(), next->cells.boxes.begin(), next->cells.boxes.end());
-    to.moments.insert(to.moments.end(), next->cells.moments.begin(), next->cells.moments.end());
+    to.append(next->cells);
     return (next++)->moments;
   }
   const std::uint32_t begin = next->begin;
@@ -257,7 +268,8 @@ void CellTree::build(std::span<const PointSource> particles, std::span<const std
   all.boxes.clear();
   all.moments.clear();
   if (count > 0) {
-    std::vector<Mark> marks(count), others(count);
+    const auto marks = std::make_unique_for_overwrite<Mark[]>(count),
+               others = std::make_unique_for_overwrite<Mark[]>(count);
     parallel_for(count, [&](std::size_t k) {
       const PointSource& p = particles[k];
       marks[k] = {{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)},
@@ -271,14 +283,15 @@ void CellTree::build(std::span<const PointSource> particles, std::span<const std
     // Any bound gives the same tree; this one gives threads enough pieces and each piece enough to do.
     const auto largest = static_cast<std::uint32_t>(std::max<std::size_t>(512, count / 64));
     std::vector<Piece> pieces;
-    cut(pieces, marks.data(), others.data(), 0, static_cast<std::uint32_t>(count), 0, largest);
+    cut(pieces, marks.get(), others.get(), 0, static_cast<std::uint32_t>(count), 0, largest);
     const Grower grower(particles, places, ids, mass_unit_, particles_.data(), order_.data(), points_.data());
     parallel_for(
         pieces.size(),
         [&](std::size_t k) {
           Piece& piece = pieces[k];
-          Mark* const here = piece.swapped ? others.data() : marks.data();
-          Mark* const there = piece.swapped ? marks.data() : others.data();
+          Mark* const here = piece.swapped ? others.get() : marks.get();
+          Mark* const there = piece.swapped ? marks.get() : others.get();
+          piece.cells.reserve((piece.end - piece.begin) / 2); // leaves are half full on the average
           piece.moments = grower.grow(piece.cells, here, there, piece.begin, piece.end, piece.depth);
         },
         1);
