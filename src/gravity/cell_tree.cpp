@@ -1,162 +1,312 @@
 #include <keeler/gravity/cell_tree.hpp>
 
 #include <keeler/core/threads.hpp>
+#include <keeler/gravity/single.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace keeler {
 namespace {
 
-struct Box {
-  Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+// A particle on its way down the tree.
+struct Mark {
+  float at[3];
+  std::uint32_t index;
 };
 
-Vec3 place(const TreeParticle& p) {
-  return {p.x, p.y, p.z};
+CellBox tight_box(const Mark* first, const Mark* last) {
+  // all four words at once; the last one is never looked at. Two boxes take turns, or each step would wait for the last
+  typedef float Four __attribute__((vector_size(16), may_alias));
+  const auto at = [](const Mark* m) -> const Four& { return *reinterpret_cast<const Four*>(m); };
+  Four low = at(first), high = low, other_low = at(last - 1), other_high = other_low;
+  const Mark* m = first;
+  for (; m + 1 < last; m += 2) {
+    const Four &a = at(m), &b = at(m + 1);
+    low = a < low ? a : low;
+    high = a > high ? a : high;
+    other_low = b < other_low ? b : other_low;
+    other_high = b > other_high ? b : other_high;
+  }
+  low = other_low < low ? other_low : low;
+  high = other_high > high ? other_high : high;
+  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
 }
 
-Box tight_box(const TreeParticle* first, const TreeParticle* last) {
-  Box box{place(*first), place(*first)};
-  for (const TreeParticle* p = first + 1; p != last; ++p) {
-    box.low = box.low.cwiseMin(place(*p));
-    box.high = box.high.cwiseMax(place(*p));
+// Moments of a subtree about its centre of mass.
+struct Moments {
+  double mass = 0.0;
+  Vec3 centre = Vec3::Zero();
+  Vec3 diagonal = Vec3::Zero(); // xx, yy, zz
+  Vec3 mixed = Vec3::Zero();    // xy, xz, yz
+};
+
+// Adds the quadrupole of a mass at a displacement d from the centre.
+void add_quadrupole(Moments& moments, double mass, const Vec3& d) {
+  moments.diagonal += mass * (3.0 * d.cwiseProduct(d) - Vec3::Constant(d.squaredNorm()));
+  moments.mixed += 3.0 * mass * Vec3(d.x() * d.y(), d.x() * d.z(), d.y() * d.z());
+}
+
+Vec3 centre_of(double mass, const Vec3& sum, const CellBox& box) {
+  if (mass > 0.0)
+    return sum / mass;
+  return 0.5 * (Vec3(box.low[0], box.low[1], box.low[2]) + Vec3(box.high[0], box.high[1], box.high[2]));
+}
+
+Moments moments_of(const PointSource* first, const PointSource* last, const CellBox& box) {
+  Moments moments;
+  Vec3 sum = Vec3::Zero();
+  for (const PointSource* p = first; p != last; ++p) {
+    moments.mass += p->mass;
+    sum += p->mass * Vec3(p->x, p->y, p->z);
+  }
+  moments.centre = centre_of(moments.mass, sum, box);
+  for (const PointSource* p = first; p != last; ++p)
+    add_quadrupole(moments, p->mass, Vec3(p->x, p->y, p->z) - moments.centre);
+  return moments;
+}
+
+Moments together(const Moments& a, const Moments& b, const CellBox& box) {
+  Moments moments;
+  moments.mass = a.mass + b.mass;
+  moments.centre = centre_of(moments.mass, a.mass * a.centre + b.mass * b.centre, box);
+  moments.diagonal = a.diagonal + b.diagonal;
+  moments.mixed = a.mixed + b.mixed;
+  add_quadrupole(moments, a.mass, a.centre - moments.centre);
+  add_quadrupole(moments, b.mass, b.centre - moments.centre);
+  return moments;
+}
+
+// A run of cells with what belongs to them.
+struct Cells {
+  std::vector<TreeCell> cells;
+  std::vector<CellBox> boxes;
+  std::vector<CellMoments> moments;
+
+  void reserve(std::size_t count) {
+    cells.reserve(count);
+    boxes.reserve(count);
+    moments.reserve(count);
+  }
+
+  void append(const Cells& others) {
+    cells.insert(cells.end(), others.cells.begin(), others.cells.end());
+    boxes.insert(boxes.end(), others.boxes.begin(), others.boxes.end());
+    moments.insert(moments.end(), others.moments.begin(), others.moments.end());
+  }
+};
+
+// Grows subtrees, and writes the particles of their leaves to where they belong.
+class Grower {
+public:
+  Grower(std::span<const PointSource> input, std::span<const std::uint32_t> places, std::span<const std::uint64_t> ids,
+         double mass_unit, PointSource* particles, std::uint32_t* order, SinglePoint* points)
+      : input_(input), places_(places), ids_(ids), mass_unit_(mass_unit), particles_(particles), order_(order),
+        points_(points) {}
+
+  // Appends the subtree over marks [begin, end), which stand in `here`; `there` is as long, for the partitions.
+  Moments grow(Cells& to, Mark* here, Mark* there, std::uint32_t begin, std::uint32_t end, int depth) const {
+    const CellBox box = tight_box(here + begin, here + end);
+    const std::size_t cell = open(to, begin, end - begin, box);
+    Moments moments;
+    const std::uint32_t middle =
+        depth < CellTree::deepest && end - begin > CellTree::leaf_size ? split(box, here, there, begin, end) : begin;
+    if (middle > begin && middle < end) {
+      const Moments a = grow(to, there, here, begin, middle, depth + 1);
+      const Moments b = grow(to, there, here, middle, end, depth + 1);
+      moments = together(a, b, box);
+    } else {
+      settle(here, begin, end);
+      moments = moments_of(particles_ + begin, particles_ + end, box);
+    }
+    close(to, cell, moments);
+    return moments;
+  }
+
+  // Copies the marks of the lower half of the box to the front of the same range of `there`, the others behind them.
+  static std::uint32_t split(const CellBox& box, const Mark* here, Mark* there, std::uint32_t begin,
+                             std::uint32_t end) {
+    int axis = 0;
+    for (int k = 1; k < 3; ++k)
+      if (box.high[k] - box.low[k] > box.high[axis] - box.low[axis])
+        axis = k;
+    float middle = 0.5F * (box.low[axis] + box.high[axis]);
+    if (!(middle < box.high[axis])) // neighbouring floats
+      middle = box.low[axis];
+    std::uint32_t left = begin, right = end;
+    for (const Mark* m = here + begin; m != here + end; ++m) { // without branches: both places, one of them to stay
+      const bool low = m->at[axis] <= middle;
+      there[left] = *m;
+      there[right - 1] = *m;
+      left += low;
+      right -= !low;
+    }
+    return left;
+  }
+
+  static std::size_t open(Cells& to, std::uint32_t begin, std::uint32_t count, const CellBox& box) {
+    float size = 0.0F;
+    for (int k = 0; k < 3; ++k)
+      size = std::max(size, box.high[k] - box.low[k]);
+    to.cells.push_back({0.0F, 0.0F, 0.0F, size, 0.0F, begin, count, 1});
+    to.boxes.push_back(box);
+    to.moments.push_back({});
+    return to.cells.size() - 1;
+  }
+
+  // Writes the moments of a cell whose subtree is all that follows it.
+  void close(Cells& to, std::size_t index, const Moments& from) const {
+    TreeCell& cell = to.cells[index];
+    CellMoments& moments = to.moments[index];
+    const CellBox& box = to.boxes[index];
+    cell.span = static_cast<std::uint32_t>(to.cells.size() - index);
+    split_place(from.centre.x(), cell.x, moments.x_low);
+    split_place(from.centre.y(), cell.y, moments.y_low);
+    split_place(from.centre.z(), cell.z, moments.z_low);
+    const float dx = std::max(cell.x - box.low[0], box.high[0] - cell.x);
+    const float dy = std::max(cell.y - box.low[1], box.high[1] - cell.y);
+    const float dz = std::max(cell.z - box.low[2], box.high[2] - cell.z);
+    cell.reach = std::sqrt(dx * dx + dy * dy + dz * dz);
+    const double unit = 1.0 / mass_unit_;
+    moments.mass = static_cast<float>(unit * from.mass);
+    moments.xx = static_cast<float>(unit * from.diagonal.x());
+    moments.yy = static_cast<float>(unit * from.diagonal.y());
+    moments.zz = static_cast<float>(unit * from.diagonal.z());
+    moments.xy = static_cast<float>(unit * from.mixed.x());
+    moments.xz = static_cast<float>(unit * from.mixed.y());
+    moments.yz = static_cast<float>(unit * from.mixed.z());
+  }
+
+private:
+  // Puts the particles of a leaf in their order.
+  void settle(Mark* marks, std::uint32_t begin, std::uint32_t end) const {
+    const auto before = [this](const Mark& a, const Mark& b) {
+      return a.at[0] != b.at[0] ? a.at[0] < b.at[0] : ids_[places_[a.index]] < ids_[places_[b.index]];
+    };
+    for (std::uint32_t k = begin + 1; k < end && end - begin <= 32; ++k) // a few: by insertion
+      for (std::uint32_t j = k; j > begin && before(marks[j], marks[j - 1]); --j)
+        std::swap(marks[j], marks[j - 1]);
+    if (end - begin > 32)
+      std::sort(marks + begin, marks + end, before);
+    const double unit = 1.0 / mass_unit_;
+    for (std::uint32_t k = begin; k < end; ++k) {
+      const PointSource& p = input_[marks[k].index];
+      order_[k] = places_[marks[k].index];
+      particles_[k] = p;
+      points_[k] = single_point({p.x, p.y, p.z, unit * p.mass});
+    }
+  }
+
+  std::span<const PointSource> input_;
+  std::span<const std::uint32_t> places_;
+  std::span<const std::uint64_t> ids_;
+  double mass_unit_;
+  PointSource* particles_;
+  std::uint32_t* order_;
+  SinglePoint* points_;
+};
+
+// A subtree that one thread grows.
+struct Piece {
+  std::uint32_t begin, end;
+  int depth;
+  bool swapped; // the marks stand in the second buffer
+  Cells cells = {};
+  Moments moments = {};
+};
+
+// Splits the top of the tree down to pieces of at most `largest` particles, left to right.
+void cut(std::vector<Piece>& pieces, Mark* here, Mark* there, std::uint32_t begin, std::uint32_t end, int depth,
+         std::uint32_t largest) {
+  if (end - begin > std::max(largest, CellTree::leaf_size) && depth < CellTree::deepest) {
+    const std::uint32_t middle = Grower::split(tight_box(here + begin, here + end), here, there, begin, end);
+    if (middle > begin && middle < end) {
+      cut(pieces, there, here, begin, middle, depth + 1, largest);
+      cut(pieces, there, here, middle, end, depth + 1, largest);
+      return;
+    }
+  }
+  pieces.push_back({begin, end, depth, depth % 2 == 1});
+}
+
+CellBox around(const CellBox& a, const CellBox& b) {
+  CellBox box = a;
+  for (int k = 0; k < 3; ++k) {
+    box.low[k] = std::min(a.low[k], b.low[k]);
+    box.high[k] = std::max(a.high[k], b.high[k]);
   }
   return box;
 }
 
-bool must_split(const Box& box, std::size_t count, int depth) {
-  return count > CellTree::leaf_size && depth < CellTree::deepest && box.low != box.high;
-}
-
-// Moves the particles of the lower half to the front; both halves hold at least one.
-TreeParticle* split(const Box& box, TreeParticle* first, TreeParticle* last) {
-  int axis = 0;
-  (box.high - box.low).maxCoeff(&axis);
-  double middle = 0.5 * (box.low[axis] + box.high[axis]);
-  if (!(middle < box.high[axis])) // neighbouring doubles
-    middle = box.low[axis];
-  double TreeParticle::*const along[] = {&TreeParticle::x, &TreeParticle::y, &TreeParticle::z};
-  return std::partition(first, last, [=](const TreeParticle& p) { return p.*along[axis] <= middle; });
-}
-
-// Adds the quadrupole of a mass at a displacement d from the centre.
-void add_quadrupole(TreeCell& cell, double mass, const Vec3& d) {
-  cell.diagonal += mass * (3.0 * d.cwiseProduct(d) - Vec3::Constant(d.squaredNorm()));
-  cell.mixed += 3.0 * mass * Vec3(d.x() * d.y(), d.x() * d.z(), d.y() * d.z());
-}
-
-// A cell with its box and range; the moments come later.
-TreeCell bare_cell(const Box& box, std::size_t begin, std::size_t count) {
-  TreeCell cell;
-  cell.low = box.low;
-  cell.high = box.high;
-  cell.size = (box.high - box.low).maxCoeff();
-  cell.begin = static_cast<std::uint32_t>(begin);
-  cell.count = static_cast<std::uint32_t>(count);
-  return cell;
-}
-
-void sum_particles(TreeCell& cell, const TreeParticle* particles) {
-  for (std::uint32_t k = 0; k < cell.count; ++k) {
-    cell.mass += particles[k].mass;
-    cell.centre += particles[k].mass * place(particles[k]);
-  }
-  cell.centre = cell.mass > 0.0 ? Vec3(cell.centre / cell.mass) : Vec3(0.5 * (cell.low + cell.high));
-  for (std::uint32_t k = 0; k < cell.count; ++k)
-    add_quadrupole(cell, particles[k].mass, place(particles[k]) - cell.centre);
-}
-
-void sum_children(TreeCell& cell, const TreeCell& a, const TreeCell& b) {
-  cell.mass = a.mass + b.mass;
-  cell.centre =
-      cell.mass > 0.0 ? Vec3((a.mass * a.centre + b.mass * b.centre) / cell.mass) : Vec3(0.5 * (cell.low + cell.high));
-  cell.diagonal = a.diagonal + b.diagonal;
-  cell.mixed = a.mixed + b.mixed;
-  add_quadrupole(cell, a.mass, a.centre - cell.centre);
-  add_quadrupole(cell, b.mass, b.centre - cell.centre);
-}
-
-// Closes the cell at `parent`, whose two subtrees are all that follows it.
-void close(std::vector<TreeCell>& cells, std::size_t parent) {
-  TreeCell& cell = cells[parent];
-  const TreeCell& a = cells[parent + 1];
-  const TreeCell& b = cells[parent + 1 + a.span];
-  cell.span = static_cast<std::uint32_t>(cells.size() - parent);
-  sum_children(cell, a, b);
-}
-
-// Appends the subtree over particles [begin, end).
-void grow(std::vector<TreeCell>& cells, TreeParticle* all, std::size_t begin, std::size_t end, int depth) {
-  const Box box = tight_box(all + begin, all + end);
-  const std::size_t here = cells.size();
-  cells.push_back(bare_cell(box, begin, end - begin));
-  if (must_split(box, end - begin, depth)) {
-    const auto middle = static_cast<std::size_t>(split(box, all + begin, all + end) - all);
-    grow(cells, all, begin, middle, depth + 1);
-    grow(cells, all, middle, end, depth + 1);
-    close(cells, here);
-  } else {
-    std::sort(all + begin, all + end, [](const TreeParticle& a, const TreeParticle& b) { return a.id < b.id; });
-    sum_particles(cells[here], all + begin);
-  }
-}
-
-// A subtree that one thread grows.
-struct Piece {
-  std::size_t begin, end;
-  int depth;
-  std::vector<TreeCell> cells;
-};
-
-// Splits the top of the tree down to pieces of at most `largest` particles, left to right.
-void cut(std::vector<Piece>& pieces, TreeParticle* all, std::size_t begin, std::size_t end, int depth,
-         std::size_t largest) {
-  const Box box = tight_box(all + begin, all + end);
-  if (end - begin <= largest || !must_split(box, end - begin, depth)) {
-    pieces.push_back({begin, end, depth, {}});
-    return;
-  }
-  const auto middle = static_cast<std::size_t>(split(box, all + begin, all + end) - all);
-  cut(pieces, all, begin, middle, depth + 1, largest);
-  cut(pieces, all, middle, end, depth + 1, largest);
-}
-
 // Appends the subtree that starts with `next` at this depth: depths, left to right, tell the shape of a binary tree.
-void join(std::vector<TreeCell>& cells, std::vector<Piece>::const_iterator& next, int depth) {
+Moments join(const Grower& grower, Cells& to, std::vector<Piece>::const_iterator& next, int depth) {
   if (next->depth == depth) {
-    cells.insert(cells.end(), next->cells.begin(), next->cells.end());
-    ++next;
-    return;
+    to.append(next->cells);
+    return (next++)->moments;
   }
-  const std::size_t here = cells.size();
-  const std::size_t begin = next->begin;
-  cells.push_back(bare_cell({}, begin, 0));
-  join(cells, next, depth + 1);
-  join(cells, next, depth + 1);
-  const TreeCell& a = cells[here + 1];
-  const TreeCell& b = cells[here + 1 + a.span];
-  cells[here] = bare_cell({a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)}, begin, a.count + b.count);
-  close(cells, here);
+  const std::uint32_t begin = next->begin;
+  const std::size_t here = Grower::open(to, begin, 0, {});
+  const Moments a = join(grower, to, next, depth + 1);
+  const std::size_t second = to.cells.size();
+  const Moments b = join(grower, to, next, depth + 1);
+  const CellBox box = around(to.boxes[here + 1], to.boxes[second]);
+  to.boxes[here] = box;
+  TreeCell& cell = to.cells[here];
+  cell.count = to.cells[here + 1].count + to.cells[second].count;
+  for (int k = 0; k < 3; ++k)
+    cell.size = std::max(cell.size, box.high[k] - box.low[k]);
+  const Moments moments = together(a, b, box);
+  grower.close(to, here, moments);
+  return moments;
 }
 
 } // namespace
 
-void CellTree::build(std::vector<TreeParticle> particles) {
-  particles_ = std::move(particles);
-  cells_.clear();
-  if (particles_.empty())
-    return;
-  // Any bound gives the same tree; this one gives threads enough pieces and each piece enough to do.
-  const std::size_t largest = std::max<std::size_t>(512, particles_.size() / 64);
-  std::vector<Piece> pieces;
-  cut(pieces, particles_.data(), 0, particles_.size(), 0, largest);
-  parallel_for(
-      pieces.size(),
-      [&](std::size_t k) { grow(pieces[k].cells, particles_.data(), pieces[k].begin, pieces[k].end, pieces[k].depth); },
-      1);
-  auto next = pieces.cbegin();
-  join(cells_, next, 0);
+void CellTree::build(std::span<const PointSource> particles, std::span<const std::uint32_t> places,
+                     std::span<const std::uint64_t> ids) {
+  const std::size_t count = particles.size();
+  particles_.resize(count);
+  order_.resize(count);
+  points_.resize(count);
+  Cells all{std::move(cells_), std::move(boxes_), std::move(moments_)};
+  all.cells.clear();
+  all.boxes.clear();
+  all.moments.clear();
+  if (count > 0) {
+    const auto marks = std::make_unique_for_overwrite<Mark[]>(count),
+               others = std::make_unique_for_overwrite<Mark[]>(count);
+    parallel_for(count, [&](std::size_t k) {
+      const PointSource& p = particles[k];
+      marks[k] = {{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)},
+                  static_cast<std::uint32_t>(k)};
+    });
+    mass_unit_ = 0.0;
+    for (const PointSource& p : particles)
+      mass_unit_ = std::max(mass_unit_, p.mass);
+    if (mass_unit_ == 0.0)
+      mass_unit_ = 1.0;
+    // Any bound gives the same tree; this one gives threads enough pieces and each piece enough to do.
+    const auto largest = static_cast<std::uint32_t>(std::max<std::size_t>(512, count / 64));
+    std::vector<Piece> pieces;
+    cut(pieces, marks.get(), others.get(), 0, static_cast<std::uint32_t>(count), 0, largest);
+    const Grower grower(particles, places, ids, mass_unit_, particles_.data(), order_.data(), points_.data());
+    parallel_for(
+        pieces.size(),
+        [&](std::size_t k) {
+          Piece& piece = pieces[k];
+          Mark* const here = piece.swapped ? others.get() : marks.get();
+          Mark* const there = piece.swapped ? marks.get() : others.get();
+          piece.cells.reserve((piece.end - piece.begin) / 2); // leaves are half full on the average
+          piece.moments = grower.grow(piece.cells, here, there, piece.begin, piece.end, piece.depth);
+        },
+        1);
+    auto next = pieces.cbegin();
+    join(grower, all, next, 0);
+  }
+  cells_ = std::move(all.cells);
+  boxes_ = std::move(all.boxes);
+  moments_ = std::move(all.moments);
 }
 
 } // namespace keeler

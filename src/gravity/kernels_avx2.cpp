@@ -1,4 +1,4 @@
-// Kernels for AVX2: four lanes. Compiled with -mavx2.
+// Kernels for AVX2: registers of 32 bytes. Compiled with -mavx2.
 #include <keeler/gravity/far_kernels.hpp>
 #include <keeler/gravity/kernels.hpp>
 
@@ -10,9 +10,16 @@
 namespace {
 
 typedef double Lanes __attribute__((vector_size(32), may_alias));
+typedef long long Longs __attribute__((vector_size(32), may_alias));
+typedef float Floats __attribute__((vector_size(32), may_alias));
+typedef int Ints __attribute__((vector_size(32), may_alias));
 
-inline Lanes square_root(const Lanes& value) {
-  return _mm256_sqrt_pd(value);
+inline Lanes larger(const Lanes& a, const Lanes& b) {
+  return _mm256_max_pd(a, b);
+}
+
+inline Floats larger(const Floats& a, const Floats& b) {
+  return _mm256_max_ps(a, b);
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// Kernels for AVX-512: eight lanes. Compiled with -mavx512f.
+// Kernels for AVX-512: registers of 64 bytes. Compiled with -mavx512f.
 #include <keeler/gravity/far_kernels.hpp>
 #include <keeler/gravity/kernels.hpp>
 
@@ -10,9 +10,17 @@
 namespace {
 
 typedef double Lanes __attribute__((vector_size(64), may_alias));
+typedef long long Longs __attribute__((vector_size(64), may_alias));
+typedef float Floats __attribute__((vector_size(64), may_alias));
+typedef int Ints __attribute__((vector_size(64), may_alias));
 
-inline Lanes square_root(const Lanes& value) {
-  return _mm512_maskz_sqrt_pd(0xff, value); // all lanes; gcc 12 warns falsely at the plain form
+// All lanes; gcc 12 warns falsely at the plain forms.
+inline Lanes larger(const Lanes& a, const Lanes& b) {
+  return _mm512_maskz_max_pd(0xff, a, b);
+}
+
+inline Floats larger(const Floats& a, const Floats& b) {
+  return _mm512_maskz_max_ps(0xffff, a, b);
 }
 
 } // namespace

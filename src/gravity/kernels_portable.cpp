@@ -1,4 +1,4 @@
-// Kernels for any processor: two lanes, which is what x86-64 (SSE2) and 64-bit ARM both have.
+// Kernels for any processor: registers of 16 bytes, which is what x86-64 (SSE2) and 64-bit ARM both have.
 #include <keeler/gravity/far_kernels.hpp>
 #include <keeler/gravity/kernels.hpp>
 
@@ -8,9 +8,16 @@
 namespace {
 
 typedef double Lanes __attribute__((vector_size(16), may_alias));
+typedef long long Longs __attribute__((vector_size(16), may_alias));
+typedef float Floats __attribute__((vector_size(16), may_alias));
+typedef int Ints __attribute__((vector_size(16), may_alias));
 
-inline Lanes square_root(const Lanes& value) {
-  return Lanes{__builtin_sqrt(value[0]), __builtin_sqrt(value[1])};
+inline Lanes larger(const Lanes& a, const Lanes& b) {
+  return a > b ? a : b;
+}
+
+inline Floats larger(const Floats& a, const Floats& b) {
+  return a > b ? a : b;
 }
 
 } // namespace

@@ -25,6 +25,8 @@ private:
   InstructionSet set_;
   AttractionKernels kernels_;
   CellTree tree_;
+  std::vector<std::uint32_t> places_;
+  std::vector<PointSource> in_cell_;
 };
 
 } // namespace keeler

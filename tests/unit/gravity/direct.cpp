@@ -1,5 +1,6 @@
 #include <keeler/gravity/direct.hpp>
 
+#include <keeler/core/threads.hpp>
 #include <keeler/gravity/lattice.hpp>
 
 #include "clumped_state.hpp"
@@ -70,6 +71,32 @@ TEST_CASE("the direct sum equals the triple loop in extended precision") {
       // 1e-14: places of 15 m hold contacts of 2 m to about 1e-15, and sums of 4000 terms add a little
       CHECK(rms_error(accelerations(solver, state.problem()), naive(state.problem(), rings)) < 1e-14);
     }
+}
+
+TEST_CASE("in single precision the direct sum is good to a few 1e-7, for equal spheres and for 1:1000") {
+  for (const double size_range : {1.0, 1000.0}) {
+    const ClumpedState state = clumped_state(1500, 7, size_range);
+    DirectSolver exact = direct(1, true), fast({}, choose_instruction_set(), Precision::single_precision);
+    const double error = rms_error(accelerations(fast, state.problem()), accelerations(exact, state.problem()));
+    MESSAGE("radii 1:" << size_range << ", rms error of single precision: " << error);
+    CHECK(error < 1e-6);
+  }
+}
+
+TEST_CASE("single precision too gives the same bits for all threads and instruction sets") {
+  const ClumpedState state = clumped_state(700, 8, 10.0);
+  const int before = threads();
+  set_threads(1);
+  DirectSolver portable({}, InstructionSet::portable, Precision::single_precision);
+  const std::vector<Vec3> expected = accelerations(portable, state.problem());
+  for (const InstructionSet set : {InstructionSet::portable, InstructionSet::avx2, InstructionSet::avx512}) {
+    if (!supports(set))
+      continue;
+    set_threads(2);
+    DirectSolver solver({}, set, Precision::single_precision);
+    CHECK(accelerations(solver, state.problem()) == expected);
+  }
+  set_threads(before);
 }
 
 TEST_CASE("a contact across the sheared edge counts at its true distance") {
