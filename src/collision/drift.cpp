@@ -56,6 +56,7 @@ struct DriftPhase::InPlace {
       drift.grid_.changed(i);
     else
       drift.neighbours_.changed(i);
+    drift.crowds_.changed(i);
     drift.finder_->changed(i);
     if (drift.watch)
       drift.watch->changed(i);
@@ -79,8 +80,31 @@ struct DriftPhase::InPlace {
   template<class Visit> void visit_unordered(std::size_t i, const Visit& visit) {
     if (drift.through_grid_)
       drift.grid_.visit_partners(i, last_change(i), visit);
-    else if (!drift.neighbours_.visit_partners(drift.neighbours_.mirror().whole(), i, last_change(i), buffer, visit))
+    else if (const Crowd* crowd = crowd_of(static_cast<std::uint32_t>(i)))
+      crowd->visit(last_change(i), buffer, [&](std::uint32_t j) {
+        drift.neighbours_.visit_nearest(body(i), body(j), last_change(i), [&](const Image& image) { visit(j, image); });
+      });
+    else if (!drift.neighbours_.visit_partners(i, last_change(i), visit))
       drift.neighbours_.visit_everywhere(i, last_change(i), visit);
+  }
+
+  // One is gathered at the second hit of a step, and now and then when that one was lost.
+  const Crowd* crowd_of(std::uint32_t i) {
+    constexpr std::uint32_t apart = 8; // hits
+    Crowd* crowd = drift.crowds_.of(i);
+    const Neighbours& neighbours = drift.neighbours_;
+    if (!crowd && stamp(i) % apart == 2) {
+      crowd = drift.crowds_.add(drift.step_at_hand_, i);
+      if (crowd && !neighbours.gather(i, last_change(i), buffer, *crowd)) {
+        drift.crowds_.drop(crowd);
+        crowd = nullptr;
+      }
+    }
+    if (crowd && !(neighbours.holds(*crowd))) {
+      drift.crowds_.drop(crowd);
+      crowd = nullptr;
+    }
+    return crowd;
   }
 
   void prefetch(std::size_t i, int stage) const {
@@ -160,6 +184,7 @@ void DriftPhase::prepare() {
   ++costs_.steps;
   so_far_.begin_step(particles_->size(), -0.5 * step_);
   touched_.clear();
+  crowds_.begin_step();
   const ShearingBox& box = step_at_hand_.box;
   if (every_candidate)
     neighbours_.forget();
@@ -266,7 +291,7 @@ DriftCosts DriftPhase::costs() const {
 
 std::size_t DriftPhase::bytes() const {
   std::size_t total = particles_->bodies.capacity() * sizeof(Body) + particles_->ids.capacity() * sizeof(std::uint64_t);
-  total += neighbours_.bytes() + strips_.bytes() + events_.bytes() + so_far_.bytes();
+  total += neighbours_.bytes() + strips_.bytes() + events_.bytes() + so_far_.bytes() + crowds_.bytes();
   total += touched_.capacity() * sizeof(std::uint32_t);
   total += particles_->size() * finder_->bytes_per_particle();
   for (const std::vector<Candidate>& block : candidates_)

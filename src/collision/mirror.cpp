@@ -65,9 +65,10 @@ Line Mirror::line_of(const Body& body, const Rotation& rotation) const {
           0};
 }
 
+// Those that reach less than 2 of the least radius, then up to 8, 32, ...: each level that there is costs a look-up.
 int Mirror::level_of(const Line& line) const {
   const double reach = std::max(reach_x(line), reach_y(line));
-  return reach < 2.0 * least_radius_ ? 0 : std::min(std::ilogb(reach / least_radius_), most_levels - 1);
+  return reach < 2.0 * least_radius_ ? 0 : std::min((std::ilogb(reach / least_radius_) + 1) / 2, most_levels - 1);
 }
 
 std::size_t Mirror::cell_of(const Line& line, const MirrorLevel& level) const {
@@ -248,6 +249,16 @@ void Mirror::replace(MirrorPart& part, std::size_t place, const Line& line) {
   level->stray_y = std::max(level->stray_y, outside(off_y, level->rows) / per_metre_y_);
 }
 
+// A line's size has room for what the span has beyond the window.
+Mirror::Lookout Mirror::lookout(const Line& line, const LineSpan& span) const {
+  const double begin = std::max<double>(span.begin, -window_.half_length);
+  const double end = std::min<double>(span.end, window_.half_length);
+  const double middle = 0.5 * (begin + end), half = 0.5 * (end - begin);
+  const auto on = [&](float speed, double per_metre) { return static_cast<std::int64_t>(middle * speed * per_metre); };
+  return {across(line) + on(line.u, per_metre_x_), static_cast<std::uint32_t>(on(line.v, per_metre_y_)),
+          line.size + half * std::fabs(line.u), line.size + half * std::fabs(line.v)};
+}
+
 void Mirror::join(const MirrorPart& part) {
   for (std::size_t l = 0; l < part.levels.size(); ++l) {
     MirrorLevel& level = whole_.levels[l];
@@ -296,8 +307,9 @@ bool Mirror::encloses(const MirrorPart& part, const Line& line) const {
 std::size_t Mirror::near(const MirrorPart& part, const Line& line, const LineSpan& span,
                          std::vector<std::uint32_t>& buffer) const {
   std::size_t count = 0;
+  const Lookout from = lookout(line, span);
   for (const MirrorLevel& level : part.levels)
-    ranges_in(level, line, 0, [&](std::uint32_t begin, std::uint32_t end) {
+    ranges_in(level, line, from, 0, [&](std::uint32_t begin, std::uint32_t end) {
       const std::size_t room = count + (end - begin) + sweep_padding;
       if (buffer.size() < room)
         buffer.resize(2 * room);

@@ -10,6 +10,7 @@ constexpr double longest_window = 1.0; // rad: bounds and rounding are good for 
 constexpr double window_hits = 0.3;    // of a particle in a window: more, and lists are remade too often
 constexpr double window_skin = 0.2;    // of a mean radius
 constexpr double farthest_stray = 2.0; // of lines from their cells before a window ends
+constexpr std::size_t fewest_in_crowd = 32;
 
 } // namespace
 
@@ -28,6 +29,8 @@ bool Neighbours::begin(const Particles& particles, const ShearingBox& box, doubl
   if (!(goes_on_ && !over_ && same && at_step_ < length_ && kick_path_ <= skin_))
     open();
   goes_on_ = false;
+  looks_.clear();
+  seen_.assign(1, 0); // looks begin behind
   const double half = 0.5 * step_;
   to_middle_ = Rotation(frequencies_, -since_middle());
   step_test_ = {frequencies_, half, half, 1e-13 * (box_.size_x + box_.size_y)};
@@ -128,12 +131,35 @@ void Neighbours::list_pairs() {
   last_listed_ = static_cast<double>(listed_now) / count;
 }
 
+bool Neighbours::gather(std::size_t i, double start, std::vector<std::uint32_t>& buffer, Crowd& crowd) const {
+  Line line = mirror_.line(i);
+  line.size += static_cast<float>(1.001 * crowd.margin());
+  if (!mirror_.one_image(line, mirror_.whole()))
+    return false;
+  const double now = since_middle();
+  const std::size_t count = mirror_.near(mirror_.whole(), line, span(now + start, now + 0.5 * step_), buffer);
+  if (count < fewest_in_crowd)
+    return false;
+  for (std::size_t k = 0; k < count; ++k)
+    if (const std::uint32_t j = mirror_.place(buffer[k]); j != i)
+      crowd.take(j);
+  return true;
+}
+
 double Neighbours::departure(const Elements& change) const {
   const Frequencies& f = frequencies_;
   const State s = state_at(change, f, Rotation());
   const double acceleration = 2.0 * f.kappa * change.eccentricity() + f.nu * f.nu * change.inclination();
   const double half = 0.5 * step_;
   return s.position.norm() + half * s.velocity.norm() + 0.5 * acceleration * half * half;
+}
+
+void Neighbours::changed(std::size_t i) {
+  if (looks_needed()) {
+    mirror_.note(i) = static_cast<std::uint32_t>(looks_.size());
+    looks_.emplace_back();
+  }
+  changed(mirror_.whole(), i);
 }
 
 void Neighbours::changed(MirrorPart& part, std::size_t i) {
@@ -148,7 +174,7 @@ void Neighbours::restore(MirrorPart& part, std::size_t i, const Line& line, Mark
 
 void Neighbours::settle(std::span<const std::uint32_t> particles, std::uint64_t collisions) {
   hits_ += 2 * collisions;
-  if (at_step_ + 1 >= length_)
+  if (!looks_needed())
     return;
   if (mirror_.stray() > farthest_stray) {
     over_ = true;
@@ -172,12 +198,17 @@ void Neighbours::settle(std::span<const std::uint32_t> particles, std::uint64_t 
           const Line& line = mirror_.line(i);
           if (!mirror_.one_image(line, mirror_.whole()))
             too_fast[c] = 1;
-          const std::size_t count = mirror_.near(mirror_.whole(), line, rest, buffer);
-          for (std::size_t n = 0; n < count; ++n) {
-            const std::uint32_t j = mirror_.place(buffer[n]);
-            if (j != i && !(changed_[j] == this_step && j < i)) // two that were hit find each other: one entry
+          const auto keep = [&](std::uint32_t j) {
+            if (j != i && (changed_[j] != this_step || lists(i, j)))
               list.push_back(entry(i, j));
+          };
+          if (const Look look = looks_.empty() ? Look{} : looks_[mirror_.note(i)]; look.begin > 0) {
+            std::for_each(seen_.begin() + look.begin, seen_.begin() + look.end, keep);
+            continue;
           }
+          const std::size_t count = mirror_.near(mirror_.whole(), line, rest, buffer);
+          for (std::size_t n = 0; n < count; ++n)
+            keep(mirror_.place(buffer[n]));
         }
       },
       1);
@@ -190,7 +221,8 @@ void Neighbours::release() {
 }
 
 std::size_t Neighbours::bytes() const {
-  std::size_t total = mirror_.bytes() + changed_.capacity();
+  std::size_t total = mirror_.bytes() + changed_.capacity() + looks_.capacity() * sizeof(Look);
+  total += (seen_.capacity() + buffer_.capacity()) * sizeof(std::uint32_t);
   for (const List& list : lists_)
     total += list.entries.capacity() * sizeof(Entry) + sizeof list;
   return total;

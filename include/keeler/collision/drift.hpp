@@ -7,6 +7,7 @@
 
 #include <keeler/box/shearing_box.hpp>
 #include <keeler/collision/costs.hpp>
+#include <keeler/collision/crowd.hpp>
 #include <keeler/collision/finders.hpp>
 #include <keeler/collision/grid_partners.hpp>
 #include <keeler/collision/settings.hpp>
@@ -110,6 +111,7 @@ private:
   EventQueue events_;
   Strips strips_;
   StepSoFar so_far_;
+  Crowds crowds_;
   std::vector<std::uint32_t> touched_; // who has changed in this step
   std::uint64_t gave_up_ = 0;
   DriftCosts costs_;

@@ -2,10 +2,10 @@
 // in single precision, 32 bytes, sorted into cells. Nothing of a result is computed from it: it only says which pairs
 // cannot touch.
 //
-// Particles stand in levels by how far they reach in the window (radius and path, in octaves), each level with cells of
-// its own size; a particle looks into its own level and into all finer ones, so that a moonlet or a fast particle costs
-// what it reaches and nobody else anything. Cells are columns of a level, rows within a column, so that what a particle
-// can reach in a column is one or two ranges of the arrays.
+// Particles stand in levels by how far they reach in the window (radius and path, in steps of 4), each level with cells
+// of its own size; a particle looks into its own level and into all finer ones, so that a moonlet or a fast particle
+// costs what it reaches and nobody else anything. Cells are columns of a level, rows within a column, so that what a
+// particle can reach in a column is one or two ranges of the arrays.
 //
 // Invariant: a line stands within its level's stray of its cell. Particles that were hit get a new line but keep their
 // cell.
@@ -83,6 +83,9 @@ public:
   std::size_t size() const { return cells_.size(); }
   std::uint32_t place(std::size_t slot) const { return lines_[slot].place; }
   const Line& line(std::size_t place) const { return lines_[slots_[place]]; }
+  /// For whoever has a number to keep for a particle until the next build: room that only a build needs.
+  std::uint32_t& note(std::size_t place) { return unsorted_[place].place; }
+  std::uint32_t note(std::size_t place) const { return unsorted_[place].place; }
 
   /// The line of a body whose elements' epoch stands `rotation.after` before the middle of the window; `offset` is the
   /// shear offset at the middle.
@@ -152,10 +155,19 @@ private:
     std::int64_t first, last; // beyond the box's edges they count on
   };
   Columns columns_near(const MirrorLevel& level, const Line& line) const;
+  // The places that a line takes in a span: so many metres around one.
+  struct Lookout {
+    std::int64_t x;      // across
+    std::uint32_t along; // from the line's own place
+    double around_x, around_y;
+  };
+  Lookout lookout(const Line& line) const { return {across(line), 0, reach_x(line), reach_y(line)}; }
+  Lookout lookout(const Line& line, const LineSpan& span) const;
   std::size_t sweep_copy(const Line& line, const LineSpan& span, std::uint32_t begin, std::uint32_t end,
                          std::uint32_t* found) const;
   template<class Range>
-  void ranges_in(const MirrorLevel& level, const Line& line, std::uint32_t after, const Range& range) const;
+  void ranges_in(const MirrorLevel& level, const Line& line, const Lookout& from, std::uint32_t after,
+                 const Range& range) const;
   template<class Slots>
   void rows_in(const MirrorLevel& level, std::size_t cell, std::uint32_t y, std::int64_t far, const Slots& slots) const;
   // Where a line looks for those whose images stand so many boxes outward, as a fraction of the box.
@@ -176,9 +188,9 @@ private:
   double per_metre_x_ = 0.0, per_metre_y_ = 0.0; // box fractions, in units of 2⁻³²
   LineSweep sweep_ = line_sweep(choose_instruction_set());
 
-  std::vector<Line> unsorted_; // by place, while building
+  std::vector<Line> unsorted_; // by place, while building; then notes
   MirrorPart whole_;
-  int level_index_[most_levels] = {}; // of an octave
+  int level_index_[most_levels] = {}; // of level_of()
   std::vector<std::uint32_t> starts_; // first slot of each cell
   std::vector<std::uint32_t> cells_;  // of each place
   std::vector<std::uint32_t> slots_;  // of each place
@@ -187,21 +199,24 @@ private:
 
 inline Mirror::Columns Mirror::columns_near(const MirrorLevel& level, const Line& line) const {
   const double metres = reach_x(line) + level.reach_x + level.stray_x;
-  const std::int64_t far = static_cast<std::int64_t>(metres * per_metre_x_) + 4, x = across(line);
+  const std::int64_t far = static_cast<std::int64_t>(metres * per_metre_x_) + 8, x = across(line); // beyond a lookout's
   return {(x - far) * level.columns >> 32, (x + far) * level.columns >> 32};
 }
 
 // Slots from `after` on that lie in the level's cells within reach of the line.
 template<class Range>
-void Mirror::ranges_in(const MirrorLevel& level, const Line& line, std::uint32_t after, const Range& range) const {
+void Mirror::ranges_in(const MirrorLevel& level, const Line& line, const Lookout& from, std::uint32_t after,
+                       const Range& range) const {
   if (level.end <= after)
     return;
-  const double metres_x = reach_x(line) + level.reach_x;
-  const double metres_y = reach_y(line) + level.reach_y + box_.shear * window_.half_length * metres_x + level.stray_y;
+  const double sheared = box_.shear * window_.half_length * (reach_x(line) + level.reach_x);
+  const double metres_x = from.around_x + level.reach_x + level.stray_x;
+  const double metres_y = from.around_y + level.reach_y + level.stray_y + sheared;
+  const std::int64_t far_x = static_cast<std::int64_t>(metres_x * per_metre_x_) + 4;
   const std::int64_t far_y = static_cast<std::int64_t>(metres_y * per_metre_y_) + 4;
-  const auto [first, last] = columns_near(level, line);
-  const auto slots = [&](std::size_t from, std::size_t to) { // of cells
-    const std::uint32_t begin = std::max(starts_[from], after), end = starts_[to];
+  const std::int64_t first = (from.x - far_x) * level.columns >> 32, last = (from.x + far_x) * level.columns >> 32;
+  const auto slots = [&](std::size_t from_cell, std::size_t to_cell) {
+    const std::uint32_t begin = std::max(starts_[from_cell], after), end = starts_[to_cell];
     if (begin < end)
       range(begin, end);
   };
@@ -213,7 +228,7 @@ void Mirror::ranges_in(const MirrorLevel& level, const Line& line, std::uint32_t
     const int boxes = c < 0 ? -1 : c >= level.columns ? 1 : 0; // outward
     const std::size_t cell = level.first_cell + static_cast<std::size_t>((c - boxes * level.columns) * level.rows);
     if (starts_[cell + static_cast<std::size_t>(level.rows)] > after)
-      rows_in(level, cell, image_y(line, boxes), far_y, slots);
+      rows_in(level, cell, image_y(line, boxes) + from.along, far_y, slots);
   }
 }
 
@@ -248,17 +263,18 @@ std::uint64_t Mirror::sweep_pairs(std::size_t begin, std::size_t end, const Line
     while (slot >= own->end)
       ++own;
     const Line& line = lines_[slot];
-    const auto range = [&](std::uint32_t from, std::uint32_t to) {
-      tested += to - from;
-      if (buffer.size() < to - from + sweep_padding)
-        buffer.resize(to - from + sweep_padding);
-      const std::size_t count = sweep_(line, lines_.data(), frame_, span, from, to, buffer.data());
+    const Lookout from = lookout(line);
+    const auto range = [&](std::uint32_t first, std::uint32_t last) {
+      tested += last - first;
+      if (buffer.size() < last - first + sweep_padding)
+        buffer.resize(last - first + sweep_padding);
+      const std::size_t count = sweep_(line, lines_.data(), frame_, span, first, last, buffer.data());
       for (std::size_t k = 0; k < count; ++k)
         found(slot, std::size_t{buffer[k]});
     };
     for (auto level = whole_.levels.begin(); level != own; ++level)
-      ranges_in(*level, line, 0, range);
-    ranges_in(*own, line, static_cast<std::uint32_t>(slot) + 1, range);
+      ranges_in(*level, line, from, 0, range);
+    ranges_in(*own, line, from, static_cast<std::uint32_t>(slot) + 1, range);
   }
   return tested;
 }

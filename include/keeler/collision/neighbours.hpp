@@ -9,6 +9,7 @@
 // The image of a partner is the nearest one. A box that is too small for that is a matter for grid_partners.hpp.
 #pragma once
 
+#include <keeler/collision/crowd.hpp>
 #include <keeler/collision/mirror.hpp>
 #include <keeler/collision/straight_line.hpp>
 #include <keeler/core/threads.hpp>
@@ -50,6 +51,8 @@ public:
   template<class Visit>
   bool visit_partners(const MirrorPart& part, std::size_t i, double start, std::vector<std::uint32_t>& buffer,
                       const Visit& visit) const;
+  /// The same in sequence: looks around for the rest of the window at once, so that settle() need not do so again.
+  template<class Visit> bool visit_partners(std::size_t i, double start, const Visit& visit);
   /// The same for such an orbit, all images of all particles tried.
   template<class Visit> void visit_everywhere(std::size_t i, double start, const Visit& visit) const;
   /// Calls visit(j) for every other particle that particle i may meet from `start` to the end of the step when j has
@@ -66,16 +69,24 @@ public:
     if (step_test_.may_touch(a, b, shift.x(), shift.y(), start))
       visit(image);
   }
+  /// Takes everybody into the crowd of particle i that it may meet from `start` to the end of the step. Returns false,
+  /// with some of them missing, when they are too few for that to be of use, or when the orbit of i is too fast.
+  bool gather(std::size_t i, double start, std::vector<std::uint32_t>& buffer, Crowd& crowd) const;
+  /// Whether a crowd still serves: the centre keeps to its path, and nearest images are all that it may meet.
+  bool holds(const Crowd& crowd) const {
+    return departure(crowd.change()) < crowd.margin() &&
+           mirror_.one_image(mirror_.line(crowd.centre()), mirror_.whole());
+  }
   /// How far two paths that differ by these elements are apart at any time of the step, m.
   double departure(const Elements& change) const;
 
   const Mirror& mirror() const { return mirror_; }
   Line line_of(const Body& body) const { return mirror_.line_of(body, to_middle_); }
 
-  /// A particle has been hit and has a new orbit. May be called several times a step; for particles of different parts
-  /// at the same time.
+  /// A particle has been hit and has a new orbit. May be called several times a step.
+  void changed(std::size_t i);
+  /// The same for particles of different parts at the same time.
   void changed(MirrorPart& part, std::size_t i);
-  void changed(std::size_t i) { changed(mirror_.whole(), i); }
   /// To undo that: the particle's line and this mark of before.
   using Mark = std::uint8_t;
   Mark mark(std::size_t i) const { return changed_[i]; }
@@ -103,6 +114,7 @@ private:
   };
 
   void open();
+  bool looks_needed() const { return at_step_ + 1 < length_; } // by later steps of the window
   void choose_length();
   double cost_of(int length) const;
   double skin_for(int length) const;
@@ -114,6 +126,12 @@ private:
   }
   double since_middle() const { return (at_step_ + 0.5 - 0.5 * length_) * step_; } // of the window, to this epoch
   Image nearest_image(const Body& a, const Body& b) const;
+  // Whether i lists the pair, of two that were hit in this step: if it was the last to be, and so has seen the other's
+  // present line; i and j have seen each other's when they met.
+  bool lists(std::uint32_t i, std::uint32_t j) const {
+    const auto contact = [&](std::uint32_t k) { return looks_.empty() ? 0 : mirror_.note(k) / 2; };
+    return contact(i) != contact(j) ? contact(i) > contact(j) : i < j;
+  }
   LineSpan span(double begin, double end) const {
     const double rounding = 1e-6 * length_ * step_;
     return {static_cast<float>(begin - rounding), static_cast<float>(end + rounding)};
@@ -132,13 +150,20 @@ private:
   Mirror mirror_;
   Rotation to_middle_;        // from this step's epoch
   std::vector<Mark> changed_; // 1 + the step of the window in which each particle was last hit; or 0
-  std::vector<List> lists_;   // of which so many are of this window; the others keep their memory
+  // Of this step, when it goes in sequence: what was seen after each change, of which each contact makes two.
+  struct Look {
+    std::uint32_t begin = 0, end = 0; // of seen_; from zero: nobody has looked
+  };
+  std::vector<Look> looks_;         // by number of the change; each particle's last is noted in the mirror
+  std::vector<std::uint32_t> seen_; // places
+  std::vector<List> lists_;         // of which so many are of this window; the others keep their memory
   std::size_t used_lists_ = 0, first_lists_ = 0;
   double kick_path_ = 0.0, skin_ = 0.0; // how far kicks may have moved a particle; how far the lists allow
   double last_kick_ = 0.0;
   std::uint64_t hits_ = 0;
   double last_tested_ = 0.0, last_listed_ = 0.0; // pairs a particle, when the window began
   StraightLineTest step_test_;
+  std::vector<std::uint32_t> buffer_; // of the sequence
 };
 
 template<class Visit> void Neighbours::visit_block(std::size_t block, const Visit& visit) const {
@@ -171,6 +196,29 @@ bool Neighbours::visit_partners(const MirrorPart& part, std::size_t i, double st
     if (j != i)
       visit_nearest(body, particles_->bodies[j], start, [&](const Image& image) { visit(j, image); });
   }
+  return true;
+}
+
+template<class Visit> bool Neighbours::visit_partners(std::size_t i, double start, const Visit& visit) {
+  const Line& line = mirror_.line(i);
+  if (!mirror_.one_image(line, mirror_.whole()))
+    return false;
+  const Body& body = particles_->bodies[i];
+  const LineSpan rest = span(since_middle() + start, 0.5 * length_ * step_);
+  const std::size_t count = mirror_.near(mirror_.whole(), line, rest, buffer_);
+  Look* const look = looks_needed() ? &looks_[mirror_.note(i)] : nullptr;
+  if (look)
+    look->begin = static_cast<std::uint32_t>(seen_.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t j = mirror_.place(buffer_[k]);
+    if (j == i)
+      continue;
+    if (look)
+      seen_.push_back(j);
+    visit_nearest(body, particles_->bodies[j], start, [&](const Image& image) { visit(j, image); });
+  }
+  if (look)
+    look->end = static_cast<std::uint32_t>(seen_.size());
   return true;
 }
 
