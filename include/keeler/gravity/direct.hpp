@@ -7,7 +7,7 @@
 
 namespace keeler {
 
-/// Of the sums over pairs. Single precision (with sums in doubles) is good to some 3e-7 and three times as fast.
+/// Of the sums over pairs. Single precision (with sums in doubles) is good to some 3e-7 and twice as fast.
 enum class Precision { double_precision, single_precision };
 
 class DirectSolver final : public GravitySolver {

@@ -10,8 +10,9 @@
 namespace keeler {
 
 /// A cell attracts a group as a whole when size < opening_angle × (distance from the group's box to the cell's centre
-/// of mass) and the two boxes do not overlap; otherwise it is opened, down to particles. The size is the longest side
-/// of the cell's tight box. Opening angle 0 gives the direct sum.
+/// of mass) and the two boxes cannot overlap; otherwise it is opened, down to particles. The size is the longest side
+/// of the cell's tight box. Cells far beyond that act through the group's local expansion. Opening angle 0 gives the
+/// direct sum, in single precision. The net force is taken out: it is the tree's error.
 class TreeSolver final : public GravitySolver {
 public:
   TreeSolver(double opening_angle, const ImageSettings& images, InstructionSet set);
