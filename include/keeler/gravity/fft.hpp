@@ -1,0 +1,35 @@
+// Gravity by a mesh and neighbours (P³M; Hockney & Eastwood, Computer Simulation Using Particles): truly shear-periodic
+// in x and y, open in z.
+//
+// Each particle's attraction is split into that of a smooth round cloud, which a mesh of spheres' size carries and
+// transforms to and fro, and the rest, which vanishes outside the cloud exactly and is summed over neighbours. The mesh
+// stays square at any shear offset (sheared_transform.hpp).
+#pragma once
+
+#include <keeler/core/simd.hpp>
+#include <keeler/gravity/solver.hpp>
+
+#include <memory>
+
+namespace keeler {
+
+struct FftSettings {
+  double spacing = 0.0;    ///< of the mesh, m; the mesh takes this or a little less
+  double cut = 2.5;        ///< radius of the cloud, beyond which neighbours need no sum, in spacings
+  bool short_range = true; ///< false: the smooth part alone, for mean fields
+};
+
+class FftSolver final : public GravitySolver {
+public:
+  FftSolver(const FftSettings& settings, InstructionSet set);
+  ~FftSolver() override;
+
+  void accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) override;
+  std::string name() const override { return "fft"; }
+
+private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+} // namespace keeler

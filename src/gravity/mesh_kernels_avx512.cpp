@@ -1,0 +1,38 @@
+// The mesh solver's kernels for AVX-512: sixteen lanes. Compiled with -mavx512f.
+#include "mesh_kernels.hpp"
+
+#include <immintrin.h>
+
+#define KEELER_KERNEL_SPACE mesh_avx512
+#define KEELER_LANES 16
+
+namespace {
+
+typedef float Lanes __attribute__((vector_size(64), may_alias));
+typedef float LanesInRow __attribute__((vector_size(64), aligned(4), may_alias));
+typedef int IntLanes __attribute__((vector_size(64), may_alias));
+
+constexpr IntLanes lane_numbers = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+
+inline Lanes difference(const double* from, double origin) {
+  const __m512d shift = _mm512_set1_pd(origin);
+  // all lanes; gcc 12 warns falsely at the plain forms
+  const __m256 low = _mm512_maskz_cvtpd_ps(0xff, _mm512_loadu_pd(from) - shift);
+  const __m256 high = _mm512_maskz_cvtpd_ps(0xff, _mm512_loadu_pd(from + 8) - shift);
+  const __m512d lower = _mm512_maskz_broadcast_f64x4(0xff, _mm256_castps_pd(low));
+  return _mm512_castpd_ps(_mm512_mask_broadcast_f64x4(lower, 0xf0, _mm256_castps_pd(high)));
+}
+
+inline void append(keeler::NearSources& s, const Lanes& x, const Lanes& y, const Lanes& z, const Lanes& mass,
+                   const IntLanes& inside) {
+  const __mmask16 mask = _mm512_test_epi32_mask(reinterpret_cast<const __m512i&>(inside), _mm512_set1_epi32(-1));
+  _mm512_storeu_ps(s.x + s.count, _mm512_maskz_compress_ps(mask, x));
+  _mm512_storeu_ps(s.y + s.count, _mm512_maskz_compress_ps(mask, y));
+  _mm512_storeu_ps(s.z + s.count, _mm512_maskz_compress_ps(mask, z));
+  _mm512_storeu_ps(s.mass + s.count, _mm512_maskz_compress_ps(mask, mass));
+  s.count += static_cast<std::size_t>(__builtin_popcount(mask));
+}
+
+} // namespace
+
+#include "mesh_kernels.inl"
