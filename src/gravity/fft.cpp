@@ -31,7 +31,7 @@ constexpr double highest_wave = 1.4142135623730951 * pi;
 
 Tiling tiling_for(const MeshShape& shape, std::size_t count) {
   const double cells = static_cast<double>(shape.columns) * static_cast<double>(shape.rows);
-  const double side = std::round(std::sqrt(10.0 * cells / static_cast<double>(count)));
+  const double side = std::round(std::sqrt((getenv("PT") ? atof(getenv("PT")) : 10.0) * cells / static_cast<double>(count)));
   return {shape.columns, shape.rows, static_cast<std::size_t>(std::clamp(side, 1.0, 1e4))};
 }
 
@@ -71,13 +71,14 @@ void FftSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accele
   const Tiling tiling = tiling_for(shape, count);
   p.places.sort(problem, offset, tiling);
   p.mesh.reset(shape);
-  p.mesh.spread(p.places);
+  p.mesh.spread(p.places, p.kernels);
   p.transform.prepare(shape, offset / problem.box.size_y);
   p.transform.apply(p.mesh, [&](std::size_t m, const std::complex<float>* from, std::complex<float>* to) {
     p.waves.apply(shape, p.transform, m, p.kernels, from, to);
   });
 
   const double unit = problem.newton_g * p.places.mass_unit(), near_unit = unit / (radius * radius);
+  const MeshNumbers mesh = p.mesh.numbers();
   parallel_for(
       tiling.count(),
       [&](std::size_t tile) {
@@ -85,13 +86,15 @@ void FftSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accele
         const std::size_t groups = (in_tile + NearTargets::capacity - 1) / NearTargets::capacity;
         for (std::size_t g = 0; g < groups; ++g) {
           const std::size_t begin = first + in_tile * g / groups, end = first + in_tile * (g + 1) / groups;
-          NearTargets near{};
+          NearTargets near;
           if (p.settings.short_range)
             p.near.add(p.places, problem.box, offset, begin, end - begin, near);
-          for (std::size_t k = begin; k < end; ++k) {
-            const Vec3 far = p.mesh.gradient(p.places.x()[k], p.places.y()[k], p.places.z()[k], p.places.mass()[k], self);
-            const Vec3 close(near.ax[k - begin], near.ay[k - begin], near.az[k - begin]);
-            accelerations[p.places.index(k)] = unit * far + near_unit * close;
+          float x[NearTargets::capacity], y[NearTargets::capacity], z[NearTargets::capacity];
+          p.kernels.pull(mesh, p.places.range(begin, end - begin), self, x, y, z);
+          for (std::size_t k = 0; k < end - begin; ++k) {
+            const Vec3 far = unit * Vec3(x[k], y[k], z[k]);
+            const Vec3 close = p.settings.short_range ? Vec3(near_unit * Vec3(near.ax[k], near.ay[k], near.az[k])) : Vec3::Zero();
+            accelerations[p.places.index(begin + k)] = far + close;
           }
         }
       },

@@ -9,12 +9,10 @@
 #pragma once
 
 #include "aligned_array.hpp"
+#include "mesh_kernels.hpp"
 #include "places.hpp"
 
 #include <keeler/box/shearing_box.hpp>
-#include <keeler/core/vector.hpp>
-
-#include <array>
 
 namespace keeler {
 
@@ -38,11 +36,6 @@ struct MeshShape {
 /// just that distance. Sizes are such that transforms are fast.
 MeshShape mesh_shape(const ShearingBox& box, double spacing, double plane_spacing, double low, double high);
 
-/// The force of a particle of mass 1 on itself, along x, y and z: first sin 2πt + second sin 4πt (self_force.hpp).
-struct SelfForce {
-  std::array<float, 4> first{}, second{};
-};
-
 /// The values at the nodes.
 class Mesh {
 public:
@@ -54,10 +47,9 @@ public:
 
   /// Adds the particles' masses. Slabs of the box are filled side by side, every other one first: the order of each
   /// node's sum depends on the places alone.
-  void spread(const Places& places);
+  void spread(const Places& places, const MeshKernels& kernels);
 
-  /// Gradient of the values at a particle's place, per m, without what the particle itself adds to it.
-  Vec3 gradient(double x, double y, double z, float mass, const SelfForce& self) const;
+  MeshNumbers numbers();
 
 private:
   MeshShape shape_;

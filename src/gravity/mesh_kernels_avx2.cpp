@@ -12,6 +12,13 @@ typedef float Lanes __attribute__((vector_size(32), may_alias));
 typedef float LanesInRow __attribute__((vector_size(32), aligned(4), may_alias));
 typedef int IntLanes __attribute__((vector_size(32), may_alias));
 
+// Numbers of one row, or of four rows one after the other.
+typedef float Four __attribute__((vector_size(16), may_alias));
+typedef float FourInRow __attribute__((vector_size(16), aligned(4), may_alias));
+struct Sixteen {
+  Lanes part[16 / KEELER_LANES];
+};
+
 constexpr IntLanes lane_numbers = {0, 1, 2, 3, 4, 5, 6, 7};
 
 inline Lanes difference(const double* from, double origin) {
@@ -32,6 +39,25 @@ inline void append(keeler::NearSources& s, const Lanes& x, const Lanes& y, const
     s.mass[s.count] = mass[lane];
     ++s.count;
   }
+}
+
+inline Sixteen rows(const float* from, std::size_t stride) {
+  return {{_mm256_loadu2_m128(from + stride, from), _mm256_loadu2_m128(from + 3 * stride, from + 2 * stride)}};
+}
+
+inline void put_rows(float* to, std::size_t stride, const Sixteen& value) {
+  _mm256_storeu2_m128(to + stride, to, value.part[0]);
+  _mm256_storeu2_m128(to + 3 * stride, to + 2 * stride, value.part[1]);
+}
+
+inline Sixteen each_row(const Four& value) {
+  const __m256 twice = _mm256_set_m128(value, value);
+  return {{_mm256_permutevar8x32_ps(twice, _mm256_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1)),
+           _mm256_permutevar8x32_ps(twice, _mm256_setr_epi32(2, 2, 2, 2, 3, 3, 3, 3))}};
+}
+
+inline Sixteen all_rows(const Four& value) {
+  return {{_mm256_set_m128(value, value), _mm256_set_m128(value, value)}};
 }
 
 } // namespace

@@ -12,6 +12,13 @@ typedef float Lanes __attribute__((vector_size(64), may_alias));
 typedef float LanesInRow __attribute__((vector_size(64), aligned(4), may_alias));
 typedef int IntLanes __attribute__((vector_size(64), may_alias));
 
+// Numbers of one row, or of four rows one after the other.
+typedef float Four __attribute__((vector_size(16), may_alias));
+typedef float FourInRow __attribute__((vector_size(16), aligned(4), may_alias));
+struct Sixteen {
+  Lanes part[16 / KEELER_LANES];
+};
+
 constexpr IntLanes lane_numbers = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 inline Lanes difference(const double* from, double origin) {
@@ -31,6 +38,29 @@ inline void append(keeler::NearSources& s, const Lanes& x, const Lanes& y, const
   _mm512_storeu_ps(s.z + s.count, _mm512_maskz_compress_ps(mask, z));
   _mm512_storeu_ps(s.mass + s.count, _mm512_maskz_compress_ps(mask, mass));
   s.count += static_cast<std::size_t>(__builtin_popcount(mask));
+}
+
+inline Sixteen rows(const float* from, std::size_t stride) {
+  __m512 result = _mm512_castps128_ps512(_mm_loadu_ps(from));
+  result = _mm512_maskz_insertf32x4(0xffff, result, _mm_loadu_ps(from + stride), 1);
+  result = _mm512_maskz_insertf32x4(0xffff, result, _mm_loadu_ps(from + 2 * stride), 2);
+  return {{_mm512_maskz_insertf32x4(0xffff, result, _mm_loadu_ps(from + 3 * stride), 3)}};
+}
+
+inline void put_rows(float* to, std::size_t stride, const Sixteen& value) {
+  _mm_storeu_ps(to, _mm512_maskz_extractf32x4_ps(0xf, value.part[0], 0));
+  _mm_storeu_ps(to + stride, _mm512_maskz_extractf32x4_ps(0xf, value.part[0], 1));
+  _mm_storeu_ps(to + 2 * stride, _mm512_maskz_extractf32x4_ps(0xf, value.part[0], 2));
+  _mm_storeu_ps(to + 3 * stride, _mm512_maskz_extractf32x4_ps(0xf, value.part[0], 3));
+}
+
+inline Sixteen each_row(const Four& value) {
+  const __m512i rows_of_lanes = _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3);
+  return {{_mm512_maskz_permutexvar_ps(0xffff, rows_of_lanes, _mm512_castps128_ps512(value))}};
+}
+
+inline Sixteen all_rows(const Four& value) {
+  return {{_mm512_maskz_broadcast_f32x4(0xffff, value)}};
 }
 
 } // namespace

@@ -10,6 +10,13 @@ typedef float Lanes __attribute__((vector_size(16), may_alias));
 typedef float LanesInRow __attribute__((vector_size(16), aligned(4), may_alias));
 typedef int IntLanes __attribute__((vector_size(16), may_alias));
 
+// Numbers of one row, or of four rows one after the other.
+typedef float Four __attribute__((vector_size(16), may_alias));
+typedef float FourInRow __attribute__((vector_size(16), aligned(4), may_alias));
+struct Sixteen {
+  Lanes part[16 / KEELER_LANES];
+};
+
 constexpr IntLanes lane_numbers = {0, 1, 2, 3};
 
 inline Lanes difference(const double* from, double origin) {
@@ -26,6 +33,29 @@ inline void append(keeler::NearSources& s, const Lanes& x, const Lanes& y, const
     s.mass[s.count] = mass[lane];
     s.count += inside[lane] != 0;
   }
+}
+
+inline Sixteen rows(const float* from, std::size_t stride) {
+  Sixteen result;
+  for (std::size_t r = 0; r < 4; ++r)
+    result.part[r] = *reinterpret_cast<const FourInRow*>(from + r * stride);
+  return result;
+}
+
+inline void put_rows(float* to, std::size_t stride, const Sixteen& value) {
+  for (std::size_t r = 0; r < 4; ++r)
+    *reinterpret_cast<FourInRow*>(to + r * stride) = value.part[r];
+}
+
+inline Sixteen each_row(const Four& value) {
+  Sixteen result;
+  for (int r = 0; r < 4; ++r)
+    result.part[r] = Lanes{value[r], value[r], value[r], value[r]};
+  return result;
+}
+
+inline Sixteen all_rows(const Four& value) {
+  return {{value, value, value, value}};
 }
 
 } // namespace

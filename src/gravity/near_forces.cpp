@@ -4,13 +4,17 @@
 #include <cmath>
 
 namespace keeler {
+long g_list, g_groups;
 namespace {
 
 // Bounds of some places, m.
 struct Bounds {
-  Bounds(const double* values, std::size_t begin, std::size_t count)
-      : low(*std::min_element(values + begin, values + begin + count)),
-        high(*std::max_element(values + begin, values + begin + count)) {}
+  Bounds(const double* values, std::size_t count) : low(values[0]), high(values[0]) {
+    for (std::size_t k = 1; k < count; ++k) {
+      low = std::min(low, values[k]);
+      high = std::max(high, values[k]);
+    }
+  }
   double low, high;
 };
 
@@ -31,24 +35,22 @@ NearForces::NearForces(const ForceSplit& split, double radius, InstructionSet se
 
 void NearForces::add(const Places& places, const ShearingBox& box, double offset, std::size_t begin, std::size_t count,
                      NearTargets& targets) const {
-  const Bounds x(places.x(), begin, count), y(places.y(), begin, count), z(places.z(), begin, count);
+  const ParticleRange own = places.range(begin, count);
+  const Bounds x(own.x, count), y(own.y, count), z(own.z, count);
   const double origin_x = 0.5 * (x.low + x.high), origin_y = 0.5 * (y.low + y.high), origin_z = 0.5 * (z.low + z.high);
-  const double scale = 1.0 / radius_;
-  NearGroup group{0.0, 0.0, 0.0, scale, {}, {}};
-  const auto relative = [&](double value, double origin) {
-    return static_cast<float>(value - origin) * static_cast<float>(scale);
-  };
+  const auto scale = static_cast<float>(1.0 / radius_);
+  NearGroup group{0.0, 0.0, origin_z, scale, {}, {}};
+  const auto relative = [&](double value, double origin) { return static_cast<float>(value - origin) * scale; };
   const Bounds* const bounds[] = {&x, &y, &z};
   const double origins[] = {origin_x, origin_y, origin_z};
   for (int axis = 0; axis < 3; ++axis) {
     group.low[axis] = relative(bounds[axis]->low, origins[axis]);
     group.high[axis] = relative(bounds[axis]->high, origins[axis]);
   }
-  for (std::size_t k = 0; k < NearTargets::capacity; ++k) {
-    const std::size_t p = begin + std::min(k, count - 1);
-    targets.x[k] = relative(places.x()[p], origin_x);
-    targets.y[k] = relative(places.y()[p], origin_y);
-    targets.z[k] = relative(places.z()[p], origin_z);
+  for (std::size_t k = 0; k < count; ++k) {
+    targets.x[k] = relative(own.x[k], origin_x);
+    targets.y[k] = relative(own.y[k], origin_y);
+    targets.z[k] = relative(own.z[k], origin_z);
     targets.ax[k] = targets.ay[k] = targets.az[k] = 0.0f;
   }
 
@@ -59,6 +61,7 @@ void NearForces::add(const Places& places, const ShearingBox& box, double offset
   const double tile_width = static_cast<double>(tiling.side) / per_x;
   NearSources sources;
   const auto flush = [&] {
+    extern long g_list, g_groups; g_list += sources.count; g_groups++;
     kernels_.attract(targets, count, sources, inside_.data());
     sources.count = 0;
   };
@@ -67,14 +70,15 @@ void NearForces::add(const Places& places, const ShearingBox& box, double offset
       if (NearSources::capacity - sources.count < NearSources::capacity / 4)
         flush();
       const std::size_t part = std::min(end - first, NearSources::capacity / 4);
-      kernels_.gather(sources, {places.x() + first, places.y() + first, places.z() + first, places.mass() + first, part},
-                      group);
+      kernels_.gather(sources, places.range(first, part), group);
       first += part;
     }
   };
-  group.origin_z = origin_z;
-  const auto boxes = [](double coordinate, double low, double size) { return std::floor((coordinate - low) / size); };
-  for (double a = boxes(x.low - radius_, left, box.size_x); a <= boxes(x.high + radius_, left, box.size_x); ++a) {
+  const double per_box_x = 1.0 / box.size_x, per_box_y = 1.0 / box.size_y;
+  const auto boxes = [](double coordinate, double low, double per_box) {
+    return std::floor((coordinate - low) * per_box);
+  };
+  for (double a = boxes(x.low - radius_, left, per_box_x); a <= boxes(x.high + radius_, left, per_box_x); ++a) {
     const double shift_x = a * box.size_x; // of the sources
     group.origin_x = origin_x - shift_x;
     const TileRange columns(x.low - radius_ - shift_x, x.high + radius_ - shift_x, left, per_x, tiling.columns,
@@ -84,7 +88,7 @@ void NearForces::add(const Places& places, const ShearingBox& box, double offset
       const double gap = std::max({0.0, from - x.high, x.low - from - tile_width});
       const double reach = std::sqrt(std::max(0.0, radius_ * radius_ - gap * gap));
       const double low = y.low - reach + a * offset, high = y.high + reach + a * offset; // in the sources' column
-      for (double b = boxes(low, bottom, box.size_y); b <= boxes(high, bottom, box.size_y); ++b) {
+      for (double b = boxes(low, bottom, per_box_y); b <= boxes(high, bottom, per_box_y); ++b) {
         const double shift_y = b * box.size_y;
         group.origin_y = origin_y + a * offset - shift_y;
         const TileRange rows(low - shift_y, high - shift_y, bottom, per_y, tiling.rows, tiling.side);

@@ -2,6 +2,8 @@
 // height within a tile. The order depends on the problem alone, and sums in this order do too.
 #pragma once
 
+#include "mesh_kernels.hpp"
+
 #include <keeler/gravity/solver.hpp>
 
 #include <cstdint>
@@ -30,15 +32,23 @@ public:
   /// Particles of tile t stand in [first(t), first(t + 1)).
   std::size_t first(std::size_t tile) const { return first_[tile]; }
 
-  const double* x() const { return x_.data(); } ///< inside the cell, m
-  const double* y() const { return y_.data(); }
-  const double* z() const { return z_.data(); }
-  const float* mass() const { return mass_.data(); } ///< in units of mass_unit()
+  /// Inside the cell; masses in units of mass_unit().
+  ParticleRange range(std::size_t begin, std::size_t count) const {
+    return {x_.data() + begin, y_.data() + begin, z_.data() + begin, mass_.data() + begin, count};
+  }
+
   std::uint32_t index(std::size_t k) const { return index_[k]; } ///< in the problem's arrays
 
   double mass_unit() const { return mass_unit_; } ///< the mean mass, kg
 
+  /// A particle on its way into the order.
+  struct Place {
+    double x, y, z;
+    std::uint32_t index, tile;
+  };
+
 private:
+  std::vector<Place> found_, sorted_; // kept for their memory
   Tiling tiling_;
   std::vector<std::uint32_t> first_, index_;
   std::vector<double> x_, y_, z_;

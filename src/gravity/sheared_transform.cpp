@@ -8,6 +8,13 @@
 namespace keeler {
 namespace {
 
+typedef float Two __attribute__((vector_size(16), may_alias)); // complex numbers
+typedef double Whole __attribute__((may_alias));               // one complex number, to be moved in one go
+
+Two exchanged(const Two& numbers) {
+  return __builtin_shufflevector(numbers, numbers, 1, 0, 3, 2);
+}
+
 fftwf_complex* fftw(std::complex<float>* numbers) {
   return reinterpret_cast<fftwf_complex*>(numbers); // the layout that FFTW and the C++ standard both promise
 }
@@ -45,8 +52,9 @@ void ShearedTransform::prepare(const MeshShape& shape, double offset_part) {
   shape_ = shape;
   if (shape.columns != planned_columns_ || shape.rows != planned_rows_)
     make_plans();
-  spectrum_.resize_at_least(waves() * shape.planes * row_length());
-  turns_.resize_at_least(waves() * row_length());
+  spectrum_.resize_at_least(blocks() * waves() * shape.planes * block);
+  scratch_.resize(static_cast<std::size_t>(threads()));
+  turns_.resize_at_least(waves() * 2 * row_length());
   offset_part_ = offset_part;
   parallel_for(
       waves(),
@@ -56,7 +64,9 @@ void ShearedTransform::prepare(const MeshShape& shape, double offset_part) {
         const std::complex<double> step(std::cos(angle), std::sin(angle));
         std::complex<double> turn = 1.0;
         for (std::size_t i = 0; i < row_length(); ++i) {
-          turns_.data()[m * row_length() + i] = Complex(turn);
+          const auto cosine = static_cast<float>(turn.real()), sine = static_cast<float>(turn.imag());
+          cosines(m)[i] = {cosine, cosine};
+          sines(m)[i] = {-sine, sine};
           turn = {turn.real() * step.real() - turn.imag() * step.imag(),
                   turn.real() * step.imag() + turn.imag() * step.real()};
         }
@@ -70,56 +80,78 @@ double ShearedTransform::turns_x(std::size_t m, std::size_t n) const {
   return turns - columns * std::nearbyint(turns / columns);
 }
 
+std::complex<float>* ShearedTransform::own_scratch() {
+  AlignedArray<Complex>& scratch = scratch_[static_cast<std::size_t>(omp_get_thread_num())];
+  scratch.resize_at_least(shape_.planes * std::max(2 * row_length(), block * spectrum_row()));
+  return scratch.data();
+}
+
 void ShearedTransform::forward_y(Mesh& mesh) {
   const std::size_t columns = shape_.columns + MeshShape::ghosts, planes = shape_.planes, rows = shape_.rows;
   parallel_for(
-      (columns + block - 1) / block,
+      blocks(),
       [&](std::size_t b) {
         const std::size_t begin = b * block, count = std::min(block, columns - begin);
-        AlignedArray<Complex> spectra;
-        spectra.resize_at_least(block * planes * spectrum_row());
-        for (std::size_t c = 0; c < count; ++c)
+        Complex* const spectra = own_scratch();
+        for (std::size_t c = 0; c < block; ++c)
           for (std::size_t k = 0; k < planes; ++k) {
-            float* const row = mesh.column(begin + c) + k * shape_.row_length();
-            for (std::size_t ghost = rows; ghost < rows + MeshShape::ghosts; ++ghost)
-              row[ghost % rows] += row[ghost];
-            fftwf_execute_dft_r2c(forward_y_, row, fftw(spectra.data() + (c * planes + k) * spectrum_row()));
-          }
-        for (std::size_t m = 0; m < waves(); ++m)
-          for (std::size_t k = 0; k < planes; ++k) {
-            const Complex* const turn = turns(m) + begin;
-            Complex* const to = wave(m) + k * row_length() + begin;
-            for (std::size_t c = 0; c < count; ++c) {
-              const Complex from = spectra.data()[(c * planes + k) * spectrum_row() + m];
-              to[c] = {from.real() * turn[c].real() - from.imag() * turn[c].imag(),
-                       from.real() * turn[c].imag() + from.imag() * turn[c].real()};
+            Complex* const spectrum = spectra + (c * planes + k) * spectrum_row();
+            if (c < count) {
+              float* const row = mesh.column(begin + c) + k * shape_.row_length();
+              for (std::size_t ghost = rows; ghost < rows + MeshShape::ghosts; ++ghost)
+                row[ghost % rows] += row[ghost];
+              fftwf_execute_dft_r2c(forward_y_, row, fftw(spectrum));
+            } else {
+              std::fill(spectrum, spectrum + waves(), Complex(0.0f));
             }
           }
+        const auto* const from = reinterpret_cast<const Whole*>(spectra);
+        for (std::size_t m = 0; m < waves(); ++m)
+          for (std::size_t k = 0; k < planes; ++k)
+            for (std::size_t c = 0; c < block; ++c)
+              reinterpret_cast<Whole*>(wave(b, m))[k * block + c] = from[(c * planes + k) * spectrum_row() + m];
       },
       1);
 }
 
-void ShearedTransform::forward_x(std::size_t m, Complex* to) {
-  const std::size_t columns = shape_.columns;
-  for (std::size_t k = 0; k < shape_.planes; ++k) {
-    Complex* const row = wave(m) + k * row_length();
+void ShearedTransform::forward_x(std::size_t m, Complex* rows, Complex* spectra) {
+  const std::size_t columns = shape_.columns, planes = shape_.planes;
+  for (std::size_t b = 0; b < blocks(); ++b) {
+    const auto* const cosine = reinterpret_cast<const Two*>(cosines(m) + b * block);
+    const auto* const sine = reinterpret_cast<const Two*>(sines(m) + b * block);
+    const auto* const from = reinterpret_cast<const Two*>(wave(b, m));
+    for (std::size_t k = 0; k < planes; ++k) {
+      auto* const to = reinterpret_cast<Two*>(rows + k * row_length() + b * block);
+      for (std::size_t c = 0; c < block / 2; ++c) {
+        const Two value = from[k * (block / 2) + c];
+        to[c] = value * cosine[c] + exchanged(value) * sine[c];
+      }
+    }
+  }
+  for (std::size_t k = 0; k < planes; ++k) {
+    Complex* const row = rows + k * row_length();
     for (std::size_t ghost = columns; ghost < columns + MeshShape::ghosts; ++ghost)
       row[ghost % columns] += row[ghost];
-    fftwf_execute_dft(forward_x_, fftw(row), fftw(to + k * row_length()));
+    fftwf_execute_dft(forward_x_, fftw(row), fftw(spectra + k * row_length()));
   }
 }
 
-void ShearedTransform::backward_x(std::size_t m, Complex* scratch) {
-  const std::size_t columns = shape_.columns;
-  for (std::size_t k = 0; k < shape_.planes; ++k) {
-    Complex* const from = wave(m) + k * row_length();
-    Complex* const row = scratch + k * row_length();
-    fftwf_execute_dft(backward_x_, fftw(from), fftw(row));
-    const Complex* const turn = turns(m);
-    for (std::size_t i = 0; i < columns + MeshShape::ghosts; ++i) { // and back by the same turn
-      const Complex value = row[i < columns ? i : i % columns];
-      from[i] = {value.real() * turn[i].real() + value.imag() * turn[i].imag(),
-                 value.imag() * turn[i].real() - value.real() * turn[i].imag()};
+void ShearedTransform::backward_x(std::size_t m, Complex* spectra, Complex* rows) {
+  const std::size_t columns = shape_.columns, planes = shape_.planes;
+  for (std::size_t k = 0; k < planes; ++k) {
+    Complex* const row = rows + k * row_length();
+    fftwf_execute_dft(backward_x_, fftw(spectra + k * row_length()), fftw(row));
+    for (std::size_t i = columns; i < row_length(); ++i)
+      row[i] = row[i % columns];
+  }
+  for (std::size_t b = 0; b < blocks(); ++b) {
+    const auto* const cosine = reinterpret_cast<const Two*>(cosines(m) + b * block);
+    const auto* const sine = reinterpret_cast<const Two*>(sines(m) + b * block);
+    auto* const to = reinterpret_cast<Two*>(wave(b, m));
+    for (std::size_t k = 0; k < planes; ++k) {
+      const auto* const from = reinterpret_cast<const Two*>(rows + k * row_length() + b * block);
+      for (std::size_t c = 0; c < block / 2; ++c) // back by the same turn
+        to[k * (block / 2) + c] = from[c] * cosine[c] - exchanged(from[c]) * sine[c];
     }
   }
 }
@@ -127,20 +159,18 @@ void ShearedTransform::backward_x(std::size_t m, Complex* scratch) {
 void ShearedTransform::backward_y(Mesh& mesh) {
   const std::size_t columns = shape_.columns + MeshShape::ghosts, planes = shape_.planes, rows = shape_.rows;
   parallel_for(
-      (columns + block - 1) / block,
+      blocks(),
       [&](std::size_t b) {
         const std::size_t begin = b * block, count = std::min(block, columns - begin);
-        AlignedArray<Complex> spectra;
-        spectra.resize_at_least(block * planes * spectrum_row());
+        Complex* const spectra = own_scratch();
+        auto* const to = reinterpret_cast<Whole*>(spectra);
         for (std::size_t m = 0; m < waves(); ++m)
-          for (std::size_t k = 0; k < planes; ++k) {
-            const Complex* const from = wave(m) + k * row_length() + begin;
-            for (std::size_t c = 0; c < count; ++c)
-              spectra.data()[(c * planes + k) * spectrum_row() + m] = from[c];
-          }
+          for (std::size_t k = 0; k < planes; ++k)
+            for (std::size_t c = 0; c < block; ++c)
+              to[(c * planes + k) * spectrum_row() + m] = reinterpret_cast<const Whole*>(wave(b, m))[k * block + c];
         for (std::size_t c = 0; c < count; ++c)
           for (std::size_t k = 0; k < planes; ++k) {
-            Complex* const spectrum = spectra.data() + (c * planes + k) * spectrum_row();
+            Complex* const spectrum = spectra + (c * planes + k) * spectrum_row();
             if (rows % 2 == 0)
               spectrum[rows / 2] = 0.0f;
             float* const row = mesh.column(begin + c) + k * shape_.row_length();

@@ -20,6 +20,7 @@
 #include <fftw3.h>
 
 #include <complex>
+#include <vector>
 
 namespace keeler {
 
@@ -43,18 +44,17 @@ public:
   std::size_t row_length() const { return (shape_.columns + MeshShape::ghosts + 7) / 8 * 8; }
 
   /// Replaces the mesh by the transform back of what change(m, from, to) makes of its waves. Both hold one wave m of
-  /// every plane, with n along a row; `from` may be spoilt. Unscaled: without a change the mesh returns columns × rows
-  /// times as large.
+  /// every plane, with n along a row. Unscaled: without a change the mesh returns columns × rows times as large.
   template<class Change> void apply(Mesh& mesh, const Change& change) {
     forward_y(mesh);
     parallel_for(
         waves(),
         [&](std::size_t m) {
-          AlignedArray<std::complex<float>> scratch;
-          scratch.resize_at_least(shape_.planes * row_length());
-          forward_x(m, scratch.data());
-          change(m, scratch.data(), wave(m));
-          backward_x(m, scratch.data());
+          Complex* const rows = own_scratch();
+          Complex* const spectra = rows + shape_.planes * row_length();
+          forward_x(m, rows, spectra);
+          change(m, static_cast<const Complex*>(spectra), rows);
+          backward_x(m, rows, spectra);
         },
         1);
     backward_y(mesh);
@@ -62,15 +62,22 @@ public:
 
 private:
   using Complex = std::complex<float>;
-  static constexpr std::size_t block = 8; // columns that are turned over together: a cache line of one row of waves
 
-  Complex* wave(std::size_t m) { return spectrum_.data() + m * shape_.planes * row_length(); }
-  const Complex* turns(std::size_t m) const { return turns_.data() + m * row_length(); }
+  /// Columns that are turned over together. Between the transforms along y and x they lie block by block, in a block
+  /// wave by wave, in a wave plane by plane: a cache line of eight columns each.
+  static constexpr std::size_t block = 8;
+
+  std::size_t blocks() const { return (shape_.columns + MeshShape::ghosts + block - 1) / block; }
+  Complex* wave(std::size_t b, std::size_t m) { return spectrum_.data() + (b * waves() + m) * shape_.planes * block; }
+  /// Of the turn of each column: (cosine, cosine) and (−sine, sine).
+  Complex* cosines(std::size_t m) { return turns_.data() + 2 * m * row_length(); }
+  Complex* sines(std::size_t m) { return cosines(m) + row_length(); }
   std::size_t spectrum_row() const { return (shape_.rows / 2 + 1 + 7) / 8 * 8; }
+  Complex* own_scratch();
 
   void forward_y(Mesh& mesh);
-  void forward_x(std::size_t m, Complex* to);
-  void backward_x(std::size_t m, Complex* scratch);
+  void forward_x(std::size_t m, Complex* rows, Complex* spectra);
+  void backward_x(std::size_t m, Complex* spectra, Complex* rows);
   void backward_y(Mesh& mesh);
   void make_plans();
   void destroy_plans();
@@ -78,6 +85,7 @@ private:
   MeshShape shape_;
   double offset_part_ = 0.0;
   AlignedArray<Complex> spectrum_, turns_;
+  std::vector<AlignedArray<Complex>> scratch_; // one a thread
   std::size_t planned_columns_ = 0, planned_rows_ = 0;
   fftwf_plan forward_y_ = nullptr, backward_y_ = nullptr, forward_x_ = nullptr, backward_x_ = nullptr;
 };
