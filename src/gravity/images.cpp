@@ -8,11 +8,11 @@ double folded_offset(const ShearingBox& box, double offset) {
   return std::remainder(offset, box.size_y);
 }
 
-std::vector<Vec3> image_shifts(const ShearingBox& box, double offset, int rings) {
+std::vector<Vec3> image_shifts(const ShearingBox& box, double offset, int rings_x, int rings_y) {
   std::vector<Vec3> shifts;
-  for (int nx = -rings; nx <= rings; ++nx) {
+  for (int nx = -rings_x; nx <= rings_x; ++nx) {
     const int middle = static_cast<int>(std::nearbyint(nx * offset / box.size_y));
-    for (int ny = middle - rings; ny <= middle + rings; ++ny)
+    for (int ny = middle - rings_y; ny <= middle + rings_y; ++ny)
       shifts.push_back(box.displacement({nx, ny}, offset));
   }
   return shifts;

@@ -1,4 +1,5 @@
 // Kernels for AVX-512: eight lanes. Compiled with -mavx512f.
+#include <keeler/gravity/far_kernels.hpp>
 #include <keeler/gravity/kernels.hpp>
 
 #include <immintrin.h>
@@ -17,3 +18,5 @@ inline Lanes square_root(const Lanes& value) {
 } // namespace
 
 #include "kernels.inl"
+
+#include "far_kernels.inl"

@@ -1,4 +1,5 @@
 // Kernels for any processor: two lanes, which is what x86-64 (SSE2) and 64-bit ARM both have.
+#include <keeler/gravity/far_kernels.hpp>
 #include <keeler/gravity/kernels.hpp>
 
 #define KEELER_KERNEL_SPACE kernels_portable
@@ -15,3 +16,5 @@ inline Lanes square_root(const Lanes& value) {
 } // namespace
 
 #include "kernels.inl"
+
+#include "far_kernels.inl"

@@ -5,6 +5,7 @@
 //   Sixteen rows(const float* from, std::size_t stride)     four numbers from each of four rows
 //   void put_rows(float* to, std::size_t stride, const Sixteen&)
 //   Sixteen each_row(const Four&), all_rows(const Four&)    the number r in the whole row r; the four in every row
+//   Four rows_sum(const Sixteen&)                           (row 0 + row 2) + (row 1 + row 3)
 // Everything here has internal linkage except `mesh`.
 
 namespace keeler::KEELER_KERNEL_SPACE {
@@ -45,15 +46,12 @@ inline Sixteen operator+(const Sixteen& a, const Sixteen& b) {
   return result;
 }
 
-// Sum of all sixteen: halves on halves.
-inline float sum(const Sixteen& value) {
-  alignas(64) float numbers[16];
-  for (int p = 0; p < parts; ++p)
-    store(numbers + p * KEELER_LANES, value.part[p]);
-  for (int half = 8; half > 0; half /= 2)
-    for (int i = 0; i < half; ++i)
-      numbers[i] += numbers[i + half];
-  return numbers[0];
+// The three sums of sixteen numbers: over the rows, then in halves.
+inline Four sums(const Sixteen& x, const Sixteen& y, const Sixteen& z) {
+  const Four a = rows_sum(x), b = rows_sum(y), c = rows_sum(z);
+  const Four ab = __builtin_shufflevector(a, b, 0, 1, 4, 5) + __builtin_shufflevector(a, b, 2, 3, 6, 7);
+  const Four cc = c + __builtin_shufflevector(c, c, 2, 3, 0, 1);
+  return __builtin_shufflevector(ab, cc, 0, 2, 4, 4) + __builtin_shufflevector(ab, cc, 1, 3, 5, 5);
 }
 
 void gather(NearSources& sources, const ParticleRange& range, const NearGroup& group) {
@@ -104,9 +102,10 @@ void attract(NearTargets& t, std::size_t target_count, NearSources& s, const flo
         ay.part[p] += used * dy;
         az.part[p] += used * dz;
       }
-    t.ax[i] += sum(ax);
-    t.ay[i] += sum(ay);
-    t.az[i] += sum(az);
+    const Four gathered = sums(ax, ay, az);
+    t.ax[i] += gathered[0];
+    t.ay[i] += gathered[1];
+    t.az[i] += gathered[2];
   }
 }
 
@@ -180,7 +179,7 @@ void pull(const MeshNumbers& mesh, const ParticleRange& range, const SelfForce& 
     const Sixteen share_y = all_rows(shares(at.part[1])), share_z = each_row(shares(at.part[2]));
     const Sixteen along_y = flat * share_z * all_rows(slopes(at.part[1]));
     const Sixteen along_z = flat * share_y * each_row(slopes(at.part[2]));
-    const Four gradient = {sum(sloping * share_z * share_y), sum(along_y), sum(along_z), 0.0f};
+    const Four gradient = sums(sloping * share_z * share_y, along_y, along_z);
     const Four parts_in_cell = {at.part[0], at.part[1], at.part[2], 0.0f};
     const Four result = gradient * per_metre - range.mass[k] * harmonics(parts_in_cell, self);
     x[k] = result[0];

@@ -60,6 +60,11 @@ inline Sixteen all_rows(const Four& value) {
   return {{_mm256_set_m128(value, value), _mm256_set_m128(value, value)}};
 }
 
+inline Four rows_sum(const Sixteen& value) {
+  const __m256 halves = value.part[0] + value.part[1];
+  return _mm256_castps256_ps128(halves) + _mm256_extractf128_ps(halves, 1);
+}
+
 } // namespace
 
 #include "mesh_kernels.inl"

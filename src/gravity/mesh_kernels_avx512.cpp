@@ -63,6 +63,12 @@ inline Sixteen all_rows(const Four& value) {
   return {{_mm512_maskz_broadcast_f32x4(0xffff, value)}};
 }
 
+inline Four rows_sum(const Sixteen& value) {
+  const Lanes& rows = value.part[0];
+  return (_mm512_maskz_extractf32x4_ps(0xf, rows, 0) + _mm512_maskz_extractf32x4_ps(0xf, rows, 2)) +
+         (_mm512_maskz_extractf32x4_ps(0xf, rows, 1) + _mm512_maskz_extractf32x4_ps(0xf, rows, 3));
+}
+
 } // namespace
 
 #include "mesh_kernels.inl"

@@ -58,6 +58,10 @@ inline Sixteen all_rows(const Four& value) {
   return {{value, value, value, value}};
 }
 
+inline Four rows_sum(const Sixteen& value) {
+  return (value.part[0] + value.part[2]) + (value.part[1] + value.part[3]);
+}
+
 } // namespace
 
 #include "mesh_kernels.inl"

@@ -8,8 +8,8 @@ namespace keeler {
 std::unique_ptr<GravitySolver> make_gravity_solver(const GravitySettings& settings) {
   const InstructionSet set = choose_instruction_set();
   if (settings.solver == GravitySettings::Solver::direct)
-    return std::make_unique<DirectSolver>(settings.image_rings, set);
-  return std::make_unique<TreeSolver>(settings.opening_angle, settings.image_rings, set);
+    return std::make_unique<DirectSolver>(settings.images, set);
+  return std::make_unique<TreeSolver>(settings.opening_angle, settings.images, set);
 }
 
 } // namespace keeler

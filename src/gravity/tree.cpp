@@ -1,8 +1,8 @@
 #include <keeler/gravity/tree.hpp>
 
 #include <keeler/core/threads.hpp>
+#include <keeler/gravity/far_images.hpp>
 #include <keeler/gravity/images.hpp>
-#include <keeler/gravity/mean_sheet.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -129,12 +129,12 @@ private:
 
 } // namespace
 
-TreeSolver::TreeSolver(double opening_angle, int image_rings, InstructionSet set)
-    : opening_angle_(opening_angle), image_rings_(image_rings), kernels_(attraction_kernels(set)) {}
+TreeSolver::TreeSolver(double opening_angle, const ImageSettings& images, InstructionSet set)
+    : opening_angle_(opening_angle), images_(images), set_(set), kernels_(attraction_kernels(set)) {}
 
 void TreeSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) {
   const double offset = folded_offset(problem.box, problem.offset);
-  const std::vector<Vec3> shifts = image_shifts(problem.box, offset, image_rings_);
+  const std::vector<Vec3> shifts = near_images(problem.box, offset, images_);
   const std::size_t particle_count = problem.positions.size();
   std::vector<TreeParticle> particles(particle_count);
   const bool same_count = tree_.particles().size() == particle_count;
@@ -148,7 +148,7 @@ void TreeSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accel
 
   const std::vector<Group> groups = make_groups(tree_.cells());
   const std::vector<double> opening = opening_distances(tree_.cells(), opening_angle_);
-  const std::vector<Vec3> from_sheet = sheet_accelerations(problem, offset, image_rings_, tree_.particles());
+  const std::vector<Vec3> from_far = far_accelerations<float>(problem, offset, images_, tree_.particles(), set_);
   parallel_for(
       groups.size(),
       [&](std::size_t g) {
@@ -159,7 +159,7 @@ void TreeSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accel
         for (std::uint32_t k = 0; k < groups[g].count; ++k) {
           const std::size_t p = groups[g].begin + k;
           accelerations[tree_.particles()[p].index] =
-              problem.newton_g * Vec3(sum.ax[k], sum.ay[k], sum.az[k]) + from_sheet[p];
+              problem.newton_g * Vec3(sum.ax[k], sum.ay[k], sum.az[k]) + from_far[p];
         }
       },
       4);

@@ -21,7 +21,8 @@ void add_scene(Hash& hash, const Scene& scene) {
     return;
   hash.add(static_cast<std::int64_t>(scene.gravity->solver));
   hash.add(scene.gravity->opening_angle);
-  hash.add(static_cast<std::int64_t>(scene.gravity->image_rings));
+  hash.add(static_cast<std::int64_t>(scene.gravity->images.rings));
+  hash.add(static_cast<std::int64_t>(scene.gravity->images.far));
   hash.add(static_cast<std::int64_t>(scene.gravity->kick_every));
 }
 

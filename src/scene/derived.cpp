@@ -35,7 +35,7 @@ double bytes_per_particle(const Scene& scene) {
 }
 
 double gravity_ns_per_kick(const GravitySettings& gravity, double count) {
-  const double side = 2.0 * gravity.image_rings + 1.0;
+  const double side = 2.0 * gravity.images.rings + 1.0;
   const double images = side * side;
   if (gravity.solver == GravitySettings::Solver::direct)
     return cost::direct_pair_ns * count * images;

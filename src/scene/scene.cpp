@@ -57,7 +57,8 @@ std::optional<GravitySettings> read_gravity(const Settings& settings) {
     gravity.solver = GravitySettings::Solver::tree;
     gravity.opening_angle = settings.number("gravity.opening_angle");
   }
-  gravity.image_rings = static_cast<int>(settings.integer("gravity.image_rings"));
+  gravity.images.rings = static_cast<int>(settings.integer("gravity.image_rings"));
+  gravity.images.far = settings.text("gravity.images") == "periodic";
   gravity.kick_every = static_cast<int>(settings.integer("gravity.kick_every"));
   return gravity;
 }

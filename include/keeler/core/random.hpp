@@ -8,7 +8,7 @@
 namespace keeler {
 
 /// What a stream is for; streams of different purposes are independent. Never renumber: that changes every state.
-enum class RandomPurpose : std::uint32_t { position = 1, velocity = 2, size = 3, relaxation = 4 };
+enum class RandomPurpose : std::uint32_t { position = 1, velocity = 2, size = 3, relaxation = 4, gravity_origin = 5 };
 
 /// Philox4x64-10 (Salmon et al. 2011) keyed by seed and purpose, counting draws of one id.
 class RandomStream {

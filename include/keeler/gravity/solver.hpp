@@ -1,11 +1,12 @@
 // Self-gravity behind one interface: positions and masses in, accelerations out. The step turns them into kicks.
 //
-// A particle feels the n rings of images around the cell as they are, and beyond them a uniform sheet with the mean
-// surface density of the patch (mean_sheet.hpp).
+// A particle feels all images of all others, as far as the box repeats (lattice.hpp has the exact field of a pair), or
+// in a mode to compare with other codes exactly n rings of them.
 #pragma once
 
 #include <keeler/box/shearing_box.hpp>
 #include <keeler/core/vector.hpp>
+#include <keeler/gravity/images.hpp>
 
 #include <cstdint>
 #include <memory>
@@ -39,7 +40,7 @@ struct GravitySettings {
   enum class Solver { direct, tree };
   Solver solver = Solver::tree;
   double opening_angle = 0.6; ///< tree: a cell is opened when its size exceeds this times its distance
-  int image_rings = 1;        ///< rings of periodic images around the cell (1 is 9 boxes); beyond them the mean sheet
+  ImageSettings images = {};  ///< direct and tree
   int kick_every = 1;         ///< drifts per kick
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <keeler/gravity/cell_tree.hpp>
+#include <keeler/gravity/images.hpp>
 #include <keeler/gravity/kernels.hpp>
 #include <keeler/gravity/solver.hpp>
 
@@ -13,14 +14,15 @@ namespace keeler {
 /// of the cell's tight box. Opening angle 0 gives the direct sum.
 class TreeSolver final : public GravitySolver {
 public:
-  TreeSolver(double opening_angle, int image_rings, InstructionSet set);
+  TreeSolver(double opening_angle, const ImageSettings& images, InstructionSet set);
 
   void accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) override;
   std::string name() const override { return "tree"; }
 
 private:
   double opening_angle_;
-  int image_rings_;
+  ImageSettings images_;
+  InstructionSet set_;
   AttractionKernels kernels_;
   CellTree tree_;
 };

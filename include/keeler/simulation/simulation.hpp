@@ -44,6 +44,7 @@ public:
 
 private:
   void accelerate();
+  Vec3 random_origin() const;
   void half_kick();
   void move_on();
   void sort_when_due();

@@ -5,7 +5,6 @@
 #include <keeler/core/random.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/gravity/images.hpp>
-#include <keeler/gravity/mean_sheet.hpp>
 #include <keeler/gravity/solver.hpp>
 
 #include <algorithm>
@@ -108,23 +107,6 @@ inline ClumpedState clumped_state(std::size_t count, std::uint64_t seed, double 
 inline std::vector<Vec3> accelerations(GravitySolver& solver, const GravityProblem& problem) {
   std::vector<Vec3> result(problem.positions.size(), Vec3::Constant(1e300));
   solver.accelerate(problem, result);
-  return result;
-}
-
-/// What plain rings of images do: without the sheet around them. The result is that of `solver` with so many rings.
-inline std::vector<Vec3> without_sheet(std::vector<Vec3> result, const GravityProblem& problem, int rings) {
-  struct Body {
-    double x, y, z, mass;
-  };
-  const double offset = folded_offset(problem.box, problem.offset);
-  std::vector<Body> bodies;
-  for (std::size_t k = 0; k < result.size(); ++k) {
-    const Vec3 p = into_cell(problem.box, offset, problem.positions[k]);
-    bodies.push_back({p.x(), p.y(), p.z(), problem.masses[k]});
-  }
-  const std::vector<Vec3> sheet = sheet_accelerations(problem, offset, rings, bodies);
-  for (std::size_t k = 0; k < result.size(); ++k)
-    result[k] -= sheet[k];
   return result;
 }
 

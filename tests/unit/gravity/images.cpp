@@ -20,7 +20,7 @@ TEST_CASE("an offset folds into half a box on either side, exactly") {
 TEST_CASE("the boxes around the cell lie evenly on both sides of it at any offset") {
   for (const double raw : {0.0, 5.0, 31.0, 32.0, 33.0, 50.0, 63.9})
     for (const int rings : {0, 1, 3}) {
-      const std::vector<Vec3> shifts = image_shifts(box, folded_offset(box, raw), rings);
+      const std::vector<Vec3> shifts = image_shifts(box, folded_offset(box, raw), rings, rings);
       REQUIRE(shifts.size() == static_cast<std::size_t>((2 * rings + 1) * (2 * rings + 1)));
       CHECK(std::count(shifts.begin(), shifts.end(), Vec3(0.0, 0.0, 0.0)) == 1);
       for (const Vec3& shift : shifts) {

@@ -12,12 +12,12 @@ using namespace keeler_test;
 namespace {
 
 std::vector<Vec3> by_direct(const ClumpedState& state, int rings = 1) {
-  DirectSolver solver(rings, choose_instruction_set());
+  DirectSolver solver({rings, true}, choose_instruction_set());
   return accelerations(solver, state.problem());
 }
 
 std::vector<Vec3> by_tree(const ClumpedState& state, double opening_angle, int rings = 1) {
-  TreeSolver solver(opening_angle, rings, choose_instruction_set());
+  TreeSolver solver(opening_angle, {rings, true}, choose_instruction_set());
   return accelerations(solver, state.problem());
 }
 
@@ -62,11 +62,11 @@ TEST_CASE("with more rings and at other offsets the tree still follows the direc
     }
 }
 
-TEST_CASE("a closed opening angle gives the direct sum to rounding") {
+TEST_CASE("a closed opening angle gives the direct sum to rounding in single precision") {
   const ClumpedState state = clumped_state(1500, 6, 10.0);
   const std::vector<Vec3> exact = by_direct(state);
-  CHECK(rms_error(by_tree(state, 0.0), exact) < 1e-14);
-  CHECK(rms_error(by_tree(state, 1e-9), exact) < 1e-14);
+  CHECK(rms_error(by_tree(state, 0.0), exact) < 1e-7);
+  CHECK(rms_error(by_tree(state, 1e-9), exact) < 1e-7);
 }
 
 TEST_CASE("an angle of any size never opens a cell onto itself") {
@@ -93,7 +93,7 @@ TEST_CASE("a particle alone feels nothing: its own images cancel") {
   for (const double offset : {0.0, 11.1, 30.0, 59.0}) {
     state.offset = offset;
     const double one_image = state.problem().newton_g * state.masses[0] / (60.0 * 60.0);
-    CHECK(by_tree(state, 0.7)[0].norm() < 1e-14 * one_image);
+    CHECK(by_tree(state, 0.7)[0].norm() < 1e-6 * one_image); // single precision
     CHECK(by_direct(state)[0].norm() < 1e-14 * one_image);
   }
 }

@@ -103,7 +103,7 @@ checkpoint_every = 0.25
   CHECK(scene.collisions.restitution.value == 0.25);
   REQUIRE(scene.gravity);
   CHECK(scene.gravity->solver == GravitySettings::Solver::direct);
-  CHECK(scene.gravity->image_rings == 2);
+  CHECK(scene.gravity->images.rings == 2);
   CHECK(scene.gravity->kick_every == 5);
   CHECK(scene.time.step == 0.01);
   CHECK(scene.time.end_step == 150);
@@ -116,7 +116,7 @@ TEST_CASE("an empty gravity section means gravity with its defaults") {
   REQUIRE(scene.gravity);
   CHECK(scene.gravity->solver == GravitySettings::Solver::tree);
   CHECK(scene.gravity->opening_angle == 0.6);
-  CHECK(scene.gravity->image_rings == 1);
+  CHECK(scene.gravity->images.rings == 1);
   CHECK(scene.gravity->kick_every == 1);
 }
 

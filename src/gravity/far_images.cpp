@@ -1,0 +1,207 @@
+#include <keeler/gravity/far_images.hpp>
+
+#include <keeler/core/units.hpp>
+#include <keeler/gravity/images.hpp>
+#include <keeler/gravity/lattice.hpp>
+
+#include <array>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+constexpr int degree = 14;
+constexpr int nodes = degree + 2; // even: half of them mirror the others
+constexpr double tolerance = 1e-8;
+
+// Rings in a direction across which the box is `across` wide, and `along` the other way.
+int rings_for(int rings, double along, double across) {
+  return rings * std::max(1, static_cast<int>(std::ceil(along / across / 1.3)));
+}
+
+// The field changes over the distance of the far images: heights small against it need few powers.
+int height_degree(double relative_height) {
+  return relative_height < 0.05 ? 2 : relative_height < 0.2 ? 4 : 8;
+}
+
+PolynomialShape shape_for(int height_degree) {
+  PolynomialShape shape{degree, height_degree, 0};
+  for (int c = 0; c <= height_degree; ++c)
+    shape.size += static_cast<std::size_t>((degree - c + 1) * (degree - c + 2) / 2);
+  return shape;
+}
+
+// Calls visit(a, b, c) for the monomials in their order.
+template<class Visit> void for_each_monomial(const PolynomialShape& shape, const Visit& visit) {
+  for (int c = 0; c <= shape.height_degree; ++c)
+    for (int b = 0; b <= shape.degree - c; ++b)
+      for (int a = 0; a <= shape.degree - c - b; ++a)
+        visit(a, b, c);
+}
+
+// Where each monomial stands.
+using Places = std::array<std::array<std::array<std::size_t, degree + 1>, degree + 1>, degree + 1>;
+
+Places places_of(const PolynomialShape& shape) {
+  Places places{};
+  std::size_t next = 0;
+  for_each_monomial(shape, [&](int a, int b, int c) { places[c][b][a] = next++; });
+  return places;
+}
+
+double chebyshev_node(int k, int count) {
+  return std::cos(pi * (k + 0.5) / count);
+}
+
+// Values at the nodes → coefficients of T_0 … T_highest.
+Eigen::MatrixXd to_chebyshev(int highest, int count) {
+  Eigen::MatrixXd matrix(highest + 1, count);
+  for (int i = 0; i <= highest; ++i)
+    for (int k = 0; k < count; ++k)
+      matrix(i, k) = (i == 0 ? 1.0 : 2.0) / count * std::cos(pi * i * (k + 0.5) / count);
+  return matrix;
+}
+
+// Row k: T_k in powers.
+Eigen::MatrixXd chebyshev_in_powers(int highest) {
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(highest + 1, highest + 1);
+  rows(0, 0) = 1.0;
+  rows(1, 1) = 1.0;
+  for (int k = 2; k <= highest; ++k) {
+    rows.row(k).tail(highest) = 2.0 * rows.row(k - 1).head(highest);
+    rows.row(k) -= rows.row(k - 2);
+  }
+  return rows;
+}
+
+// The far images' potential on the nodes of one height: all images by Ewald's sums, less the near ones.
+class FarPotential {
+public:
+  FarPotential(const ShearingBox& box, double offset, int rings)
+      : box_(box), lattice_(box, offset, tolerance), near_(near_images(box, offset, {rings, true})) {
+    const double across = lattice_.reach() + std::hypot(box.size_x, box.size_y);
+    for (const Vec3& shift : lattice_.shifts_within(across))
+      if (std::none_of(near_.begin(), near_.end(),
+                       [&](const Vec3& n) { return (n - shift).norm() < 0.5 * shortest(); }))
+        others_.push_back(shift);
+  }
+
+  /// Rows: nodes along x; columns: nodes along y.
+  Eigen::MatrixXd at_height(double z) const {
+    std::vector<double> amplitudes;
+    for (const LatticeWave& wave : lattice_.waves())
+      amplitudes.push_back(lattice_.wave_potential(wave, z));
+    Eigen::MatrixXd values(nodes, nodes);
+    parallel_for(
+        nodes / 2,
+        [&](std::size_t i) {
+          const auto row = static_cast<int>(i);
+          for (int j = 0; j < nodes; ++j) {
+            const Vec3 place(chebyshev_node(row, nodes) * box_.size_x, chebyshev_node(j, nodes) * box_.size_y, z);
+            values(row, j) = values(nodes - 1 - row, nodes - 1 - j) = at(place, amplitudes);
+          }
+        },
+        1);
+    return values;
+  }
+
+private:
+  double shortest() const { return std::min(box_.size_x, box_.size_y); }
+
+  double at(const Vec3& place, const std::vector<double>& amplitudes) const {
+    double sum = lattice_.sheet_potential(place.z());
+    for (std::size_t k = 0; k < amplitudes.size(); ++k) {
+      const LatticeWave& wave = lattice_.waves()[k];
+      sum += amplitudes[k] * std::cos(wave.kx * place.x() + wave.ky * place.y());
+    }
+    const double per_split = 0.5 / lattice_.split_length();
+    for (const Vec3& shift : others_)
+      if (const double d = (place - shift).norm(); d < lattice_.reach())
+        sum -= std::erfc(per_split * d) / d;
+    for (const Vec3& shift : near_) {
+      const double d = (place - shift).norm();
+      sum += d > 0.0 ? std::erf(per_split * d) / d : 2.0 * per_split / std::sqrt(pi);
+    }
+    return sum;
+  }
+
+  ShearingBox box_;
+  Lattice lattice_;
+  std::vector<Vec3> near_, others_;
+};
+
+} // namespace
+
+std::vector<Vec3> near_images(const ShearingBox& box, double offset, const ImageSettings& images) {
+  if (!images.far)
+    return image_shifts(box, offset, images.rings, images.rings);
+  const int rings = std::max(images.rings, 1);
+  return image_shifts(box, offset, rings_for(rings, box.size_y, box.size_x), rings_for(rings, box.size_x, box.size_y));
+}
+
+FarImages::FarImages(const ShearingBox& box, double offset, int rings, double height) {
+  const double highest = 0.5 * std::min(box.size_x, box.size_y);
+  ceiling_ = std::min(height, highest);
+  scale_ = {box.size_x, box.size_y, std::max(2.0 * ceiling_, 0.01 * highest)};
+  shape_ = shape_for(height_degree(0.5 * scale_.z() / highest));
+  const int heights = shape_.height_degree + 2; // even, like the nodes along x
+  const FarPotential potential(box, offset, rings);
+  const Eigen::MatrixXd in_plane = to_chebyshev(degree, nodes), upward = to_chebyshev(shape_.height_degree, heights);
+  const Eigen::MatrixXd powers = chebyshev_in_powers(degree);
+  std::vector<Eigen::MatrixXd> planes; // coefficients of T_a T_b for each height above the plane
+  for (int h = 0; h < heights / 2; ++h)
+    planes.push_back(in_plane * potential.at_height(chebyshev_node(h, heights) * scale_.z()) * in_plane.transpose());
+
+  std::vector<Eigen::MatrixXd> in_powers(shape_.height_degree + 1, Eigen::MatrixXd::Zero(degree + 1, degree + 1));
+  for (int c = 0; c <= shape_.height_degree; c += 2) {
+    Eigen::MatrixXd level = Eigen::MatrixXd::Zero(degree + 1, degree + 1); // coefficients of T_a T_b T_c
+    for (int h = 0; h < heights / 2; ++h)
+      level += 2.0 * upward(c, h) * planes[h];
+    for (int a = 0; a <= degree; ++a)
+      for (int b = 0; b <= degree; ++b)
+        if (a + b + c > degree || (a + b) % 2 != 0) // the potential is even
+          level(a, b) = 0.0;
+    level = powers.transpose() * level * powers;
+    for (int p = 0; p <= c; p += 2)
+      in_powers[p] += powers(c, p) * level;
+  }
+  for_each_monomial(shape_, [&](int a, int b, int c) { lattice_.push_back(in_powers[c](a, b)); });
+}
+
+double FarImages::potential(const Vec3& displacement) const {
+  const Vec3 at = displacement.cwiseQuotient(scale_);
+  double sum = 0.0;
+  std::size_t next = 0;
+  for_each_monomial(shape_, [&](int a, int b, int c) {
+    sum += lattice_[next++] * std::pow(at.x(), a) * std::pow(at.y(), b) * std::pow(at.z(), c);
+  });
+  return sum;
+}
+
+// A difference's powers by the binomial theorem: (x − x′)^i is the sum of C(i, a) x^a (−x′)^(i−a).
+FarImages::Coefficients FarImages::potential_of(const Coefficients& moments) const {
+  const Places places = places_of(shape_);
+  std::array<std::array<double, degree + 1>, degree + 1> choose{};
+  for (int i = 0; i <= degree; ++i) {
+    choose[i][0] = 1.0;
+    for (int a = 1; a <= i; ++a)
+      choose[i][a] = choose[i - 1][a - 1] + choose[i - 1][a];
+  }
+  Coefficients result(shape_.size, 0.0);
+  std::size_t next = 0;
+  for_each_monomial(shape_, [&](int i, int j, int k) {
+    const double weight = lattice_[next++];
+    if ((i + j) % 2 != 0 || k % 2 != 0)
+      return;
+    for (int c = 0; c <= k; ++c)
+      for (int b = 0; b <= j; ++b)
+        for (int a = 0; a <= i; ++a) {
+          const double sign = (a + b + c) % 2 != 0 ? -1.0 : 1.0; // of the source's powers, as i + j + k is even
+          result[places[c][b][a]] +=
+              sign * weight * choose[i][a] * choose[j][b] * choose[k][c] * moments[places[k - c][j - b][i - a]];
+        }
+  });
+  return result;
+}
+
+} // namespace keeler
