@@ -4,7 +4,6 @@
 #include <cmath>
 
 namespace keeler {
-long g_list, g_groups;
 namespace {
 
 // Bounds of some places, m.
@@ -27,18 +26,17 @@ struct TileRange {
 
 } // namespace
 
-NearForces::NearForces(const ForceSplit& split, double radius, InstructionSet set)
-    : radius_(radius), kernels_(mesh_kernels(set)) {
+NearForces::NearForces(const ForceSplit& split, InstructionSet set) : kernels_(mesh_kernels(set)) {
   std::transform(split.inside().begin(), split.inside().end(), inside_.begin(),
                  [](double term) { return static_cast<float>(term); });
 }
 
-void NearForces::add(const Places& places, const ShearingBox& box, double offset, std::size_t begin, std::size_t count,
-                     NearTargets& targets) const {
+void NearForces::attract(const Places& places, const ShearingBox& box, double offset, double radius,
+                         std::size_t begin, std::size_t count, NearTargets& targets) const {
   const ParticleRange own = places.range(begin, count);
   const Bounds x(own.x, count), y(own.y, count), z(own.z, count);
   const double origin_x = 0.5 * (x.low + x.high), origin_y = 0.5 * (y.low + y.high), origin_z = 0.5 * (z.low + z.high);
-  const auto scale = static_cast<float>(1.0 / radius_);
+  const auto scale = static_cast<float>(1.0 / radius);
   NearGroup group{0.0, 0.0, origin_z, scale, {}, {}};
   const auto relative = [&](double value, double origin) { return static_cast<float>(value - origin) * scale; };
   const Bounds* const bounds[] = {&x, &y, &z};
@@ -61,7 +59,6 @@ void NearForces::add(const Places& places, const ShearingBox& box, double offset
   const double tile_width = static_cast<double>(tiling.side) / per_x;
   NearSources sources;
   const auto flush = [&] {
-    extern long g_list, g_groups; g_list += sources.count; g_groups++;
     kernels_.attract(targets, count, sources, inside_.data());
     sources.count = 0;
   };
@@ -78,15 +75,15 @@ void NearForces::add(const Places& places, const ShearingBox& box, double offset
   const auto boxes = [](double coordinate, double low, double per_box) {
     return std::floor((coordinate - low) * per_box);
   };
-  for (double a = boxes(x.low - radius_, left, per_box_x); a <= boxes(x.high + radius_, left, per_box_x); ++a) {
+  for (double a = boxes(x.low - radius, left, per_box_x); a <= boxes(x.high + radius, left, per_box_x); ++a) {
     const double shift_x = a * box.size_x; // of the sources
     group.origin_x = origin_x - shift_x;
-    const TileRange columns(x.low - radius_ - shift_x, x.high + radius_ - shift_x, left, per_x, tiling.columns,
+    const TileRange columns(x.low - radius - shift_x, x.high + radius - shift_x, left, per_x, tiling.columns,
                             tiling.side);
     for (std::size_t column = columns.first; column <= columns.last; ++column) {
       const double from = left + static_cast<double>(column) * tile_width + shift_x;
       const double gap = std::max({0.0, from - x.high, x.low - from - tile_width});
-      const double reach = std::sqrt(std::max(0.0, radius_ * radius_ - gap * gap));
+      const double reach = std::sqrt(std::max(0.0, radius * radius - gap * gap));
       const double low = y.low - reach + a * offset, high = y.high + reach + a * offset; // in the sources' column
       for (double b = boxes(low, bottom, per_box_y); b <= boxes(high, bottom, per_box_y); ++b) {
         const double shift_y = b * box.size_y;

@@ -16,16 +16,15 @@ namespace keeler {
 
 class NearForces {
 public:
-  NearForces(const ForceSplit& split, double radius, InstructionSet set);
+  NearForces(const ForceSplit& split, InstructionSet set);
 
-  /// Accelerations of places [begin, begin + count) of one tile, count ≤ NearTargets::capacity, at G = 1 and in units
-  /// of mass_unit() m^-2.
-  void add(const Places& places, const ShearingBox& box, double offset, std::size_t begin, std::size_t count,
-           NearTargets& targets) const;
+  /// Sets the targets to places [begin, begin + count) of one tile, count ≤ NearTargets::capacity, and their
+  /// accelerations at G = 1, in mass_unit() a square of the cut-off radius (m).
+  void attract(const Places& places, const ShearingBox& box, double offset, double radius, std::size_t begin,
+               std::size_t count, NearTargets& targets) const;
 
 private:
   std::array<float, ForceSplit::terms> inside_;
-  double radius_; // m
   MeshKernels kernels_;
 };
 
