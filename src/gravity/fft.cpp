@@ -25,9 +25,9 @@ const double flatness = getenv("FLAT") ? atof(getenv("FLAT")) : 0.5;
 // k times the spacing in the corner of a square mesh.
 constexpr double highest_wave = 1.4142135623730951 * pi;
 
-// Wave number, per radius of the cloud, below which it keeps its power: least error at that cut.
+// Wave number, per radius of the cloud, below which it keeps its power: least error in clumped states.
 double band_for(double cut) {
-  return 4.0 * std::sqrt(cut);
+  return std::clamp(2.0 * cut, 5.0, 6.0);
 }
 
 // Particles between a lowest and a highest one.

@@ -91,11 +91,7 @@ void attract(NearTargets& t, std::size_t target_count, NearSources& s, const flo
         const std::size_t at = k + static_cast<std::size_t>(p * KEELER_LANES);
         const Lanes dx = load(s.x + at) - x, dy = load(s.y + at) - y, dz = load(s.z + at) - z;
         const Lanes d2 = dx * dx + (dy * dy + (dz * dz + same_near_place_squared));
-        Lanes cloud = inside[5] * d2 + inside[4];
-        cloud = cloud * d2 + inside[3];
-        cloud = cloud * d2 + inside[2];
-        cloud = cloud * d2 + inside[1];
-        cloud = cloud * d2 + inside[0];
+        const Lanes cloud = (inside[2] * d2 + inside[1]) * d2 + inside[0];
         const Lanes weight = load(s.mass + at) * (inverse_cube(d2) - cloud);
         const Lanes used = d2 < 1.0f ? weight : Lanes{};
         ax.part[p] += used * dx;

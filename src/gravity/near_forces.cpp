@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace keeler {
 namespace {
@@ -17,11 +18,26 @@ struct Bounds {
   double low, high;
 };
 
-// Tiles of `cells` cells that hold the coordinates from `low` to `high`; the first and last ones are kept in range.
-struct TileRange {
-  TileRange(double low, double high, double edge, double per_metre, std::size_t cells, std::size_t side)
-      : first(cell_of(low, edge, per_metre, cells) / side), last(cell_of(high, edge, per_metre, cells) / side) {}
-  std::size_t first, last;
+// What std::floor gives, without a call.
+double floor_of(double value) {
+  const auto whole = static_cast<double>(static_cast<std::int64_t>(value));
+  return whole > value ? whole - 1.0 : whole;
+}
+
+// The boxes along one axis, each of so many tiles.
+struct Axis {
+  Axis(double box_size, std::size_t cells, std::size_t side, std::size_t tile_count)
+      : size(box_size), low(-0.5 * box_size), per_box(1.0 / box_size),
+        tile_width(box_size * static_cast<double>(side) / static_cast<double>(cells)), per_tile(1.0 / tile_width),
+        tiles(tile_count) {}
+
+  double box(double coordinate) const { return floor_of((coordinate - low) * per_box); }
+
+  // The first tile for what lies below the cell, the last for what lies above.
+  std::size_t tile(double coordinate) const { return cell_of(coordinate, low, per_tile, tiles); }
+
+  double size, low, per_box, tile_width, per_tile;
+  std::size_t tiles;
 };
 
 } // namespace
@@ -53,10 +69,8 @@ void NearForces::attract(const Places& places, const ShearingBox& box, double of
   }
 
   const Tiling& tiling = places.tiling();
-  const double left = -0.5 * box.size_x, bottom = -0.5 * box.size_y;
-  const double per_x = static_cast<double>(tiling.columns) / box.size_x;
-  const double per_y = static_cast<double>(tiling.rows) / box.size_y;
-  const double tile_width = static_cast<double>(tiling.side) / per_x;
+  const Axis along_x(box.size_x, tiling.columns, tiling.side, tiling.tile_columns());
+  const Axis along_y(box.size_y, tiling.rows, tiling.side, tiling.tile_rows());
   NearSources sources;
   const auto flush = [&] {
     kernels_.attract(targets, count, sources, inside_.data());
@@ -71,26 +85,22 @@ void NearForces::attract(const Places& places, const ShearingBox& box, double of
       first += part;
     }
   };
-  const double per_box_x = 1.0 / box.size_x, per_box_y = 1.0 / box.size_y;
-  const auto boxes = [](double coordinate, double low, double per_box) {
-    return std::floor((coordinate - low) * per_box);
-  };
-  for (double a = boxes(x.low - radius, left, per_box_x); a <= boxes(x.high + radius, left, per_box_x); ++a) {
+  const double last_a = along_x.box(x.high + radius);
+  for (double a = along_x.box(x.low - radius); a <= last_a; ++a) {
     const double shift_x = a * box.size_x; // of the sources
     group.origin_x = origin_x - shift_x;
-    const TileRange columns(x.low - radius - shift_x, x.high + radius - shift_x, left, per_x, tiling.columns,
-                            tiling.side);
-    for (std::size_t column = columns.first; column <= columns.last; ++column) {
-      const double from = left + static_cast<double>(column) * tile_width + shift_x;
-      const double gap = std::max({0.0, from - x.high, x.low - from - tile_width});
+    const std::size_t last_column = along_x.tile(x.high + radius - shift_x);
+    for (std::size_t column = along_x.tile(x.low - radius - shift_x); column <= last_column; ++column) {
+      const double from = along_x.low + static_cast<double>(column) * along_x.tile_width + shift_x;
+      const double gap = std::max({0.0, from - x.high, x.low - from - along_x.tile_width});
       const double reach = std::sqrt(std::max(0.0, radius * radius - gap * gap));
       const double low = y.low - reach + a * offset, high = y.high + reach + a * offset; // in the sources' column
-      for (double b = boxes(low, bottom, per_box_y); b <= boxes(high, bottom, per_box_y); ++b) {
+      const double last_b = along_y.box(high);
+      for (double b = along_y.box(low); b <= last_b; ++b) {
         const double shift_y = b * box.size_y;
         group.origin_y = origin_y + a * offset - shift_y;
-        const TileRange rows(low - shift_y, high - shift_y, bottom, per_y, tiling.rows, tiling.side);
-        const std::size_t tile = column * tiling.tile_rows();
-        gather(places.first(tile + rows.first), places.first(tile + rows.last + 1));
+        const std::size_t tile = column * along_y.tiles;
+        gather(places.first(tile + along_y.tile(low - shift_y)), places.first(tile + along_y.tile(high - shift_y) + 1));
       }
     }
   }
