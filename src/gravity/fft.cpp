@@ -20,14 +20,15 @@ namespace keeler {
 namespace {
 
 // Distance of planes in spacings. The layer is thin and its vertical pull coherent: an error along z shows most.
-const double flatness = getenv("FLAT") ? atof(getenv("FLAT")) : 0.5;
+constexpr double flatness = 0.5;
 
 // k times the spacing in the corner of a square mesh.
 constexpr double highest_wave = 1.4142135623730951 * pi;
 
-// Wave number, per radius of the cloud, below which it keeps its power: least error in clumped states.
+// Wave number, per radius of the cloud, below which it keeps its power: near the least error, in
+// even states and in clumped ones.
 double band_for(double cut) {
-  return std::clamp(2.0 * cut, 5.0, 6.0);
+  return std::min(1.25 + 2.0 * cut, 17.0);
 }
 
 // Particles between a lowest and a highest one.
@@ -59,7 +60,7 @@ double affordable_spacing(const ShearingBox& box, double spacing, const Extent& 
 // About 8 particles a tile: few enough to be close together, and enough to share the search for their neighbours.
 Tiling tiling_for(const MeshShape& shape, std::size_t count) {
   const double cells = static_cast<double>(shape.columns) * static_cast<double>(shape.rows);
-  const double side = std::round(std::sqrt((getenv("PT")?atof(getenv("PT")):8.0) * cells / static_cast<double>(count)));
+  const double side = std::round(std::sqrt(8.0 * cells / static_cast<double>(count)));
   const double longest = static_cast<double>(std::max(shape.columns, shape.rows));
   return {shape.columns, shape.rows, static_cast<std::size_t>(std::clamp(side, 1.0, longest))};
 }
@@ -149,7 +150,7 @@ void FftSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accele
   Vec3 mean = Vec3::Zero();
   for (const Vec3& sum : sums)
     mean += sum / static_cast<double>(count); // masses are in units of their mean
-  if (!getenv("NET")) parallel_for(count, [&](std::size_t k) { accelerations[k] -= mean; });
+  parallel_for(count, [&](std::size_t k) { accelerations[k] -= mean; });
 }
 
 } // namespace keeler

@@ -16,7 +16,7 @@ namespace keeler {
 
 class ForceSplit {
 public:
-  static constexpr std::size_t terms = 3; ///< six would make the error 4 % less, and a pair 15 % dearer
+  static constexpr std::size_t terms = 4; ///< six would make the error 4 % less, and a pair 10 % dearer
 
   /// The power of ψ is gathered at wave numbers below `band` (per radius).
   explicit ForceSplit(double band);

@@ -20,7 +20,7 @@ struct NearSources {
 
 /// Up to `capacity` targets in the same units, and what they have gathered.
 struct NearTargets {
-  static constexpr std::size_t capacity = 16;
+  static constexpr std::size_t capacity = 32;
   alignas(64) float x[capacity], y[capacity], z[capacity];
   alignas(64) float ax[capacity], ay[capacity], az[capacity];
 };
@@ -34,9 +34,9 @@ struct ParticleRange {
 
 /// Where a group is: the places of a range minus the origin, times the scale, are those of NearSources.
 struct NearGroup {
-  double origin_x, origin_y, origin_z;
+  double origin_x, origin_y, origin_z; ///< the middle of the targets
   float scale;
-  float low[3], high[3]; ///< bounds of the targets in those units
+  float half[3]; ///< how far the targets reach from there, in those units
 };
 
 /// Added to squares of distances, in cut-off radii: what keeps a particle's own place from dividing by zero, and far
@@ -62,7 +62,7 @@ struct MeshKernels {
   /// Appends those of a range that are nearer than 1 to the group's bounds. There must be room for all of them.
   void (*gather)(NearSources& sources, const ParticleRange& range, const NearGroup& group);
 
-  /// Adds Σ m (1/d³ − Σ_j inside_j d^2j) d over sources with d < 1, three terms. 1/d³ is right to 7e-6. Fills up the list
+  /// Adds Σ m (1/d³ − Σ_j inside_j d^2j) d over sources with d < 1, four terms. 1/d³ is right to 7e-6. Fills up the list
   /// with nothing to a multiple of `widest`.
   void (*attract)(NearTargets& targets, std::size_t target_count, NearSources& sources, const float* inside);
 

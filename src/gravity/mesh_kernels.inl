@@ -1,7 +1,9 @@
 // Text of the mesh solver's kernels; see mesh_kernels.hpp. The including file sets KEELER_KERNEL_SPACE and
 // KEELER_LANES, defines Lanes, LanesInRow (anywhere in a row), IntLanes, lane_numbers, and
 //   Lanes difference(const double* from, double origin)     of KEELER_LANES numbers, in double, then rounded
-//   void append(NearSources&, x, y, z, mass, inside)        the lanes where the integer vector `inside` is not 0
+//   std::size_t append(NearSources&, std::size_t count, x, y, z, mass, inside)
+//                                                           puts the lanes where the integer vector `inside` is not 0
+//                                                           behind the first `count` ones; how many there are then
 //   Sixteen rows(const float* from, std::size_t stride)     four numbers from each of four rows
 //   void put_rows(float* to, std::size_t stride, const Sixteen&)
 //   Sixteen each_row(const Four&), all_rows(const Four&)    the number r in the whole row r; the four in every row
@@ -21,8 +23,11 @@ inline void store(float* to, const Lanes& value) {
   *reinterpret_cast<Lanes*>(to) = value;
 }
 
-inline Lanes positive(const Lanes& value) {
-  return value > 0.0f ? value : Lanes{};
+// How far a coordinate is beyond ± half.
+inline Lanes beyond(const Lanes& coordinate, float half) {
+  const IntLanes bits = reinterpret_cast<const IntLanes&>(coordinate) & 0x7fffffff;
+  const Lanes gap = reinterpret_cast<const Lanes&>(bits) - half;
+  return gap > 0.0f ? gap : Lanes{};
 }
 
 inline Sixteen operator*(const Sixteen& a, const Sixteen& b) {
@@ -55,18 +60,18 @@ inline Four sums(const Sixteen& x, const Sixteen& y, const Sixteen& z) {
 }
 
 void gather(NearSources& sources, const ParticleRange& range, const NearGroup& group) {
+  std::size_t count = sources.count;
   for (std::size_t k = 0; k < range.count; k += KEELER_LANES) {
     const Lanes x = difference(range.x + k, group.origin_x) * group.scale;
     const Lanes y = difference(range.y + k, group.origin_y) * group.scale;
     const Lanes z = difference(range.z + k, group.origin_z) * group.scale;
-    const Lanes gap_x = positive(group.low[0] - x) + positive(x - group.high[0]);
-    const Lanes gap_y = positive(group.low[1] - y) + positive(y - group.high[1]);
-    const Lanes gap_z = positive(group.low[2] - z) + positive(z - group.high[2]);
+    const Lanes gap_x = beyond(x, group.half[0]), gap_y = beyond(y, group.half[1]), gap_z = beyond(z, group.half[2]);
     const Lanes gap2 = gap_x * gap_x + gap_y * gap_y + gap_z * gap_z;
     const int left = range.count - k < KEELER_LANES ? static_cast<int>(range.count - k) : KEELER_LANES;
     const Lanes mass = *reinterpret_cast<const LanesInRow*>(range.mass + k);
-    append(sources, x, y, z, mass, (gap2 < 1.0f) & (lane_numbers < left));
+    count = append(sources, count, x, y, z, mass, (gap2 < 1.0f) & (lane_numbers < left));
   }
+  sources.count = count;
 }
 
 // value^(−3/2): a guess g at 1/√value from the bits, within 3.5 %, and a polynomial for (value g²)^(−3/2), within 7e-6.
@@ -91,7 +96,7 @@ void attract(NearTargets& t, std::size_t target_count, NearSources& s, const flo
         const std::size_t at = k + static_cast<std::size_t>(p * KEELER_LANES);
         const Lanes dx = load(s.x + at) - x, dy = load(s.y + at) - y, dz = load(s.z + at) - z;
         const Lanes d2 = dx * dx + (dy * dy + (dz * dz + same_near_place_squared));
-        const Lanes cloud = (inside[2] * d2 + inside[1]) * d2 + inside[0];
+        const Lanes cloud = ((inside[3] * d2 + inside[2]) * d2 + inside[1]) * d2 + inside[0];
         const Lanes weight = load(s.mass + at) * (inverse_cube(d2) - cloud);
         const Lanes used = d2 < 1.0f ? weight : Lanes{};
         ax.part[p] += used * dx;

@@ -28,17 +28,18 @@ inline Lanes difference(const double* from, double origin) {
   return _mm256_set_m128(high, low);
 }
 
-inline void append(keeler::NearSources& s, const Lanes& x, const Lanes& y, const Lanes& z, const Lanes& mass,
-                   const IntLanes& inside) {
+inline std::size_t append(keeler::NearSources& s, std::size_t count, const Lanes& x, const Lanes& y, const Lanes& z,
+                          const Lanes& mass, const IntLanes& inside) {
   int mask = _mm256_movemask_ps(reinterpret_cast<const __m256&>(inside));
   for (; mask != 0; mask &= mask - 1) {
     const int lane = __builtin_ctz(static_cast<unsigned>(mask));
-    s.x[s.count] = x[lane];
-    s.y[s.count] = y[lane];
-    s.z[s.count] = z[lane];
-    s.mass[s.count] = mass[lane];
-    ++s.count;
+    s.x[count] = x[lane];
+    s.y[count] = y[lane];
+    s.z[count] = z[lane];
+    s.mass[count] = mass[lane];
+    ++count;
   }
+  return count;
 }
 
 inline Sixteen rows(const float* from, std::size_t stride) {

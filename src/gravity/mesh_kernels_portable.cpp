@@ -24,15 +24,16 @@ inline Lanes difference(const double* from, double origin) {
                static_cast<float>(from[2] - origin), static_cast<float>(from[3] - origin)};
 }
 
-inline void append(keeler::NearSources& s, const Lanes& x, const Lanes& y, const Lanes& z, const Lanes& mass,
-                   const IntLanes& inside) {
+inline std::size_t append(keeler::NearSources& s, std::size_t count, const Lanes& x, const Lanes& y, const Lanes& z,
+                          const Lanes& mass, const IntLanes& inside) {
   for (int lane = 0; lane < KEELER_LANES; ++lane) {
-    s.x[s.count] = x[lane];
-    s.y[s.count] = y[lane];
-    s.z[s.count] = z[lane];
-    s.mass[s.count] = mass[lane];
-    s.count += inside[lane] != 0;
+    s.x[count] = x[lane];
+    s.y[count] = y[lane];
+    s.z[count] = z[lane];
+    s.mass[count] = mass[lane];
+    count += inside[lane] != 0;
   }
+  return count;
 }
 
 inline Sixteen rows(const float* from, std::size_t stride) {

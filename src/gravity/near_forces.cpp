@@ -53,14 +53,13 @@ void NearForces::attract(const Places& places, const ShearingBox& box, double of
   const Bounds x(own.x, count), y(own.y, count), z(own.z, count);
   const double origin_x = 0.5 * (x.low + x.high), origin_y = 0.5 * (y.low + y.high), origin_z = 0.5 * (z.low + z.high);
   const auto scale = static_cast<float>(1.0 / radius);
-  NearGroup group{0.0, 0.0, origin_z, scale, {}, {}};
+  NearGroup group{0.0, 0.0, origin_z, scale, {}};
   const auto relative = [&](double value, double origin) { return static_cast<float>(value - origin) * scale; };
   const Bounds* const bounds[] = {&x, &y, &z};
   const double origins[] = {origin_x, origin_y, origin_z};
-  for (int axis = 0; axis < 3; ++axis) {
-    group.low[axis] = relative(bounds[axis]->low, origins[axis]);
-    group.high[axis] = relative(bounds[axis]->high, origins[axis]);
-  }
+  for (int axis = 0; axis < 3; ++axis)
+    group.half[axis] =
+        std::max(relative(bounds[axis]->high, origins[axis]), -relative(bounds[axis]->low, origins[axis]));
   for (std::size_t k = 0; k < count; ++k) {
     targets.x[k] = relative(own.x[k], origin_x);
     targets.y[k] = relative(own.y[k], origin_y);
