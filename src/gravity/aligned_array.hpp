@@ -1,5 +1,5 @@
-// Memory for FFTW and for wide registers: on whole cache lines, which is more than fftw_malloc aligns to and the same for
-// each array, so plans made for one array serve all.
+// Memory for FFTW and for wide registers: on whole cache lines, which is more than fftw_malloc aligns to and the same
+// for each array, so plans made for one array serve all.
 #pragma once
 
 #include <cstddef>

@@ -25,8 +25,8 @@ constexpr double flatness = 0.5;
 // k times the spacing in the corner of a square mesh.
 constexpr double highest_wave = 1.4142135623730951 * pi;
 
-// Wave number, per radius of the cloud, below which it keeps its power: near the least error, in
-// even states and in clumped ones.
+// Wave number, per radius of the cloud, below which it keeps its power: near the least error in even states and in
+// clumped ones.
 double band_for(double cut) {
   return std::min(1.25 + 2.0 * cut, 17.0);
 }
@@ -67,6 +67,11 @@ Tiling tiling_for(const MeshShape& shape, std::size_t count) {
 
 } // namespace
 
+FftSettings fft_settings_for(double force_error, double number_density) {
+  const double cut = 3.0 * std::pow(1.65e-3 / force_error, 1.0 / 3.25);
+  return {1.6 / std::sqrt(number_density), std::clamp(cut, 2.0, 16.0)};
+}
+
 struct FftSolver::Parts {
   Parts(const FftSettings& chosen, InstructionSet set)
       : settings(chosen), kernels(mesh_kernels(set)), split(band_for(chosen.cut)),
@@ -99,6 +104,7 @@ void FftSolver::Parts::fill_mesh(const GravityProblem& problem, double offset) {
   mesh.reset(shape);
   mesh.spread(places, kernels);
   transform.prepare(shape, offset / problem.box.size_y);
+  waves.prepare(shape);
   transform.apply(mesh, [&](std::size_t m, const std::complex<float>* from, std::complex<float>* to) {
     waves.apply(shape, transform, m, kernels, from, to);
   });

@@ -73,14 +73,13 @@ void Mesh::spread(const Places& places, const MeshKernels& kernels) {
   const std::size_t slab = (MeshShape::ghosts + tiling.side - 1) / tiling.side;
   const std::size_t tile_columns = tiling.tile_columns(), slabs = (tile_columns + slab - 1) / slab;
   for (const std::size_t parity : {0u, 1u})
-    parallel_for(
-        (slabs + 1 - parity) / 2,
-        [&](std::size_t half) {
-          const std::size_t begin = (2 * half + parity) * slab, end = std::min(begin + slab, tile_columns);
-          const std::size_t first = places.first(begin * tiling.tile_rows());
-          kernels.spread(mesh, places.range(first, places.first(end * tiling.tile_rows()) - first));
-        },
-        1);
+    parallel_for((slabs + 1 - parity) / 2,
+                 [&](std::size_t half) {
+                   const std::size_t begin = (2 * half + parity) * slab, end = std::min(begin + slab, tile_columns);
+                   const std::size_t first = places.first(begin * tiling.tile_rows());
+                   kernels.spread(mesh, places.range(first, places.first(end * tiling.tile_rows()) - first));
+                 },
+                 1);
 }
 
 } // namespace keeler

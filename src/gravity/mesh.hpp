@@ -24,8 +24,10 @@ struct MeshShape {
   std::size_t planes = 0;            ///< nodes in z
   double step_x = 0.0, step_y = 0.0; ///< spacings, m
   double step_z = 0.0;
-  double per_x = 0.0, per_y = 0.0; ///< cells a metre
+  double per_x = 0.0, per_y = 0.0;             ///< cells a metre
   double left = 0.0, bottom = 0.0, base = 0.0; ///< corner of cell 0, 0, 0
+
+  double area() const { return step_x * static_cast<double>(columns) * (step_y * static_cast<double>(rows)); }
 
   /// Floats from one row to the next: rows begin on cache lines.
   std::size_t row_length() const { return (rows + ghosts + 15) / 16 * 16; }

@@ -62,8 +62,8 @@ struct MeshKernels {
   /// Appends those of a range that are nearer than 1 to the group's bounds. There must be room for all of them.
   void (*gather)(NearSources& sources, const ParticleRange& range, const NearGroup& group);
 
-  /// Adds Σ m (1/d³ − Σ_j inside_j d^2j) d over sources with d < 1, four terms. 1/d³ is right to 7e-6. Fills up the list
-  /// with nothing to a multiple of `widest`.
+  /// Adds Σ m (1/d³ − Σ_j inside_j d^2j) d over sources with d < 1, four terms. 1/d³ is right to 7e-6. Fills up the
+  /// list with nothing to a multiple of `widest`.
   void (*attract)(NearTargets& targets, std::size_t target_count, NearSources& sources, const float* inside);
 
   /// Adds a range of particles to the mesh, one after the other.

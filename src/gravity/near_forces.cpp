@@ -47,8 +47,8 @@ NearForces::NearForces(const ForceSplit& split, InstructionSet set) : kernels_(m
                  [](double term) { return static_cast<float>(term); });
 }
 
-void NearForces::attract(const Places& places, const ShearingBox& box, double offset, double radius,
-                         std::size_t begin, std::size_t count, NearTargets& targets) const {
+void NearForces::attract(const Places& places, const ShearingBox& box, double offset, double radius, std::size_t begin,
+                         std::size_t count, NearTargets& targets) const {
   const ParticleRange own = places.range(begin, count);
   const Bounds x(own.x, count), y(own.y, count), z(own.z, count);
   const double origin_x = 0.5 * (x.low + x.high), origin_y = 0.5 * (y.low + y.high), origin_z = 0.5 * (z.low + z.high);

@@ -2,8 +2,8 @@
 //
 // Particles of a tile that are close in height make a group; sources are found tile by tile for the whole group and
 // handed to the kernel in the order of the places, so each sum's order depends on the problem alone. Coordinates are
-// taken relative to the group in double and only then rounded: the size of the box costs no digits. Boxes may be smaller
-// than the cut-off radius: each image is a source of its own, and a particle's own images attract it too.
+// taken relative to the group in double and only then rounded: the size of the box costs no digits. Boxes may be
+// smaller than the cut-off radius: each image is a source of its own, and a particle's own images attract it too.
 #pragma once
 
 #include "force_split.hpp"

@@ -25,11 +25,8 @@ void Places::sort(const GravityProblem& problem, double offset, const Tiling& ti
     const Vec3 p = into_cell(problem.box, offset, problem.positions[index]);
     const std::size_t a = cell_of(p.x(), left, columns_per_metre, tiling.columns) / tiling.side;
     const std::size_t b = cell_of(p.y(), bottom, rows_per_metre, tiling.rows) / tiling.side;
-    found_[k] = {p.x(),
-                p.y(),
-                p.z(),
-                static_cast<std::uint32_t>(index),
-                static_cast<std::uint32_t>(a * tiling.tile_rows() + b)};
+    found_[k] = {p.x(), p.y(), p.z(), static_cast<std::uint32_t>(index),
+                 static_cast<std::uint32_t>(a * tiling.tile_rows() + b)};
   });
 
   first_.assign(tiling.count() + 2, 0); // counted two behind, so that filling moves each to its own start

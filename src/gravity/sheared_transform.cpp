@@ -54,6 +54,8 @@ void ShearedTransform::prepare(const MeshShape& shape, double offset_part) {
     make_plans();
   spectrum_.resize_at_least(blocks() * waves() * shape.planes * block);
   scratch_.resize(static_cast<std::size_t>(threads()));
+  for (auto& scratch : scratch_)
+    scratch.resize_at_least(shape.planes * std::max(2 * row_length(), block * spectrum_row()));
   turns_.resize_at_least(waves() * 2 * row_length());
   offset_part_ = offset_part;
   parallel_for(
@@ -81,9 +83,7 @@ double ShearedTransform::turns_x(std::size_t m, std::size_t n) const {
 }
 
 std::complex<float>* ShearedTransform::own_scratch() {
-  AlignedArray<Complex>& scratch = scratch_[static_cast<std::size_t>(omp_get_thread_num())];
-  scratch.resize_at_least(shape_.planes * std::max(2 * row_length(), block * spectrum_row()));
-  return scratch.data();
+  return scratch_[static_cast<std::size_t>(omp_get_thread_num())].data();
 }
 
 void ShearedTransform::forward_y(Mesh& mesh) {

@@ -6,7 +6,8 @@
 // along x. Nothing is deposited askew: the mesh stays square at any offset, and forces pass over a wrap of the offset
 // without a step.
 //
-// Of an even number of rows the wave m = rows / 2 has no direction; it is left out (the cloud leaves it next to nothing).
+// Of an even number of rows the wave m = rows / 2 has no direction; it is left out (the cloud leaves it next to
+// nothing).
 //
 // Plans are made by FFTW_ESTIMATE alone, without wisdom, for one row each, and run by our own threads: bits depend on
 // the sizes and on the processor's code inside FFTW only.

@@ -2,6 +2,7 @@
 
 #include "spline_waves.hpp"
 
+#include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 
 #include <algorithm>
@@ -11,8 +12,6 @@ namespace keeler {
 namespace {
 
 constexpr std::size_t k_steps = 1024, window_steps = 1024;
-constexpr std::size_t farthest_reach = 24;
-constexpr int block = 8; // waves at a time
 
 double power(double value, int exponent) {
   double result = 1.0;
@@ -40,6 +39,23 @@ double tail_transform(double k, double angle) {
   return std::sinh(k) / k / (std::cosh(k) - std::cos(angle));
 }
 
+// The tail of the wave k = 0, −2π |Δz|, from both sides and in double: no other wave's factors have its form.
+void add_sheets(const MeshShape& shape, std::size_t row, const std::complex<float>* from, std::complex<float>* to) {
+  const auto unit = static_cast<double>(2.0 * pi * shape.step_z / shape.area());
+  double mass = 0.0, moment = 0.0;
+  for (std::size_t p = 0; p < shape.planes; ++p) {
+    moment += mass;
+    mass += static_cast<double>(from[p * row].real());
+    to[p * row] -= static_cast<float>(unit * moment);
+  }
+  mass = moment = 0.0;
+  for (std::size_t p = shape.planes; p-- > 0;) {
+    moment += mass;
+    mass += static_cast<double>(from[p * row].real());
+    to[p * row] -= static_cast<float>(unit * moment);
+  }
+}
+
 } // namespace
 
 WaveKernel::WaveKernel(const ForceSplit& split, double radius, double highest_k) : highest_k_(highest_k) {
@@ -54,7 +70,9 @@ WaveKernel::WaveKernel(const ForceSplit& split, double radius, double highest_k)
 // The coefficients at planes j = 0, 1 … are those of the transform along z minus the tail's. Half-way sample angles
 // avoid the pole of both at 0.
 void WaveKernel::tabulate(const ForceSplit& split, double radius) {
-  constexpr std::size_t samples = 2 * farthest_reach;
+  const auto farthest_reach =
+      static_cast<std::size_t>(radius) + 12; // beyond the cloud the rest dies within some planes
+  const std::size_t samples = 2 * farthest_reach;
   std::vector<double> near((k_steps + 2) * (farthest_reach + 1), 0.0);
   std::vector<double> cosines, windows, aliased;
   for (std::size_t n = 0; n < samples; ++n) {
@@ -76,7 +94,8 @@ void WaveKernel::tabulate(const ForceSplit& split, double radius) {
       }
       const double rest = 4.0 * pi * whole / aliased[n] - tail_factor(k) * tail_transform(k, angle);
       for (std::size_t j = 0; j <= farthest_reach; ++j)
-        near[i * (farthest_reach + 1) + j] += rest * cosines[n * (farthest_reach + 1) + j] / samples;
+        near[i * (farthest_reach + 1) + j] +=
+            rest * cosines[n * (farthest_reach + 1) + j] / static_cast<double>(samples);
     }
   }
   // planes farther out than this matter less than rounding in single precision does
@@ -88,77 +107,71 @@ void WaveKernel::tabulate(const ForceSplit& split, double radius) {
     const auto begin = near.begin() + static_cast<std::ptrdiff_t>(i * (farthest_reach + 1));
     for (std::size_t j = 0; j <= reach_; ++j)
       table_.push_back(static_cast<float>(begin[static_cast<std::ptrdiff_t>(j)]));
-    table_.push_back(static_cast<float>(tail_factor(highest_k_ * static_cast<double>(i) / static_cast<double>(k_steps))));
+    table_.push_back(
+        static_cast<float>(tail_factor(highest_k_ * static_cast<double>(i) / static_cast<double>(k_steps))));
+  }
+}
+
+void WaveKernel::prepare(const MeshShape& shape) {
+  scratch_.resize(static_cast<std::size_t>(threads()));
+  for (auto& scratch : scratch_)
+    scratch.resize_at_least(16 * (shape.planes + 3 * reach_ + 5));
+}
+
+float WaveKernel::window(double angle) const {
+  const double place = std::fabs(angle) / pi * static_cast<double>(window_steps);
+  const auto i = std::min(static_cast<std::size_t>(place), window_steps);
+  return window_[i] + static_cast<float>(place - static_cast<double>(i)) * (window_[i + 1] - window_[i]);
+}
+
+void WaveKernel::factors_of_block(const MeshShape& shape, const ShearedTransform& transform, std::size_t m,
+                                  std::size_t begin, const Factors& factors) const {
+  const double per_turn_x = 2.0 * pi / static_cast<double>(shape.columns); // angle a column, of one turn along the box
+  const double angle_y = 2.0 * pi / static_cast<double>(shape.rows) * static_cast<double>(m);
+  const double k_y = angle_y * shape.step_z / shape.step_y;
+  const auto scale = static_cast<float>(shape.step_z / shape.area()) * window(angle_y);
+  for (std::size_t c = 0; c < block; ++c) {
+    const double angle_x = per_turn_x * transform.turns_x(m, std::min(begin + c, shape.columns - 1));
+    const double k_x = angle_x * shape.step_z / shape.step_x, k = std::sqrt(k_x * k_x + k_y * k_y);
+    const double place = k / highest_k_ * static_cast<double>(k_steps);
+    const auto i = std::min(static_cast<std::size_t>(place), k_steps);
+    const auto part = static_cast<float>(place - static_cast<double>(i));
+    const float factor = place <= static_cast<double>(k_steps) ? scale * window(angle_x) : 0.0f;
+    const float* const entry = table_.data() + i * (reach_ + 2);
+    const float* const next = entry + reach_ + 2;
+    const auto between = [&](std::size_t j) { return entry[j] + part * (next[j] - entry[j]); };
+    const float tail = k > 0.0 ? factor * between(reach_ + 1) / static_cast<float>(k) : 0.0f;
+    const auto decay = static_cast<float>(std::exp(-k));
+    for (const std::size_t number : {2 * c, 2 * c + 1}) { // the real and the imaginary part
+      for (std::size_t j = 0; j <= reach_; ++j)
+        factors.near[16 * j + number] = factor * between(j);
+      factors.near[number] += tail;
+      factors.far[number] = tail;
+      factors.decay[number] = decay;
+    }
   }
 }
 
 void WaveKernel::apply(const MeshShape& shape, const ShearedTransform& transform, std::size_t m,
-                       const MeshKernels& kernels, const std::complex<float>* from, std::complex<float>* to) const {
-  const std::size_t row = transform.row_length(), planes = shape.planes, entries = reach_ + 2;
-  const double per_turn_x = 2.0 * pi / static_cast<double>(shape.columns); // angle a column of one turn along the box
-  const double per_turn_y = 2.0 * pi / static_cast<double>(shape.rows);
-  const auto window = [&](double angle) {
-    const double place = std::fabs(angle) / pi * static_cast<double>(window_steps);
-    const auto i = std::min(static_cast<std::size_t>(place), window_steps);
-    return window_[i] + static_cast<float>(place - static_cast<double>(i)) * (window_[i + 1] - window_[i]);
-  };
-  const double angle_y = per_turn_y * static_cast<double>(m), k_y = angle_y * shape.step_z / shape.step_y;
-  const double area = shape.step_x * shape.step_y * static_cast<double>(shape.columns * shape.rows);
-  const auto scale = static_cast<float>(shape.step_z / area * static_cast<double>(window(angle_y)));
-
-  AlignedArray<float> factors, padded;
-  factors.resize_at_least(16 * (reach_ + 3));
-  padded.resize_at_least(16 * (planes + 2 * reach_ + 2));
-  float* const near = factors.data();
-  float* const far = near + 16 * (reach_ + 1);
-  float* const decay = far + 16;
-  float* const inner = padded.data() + 16 * (reach_ + 1);
-  std::fill(padded.data(), inner, 0.0f);
+                       const MeshKernels& kernels, const std::complex<float>* from, std::complex<float>* to) {
+  const std::size_t row = transform.row_length(), planes = shape.planes;
+  float* const scratch = scratch_[static_cast<std::size_t>(omp_get_thread_num())].data();
+  const Factors factors{scratch, scratch + 16 * (reach_ + 1), scratch + 16 * (reach_ + 2)};
+  float* const padding = scratch + 16 * (reach_ + 3);
+  float* const inner = padding + 16 * (reach_ + 1);
+  std::fill(padding, inner, 0.0f);
   std::fill(inner + 16 * planes, inner + 16 * (planes + reach_ + 1), 0.0f);
-
   for (std::size_t begin = 0; begin < shape.columns; begin += block) {
-    for (std::size_t c = 0; c < block; ++c) {
-      const double angle_x = begin + c < shape.columns ? per_turn_x * transform.turns_x(m, begin + c) : pi;
-      const double k_x = angle_x * shape.step_z / shape.step_x, k = std::sqrt(k_x * k_x + k_y * k_y);
-      const double place = k / highest_k_ * static_cast<double>(k_steps);
-      const auto i = std::min(static_cast<std::size_t>(place), k_steps);
-      const bool held = place <= static_cast<double>(k_steps);
-      const auto part = static_cast<float>(place - static_cast<double>(i));
-      const float* const a = table_.data() + i * entries;
-      const float* const b = a + entries;
-      const float factor = held ? scale * window(angle_x) : 0.0f;
-      for (std::size_t j = 0; j <= reach_; ++j)
-        near[16 * j + 2 * c] = near[16 * j + 2 * c + 1] = factor * (a[j] + part * (b[j] - a[j]));
-      const float tail = a[reach_ + 1] + part * (b[reach_ + 1] - a[reach_ + 1]);
-      const float far_factor = k > 0.0 ? factor * tail / static_cast<float>(k) : 0.0f;
-      far[2 * c] = far[2 * c + 1] = far_factor;
-      near[2 * c] += far_factor;
-      near[2 * c + 1] += far_factor;
-      decay[2 * c] = decay[2 * c + 1] = static_cast<float>(std::exp(-k));
-    }
+    factors_of_block(shape, transform, m, begin, factors);
     for (std::size_t p = 0; p < planes; ++p) {
       const auto* const numbers = reinterpret_cast<const float*>(from + p * row + begin);
       std::copy(numbers, numbers + 16, inner + 16 * p);
     }
-    kernels.convolve(inner, planes, near, reach_, far, decay, reinterpret_cast<float*>(to + begin), 2 * row);
+    kernels.convolve(inner, planes, factors.near, reach_, factors.far, factors.decay,
+                     reinterpret_cast<float*>(to + begin), 2 * row);
   }
-  if (m == 0) { // the tail of the wave 0, −2π |Δz|, which has no other wave's form; from both sides, in double
-    double below = 0.0, moment = 0.0;
-    std::vector<double> sums(planes, 0.0);
-    for (std::size_t p = 0; p < planes; ++p) {
-      moment += below;
-      below += static_cast<double>(from[p * row].real());
-      sums[p] += moment;
-    }
-    below = moment = 0.0;
-    for (std::size_t p = planes; p-- > 0;) {
-      moment += below;
-      below += static_cast<double>(from[p * row].real());
-      sums[p] += moment;
-    }
-    for (std::size_t p = 0; p < planes; ++p)
-      to[p * row] -= static_cast<float>(2.0 * pi * shape.step_z / area * (sums[p] - sums[planes / 2]));
-  }
+  if (m == 0)
+    add_sheets(shape, row, from, to);
 }
 
 } // namespace keeler

@@ -20,21 +20,33 @@ namespace keeler {
 
 class WaveKernel {
 public:
-  /// For clouds of this radius and wave numbers k up to the highest one, both by the spacing of z. Higher waves are left
-  /// out.
+  /// For clouds of this radius and wave numbers k up to the highest one, both by the spacing of z. Higher waves are
+  /// left out.
   WaveKernel(const ForceSplit& split, double radius, double highest_k);
+
+  /// Before apply() on meshes of that shape.
+  void prepare(const MeshShape& shape);
 
   /// From wave m's masses, all planes, to the potential at G = 1, without its sign (masses attract up its gradient).
   void apply(const MeshShape& shape, const ShearedTransform& transform, std::size_t m, const MeshKernels& kernels,
-             const std::complex<float>* from, std::complex<float>* to) const;
+             const std::complex<float>* from, std::complex<float>* to);
 
 private:
-  void tabulate(const ForceSplit& split, double radius);
+  static constexpr std::size_t block = 8; // waves at a time, which are 16 numbers
 
-  /// For wave number k (per spacing of z): near[0 … reach] at distances of that many planes, the factor of the tail
-  /// times k, each times the spacing of z; the entries of one k stand together.
-  std::vector<float> table_;
-  std::vector<float> window_; // what takes the window out of one axis, against k times its spacing
+  /// Of a block of waves, number by number as MeshKernels::convolve takes them.
+  struct Factors {
+    float *near, *far, *decay;
+  };
+
+  void tabulate(const ForceSplit& split, double radius);
+  void factors_of_block(const MeshShape& shape, const ShearedTransform& transform, std::size_t m, std::size_t begin,
+                        const Factors& factors) const;
+  float window(double angle) const;
+
+  std::vector<float> table_; ///< for each k: near[0 … reach], and the factor of the tail times k; by the spacing of z
+  std::vector<float> window_;                ///< what takes the window out of one axis, against k times its spacing
+  std::vector<AlignedArray<float>> scratch_; ///< one a thread
   std::size_t reach_ = 0;
   double highest_k_;
 };

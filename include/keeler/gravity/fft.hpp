@@ -14,10 +14,14 @@
 namespace keeler {
 
 struct FftSettings {
-  double spacing = 0.0;    ///< of the mesh, m; the mesh takes this or a little less
-  double cut = 2.5;        ///< radius of the cloud, beyond which neighbours need no sum, in spacings
+  double spacing = 0.0;    ///< of the mesh, m; it takes this or a little less (or more, where particles are few)
+  double cut = 2.5;        ///< radius of the cloud, beyond which neighbours need no sum, in spacings; at least 1
   bool short_range = true; ///< false: the smooth part alone, for mean fields
 };
+
+/// Settings for a relative rms error of the force, for so many particles an area (1/m²), whatever their sizes: the
+/// cheapest spacing, and a cut that kept the error in every state measured (docs/dev/gravity-fft.md).
+FftSettings fft_settings_for(double force_error, double number_density);
 
 class FftSolver final : public GravitySolver {
 public:

@@ -92,13 +92,12 @@ ClumpedState pair_of(double distance, int k) {
 
 TEST_CASE("the mesh solver's error in even and in clumped states is what its settings promise, at any offset") {
   for (const bool clumped : {false, true}) {
-    ClumpedState state =
-        clumped ? clumped_state(1500, 1) : random_state(600, 2, {80.0, 60.0, 1.5, 0.0}, 12.0);
+    ClumpedState state = clumped ? clumped_state(1500, 1) : random_state(600, 2, {80.0, 60.0, 1.5, 0.0}, 12.0);
     for (const double part : {0.0, 0.3, 0.5, 0.97}) {
       state.offset = part * state.box.size_y;
       const double coarse = error_of(state, {4.0, 2.25}), fine = error_of(state, {3.0, 3.0});
-      MESSAGE(std::string(clumped ? "clumped" : "even") << ", offset " << part << " L_y, error at 4 m and 2.25: " << coarse
-                                             << ", at 3 m and 3: " << fine);
+      MESSAGE(std::string(clumped ? "clumped" : "even")
+              << ", offset " << part << " L_y, error at 4 m and 2.25: " << coarse << ", at 3 m and 3: " << fine);
       CHECK(coarse < 3e-3);
       CHECK(fine < 1.3e-3);
     }
@@ -118,10 +117,25 @@ TEST_CASE("the error falls with the cut and with the spacing, towards the exact 
   const double with_radius_9[] = {rms_error(by_fft(state, {4.0, 2.25}), reference),
                                   rms_error(by_fft(state, {2.0, 4.5}), reference),
                                   rms_error(by_fft(state, {1.0, 9.0}), reference)};
-  MESSAGE("cloud of 9 m, spacing 4, 2, 1 m: " << with_radius_9[0] << " " << with_radius_9[1] << " " << with_radius_9[2]);
+  MESSAGE("cloud of 9 m, spacing 4, 2, 1 m: " << with_radius_9[0] << " " << with_radius_9[1] << " "
+                                              << with_radius_9[2]);
   CHECK(with_radius_9[1] < 0.3 * with_radius_9[0]);
   CHECK(with_radius_9[2] < 0.3 * with_radius_9[1]);
   CHECK(with_radius_9[2] < 5e-5);
+}
+
+TEST_CASE("settings for a required error keep it") {
+  for (const double size_range : {1.0, 10.0}) {
+    const ClumpedState state = clumped_state(600, 14, size_range);
+    const std::vector<Vec3> reference = exact(state, 3);
+    for (const double wanted : {5e-3, 2e-3, 5e-4, 1e-4}) {
+      const FftSettings settings = fft_settings_for(wanted, 600 / state.box.area());
+      const double error = rms_error(by_fft(state, settings), reference);
+      MESSAGE("wanted " << wanted << ": " << settings.spacing << " m, cut " << settings.cut << ", error " << error);
+      CHECK(error < wanted);
+      CHECK(error > 0.1 * wanted); // or it would be dearer than need be
+    }
+  }
 }
 
 TEST_CASE("two spheres in contact attract each other as Newton has it") {
@@ -158,7 +172,8 @@ TEST_CASE("waves in the surface density, and the sheet itself, are those of theo
     state.box = {120.0, 100.0, 1.5, 0.0};
     state.offset = part * state.box.size_y;
     const double offset = std::remainder(state.offset, state.box.size_y);
-    const double ky = 2.0 * pi * 2 / state.box.size_y, kx = 2.0 * pi / state.box.size_x + ky * offset / state.box.size_x;
+    const double ky = 2.0 * pi * 2 / state.box.size_y,
+                 kx = 2.0 * pi / state.box.size_x + ky * offset / state.box.size_x;
     const double k = std::hypot(kx, ky), sigma = 400.0;
     const auto add = [&](const Vec3& p, double mass) {
       state.positions.push_back(p);
@@ -192,7 +207,8 @@ TEST_CASE("waves in the surface density, and the sheet itself, are those of theo
                                           std::copysign(1.0 + wave * std::cos(phase), height));
         worst = std::max(worst, (a[p] - theory).norm() / sheet);
       }
-      MESSAGE("offset " << part << " L_y, " << std::string(settings.short_range ? "whole" : "mesh alone") << ": worst " << worst);
+      MESSAGE("offset " << part << " L_y, " << std::string(settings.short_range ? "whole" : "mesh alone") << ": worst "
+                        << worst);
       CHECK(worst < 2e-3);
     }
   }
@@ -258,7 +274,8 @@ TEST_CASE("the edges of the cell pull nowhere") {
         near_edge += 1.0;
       }
     }
-    MESSAGE("offset " << part << " L_y: mean error near the edge by the rms " << mean.norm() / near_edge / std::sqrt(square));
+    MESSAGE("offset " << part << " L_y: mean error near the edge by the rms "
+                      << mean.norm() / near_edge / std::sqrt(square));
     CHECK(mean.head<2>().norm() / near_edge < 1e-3 * std::sqrt(square));
   }
 }
@@ -300,8 +317,8 @@ TEST_CASE("boxes of a few radii, long ones and tall ones; none, one and two part
     double height;
     std::size_t count;
   };
-  const Case cases[] = {{{4.0, 4.0, 1.5, 0.0}, 4.0, 2},     {{3.0, 50.0, 1.5, 0.0}, 6.0, 12},
-                        {{60.0, 3.0, 1.5, 0.0}, 6.0, 12},   {{12.0, 10.0, 1.5, 0.0}, 10.0, 40},
+  const Case cases[] = {{{4.0, 4.0, 1.5, 0.0}, 4.0, 2},      {{3.0, 50.0, 1.5, 0.0}, 6.0, 12},
+                        {{60.0, 3.0, 1.5, 0.0}, 6.0, 12},    {{12.0, 10.0, 1.5, 0.0}, 10.0, 40},
                         {{400.0, 20.0, 1.5, 0.0}, 8.0, 120}, {{20.0, 400.0, 1.5, 0.0}, 8.0, 120},
                         {{20.0, 24.0, 1.5, 0.0}, 300.0, 120}};
   for (const Case& c : cases)
