@@ -15,4 +15,5 @@ set(KEELER_CMAKE_PACKAGES
 set(KEELER_PKGCONFIG_MODULES
   "CAIRO cairo"
   "FFTW fftw3"
+  "FFTWF fftw3f"
   "XXHASH libxxhash")

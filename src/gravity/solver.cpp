@@ -1,15 +1,45 @@
 #include <keeler/gravity/solver.hpp>
 
 #include <keeler/gravity/direct.hpp>
+#include <keeler/gravity/fft.hpp>
 #include <keeler/gravity/tree.hpp>
 
-namespace keeler {
+#include <algorithm>
+#include <cmath>
 
-std::unique_ptr<GravitySolver> make_gravity_solver(const GravitySettings& settings) {
+namespace keeler {
+namespace {
+
+using Solver = GravitySettings::Solver;
+
+constexpr std::size_t few = 64; // particles: direct sums are cheapest
+
+// The largest angle whose error stayed below in every clumped state measured (docs/theory/gravity.md).
+double angle_for(double force_error) {
+  return std::clamp(std::pow(force_error / 8.5e-3, 1.0 / 3.75), 0.15, 0.9);
+}
+
+} // namespace
+
+GravitySettings chosen_for(std::size_t count, GravitySettings settings) {
+  if (settings.solver != Solver::automatic)
+    return settings;
+  settings.solver = count <= few ? Solver::direct : Solver::tree;
+  settings.opening_angle = angle_for(settings.force_error);
+  return settings;
+}
+
+std::unique_ptr<GravitySolver> make_gravity_solver(const GravitySettings& settings, std::size_t count, double area) {
   const InstructionSet set = choose_instruction_set();
-  if (settings.solver == GravitySettings::Solver::direct)
-    return std::make_unique<DirectSolver>(settings.images, set);
-  return std::make_unique<TreeSolver>(settings.opening_angle, settings.images, set);
+  const GravitySettings chosen = chosen_for(count, settings);
+  if (chosen.solver == Solver::direct)
+    return std::make_unique<DirectSolver>(chosen.images, set);
+  if (chosen.solver == Solver::tree)
+    return std::make_unique<TreeSolver>(chosen.opening_angle, chosen.images, set);
+  const double distance = std::sqrt(area / static_cast<double>(std::max<std::size_t>(count, 1)));
+  const double cut = chosen.mesh_cut > 0.0 ? chosen.mesh_cut : cut_for(chosen.force_error);
+  return std::make_unique<FftSolver>(FftSettings{chosen.mesh_spacing * distance, cut, chosen.solver == Solver::fft},
+                                     set);
 }
 
 } // namespace keeler

@@ -21,6 +21,8 @@ void add_scene(Hash& hash, const Scene& scene) {
     return;
   hash.add(static_cast<std::int64_t>(scene.gravity->solver));
   hash.add(scene.gravity->opening_angle);
+  hash.add(scene.gravity->force_error);
+  hash.add(scene.gravity->mesh_spacing);
   hash.add(static_cast<std::int64_t>(scene.gravity->images.rings));
   hash.add(static_cast<std::int64_t>(scene.gravity->images.far));
   hash.add(static_cast<std::int64_t>(scene.gravity->kick_every));

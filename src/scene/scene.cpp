@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace keeler {
 namespace {
@@ -50,15 +51,24 @@ CollisionSettings read_collisions(const Settings& settings) {
 std::optional<GravitySettings> read_gravity(const Settings& settings) {
   if (!settings.has("gravity"))
     return {};
+  using Solver = GravitySettings::Solver;
+  static const std::map<std::string, Solver> solvers = {{"direct", Solver::direct},
+                                                        {"tree", Solver::tree},
+                                                        {"fft", Solver::fft},
+                                                        {"mesh", Solver::mesh},
+                                                        {"auto", Solver::automatic}};
   GravitySettings gravity;
-  if (settings.text("gravity.solver") == "direct") {
-    gravity.solver = GravitySettings::Solver::direct;
-  } else {
-    gravity.solver = GravitySettings::Solver::tree;
+  gravity.solver = solvers.at(settings.text("gravity.solver"));
+  if (gravity.solver == Solver::tree)
     gravity.opening_angle = settings.number("gravity.opening_angle");
+  if (gravity.solver == Solver::fft || gravity.solver == Solver::automatic)
+    gravity.force_error = settings.number("gravity.force_error");
+  if (gravity.solver == Solver::mesh)
+    gravity.mesh_spacing = settings.number("gravity.mesh_spacing");
+  if (gravity.solver == Solver::direct || gravity.solver == Solver::tree) {
+    gravity.images.rings = static_cast<int>(settings.integer("gravity.image_rings"));
+    gravity.images.far = settings.text("gravity.images") == "periodic";
   }
-  gravity.images.rings = static_cast<int>(settings.integer("gravity.image_rings"));
-  gravity.images.far = settings.text("gravity.images") == "periodic";
   gravity.kick_every = static_cast<int>(settings.integer("gravity.kick_every"));
   return gravity;
 }

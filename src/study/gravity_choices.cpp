@@ -1,5 +1,7 @@
 #include <keeler/study/gravity_choices.hpp>
 
+#include <keeler/gravity/fft.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,6 +23,20 @@ GravityChoice direct() {
   return {"direct", "all pairs", "", 0.0, settings};
 }
 
+GravityChoice fft(double cut) {
+  GravitySettings settings;
+  settings.solver = GravitySettings::Solver::fft;
+  settings.mesh_cut = cut;
+  return {"fft", fmt::format("cut {:.3g}", cut), "cut / mesh spacing", cut, settings};
+}
+
+GravityChoice mesh(double spacing) {
+  GravitySettings settings;
+  settings.solver = GravitySettings::Solver::mesh;
+  settings.mesh_spacing = spacing;
+  return {"mesh", fmt::format("mesh_spacing {:.3g}", spacing), "mesh spacing / mean distance", spacing, settings};
+}
+
 } // namespace
 
 std::vector<GravityChoice> gravity_choices(bool dense) {
@@ -28,6 +44,11 @@ std::vector<GravityChoice> gravity_choices(bool dense) {
   for (const int twentieths :
        dense ? std::vector{4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 18, 20} : std::vector{6, 8, 10, 12, 14, 16})
     choices.push_back(tree(0.05 * twentieths));
+  for (const int quarters :
+       dense ? std::vector{8, 9, 10, 11, 12, 14, 16, 18, 20, 24, 28, 32} : std::vector{8, 10, 12, 16, 20})
+    choices.push_back(fft(0.25 * quarters));
+  for (const int fifths : dense ? std::vector{4, 5, 6, 8, 10, 12, 16} : std::vector{8})
+    choices.push_back(mesh(0.2 * fifths));
   return choices;
 }
 
@@ -44,6 +65,10 @@ GravityChoice default_gravity_choice(const std::string& solver) {
     return tree(GravitySettings{}.opening_angle);
   if (solver == "direct")
     return direct();
+  if (solver == "fft")
+    return fft(cut_for(GravitySettings{}.force_error));
+  if (solver == "mesh")
+    return mesh(GravitySettings{}.mesh_spacing);
   throw std::invalid_argument("no gravity solver '" + solver + "'");
 }
 

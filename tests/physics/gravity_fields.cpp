@@ -25,7 +25,8 @@ struct Candidate {
 std::vector<Candidate> candidates() {
   using enum GravitySettings::Solver;
   return {{"direct", {.solver = direct}, 1e-6, 2e-3, 1e-12},
-          {"tree", {.solver = tree, .opening_angle = 0.5}, 1e-6, 2e-3, 1e-4}};
+          {"tree", {.solver = tree, .opening_angle = 0.5}, 1e-6, 2e-3, 1e-4},
+          {"fft", {.solver = fft}, 2e-3, 2e-3, 1e-5}};
 }
 
 struct Bodies {
@@ -43,7 +44,8 @@ struct Bodies {
 
   std::vector<Vec3> accelerations(const GravitySettings& settings) const {
     std::vector<Vec3> result(positions.size());
-    make_gravity_solver(settings)->accelerate({positions, masses, ids, box, offset, 1.0}, result);
+    make_gravity_solver(settings, positions.size(), box.area())
+        ->accelerate({positions, masses, ids, box, offset, 1.0}, result);
     return result;
   }
 };
@@ -220,6 +222,8 @@ TEST_CASE("seen from random origins, errors average out instead of adding up") {
     for (std::size_t k = 0; k < mean.size(); ++k)
       averaged += (mean[k] - exact[k]).squaredNorm();
     MESSAGE(candidate.name << ": errors of the mean over those of one, squared: " << averaged / single);
-    CHECK(averaged < 0.2 * single); // 1/25 if errors were independent
+    // 1/25 if errors were independent; what is left of the mesh's is the error of the split, which depends on distances
+    // alone and so heats nothing
+    CHECK(averaged < (candidate.name == "fft" ? 0.5 : 0.2) * single);
   }
 }

@@ -37,14 +37,22 @@ public:
 
 /// How self-gravity is computed.
 struct GravitySettings {
-  enum class Solver { direct, tree };
+  enum class Solver { direct, tree, fft, mesh, automatic };
   Solver solver = Solver::tree;
   double opening_angle = 0.6; ///< tree: a cell is opened when its size exceeds this times its distance
   ImageSettings images = {};  ///< direct and tree
+  double force_error = 2e-3;  ///< fft and automatic: rms error asked for, over the rms force
+  double mesh_spacing = 1.6;  ///< fft and mesh: of the mesh, in mean distances (particles an area)^−1/2
+  double mesh_cut = 0.0;      ///< fft: where neighbours end, in spacings; 0: by the force error
   int kick_every = 1;         ///< drifts per kick
 };
 
-/// Throws UsageError when the environment variable KEELER_SIMD names instructions that are not to be had (simd.hpp).
-std::unique_ptr<GravitySolver> make_gravity_solver(const GravitySettings& settings);
+/// What `automatic` stands for in a patch of so many particles: the cheaper of tree and fft by measured prices, with
+/// what the force error asks for; direct for a few. Others are returned as they are.
+GravitySettings chosen_for(std::size_t count, GravitySettings settings);
+
+/// The solver for so many particles on an area (m²). Throws UsageError when the environment variable KEELER_SIMD names
+/// instructions that are not to be had (simd.hpp).
+std::unique_ptr<GravitySolver> make_gravity_solver(const GravitySettings& settings, std::size_t count, double area);
 
 } // namespace keeler

@@ -16,10 +16,12 @@ using namespace keeler_test;
 
 namespace {
 
-constexpr GravitySettings::Solver all_solvers[] = {GravitySettings::Solver::direct, GravitySettings::Solver::tree};
+constexpr GravitySettings::Solver all_solvers[] = {GravitySettings::Solver::direct, GravitySettings::Solver::tree,
+                                                   GravitySettings::Solver::fft};
 
 std::vector<Vec3> solve(GravitySettings::Solver solver, const ClumpedState& state, int rings = 1) {
-  const auto gravity = make_gravity_solver({.solver = solver, .images = {rings, true}});
+  const auto gravity =
+      make_gravity_solver({.solver = solver, .images = {rings, true}}, state.ids.size(), state.box.area());
   return accelerations(*gravity, state.problem());
 }
 
@@ -44,8 +46,11 @@ std::vector<std::size_t> shuffled(std::size_t count) {
 } // namespace
 
 TEST_CASE("solvers go by their names") {
-  CHECK(make_gravity_solver({.solver = GravitySettings::Solver::direct})->name() == "direct");
-  CHECK(make_gravity_solver({})->name() == "tree");
+  using enum GravitySettings::Solver;
+  for (const auto& [solver, name] : {std::pair{direct, "direct"}, {tree, "tree"}, {fft, "fft"}, {mesh, "mesh"}})
+    CHECK(make_gravity_solver({.solver = solver}, 1000, 1e4)->name() == name);
+  CHECK(make_gravity_solver({}, 1000, 1e4)->name() == "tree");
+  CHECK(make_gravity_solver({.solver = automatic}, 10, 1e4)->name() == "direct");
 }
 
 TEST_CASE("none, one and two particles are problems like any other") {
@@ -63,7 +68,7 @@ TEST_CASE("memory order and a solver's past change no bit") {
   const std::vector<std::size_t> order = shuffled(2003);
   const ClumpedState other = reordered(state, order);
   for (const auto solver : all_solvers) {
-    const auto gravity = make_gravity_solver({.solver = solver});
+    const auto gravity = make_gravity_solver({.solver = solver}, 2003, state.box.area());
     const std::vector<Vec3> fresh = accelerations(*gravity, state.problem());
     accelerations(*gravity, clumped_state(2003, 12).problem());
     accelerations(*gravity, clumped_state(50, 12).problem());

@@ -1,0 +1,42 @@
+// Gravity by a mesh and neighbours (P³M; Hockney & Eastwood, Computer Simulation Using Particles): truly shear-periodic
+// in x and y, open in z.
+//
+// Each particle's attraction is split into that of a smooth round cloud, which a mesh of spheres' size carries and
+// transforms to and fro, and the rest, which vanishes outside the cloud exactly and is summed over neighbours. The mesh
+// stays square at any shear offset (sheared_transform.hpp).
+#pragma once
+
+#include <keeler/core/simd.hpp>
+#include <keeler/gravity/solver.hpp>
+
+#include <memory>
+
+namespace keeler {
+
+struct FftSettings {
+  double spacing = 0.0;    ///< of the mesh, m; it takes this or a little less (or more, where particles are few)
+  double cut = 2.5;        ///< radius of the cloud, beyond which neighbours need no sum, in spacings; at least 1
+  bool short_range = true; ///< false: the smooth part alone, for mean fields
+};
+
+/// The cheapest spacing of the mesh, in mean distances of particles, (their number an area)^−1/2.
+inline constexpr double cheapest_spacing = 1.6;
+
+/// A cut for a rms error of the force over its rms, with that spacing, whatever the sizes: it kept the error in every
+/// state measured (docs/dev/gravity-fft.md).
+double cut_for(double force_error);
+
+class FftSolver final : public GravitySolver {
+public:
+  FftSolver(const FftSettings& settings, InstructionSet set);
+  ~FftSolver() override;
+
+  void accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) override;
+  std::string name() const override; ///< "mesh" without the short range
+
+private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+} // namespace keeler

@@ -1,0 +1,34 @@
+// Memory for FFTW and for wide registers: on whole cache lines, which is more than fftw_malloc aligns to and the same
+// for each array, so plans made for one array serve all.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <new>
+
+namespace keeler {
+
+/// Plain numbers, not initialised. Growing forgets them.
+template<class T> class AlignedArray {
+public:
+  void resize_at_least(std::size_t size) {
+    if (size <= size_)
+      return;
+    numbers_.reset();
+    size_ = 0;
+    numbers_.reset(static_cast<T*>(::operator new(size * sizeof(T), line)));
+    size_ = size;
+  }
+  T* data() { return numbers_.get(); }
+  const T* data() const { return numbers_.get(); }
+
+private:
+  struct Free {
+    void operator()(T* numbers) const { ::operator delete(numbers, line); }
+  };
+  static constexpr std::align_val_t line{64};
+  std::unique_ptr<T, Free> numbers_;
+  std::size_t size_ = 0;
+};
+
+} // namespace keeler

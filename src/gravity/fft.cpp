@@ -1,0 +1,165 @@
+#include <keeler/gravity/fft.hpp>
+
+#include "force_split.hpp"
+#include "mesh.hpp"
+#include "near_forces.hpp"
+#include "places.hpp"
+#include "self_force.hpp"
+#include "sheared_transform.hpp"
+#include "wave_kernel.hpp"
+
+#include <keeler/core/threads.hpp>
+#include <keeler/core/units.hpp>
+#include <keeler/gravity/images.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace keeler {
+namespace {
+
+// Distance of planes in spacings. The layer is thin and its vertical pull coherent: an error along z shows most.
+constexpr double flatness = 0.5;
+
+// k times the spacing in the corner of a square mesh.
+constexpr double highest_wave = 1.4142135623730951 * pi;
+
+// Wave number, per radius of the cloud, below which it keeps its power: near the least error in even states and in
+// clumped ones.
+double band_for(double cut) {
+  return std::min(1.25 + 2.0 * cut, 17.0);
+}
+
+// Particles between a lowest and a highest one.
+struct Extent {
+  double low, high;
+};
+
+Extent extent_of(std::span<const Vec3> positions) {
+  Extent z{positions.front().z(), positions.front().z()};
+  for (const Vec3& p : positions) {
+    z.low = std::min(z.low, p.z());
+    z.high = std::max(z.high, p.z());
+  }
+  return z;
+}
+
+// The spacing, made larger where the mesh would hold very many nodes a particle: few particles in a large box, or some
+// that have strayed far from the layer. Clouds grow with it, so the error stays what it was, and neighbours cost more.
+double affordable_spacing(const ShearingBox& box, double spacing, const Extent& z, std::size_t count) {
+  const double most = 0x1p21 + 64.0 * static_cast<double>(count);
+  const auto nodes = [&](double step) {
+    return box.size_x / step * (box.size_y / step) * ((z.high - z.low) / (flatness * step) + 4.0);
+  };
+  while (nodes(spacing) > most)
+    spacing *= 1.1;
+  return spacing;
+}
+
+// About 8 particles a tile: few enough to be close together, and enough to share the search for their neighbours.
+Tiling tiling_for(const MeshShape& shape, std::size_t count) {
+  const double cells = static_cast<double>(shape.columns) * static_cast<double>(shape.rows);
+  const double side = std::round(std::sqrt(8.0 * cells / static_cast<double>(count)));
+  const double longest = static_cast<double>(std::max(shape.columns, shape.rows));
+  return {shape.columns, shape.rows, static_cast<std::size_t>(std::clamp(side, 1.0, longest))};
+}
+
+} // namespace
+
+double cut_for(double force_error) {
+  return std::clamp(3.0 * std::pow(1.65e-3 / force_error, 1.0 / 3.25), 2.0, 16.0);
+}
+
+struct FftSolver::Parts {
+  Parts(const FftSettings& chosen, InstructionSet set)
+      : settings(chosen), kernels(mesh_kernels(set)), split(band_for(chosen.cut)),
+        waves(split, chosen.cut / flatness, highest_wave * flatness), near(split, set) {}
+
+  void fill_mesh(const GravityProblem& problem, double offset);
+  Vec3 accelerate_tile(const GravityProblem& problem, double offset, std::size_t tile, std::span<Vec3> accelerations);
+
+  FftSettings settings;
+  MeshKernels kernels;
+  ForceSplit split;
+  WaveKernel waves;
+  NearForces near;
+  Places places;
+  Mesh mesh;
+  ShearedTransform transform;
+  double radius = 0.0; // of the clouds in this solve, m
+  SelfForce self{};
+};
+
+// Sorts the particles and turns their masses into the potential on the mesh.
+void FftSolver::Parts::fill_mesh(const GravityProblem& problem, double offset) {
+  const std::size_t count = problem.positions.size();
+  const Extent z = extent_of(problem.positions);
+  const double spacing = affordable_spacing(problem.box, settings.spacing, z, count);
+  radius = settings.cut * spacing;
+  const MeshShape shape = mesh_shape(problem.box, spacing, flatness * spacing, z.low, z.high);
+  self = self_force(shape, split, radius);
+  places.sort(problem, offset, tiling_for(shape, count));
+  mesh.reset(shape);
+  mesh.spread(places, kernels);
+  transform.prepare(shape, offset / problem.box.size_y);
+  waves.prepare(shape);
+  transform.apply(mesh, [&](std::size_t m, const std::complex<float>* from, std::complex<float>* to) {
+    waves.apply(shape, transform, m, kernels, from, to);
+  });
+}
+
+// Returns Σ m a over the tile, in units of mass.
+Vec3 FftSolver::Parts::accelerate_tile(const GravityProblem& problem, double offset, std::size_t tile,
+                                       std::span<Vec3> accelerations) {
+  const double unit = problem.newton_g * places.mass_unit(), near_unit = unit / (radius * radius);
+  const std::size_t first = places.first(tile), in_tile = places.first(tile + 1) - first;
+  const std::size_t groups = (in_tile + NearTargets::capacity - 1) / NearTargets::capacity;
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t g = 0; g < groups; ++g) {
+    const std::size_t begin = first + in_tile * g / groups, count = first + in_tile * (g + 1) / groups - begin;
+    const ParticleRange range = places.range(begin, count);
+    float x[NearTargets::capacity], y[NearTargets::capacity], z[NearTargets::capacity];
+    kernels.pull(mesh.numbers(), range, self, x, y, z);
+    NearTargets near_by;
+    if (settings.short_range)
+      near.attract(places, problem.box, offset, radius, begin, count, near_by);
+    for (std::size_t k = 0; k < count; ++k) {
+      Vec3 a = unit * Vec3(x[k], y[k], z[k]);
+      if (settings.short_range)
+        a += near_unit * Vec3(near_by.ax[k], near_by.ay[k], near_by.az[k]);
+      accelerations[places.index(begin + k)] = a;
+      sum += static_cast<double>(range.mass[k]) * a;
+    }
+  }
+  return sum;
+}
+
+FftSolver::FftSolver(const FftSettings& settings, InstructionSet set)
+    : parts_(std::make_unique<Parts>(settings, set)) {}
+
+FftSolver::~FftSolver() = default;
+
+std::string FftSolver::name() const {
+  return parts_->settings.short_range ? "fft" : "mesh";
+}
+
+void FftSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) {
+  const std::size_t count = problem.positions.size();
+  if (count == 0)
+    return;
+  const double offset = folded_offset(problem.box, problem.offset);
+  parts_->fill_mesh(problem, offset);
+  std::vector<Vec3> sums(parts_->places.tiling().count());
+  parallel_for(
+      sums.size(),
+      [&](std::size_t tile) { sums[tile] = parts_->accelerate_tile(problem, offset, tile, accelerations); }, 4);
+
+  // the gradient of the mesh's energy leaves a net force of the order of its error; attraction has none
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& sum : sums)
+    mean += sum / static_cast<double>(count); // masses are in units of their mean
+  parallel_for(count, [&](std::size_t k) { accelerations[k] -= mean; });
+}
+
+} // namespace keeler

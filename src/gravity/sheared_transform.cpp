@@ -1,0 +1,185 @@
+#include "sheared_transform.hpp"
+
+#include <keeler/core/units.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+typedef float Two __attribute__((vector_size(16), may_alias)); // complex numbers
+typedef double Whole __attribute__((may_alias));               // one complex number, to be moved in one go
+
+Two exchanged(const Two& numbers) {
+  return __builtin_shufflevector(numbers, numbers, 1, 0, 3, 2);
+}
+
+fftwf_complex* fftw(std::complex<float>* numbers) {
+  return reinterpret_cast<fftwf_complex*>(numbers); // the layout that FFTW and the C++ standard both promise
+}
+
+} // namespace
+
+ShearedTransform::~ShearedTransform() {
+  destroy_plans();
+}
+
+void ShearedTransform::destroy_plans() {
+  for (fftwf_plan* const plan : {&forward_y_, &backward_y_, &forward_x_, &backward_x_}) {
+    fftwf_destroy_plan(*plan);
+    *plan = nullptr;
+  }
+}
+
+void ShearedTransform::make_plans() {
+  destroy_plans();
+  const auto columns = static_cast<int>(shape_.columns), rows = static_cast<int>(shape_.rows);
+  AlignedArray<float> real;
+  AlignedArray<Complex> one, other;
+  real.resize_at_least(shape_.row_length());
+  one.resize_at_least(std::max(spectrum_row(), row_length()));
+  other.resize_at_least(std::max(spectrum_row(), row_length()));
+  forward_y_ = fftwf_plan_dft_r2c_1d(rows, real.data(), fftw(one.data()), FFTW_ESTIMATE);
+  backward_y_ = fftwf_plan_dft_c2r_1d(rows, fftw(one.data()), real.data(), FFTW_ESTIMATE);
+  forward_x_ = fftwf_plan_dft_1d(columns, fftw(one.data()), fftw(other.data()), FFTW_FORWARD, FFTW_ESTIMATE);
+  backward_x_ = fftwf_plan_dft_1d(columns, fftw(one.data()), fftw(other.data()), FFTW_BACKWARD, FFTW_ESTIMATE);
+  planned_columns_ = shape_.columns;
+  planned_rows_ = shape_.rows;
+}
+
+void ShearedTransform::prepare(const MeshShape& shape, double offset_part) {
+  shape_ = shape;
+  if (shape.columns != planned_columns_ || shape.rows != planned_rows_)
+    make_plans();
+  spectrum_.resize_at_least(blocks() * waves() * shape.planes * block);
+  scratch_.resize(static_cast<std::size_t>(threads()));
+  for (auto& scratch : scratch_)
+    scratch.resize_at_least(shape.planes * std::max(2 * row_length(), block * spectrum_row()));
+  turns_.resize_at_least(waves() * 2 * row_length());
+  offset_part_ = offset_part;
+  parallel_for(
+      waves(),
+      [&](std::size_t m) {
+        // e^{−i k_y d x / L_x} at each column, by powers of that of one spacing
+        const double angle = -2.0 * pi * offset_part * static_cast<double>(m) / static_cast<double>(shape.columns);
+        const std::complex<double> step(std::cos(angle), std::sin(angle));
+        std::complex<double> turn = 1.0;
+        for (std::size_t i = 0; i < row_length(); ++i) {
+          const auto cosine = static_cast<float>(turn.real()), sine = static_cast<float>(turn.imag());
+          cosines(m)[i] = {cosine, cosine};
+          sines(m)[i] = {-sine, sine};
+          turn = {turn.real() * step.real() - turn.imag() * step.imag(),
+                  turn.real() * step.imag() + turn.imag() * step.real()};
+        }
+      },
+      16);
+}
+
+double ShearedTransform::turns_x(std::size_t m, std::size_t n) const {
+  const auto columns = static_cast<double>(shape_.columns);
+  const double turns = static_cast<double>(n) + static_cast<double>(m) * offset_part_;
+  return turns - columns * std::nearbyint(turns / columns);
+}
+
+std::complex<float>* ShearedTransform::own_scratch() {
+  return scratch_[static_cast<std::size_t>(omp_get_thread_num())].data();
+}
+
+void ShearedTransform::forward_y(Mesh& mesh) {
+  const std::size_t columns = shape_.columns + MeshShape::ghosts, planes = shape_.planes, rows = shape_.rows;
+  parallel_for(
+      blocks(),
+      [&](std::size_t b) {
+        const std::size_t begin = b * block, count = std::min(block, columns - begin);
+        Complex* const spectra = own_scratch();
+        for (std::size_t c = 0; c < block; ++c)
+          for (std::size_t k = 0; k < planes; ++k) {
+            Complex* const spectrum = spectra + (c * planes + k) * spectrum_row();
+            if (c < count) {
+              float* const row = mesh.column(begin + c) + k * shape_.row_length();
+              for (std::size_t ghost = rows; ghost < rows + MeshShape::ghosts; ++ghost)
+                row[ghost % rows] += row[ghost];
+              fftwf_execute_dft_r2c(forward_y_, row, fftw(spectrum));
+            } else {
+              std::fill(spectrum, spectrum + waves(), Complex(0.0f));
+            }
+          }
+        const auto* const from = reinterpret_cast<const Whole*>(spectra);
+        for (std::size_t m = 0; m < waves(); ++m)
+          for (std::size_t k = 0; k < planes; ++k)
+            for (std::size_t c = 0; c < block; ++c)
+              reinterpret_cast<Whole*>(wave(b, m))[k * block + c] = from[(c * planes + k) * spectrum_row() + m];
+      },
+      1);
+}
+
+void ShearedTransform::forward_x(std::size_t m, Complex* rows, Complex* spectra) {
+  const std::size_t columns = shape_.columns, planes = shape_.planes;
+  for (std::size_t b = 0; b < blocks(); ++b) {
+    const auto* const cosine = reinterpret_cast<const Two*>(cosines(m) + b * block);
+    const auto* const sine = reinterpret_cast<const Two*>(sines(m) + b * block);
+    const auto* const from = reinterpret_cast<const Two*>(wave(b, m));
+    for (std::size_t k = 0; k < planes; ++k) {
+      auto* const to = reinterpret_cast<Two*>(rows + k * row_length() + b * block);
+      for (std::size_t c = 0; c < block / 2; ++c) {
+        const Two value = from[k * (block / 2) + c];
+        to[c] = value * cosine[c] + exchanged(value) * sine[c];
+      }
+    }
+  }
+  for (std::size_t k = 0; k < planes; ++k) {
+    Complex* const row = rows + k * row_length();
+    for (std::size_t ghost = columns; ghost < columns + MeshShape::ghosts; ++ghost)
+      row[ghost % columns] += row[ghost];
+    fftwf_execute_dft(forward_x_, fftw(row), fftw(spectra + k * row_length()));
+  }
+}
+
+void ShearedTransform::backward_x(std::size_t m, Complex* spectra, Complex* rows) {
+  const std::size_t columns = shape_.columns, planes = shape_.planes;
+  for (std::size_t k = 0; k < planes; ++k) {
+    Complex* const row = rows + k * row_length();
+    fftwf_execute_dft(backward_x_, fftw(spectra + k * row_length()), fftw(row));
+    for (std::size_t i = columns; i < row_length(); ++i)
+      row[i] = row[i % columns];
+  }
+  for (std::size_t b = 0; b < blocks(); ++b) {
+    const auto* const cosine = reinterpret_cast<const Two*>(cosines(m) + b * block);
+    const auto* const sine = reinterpret_cast<const Two*>(sines(m) + b * block);
+    auto* const to = reinterpret_cast<Two*>(wave(b, m));
+    for (std::size_t k = 0; k < planes; ++k) {
+      const auto* const from = reinterpret_cast<const Two*>(rows + k * row_length() + b * block);
+      for (std::size_t c = 0; c < block / 2; ++c) // back by the same turn
+        to[k * (block / 2) + c] = from[c] * cosine[c] - exchanged(from[c]) * sine[c];
+    }
+  }
+}
+
+void ShearedTransform::backward_y(Mesh& mesh) {
+  const std::size_t columns = shape_.columns + MeshShape::ghosts, planes = shape_.planes, rows = shape_.rows;
+  parallel_for(
+      blocks(),
+      [&](std::size_t b) {
+        const std::size_t begin = b * block, count = std::min(block, columns - begin);
+        Complex* const spectra = own_scratch();
+        auto* const to = reinterpret_cast<Whole*>(spectra);
+        for (std::size_t m = 0; m < waves(); ++m)
+          for (std::size_t k = 0; k < planes; ++k)
+            for (std::size_t c = 0; c < block; ++c)
+              to[(c * planes + k) * spectrum_row() + m] = reinterpret_cast<const Whole*>(wave(b, m))[k * block + c];
+        for (std::size_t c = 0; c < count; ++c)
+          for (std::size_t k = 0; k < planes; ++k) {
+            Complex* const spectrum = spectra + (c * planes + k) * spectrum_row();
+            if (rows % 2 == 0)
+              spectrum[rows / 2] = 0.0f;
+            float* const row = mesh.column(begin + c) + k * shape_.row_length();
+            fftwf_execute_dft_c2r(backward_y_, fftw(spectrum), row);
+            for (std::size_t ghost = rows; ghost < rows + MeshShape::ghosts; ++ghost)
+              row[ghost] = row[ghost % rows];
+          }
+      },
+      1);
+}
+
+} // namespace keeler
