@@ -1,9 +1,9 @@
 // Gravity by a mesh and neighbours (P³M; Hockney & Eastwood, Computer Simulation Using Particles): truly shear-periodic
 // in x and y, open in z.
 //
-// Each particle's attraction is split into that of a smooth round cloud, which a mesh of spheres' size carries and
-// transforms to and fro, and the rest, which vanishes outside the cloud exactly and is summed over neighbours. The mesh
-// stays square at any shear offset (sheared_transform.hpp).
+// Each particle's attraction is split into that of a smooth round cloud, which a mesh carries and transforms to and
+// fro, and the rest, which vanishes outside the cloud exactly and is summed over neighbours. The mesh stays square at
+// any shear offset. Rings suit it: hard spheres cap the density, so no particle has very many neighbours.
 #pragma once
 
 #include <keeler/core/simd.hpp>
