@@ -51,6 +51,11 @@ void print_summary(const std::string& folder, const nlohmann::json& s) {
   if (s["finder_gave_up"].get<long>() > 0 || number("largest_overlap") > 1e-8)
     fmt::print("the collision finder                gave up {} searches, and may have missed contacts\n",
                s["finder_gave_up"].get<long>());
+  if (const nlohmann::json& f = s["force_error"]; !f.is_null())
+    fmt::print("error of gravity                    {:.1e} of the rms acceleration, at worst {:.1e} (rms of {} "
+               "particles, {} checks)\n",
+               f["rms"].get<double>(), f["worst_rms"].get<double>(), f["particles"].get<long>(),
+               f["checks"].get<long>());
   const nlohmann::json& e = s["energy_j"];
   const auto energy = [&](const char* key) { return e[key].get<double>(); };
   fmt::print("energy budget (J)                   change {:.4g} = kicks {:.4g} + edges {:.4g} - collisions {:.4g}, "

@@ -59,17 +59,21 @@ void add_finders(CLI::App& command, Action& action, const std::vector<std::strin
 void add_gravity(CLI::App& command, Action& action, const std::vector<std::string>& arguments) {
   const auto settings = std::make_shared<GravityStudySettings>();
   CLI::App& gravity = *command.add_subcommand(
-      "gravity", "the gravity solvers: error against cost, in self-gravity wakes; stopped (exit 75), the same command "
-                 "goes on");
+      "gravity", "the gravity solvers: error against cost, and whether the physics of wakes depends on them or on the "
+                 "kick interval; stopped (exit 75), the same command goes on");
   add_folder(gravity, *settings);
   gravity.add_option("--count", settings->count, "particles of the state (default: 100000)")->check(positive_number());
   gravity.add_option("--repeats", settings->repeats, "times measured; medians are given (default: 5)")
+      ->check(positive_number());
+  gravity.add_option("--orbits", settings->orbits, "orbits that each run is measured over (default: 4)")
+      ->check(positive_number());
+  gravity.add_option("--seeds", settings->seeds, "runs with each solver and kick interval (default: 3)")
       ->check(positive_number());
   gravity.callback([settings, arguments, &action] {
     settings->arguments = arguments;
     action = [settings] {
       return carry_out(*settings, study_gravity,
-                       {"report.md", "report.html", "gravity.csv", "gravity.json", "figures"});
+                       {"report.md", "report.html", "gravity.csv", "gravity_runs.csv", "gravity.json", "figures"});
     };
   });
 }

@@ -14,18 +14,12 @@ using Solver = GravitySettings::Solver;
 
 constexpr std::size_t few = 64; // particles: direct sums are cheapest
 
-// The largest angle whose error stayed below in every clumped state measured (docs/theory/gravity.md).
-double angle_for(double force_error) {
-  return std::clamp(std::pow(force_error / 8.5e-3, 1.0 / 3.75), 0.15, 0.9);
-}
-
 } // namespace
 
 GravitySettings chosen_for(std::size_t count, GravitySettings settings) {
   if (settings.solver != Solver::automatic)
     return settings;
-  settings.solver = count <= few ? Solver::direct : Solver::tree;
-  settings.opening_angle = angle_for(settings.force_error);
+  settings.solver = count <= few ? Solver::direct : Solver::fft;
   return settings;
 }
 

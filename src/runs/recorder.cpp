@@ -1,17 +1,24 @@
 #include "recorder.hpp"
 
 #include <keeler/cells/overlap.hpp>
+#include <keeler/core/simd.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
+#include <keeler/diagnostics/force_error.hpp>
+#include <keeler/gravity/direct.hpp>
 #include <keeler/io/checkpoint.hpp>
 #include <keeler/io/checkpoint_folder.hpp>
 #include <keeler/io/files.hpp>
 #include <keeler/io/snapshot.hpp>
 
+#include <algorithm>
+
 #include <fcntl.h>
 
 namespace keeler {
 namespace {
+
+constexpr std::size_t checked_particles = 200;
 
 const std::vector<std::string> series_columns = {
     "time_orbits",       "dispersion_x_m_s",      "dispersion_y_m_s", "dispersion_z_m_s", "scale_height_m",
@@ -79,6 +86,28 @@ void Recorder::sample(const Simulation& simulation) {
                            state.collisions.momentum_flux * omega,
                            largest_overlap(patch).depth};
   series_.append(state.step, values);
+}
+
+void Recorder::check_forces(const Simulation& simulation) {
+  ForceChecks& c = force_checks_;
+  c.last_s = 0.0;
+  {
+    const Stopwatch watch(c.last_s);
+    std::vector<Vec3> positions;
+    std::vector<double> masses;
+    const GravityProblem problem = simulation.gravity_problem(positions, masses);
+    const ForceSample sample = draw_force_sample(problem, checked_particles, 0, 0.0);
+    const std::vector<Vec3> exact = sampled_accelerations(problem, sample.targets, {}, choose_instruction_set());
+    const ForceErrors errors = force_errors(sample, exact, simulation.state().accelerations);
+    ++c.count;
+    c.particles = sample.even;
+    c.last_step = simulation.state().step;
+    c.last_rms = errors.rms;
+    c.worst_rms = std::max(c.worst_rms, errors.rms);
+    log("force_error", {{"step", c.last_step}, {"rms", errors.rms}, {"largest", errors.p999}});
+  }
+  c.seconds += c.last_s;
+  seconds_ += c.last_s;
 }
 
 void Recorder::log(const std::string& event, const nlohmann::ordered_json& details) {

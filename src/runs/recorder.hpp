@@ -22,6 +22,15 @@ struct OutputCounters {
   void list_fields(FieldTable& table);
 };
 
+/// What became of the checks of forces.
+struct ForceChecks {
+  int count = 0;
+  std::size_t particles = 0; ///< looked at in each
+  std::int64_t last_step = -1;
+  double last_rms = 0.0, worst_rms = 0.0; ///< rms error of the acceleration over the rms acceleration
+  double last_s = 0.0, seconds = 0.0;     ///< wall time of the last one, and of all
+};
+
 class Recorder {
 public:
   /// `resumed`: the series is continued, else begun anew.
@@ -31,10 +40,14 @@ public:
   void snapshot(const Simulation& simulation);
   void checkpoint(const Simulation& simulation);
   void sample(const Simulation& simulation);
+  /// Holds the accelerations of some particles against the exact ones, and logs the error. Only where a step has ended
+  /// with a kick, or at the start.
+  void check_forces(const Simulation& simulation);
   void log(const std::string& event, const nlohmann::ordered_json& details);
   const OutputCounters& counters() const { return counters_; }
   const Provenance& provenance() const { return provenance_; }
-  double seconds() const { return seconds_; } ///< wall time spent writing
+  const ForceChecks& force_checks() const { return force_checks_; }
+  double seconds() const { return seconds_; } ///< wall time spent writing and checking
 
 private:
   RunFolder folder_;
@@ -42,6 +55,7 @@ private:
   Provenance provenance_;
   OutputCounters counters_;
   Series series_;
+  ForceChecks force_checks_;
   double seconds_ = 0.0;
 };
 

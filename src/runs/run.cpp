@@ -22,6 +22,7 @@ namespace keeler {
 namespace {
 
 constexpr double samples_per_orbit = 100.0; // rows of series.csv
+constexpr double share_of_checks = 0.005;   // of the wall time, for the errors of forces; one at the end besides
 
 std::int64_t whole_kicks(const Scene& scene, double steps) {
   const double block = scene.gravity ? scene.gravity->kick_every : 1;
@@ -44,6 +45,8 @@ public:
       record();
       report();
     }
+    if (scene_.gravity && recorder_.force_checks().last_step != state.step)
+      recorder_.check_forces(simulation_);
     RunResult result;
     result.finished = state.step >= scene_.time.end_step;
     if (result.finished && state.step != recorder_.counters().last_snapshot_step)
@@ -80,6 +83,15 @@ private:
       recorder_.checkpoint(simulation_);
       last_checkpoint_ = step;
     }
+    if (force_check_due())
+      recorder_.check_forces(simulation_);
+  }
+
+  // As often as a small share of the time allows: that is another number of steps for each solver and machine, and no
+  // state hangs on it.
+  bool force_check_due() const {
+    const ForceChecks& checks = recorder_.force_checks();
+    return scene_.gravity && between_kicks() && checks.seconds + checks.last_s <= share_of_checks * watch_.elapsed();
   }
 
   void report() {
@@ -124,7 +136,8 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
   const std::int64_t first_step = simulation.state().step;
   Runner runner(scene, options, requests, simulation, recorder, start.watch, start.checkpoint_step);
   const RunResult result = runner.run();
-  const RunCost cost{first_step, start.watch.elapsed(), cpu_seconds() - start.cpu, recorder.seconds()};
+  const RunCost cost{first_step, start.watch.elapsed(), cpu_seconds() - start.cpu, recorder.seconds(),
+                     recorder.force_checks()};
   const nlohmann::ordered_json summary = summarise(simulation, scene, result, cost, recorder.provenance());
   write_text(folder.summary(), summary.dump(2) + "\n");
   recorder.log(result.finished ? "finished" : "stopped", {{"step", result.step}, {"state_hash", result.state_hash}});

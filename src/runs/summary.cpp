@@ -19,6 +19,15 @@ nlohmann::ordered_json energies(const Simulation& simulation, const Scene& scene
           {"residual", simulation.energy_residual() * joule}};
 }
 
+nlohmann::ordered_json force_error(const ForceChecks& checks) {
+  if (checks.count == 0)
+    return nullptr;
+  return {{"rms", checks.last_rms},
+          {"worst_rms", checks.worst_rms},
+          {"checks", checks.count},
+          {"particles", checks.particles}};
+}
+
 } // namespace
 
 nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scene, const RunResult& result,
@@ -41,6 +50,7 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scen
   json["slow_contacts_per_particle_orbit"] = rate(state.collisions.slow);
   json["finder_gave_up"] = state.collisions.gave_up;
   json["largest_overlap"] = largest_overlap(simulation.patch()).depth;
+  json["force_error"] = force_error(cost.force_checks);
   json["energy_j"] = energies(simulation, scene);
   json["wall_s"] = cost.wall_s;
   json["cpu_s"] = cost.cpu_s;

@@ -1,6 +1,8 @@
 // summary.json: what a run came to, in numbers.
 #pragma once
 
+#include "recorder.hpp"
+
 #include <keeler/io/provenance.hpp>
 #include <keeler/runs/run.hpp>
 
@@ -12,6 +14,7 @@ namespace keeler {
 struct RunCost {
   std::int64_t first_step = 0;
   double wall_s = 0.0, cpu_s = 0.0, output_s = 0.0;
+  ForceChecks force_checks;
 };
 
 /// Counts and energies are those of the whole run, times those of this stretch.

@@ -125,23 +125,12 @@ Vec3 Simulation::random_origin() const {
 
 void Simulation::accelerate() {
   const Stopwatch watch(split_.gravity);
-  const std::size_t count = state_.particles.size();
-  const Rotation rotation(scene_.planet.frequencies, -0.5 * state_.step_length);
-  positions_.resize(count);
-  masses_.resize(count);
-  state_.accelerations.resize(count);
-  const Vec3 origin = scene_.gravity->images.far ? random_origin() : Vec3(Vec3::Zero());
-  parallel_for(count, [&](std::size_t k) {
-    const Body& body = state_.particles.bodies[k];
-    positions_[k] = state_at(body.elements, scene_.planet.frequencies, rotation).position - origin;
-    masses_[k] = body.mass;
-  });
-  const GravityProblem problem{positions_,
-                               masses_,
-                               state_.particles.ids,
-                               state_.box,
-                               state_.boundary_offset(),
-                               newton_g(scene_.planet.orbital_frequency)};
+  state_.accelerations.resize(state_.particles.size());
+  const GravityProblem problem = gravity_problem(positions_, masses_);
+  if (scene_.gravity->images.far) {
+    const Vec3 origin = random_origin();
+    parallel_for(positions_.size(), [&](std::size_t k) { positions_[k] -= origin; });
+  }
   solver_->accelerate(problem, state_.accelerations);
 }
 
@@ -163,6 +152,24 @@ void Simulation::half_kick() {
     kick(body.elements, dv, f, rotation);
     return body.mass * (v.dot(dv) + 0.5 * dv.squaredNorm());
   });
+}
+
+GravityProblem Simulation::gravity_problem(std::vector<Vec3>& positions, std::vector<double>& masses) const {
+  const std::size_t count = state_.particles.size();
+  const Rotation rotation(scene_.planet.frequencies, -0.5 * state_.step_length);
+  positions.resize(count);
+  masses.resize(count);
+  parallel_for(count, [&](std::size_t k) {
+    const Body& body = state_.particles.bodies[k];
+    positions[k] = state_at(body.elements, scene_.planet.frequencies, rotation).position;
+    masses[k] = body.mass;
+  });
+  return {positions,
+          masses,
+          state_.particles.ids,
+          state_.box,
+          state_.boundary_offset(),
+          newton_g(scene_.planet.orbital_frequency)};
 }
 
 Patch Simulation::patch() const {

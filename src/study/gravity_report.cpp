@@ -1,6 +1,8 @@
 #include "gravity_report.hpp"
 
 #include "document.hpp"
+#include "gravity_runs.hpp"
+#include "scatter.hpp"
 #include "study_folder.hpp"
 
 #include <keeler/io/files.hpp>
@@ -92,6 +94,111 @@ void show_convergence(const GravityStudyData& data, bool with_figures, Document&
   }
 }
 
+Scatter scatter_in(const std::vector<Json>& runs, const char* quantity) {
+  std::vector<double> values;
+  for (const Json& run : runs)
+    if (!run.at(quantity).is_null())
+      values.push_back(of(run, quantity));
+  return scatter_of(values);
+}
+
+std::string with_scatter(const Scatter& s) {
+  if (s.count == 0)
+    return "none";
+  return s.count == 1 ? fmt::format("{:.3g}", s.mean) : fmt::format("{:.3g} ± {:.2g}", s.mean, s.deviation);
+}
+
+Row heads(const std::string& first) {
+  Row head = {first};
+  for (const RunQuantity& q : run_quantities())
+    head.push_back(q.title);
+  return head;
+}
+
+void show_run_means(const GravityStudyData& data, Document& document) {
+  Rows rows = {heads("mean ± standard deviation of one run")};
+  rows.front().push_back("largest energy residual");
+  for (const GravityChoice& choice : gravity_run_choices()) {
+    const std::vector<Json>& runs = data.runs.at(run_label(choice));
+    Row row = {run_label(choice)};
+    for (const RunQuantity& q : run_quantities())
+      row.push_back(with_scatter(scatter_in(runs, q.name)));
+    double residual = 0.0;
+    for (const Json& run : runs)
+      residual = std::max(residual, of(run, "energy_residual"));
+    row.push_back(fmt::format("{:.0e}", residual));
+    rows.push_back(row);
+  }
+  document.table(rows);
+}
+
+void show_verdicts(const GravityStudyData& data, Document& document) {
+  Rows rows = {heads("difference of the means (what scatter explains)")};
+  std::vector<std::string> beyond;
+  int compared = 0;
+  for (const auto& [label, reference] : gravity_run_comparisons()) {
+    Row row = {label + " − " + reference};
+    for (const RunQuantity& q : run_quantities()) {
+      const MeanDifference d =
+          mean_difference(scatter_in(data.runs.at(reference), q.name), scatter_in(data.runs.at(label), q.name));
+      if (!d.known()) {
+        row.emplace_back("not known");
+        continue;
+      }
+      ++compared;
+      row.push_back(fmt::format("{:+.2g} (± {:.2g}): {}", d.difference, d.bound, d.within() ? "within" : "**beyond**"));
+      if (!d.within())
+        beyond.push_back(fmt::format("{} of {}", q.title, label));
+    }
+    rows.push_back(row);
+  }
+  document.table(rows);
+  std::string verdict = fmt::format("**Verdict**: {} of {} differences are within the scatter. A difference is called "
+                                    "beyond it when Student's t says "
+                                    "so at 95 %, so of as many about {:.0f} are expected beyond by chance alone.",
+                                    compared - static_cast<int>(beyond.size()), compared, 0.05 * compared);
+  for (const std::string& name : beyond)
+    verdict += " Beyond: " + name + ".";
+  document.paragraph(verdict);
+}
+
+// The least difference that the runs could have shown, of each quantity, over its mean.
+void show_sensitivity(const GravityStudyData& data, Document& document) {
+  std::string text = "How much these runs could have missed, as a share of the mean (the largest bound in a column):";
+  for (const RunQuantity& q : run_quantities()) {
+    double least = 0.0;
+    for (const auto& [label, reference] : gravity_run_comparisons()) {
+      const Scatter first = scatter_in(data.runs.at(reference), q.name);
+      const MeanDifference d = mean_difference(first, scatter_in(data.runs.at(label), q.name));
+      if (d.known())
+        least = std::max(least, d.bound / std::fabs(first.mean));
+    }
+    text += least > 0.0 ? fmt::format(" {} {:.0f} %;", q.title, 100.0 * least) : fmt::format(" {} unknown;", q.title);
+  }
+  text.back() = '.';
+  document.paragraph(text);
+}
+
+void show_runs(const GravityStudyData& data, Document& document) {
+  document.heading("The same physics");
+  const std::size_t seeds = data.runs.begin()->second.size();
+  document.paragraph(fmt::format(
+      "Runs of {} particles of the same physics in a square of 2.5 λ_cr, step 1/1000 orbit, with {} seeds each. All "
+      "runs "
+      "of a seed start from one state in which wakes stand, go on for {:g} orbits to forget it, and are measured over "
+      "{:g} more, ten snapshots an orbit. Wakes are those of the mean autocorrelation. Solvers are compared at the "
+      "same "
+      "kick interval, with their default settings. Collisions count when faster than v_cut. The energy residual is "
+      "what "
+      "the budget of kicks, edges and collisions leaves unexplained, over the energy lost in collisions.",
+      gravity_run_count(), seeds, 0.25 * data.orbits, data.orbits));
+  if (data.orbits < 2.0)
+    document.paragraph("**These runs are short**: fine to see that it works, too short for wakes.");
+  show_run_means(data, document);
+  show_verdicts(data, document);
+  show_sensitivity(data, document);
+}
+
 } // namespace
 
 std::vector<std::string> GravityStudyData::solvers() const {
@@ -134,8 +241,14 @@ double convergence_order(const std::vector<Json>& rows) {
 
 void write_gravity_tables(const GravityStudyData& data) {
   write_text(data.folder / "gravity.csv", csv_of(data.bench.at("rows")));
+  Json runs = Json::array();
+  for (const GravityChoice& choice : gravity_run_choices())
+    for (const Json& run : data.runs.at(run_label(choice)))
+      runs.push_back(run);
+  write_text(data.folder / "gravity_runs.csv", csv_of(runs));
   Json all = {{"made", data.made}};
   all.update(data.bench);
+  all["runs"] = runs;
   write_text(data.folder / "gravity.json", all.dump(1) + "\n");
 }
 
@@ -144,6 +257,7 @@ void write_gravity_report(const GravityStudyData& data, bool with_figures) {
   introduce(data, document);
   show_front(data, with_figures, document);
   show_convergence(data, with_figures, document);
+  show_runs(data, document);
   show_settings(data, document);
   write_text(data.folder / "report.md", document.markdown());
   write_text(data.folder / "report.html", document.html());

@@ -13,8 +13,10 @@ namespace keeler {
 /// All that the report is made of.
 struct GravityStudyData {
   std::filesystem::path folder;
-  Json bench;                              ///< `rows`, and the numbers of the state
-  std::map<std::string, std::string> made; ///< command, host, processor, compiler, flags, commit
+  Json bench;                                    ///< `rows`, and the numbers of the state
+  std::map<std::string, std::vector<Json>> runs; ///< a result a seed, by run_label()
+  double orbits = 0.0;                           ///< that runs were measured over
+  std::map<std::string, std::string> made;       ///< command, host, processor, compiler, flags, commit
 
   /// The rows of one solver, in the order measured.
   std::vector<Json> rows_of(const std::string& solver) const;
@@ -32,7 +34,7 @@ double convergence_order(const std::vector<Json>& rows);
 /// gnuplot.
 bool draw_gravity_figures(const GravityStudyData& data);
 
-/// gravity.csv and gravity.json.
+/// gravity.csv, gravity_runs.csv and gravity.json.
 void write_gravity_tables(const GravityStudyData& data);
 
 /// report.md and report.html.

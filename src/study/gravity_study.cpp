@@ -1,6 +1,7 @@
 #include <keeler/study/gravity_study.hpp>
 
 #include "gravity_report.hpp"
+#include "gravity_runs.hpp"
 #include "study_folder.hpp"
 
 #include <keeler/core/error.hpp>
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace keeler {
 namespace {
@@ -23,7 +25,16 @@ Json options_of(const GravityStudySettings& settings) {
   Json texts = Json::array();
   for (const GravityChoice& choice : gravity_choices(true))
     texts.push_back(choice.solver + " " + choice.text);
-  return {{"study", "gravity"}, {"count", settings.count}, {"repeats", settings.repeats}, {"settings", texts}};
+  Json runs = Json::array();
+  for (const GravityChoice& choice : gravity_run_choices())
+    runs.push_back(run_label(choice));
+  return {{"study", "gravity"},
+          {"count", settings.count},
+          {"repeats", settings.repeats},
+          {"orbits", settings.orbits},
+          {"seeds", settings.seeds},
+          {"settings", texts},
+          {"runs", runs}};
 }
 
 // On one thread, as the times of bench gravity.
@@ -63,8 +74,24 @@ double expected_cost(const GravityStudySettings& settings) {
          2e-6 * count * (1.0 + settings.repeats) * static_cast<double>(gravity_choices(true).size());
 }
 
-std::vector<Job> jobs_of(const GravityStudySettings& settings) {
-  return {{bench_job, expected_cost(settings), [&settings] { return measure_forces(settings); }}};
+std::string run_job(const GravityChoice& choice, int seed) {
+  return fmt::format("run/{}/{}", run_label(choice), seed);
+}
+
+// Starts are made when the first run of a seed needs them.
+using Starts = std::map<int, RunStart>;
+
+std::vector<Job> jobs_of(const GravityStudySettings& settings, Starts& starts) {
+  std::vector<Job> jobs = {{bench_job, expected_cost(settings), [&settings] { return measure_forces(settings); }}};
+  const double orbits = settings.orbits;
+  for (int seed = 1; seed <= settings.seeds; ++seed)
+    for (const GravityChoice& choice : gravity_run_choices())
+      jobs.push_back({run_job(choice, seed), gravity_run_cost(choice, orbits), [choice, seed, orbits, &starts] {
+                        if (!starts.contains(seed))
+                          starts.emplace(seed, gravity_run_start(static_cast<std::uint64_t>(seed), orbits));
+                        return gravity_run(starts.at(seed), choice, orbits);
+                      }});
+  return jobs;
 }
 
 void announce(const std::vector<Job>& jobs, const JobList& list, const std::function<void(const std::string&)>& say) {
@@ -82,16 +109,22 @@ void announce(const std::vector<Job>& jobs, const JobList& list, const std::func
 } // namespace
 
 bool study_gravity(const GravityStudySettings& settings, const std::atomic<bool>& stop) {
+  if (settings.seeds < 2)
+    throw UsageError("a study of one seed knows no scatter; --seeds takes 2 or more");
   const std::map<std::string, std::string> made = study_builder(settings.arguments);
   const Json begun = open_study_folder(settings.folder, options_of(settings), made);
   const FolderLock lock(settings.folder);
-  const std::vector<Job> jobs = jobs_of(settings);
+  Starts starts;
+  const std::vector<Job> jobs = jobs_of(settings, starts);
   JobList list(settings.folder / "measurements.jsonl");
   announce(jobs, list, settings.notice);
   if (!list.run(jobs, settings.progress, stop))
     return false;
 
-  GravityStudyData data{settings.folder, list.results().at(bench_job), made};
+  GravityStudyData data{settings.folder, list.results().at(bench_job), {}, settings.orbits, made};
+  for (const GravityChoice& choice : gravity_run_choices())
+    for (int seed = 1; seed <= settings.seeds; ++seed)
+      data.runs[run_label(choice)].push_back(list.results().at(run_job(choice, seed)));
   for (auto& [key, value] : data.made)
     value = begun.value(key, value);
   write_gravity_tables(data);

@@ -16,6 +16,11 @@ cmp "$work/out" "$work/run/summary.json" || fail "run --json does not print the 
 for key in collisions_per_particle_orbit slow_contacts_per_particle_orbit wall_s cpu_s largest_overlap; do
   has $key "$number"
 done
+grep -q '"event":"force_error","step":150,"rms":[0-9]' "$work/run/log.jsonl" ||
+  fail "no error of forces at the end: $(cat "$work/run/log.jsonl")"
+has force_error "\{\"rms\":$number,\"worst_rms\":$number,\"checks\":[0-9]+,\"particles\":200\}"
+awk -F'[:,]' '/"worst_rms"/ { seen = 1; if (!($2 > 0 && $2 < 0.02)) exit 1 } END { exit !seen }' "$work/out" ||
+  fail "the error of forces: $(grep -A 5 force_error "$work/out")"
 has split "\{\"drift_s\":$number,\"gravity_s\":$number,\"output_s\":$number\}"
 has finished true
 has state_hash '"[0-9a-f]{32}"'
@@ -24,6 +29,7 @@ has steps 150
 has particle_count 400
 runs 0 run "$work/scene.toml" -o "$work/text"
 prints "run" "$(state_hash "$work/run")"
+prints "run" "error of gravity"
 for name in scene.toml series.csv summary.json log.jsonl snap_000000.hdf snap_000001.hdf snap_000002.hdf \
   checkpoint_000001.h5 checkpoint_000002.h5; do
   [ -s "$work/run/$name" ] || fail "no $name in the folder of a run"

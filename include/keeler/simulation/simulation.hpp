@@ -35,6 +35,10 @@ public:
   /// A Cartesian copy of the present state.
   Patch patch() const;
 
+  /// What the gravity solver is asked at this boundary between steps, in the order of state().particles. The two arrays
+  /// are filled, and must outlive it.
+  GravityProblem gravity_problem(std::vector<Vec3>& positions, std::vector<double>& masses) const;
+
   /// Energy now − start − all that was booked: zero up to rounding. In kg m² rad⁻².
   double energy_residual() const;
 
