@@ -27,7 +27,7 @@ double floor_of(double value) {
 // The boxes along one axis, each of so many tiles.
 struct Axis {
   Axis(double box_size, std::size_t cells, std::size_t side, std::size_t tile_count)
-      : size(box_size), low(-0.5 * box_size), per_box(1.0 / box_size),
+      : low(-0.5 * box_size), per_box(1.0 / box_size),
         tile_width(box_size * static_cast<double>(side) / static_cast<double>(cells)), per_tile(1.0 / tile_width),
         tiles(tile_count) {}
 
@@ -36,9 +36,31 @@ struct Axis {
   // The first tile for what lies below the cell, the last for what lies above.
   std::size_t tile(double coordinate) const { return cell_of(coordinate, low, per_tile, tiles); }
 
-  double size, low, per_box, tile_width, per_tile;
+  double low, per_box, tile_width, per_tile;
   std::size_t tiles;
 };
+
+// The group of these particles, and they as its targets, with nothing gathered yet.
+NearGroup around(const ParticleRange& own, float scale, NearTargets& targets) {
+  const double* const coordinates[] = {own.x, own.y, own.z};
+  float* const relative[] = {targets.x, targets.y, targets.z};
+  float* const gathered[] = {targets.ax, targets.ay, targets.az};
+  double origin[3];
+  NearGroup group{0.0, 0.0, 0.0, scale, {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Bounds bounds(coordinates[axis], own.count);
+    origin[axis] = 0.5 * (bounds.low + bounds.high);
+    for (std::size_t k = 0; k < own.count; ++k) {
+      relative[axis][k] = static_cast<float>(coordinates[axis][k] - origin[axis]) * scale;
+      gathered[axis][k] = 0.0f;
+      group.half[axis] = std::max(group.half[axis], std::fabs(relative[axis][k]));
+    }
+  }
+  group.origin_x = origin[0];
+  group.origin_y = origin[1];
+  group.origin_z = origin[2];
+  return group;
+}
 
 } // namespace
 
@@ -50,22 +72,9 @@ NearForces::NearForces(const ForceSplit& split, InstructionSet set) : kernels_(m
 void NearForces::attract(const Places& places, const ShearingBox& box, double offset, double radius, std::size_t begin,
                          std::size_t count, NearTargets& targets) const {
   const ParticleRange own = places.range(begin, count);
-  const Bounds x(own.x, count), y(own.y, count), z(own.z, count);
-  const double origin_x = 0.5 * (x.low + x.high), origin_y = 0.5 * (y.low + y.high), origin_z = 0.5 * (z.low + z.high);
-  const auto scale = static_cast<float>(1.0 / radius);
-  NearGroup group{0.0, 0.0, origin_z, scale, {}};
-  const auto relative = [&](double value, double origin) { return static_cast<float>(value - origin) * scale; };
-  const Bounds* const bounds[] = {&x, &y, &z};
-  const double origins[] = {origin_x, origin_y, origin_z};
-  for (int axis = 0; axis < 3; ++axis)
-    group.half[axis] =
-        std::max(relative(bounds[axis]->high, origins[axis]), -relative(bounds[axis]->low, origins[axis]));
-  for (std::size_t k = 0; k < count; ++k) {
-    targets.x[k] = relative(own.x[k], origin_x);
-    targets.y[k] = relative(own.y[k], origin_y);
-    targets.z[k] = relative(own.z[k], origin_z);
-    targets.ax[k] = targets.ay[k] = targets.az[k] = 0.0f;
-  }
+  const Bounds x(own.x, count), y(own.y, count);
+  NearGroup group = around(own, static_cast<float>(1.0 / radius), targets);
+  const double origin_x = group.origin_x, origin_y = group.origin_y;
 
   const Tiling& tiling = places.tiling();
   const Axis along_x(box.size_x, tiling.columns, tiling.side, tiling.tile_columns());
