@@ -185,7 +185,7 @@ void show_runs(const GravityStudyData& data, Document& document) {
   document.paragraph(fmt::format(
       "Runs of {} particles of the same physics in a square of 2.5 λ_cr, step 1/1000 orbit, with {} seeds each. All "
       "runs "
-      "of a seed start from one state in which wakes stand, go on for {:g} orbits to forget it, and are measured over "
+      "of a seed start from one state in which wakes stand, go on to forget it (orbits: {:g}), and are measured over "
       "{:g} more, ten snapshots an orbit. Wakes are those of the mean autocorrelation. Solvers are compared at the "
       "same "
       "kick interval, with their default settings. Collisions count when faster than v_cut. The energy residual is "
