@@ -136,9 +136,10 @@ std::vector<Vec3> sampled_accelerations(const GravityProblem& problem, std::span
   std::vector<std::size_t> places;
   for (const std::size_t k : sample)
     places.push_back(place_of[k]);
+  const ImageSettings all = rings_for_height(images, problem.box, height_of(sources));
   std::vector<Vec3> result =
-      near_attractions(sources, places, near_images(problem.box, offset, images), attraction_kernels(set), precision);
-  const std::vector<Vec3> far = far_accelerations<double>(problem, offset, images, sources, set);
+      near_attractions(sources, places, near_images(problem.box, offset, all), attraction_kernels(set), precision);
+  const std::vector<Vec3> far = far_accelerations<double>(problem, offset, all, sources, set);
   for (std::size_t k = 0; k < result.size(); ++k)
     result[k] = problem.newton_g * result[k] + far[places[k]];
   return result;

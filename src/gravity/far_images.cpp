@@ -142,10 +142,17 @@ private:
 
 } // namespace
 
+ImageSettings rings_for_height(ImageSettings images, const ShearingBox& box, double height) {
+  const double halves = std::ceil(2.0 * height / std::min(box.size_x, box.size_y));
+  if (images.far)
+    images.rings = std::max({1, images.rings, static_cast<int>(std::min<double>(halves, most_rings))});
+  return images;
+}
+
 std::vector<Vec3> near_images(const ShearingBox& box, double offset, const ImageSettings& images) {
   if (!images.far)
     return image_shifts(box, offset, images.rings, images.rings);
-  const int rings = std::max(images.rings, 1);
+  const int rings = images.rings;
   return image_shifts(box, offset, rings_for(rings, box.size_y, box.size_x), rings_for(rings, box.size_x, box.size_y));
 }
 
@@ -158,7 +165,7 @@ Vec3 far_pull(const Lattice& lattice, const std::vector<Vec3>& near, const Vec3&
 }
 
 FarImages::FarImages(const ShearingBox& box, double offset, int rings, double height) {
-  const double highest = 0.5 * std::min(box.size_x, box.size_y);
+  const double highest = 0.5 * rings * std::min(box.size_x, box.size_y);
   ceiling_ = std::min(height, highest);
   scale_ = {box.size_x, box.size_y, std::max(2.0 * ceiling_, 0.01 * highest)};
   shape_ = shape_for(height_degree(0.5 * scale_.z() / highest));

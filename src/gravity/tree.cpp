@@ -257,7 +257,6 @@ void TreeSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accel
   if (count == 0)
     return;
   const double offset = folded_offset(problem.box, problem.offset);
-  const std::vector<Vec3> shifts = near_images(problem.box, offset, images_);
   if (tree_.order().size() == count) // neighbours then stand together in memory
     places_ = tree_.order();
   else {
@@ -271,11 +270,13 @@ void TreeSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accel
     in_cell_[k] = {p.x(), p.y(), p.z(), problem.masses[index]};
   });
   tree_.build(in_cell_, places_, problem.ids);
+  const ImageSettings images = rings_for_height(images_, problem.box, height_of(in_cell_));
+  const std::vector<Vec3> shifts = near_images(problem.box, offset, images);
 
   const std::vector<Group> groups = make_groups(tree_.cells());
   const OpeningRule rule = opening_rule(opening_angle_, tree_.boxes()[0], shifts);
   const double strength = problem.newton_g * tree_.mass_unit();
-  std::vector<Vec3> total = far_accelerations<float>(problem, offset, images_, tree_.particles(), set_);
+  std::vector<Vec3> total = far_accelerations<float>(problem, offset, images, tree_.particles(), set_);
   std::vector<Momentum> gained(groups.size());
   parallel_for(
       groups.size(),

@@ -7,8 +7,7 @@
 // any number of images, and forces are equal and opposite to rounding because the function is even.
 //
 // Errors (`test far_images`): below 1e-3 G Σ rms, worst at a shear offset of L_y/2, and much below in long boxes.
-// Heights count up to half the cell's shorter side from the plane; a body farther out feels the far images as from
-// there.
+// Heights count up to half the cell's shorter side a ring; a body farther out feels the far images as from there.
 #pragma once
 
 #include <keeler/box/shearing_box.hpp>
@@ -23,9 +22,21 @@
 
 namespace keeler {
 
-/// Shifts (m) of the images to be summed one by one. Without far images exactly the rings asked for; with them at least
-/// one, and more along the shorter side of a long box, so that what lies beyond is far from every place in the cell.
-/// The offset must be folded (images.hpp).
+/// The settings with at least one ring, and with more where bodies stand as high as `height` (m) above a plane that is
+/// not much wider: one for each half of the shorter side, up to `most_rings`. Without far images they stay as they are.
+ImageSettings rings_for_height(ImageSettings images, const ShearingBox& box, double height);
+inline constexpr int most_rings = 6;
+
+/// The greatest distance of a body from the plane, m.
+template<class Body> double height_of(const std::vector<Body>& bodies) {
+  double height = 0.0;
+  for (const Body& body : bodies)
+    height = std::max(height, std::fabs(static_cast<double>(body.z)));
+  return height;
+}
+
+/// Shifts (m) of the images to be summed one by one: the rings asked for; with far images more along the shorter side
+/// of a long box, so that what lies beyond is far from every place in the cell. The offset must be folded (images.hpp).
 std::vector<Vec3> near_images(const ShearingBox& box, double offset, const ImageSettings& images);
 
 class FarImages {
@@ -125,10 +136,7 @@ std::vector<Vec3> far_accelerations(const GravityProblem& problem, double offset
     }
     return result;
   }
-  double height = 0.0;
-  for (const Body& body : bodies)
-    height = std::max(height, std::fabs(body.z));
-  const FarImages far(problem.box, offset, images.rings, height);
+  const FarImages far(problem.box, offset, images.rings, height_of(bodies));
   result = far.attractions<Real>(bodies, set);
   for (Vec3& a : result)
     a *= problem.newton_g;

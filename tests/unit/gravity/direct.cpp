@@ -152,3 +152,28 @@ TEST_CASE("the direct sum with all images is the sum of the lattice's field over
     }
   }
 }
+
+TEST_CASE("in a box that is higher than it is wide, too") {
+  for (const double height : {15.0, 40.0, 60.0}) {
+    ClumpedState state;
+    state.box = {20.0, 24.0, 1.5, 0.0};
+    state.offset = 7.0;
+    for (std::uint64_t k = 0; k < 60; ++k) {
+      RandomStream random(4, RandomPurpose::position, k);
+      const double x = (random.uniform() - 0.5) * 20.0, y = (random.uniform() - 0.5) * 24.0;
+      state.positions.emplace_back(x, y, (random.uniform() - 0.5) * 2.0 * height);
+      state.masses.push_back(1000.0);
+      state.ids.push_back(k);
+    }
+    const Lattice lattice(state.box, state.offset);
+    std::vector<Vec3> exact(state.positions.size(), Vec3::Zero());
+    for (std::size_t i = 0; i < exact.size(); ++i)
+      for (std::size_t j = 0; j < exact.size(); ++j)
+        exact[i] +=
+            state.problem().newton_g * state.masses[j] * lattice.acceleration(state.positions[i] - state.positions[j]);
+    DirectSolver solver = direct(1, true);
+    const double error = rms_error(accelerations(solver, state.problem()), exact);
+    MESSAGE("height " << height << ": rms error " << error);
+    CHECK(error < 1e-3);
+  }
+}
