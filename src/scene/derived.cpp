@@ -1,5 +1,7 @@
 #include <keeler/scene/derived.hpp>
 
+#include <keeler/gravity/fft.hpp>
+
 #include <keeler/core/units.hpp>
 #include <keeler/particles/patch.hpp>
 
@@ -12,14 +14,17 @@ namespace {
 namespace cost {
 // Measured on one core with AVX-512: `keeler run` of both examples, and peak memory at N = 10⁵ and 4 × 10⁵.
 constexpr double drift_ns = 150.0;         // per particle and step, uniform patch
-constexpr double clumped_drift_ns = 250.0; // the same among self-gravity wakes
-constexpr double tree_ns = 500.0;          // per particle and kick, 9 boxes, opening angle 0.6
+constexpr double clumped_drift_ns = 290.0; // the same among self-gravity wakes
+constexpr double tree_ns = 400.0;          // per particle and kick, 9 boxes, opening angle 0.6
+constexpr double mesh_ns = 130.0;          // per particle and kick
+constexpr double neighbours_ns = 50.0;     // the same, for each mesh spacing that they reach
 constexpr double direct_pair_ns = 1.0;     // per pair and image
 constexpr double program_bytes = 33e6;     // code, libraries, buffers that do not grow with N
 constexpr double file_bytes = 260.0;       // files are built in memory before they are written
 constexpr double drift_bytes = 168.0; // lines, cells, lists, stamps, and the scratch of sorting: at most 240 with state
 constexpr double tree_node_bytes = 120; // box, mass, centre, quadrupole, links
 constexpr double nodes_per_particle = 0.5;
+constexpr double mesh_bytes = 150.0; // some ten nodes a particle in a layer of ten radii, and the places
 } // namespace cost
 
 double bytes_per_particle(const Scene& scene) {
@@ -28,13 +33,21 @@ double bytes_per_particle(const Scene& scene) {
   double total = state + output_copy + cost::file_bytes + cost::drift_bytes;
   if (scene.gravity) {
     total += 2 * sizeof(Vec3) + sizeof(double) + sizeof(std::uint64_t); // a GravityProblem and its answer
-    if (scene.gravity->solver == GravitySettings::Solver::tree)
+    const auto solver = chosen_for(scene.particles.count, *scene.gravity).solver;
+    if (solver == GravitySettings::Solver::fft || solver == GravitySettings::Solver::mesh)
+      total += cost::mesh_bytes;
+    if (solver == GravitySettings::Solver::tree)
       total += cost::nodes_per_particle * cost::tree_node_bytes + 4 * sizeof(double);
   }
   return total;
 }
 
-double gravity_ns_per_kick(const GravitySettings& gravity, double count) {
+double gravity_ns_per_kick(const GravitySettings& settings, double count) {
+  const GravitySettings gravity = chosen_for(static_cast<std::size_t>(count), settings);
+  if (gravity.solver == GravitySettings::Solver::fft)
+    return cost::mesh_ns + cost::neighbours_ns * cut_for(gravity.force_error);
+  if (gravity.solver == GravitySettings::Solver::mesh)
+    return cost::mesh_ns;
   const double side = 2.0 * gravity.images.rings + 1.0;
   const double images = side * side;
   if (gravity.solver == GravitySettings::Solver::direct)
