@@ -205,9 +205,7 @@ std::vector<Key> make_keys() {
       {.path = "gravity.solver",
        .type = choice,
        .fallback = "\"tree\"",
-       .meaning = "how accelerations are computed: sums over all pairs; a tree of cells; a mesh with neighbours (P3M); "
-                  "the mesh "
-                  "alone, a mean field for quick looks; or the cheapest for force_error",
+       .meaning = "how accelerations are computed",
        .choices = {"direct", "tree", "fft", "mesh", "auto"}},
       {.path = "gravity.force_error",
        .type = number,

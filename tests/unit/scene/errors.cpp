@@ -59,11 +59,11 @@ TEST_CASE("values out of range are told with the range") {
   CHECK(with("[100, 50.0]", "[100, -50.0]").find("box.size is [100.0, -50.0], but must be") != std::string::npos);
   CHECK(with("2e-4", "2e-4\nepicyclic_ratio = 2").find("must be a number above 0 and below 2") != std::string::npos);
   CHECK(fault(least + "[gravity]\nsolver = \"trea\"\n") ==
-        "s.toml:12:10: gravity.solver is \"trea\", but must be one of \"direct\", \"tree\" (how accelerations are "
-        "computed); did you mean \"tree\"?");
+        "s.toml:12:10: gravity.solver is \"trea\", but must be one of \"direct\", \"tree\", \"fft\", "
+        "\"mesh\", \"auto\" (how accelerations are computed); did you mean \"tree\"?");
   CHECK(fault(least + "[gravity]\nsolver = \"quantum\"\n") ==
-        "s.toml:12:10: gravity.solver is \"quantum\", but must be one of \"direct\", \"tree\" (how accelerations are "
-        "computed); write for example solver = \"tree\"");
+        "s.toml:12:10: gravity.solver is \"quantum\", but must be one of \"direct\", \"tree\", \"fft\", "
+        "\"mesh\", \"auto\" (how accelerations are computed); write for example solver = \"tree\"");
   CHECK(fault(least + "[start]\nfrom = \"\"\n").find("must be the path of a file") != std::string::npos);
 }
 
