@@ -68,7 +68,7 @@ Line Mirror::line_of(const Body& body, const Rotation& rotation) const {
 // Those that reach less than 2 of the least radius, then up to 8, 32, ...: each level that there is costs a look-up.
 int Mirror::level_of(const Line& line) const {
   const double reach = std::max(reach_x(line), reach_y(line));
-  return reach < 2.0 * least_radius_ ? 0 : std::min((std::ilogb(reach / least_radius_) + 1) / 2, most_levels - 1);
+  return reach < 2.0 * least_radius_ ? 0 : (std::min(std::ilogb(reach / least_radius_), 2 * most_levels - 3) + 1) / 2;
 }
 
 std::size_t Mirror::cell_of(const Line& line, const MirrorLevel& level) const {

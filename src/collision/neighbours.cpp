@@ -196,8 +196,10 @@ void Neighbours::settle(std::span<const std::uint32_t> particles, std::uint64_t 
         for (std::size_t k = c * chunk; k < std::min(particles.size(), (c + 1) * chunk); ++k) {
           const std::uint32_t i = particles[k];
           const Line& line = mirror_.line(i);
-          if (!mirror_.one_image(line, mirror_.whole()))
+          if (!mirror_.one_image(line, mirror_.whole())) { // ends the window: nobody reads these lists
             too_fast[c] = 1;
+            continue;
+          }
           const auto keep = [&](std::uint32_t j) {
             if (j != i && (changed_[j] != this_step || lists(i, j)))
               list.push_back(entry(i, j));

@@ -8,6 +8,7 @@
 #include "sheared_transform.hpp"
 #include "wave_kernel.hpp"
 
+#include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/gravity/images.hpp>
@@ -37,6 +38,8 @@ struct Extent {
 };
 
 Extent extent_of(std::span<const Vec3> positions) {
+  if (!std::all_of(positions.begin(), positions.end(), [](const Vec3& p) { return p.allFinite(); }))
+    throw InvariantError("a particle stands at no finite place; take a shorter time.step");
   Extent z{positions.front().z(), positions.front().z()};
   for (const Vec3& p : positions) {
     z.low = std::min(z.low, p.z());

@@ -97,7 +97,8 @@ void Recorder::check_forces(const Simulation& simulation) {
     std::vector<double> masses;
     const GravityProblem problem = simulation.gravity_problem(positions, masses);
     const ForceSample sample = draw_force_sample(problem, checked_particles, 0, 0.0);
-    const std::vector<Vec3> exact = sampled_accelerations(problem, sample.targets, {}, choose_instruction_set());
+    const std::vector<Vec3> exact =
+        sampled_accelerations(problem, sample.targets, {.rings = 2}, choose_instruction_set());
     const ForceErrors errors = force_errors(sample, exact, simulation.state().accelerations);
     ++c.count;
     c.particles = sample.even;

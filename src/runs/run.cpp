@@ -22,6 +22,7 @@ namespace keeler {
 namespace {
 
 constexpr double samples_per_orbit = 100.0; // rows of series.csv
+constexpr double first_check = 5e-6;        // s a particle: what a check is taken to cost before there was one
 constexpr double share_of_checks = 0.005;   // of the wall time, for the errors of forces; one at the end besides
 
 std::int64_t whole_kicks(const Scene& scene, double steps) {
@@ -45,14 +46,14 @@ public:
       record();
       report();
     }
-    if (scene_.gravity && recorder_.force_checks().last_step != state.step)
-      recorder_.check_forces(simulation_);
     RunResult result;
     result.finished = state.step >= scene_.time.end_step;
     if (result.finished && state.step != recorder_.counters().last_snapshot_step)
       recorder_.snapshot(simulation_);
     if (state.step != last_checkpoint_)
       recorder_.checkpoint(simulation_);
+    if (result.finished && scene_.gravity && recorder_.force_checks().last_step != state.step)
+      recorder_.check_forces(simulation_);
     result.step = state.step;
     result.state_hash = state_hash(state, scene_);
     return result;
@@ -68,7 +69,8 @@ private:
     if (!between_kicks())
       return false;
     const int passes = scene_.gravity ? scene_.gravity->kick_every : 1; // until the next chance
-    const double reserve = (passes + 2) * longest_pass_;                // two more for the last checkpoint
+    // two passes more for the last checkpoint
+    const double reserve = (passes + 2) * longest_pass_ + recorder_.force_checks().last_s;
     return requests_.stop || (options_.wall_time_s && watch_.elapsed() + reserve > *options_.wall_time_s);
   }
 
@@ -83,15 +85,19 @@ private:
       recorder_.checkpoint(simulation_);
       last_checkpoint_ = step;
     }
-    if (force_check_due())
+    if (force_check_due()) {
       recorder_.check_forces(simulation_);
+      last_time_ += recorder_.force_checks().last_s; // not what a step takes
+    }
   }
 
-  // As often as a small share of the time allows: that is another number of steps for each solver and machine, and no
-  // state hangs on it.
+  // As often as a small share of the time allows, and as the rows of the series at most: that is another number of
+  // steps for each solver and machine, and no state hangs on it.
   bool force_check_due() const {
     const ForceChecks& checks = recorder_.force_checks();
-    return scene_.gravity && between_kicks() && checks.seconds + checks.last_s <= share_of_checks * watch_.elapsed();
+    const double next =
+        checks.count > 0 ? checks.last_s : first_check * static_cast<double>(simulation_.state().particles.size());
+    return scene_.gravity && due(sample_every_) && checks.seconds + next <= share_of_checks * watch_.elapsed();
   }
 
   void report() {

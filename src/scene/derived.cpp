@@ -35,7 +35,7 @@ double bytes_per_particle(const Scene& scene) {
     total += 2 * sizeof(Vec3) + sizeof(double) + sizeof(std::uint64_t); // a GravityProblem and its answer
     const auto solver = chosen_for(scene.particles.count, *scene.gravity).solver;
     if (solver == GravitySettings::Solver::fft || solver == GravitySettings::Solver::mesh)
-      total += cost::mesh_bytes;
+      total += cost::mesh_bytes * std::max(1.0, std::pow(1.6 / scene.gravity->mesh_spacing, 3));
     if (solver == GravitySettings::Solver::tree)
       total += cost::nodes_per_particle * cost::tree_node_bytes + 4 * sizeof(double);
   }

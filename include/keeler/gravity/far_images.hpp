@@ -6,7 +6,7 @@
 // polynomial of a difference splits: moments of the bodies, and a polynomial at each target. The cost is the same for
 // any number of images, and forces are equal and opposite to rounding because the function is even.
 //
-// Errors (`test far_images`): below 1e-3 G Σ rms, worst at a shear offset of L_y/2, and much below in long boxes.
+// Errors (`test far_images`): some 1e-3 G Σ rms, worst at a shear offset of L_y/2, and much below in long boxes.
 // Heights count up to half the cell's shorter side a ring; a body farther out feels the far images as from there.
 #pragma once
 

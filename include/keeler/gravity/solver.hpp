@@ -47,8 +47,8 @@ struct GravitySettings {
   int kick_every = 1;         ///< drifts per kick
 };
 
-/// What `automatic` stands for in a patch of so many particles: the cheaper of tree and fft by measured prices, with
-/// what the force error asks for; direct for a few. Others are returned as they are.
+/// What `automatic` stands for in a patch of so many particles: fft, which was cheaper than the tree at every error and
+/// number measured (docs/theory/gravity.md); direct for a few. Others are returned as they are.
 GravitySettings chosen_for(std::size_t count, GravitySettings settings);
 
 /// The solver for so many particles on an area (m²). Throws UsageError when the environment variable KEELER_SIMD names
