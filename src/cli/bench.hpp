@@ -30,13 +30,15 @@ inline void add_repeats(CLI::App& command, int& repeats) {
   command.add_option("--repeats", repeats, "times measured; medians are given (default: 5)")->check(positive_number());
 }
 
-/// Progress of a bench that takes so long that one wonders; a short one says nothing.
-inline std::function<void(const StudyProgress&)> patient_progress(ProgressLine& line) {
+/// What measure(settings) returns, with progress shown when it takes so long that one wonders.
+template<class Settings, class Measure> auto measured(Settings settings, const Measure& measure) {
   constexpr double patience_s = 5.0;
-  return [&line](const StudyProgress& progress) {
+  ProgressLine line;
+  settings.progress = [&line](const StudyProgress& progress) {
     if (progress.elapsed_s > patience_s)
       line.show(progress);
   };
+  return measure(settings);
 }
 
 } // namespace keeler

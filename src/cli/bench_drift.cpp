@@ -34,12 +34,6 @@ CLI::Validator finder_name() {
   return CLI::Validator(refusal, "");
 }
 
-DriftBench measure(DriftBenchSettings settings) {
-  ProgressLine line;
-  settings.progress = patient_progress(line);
-  return bench_drift(settings);
-}
-
 void print_json(const DriftBenchSettings& s, const std::string& sizes, const DriftBench& b) {
   nlohmann::ordered_json json;
   json["ns_per_particle_step"] = b.ns_per_particle_step;
@@ -107,7 +101,7 @@ ExitCode bench(const DriftOptions& options) {
   options.threads.apply();
   DriftBenchSettings settings = options.drift;
   settings.sizes = sizes_by_name.at(options.sizes);
-  const DriftBench b = measure(settings);
+  const DriftBench b = measured(settings, bench_drift);
   if (options.json)
     print_json(settings, options.sizes, b);
   else

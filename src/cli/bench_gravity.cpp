@@ -59,12 +59,7 @@ void print_text(const GravityOptions& options, const GravityBench& b) {
 ExitCode bench(GravityOptions& options) {
   options.threads.apply();
   options.bench.clumped = options.state == "clumped";
-  GravityBench result;
-  {
-    ProgressLine line;
-    options.bench.progress = patient_progress(line);
-    result = bench_gravity(options.bench);
-  }
+  const GravityBench result = measured(options.bench, bench_gravity);
   if (options.json)
     print_json(options, result);
   else

@@ -48,12 +48,7 @@ void print_text(const StepOptions& options, const StepBench& b) {
 
 ExitCode bench(StepOptions& options) {
   options.threads.apply();
-  StepBench result;
-  {
-    ProgressLine line;
-    options.bench.progress = patient_progress(line);
-    result = bench_step(options.bench);
-  }
+  const StepBench result = measured(options.bench, bench_step);
   if (options.json)
     print_json(options, result);
   else

@@ -222,8 +222,8 @@ TEST_CASE("seen from random origins, errors average out instead of adding up") {
     for (std::size_t k = 0; k < mean.size(); ++k)
       averaged += (mean[k] - exact[k]).squaredNorm();
     MESSAGE(candidate.name << ": errors of the mean over those of one, squared: " << averaged / single);
-    // 1/25 if errors were independent; what is left of the mesh's is the error of the split, which depends on distances
-    // alone and so heats nothing
+    // 1/25 if errors were independent; what is left of the mesh's should be the split's error, which depends on
+    // distances alone and so heats nothing
     CHECK(averaged < (candidate.name == "fft" ? 0.5 : 0.2) * single);
   }
 }

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <keeler/core/random.hpp>
+#include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/gravity/images.hpp>
+#include <keeler/gravity/lattice.hpp>
 #include <keeler/gravity/solver.hpp>
 
 #include <algorithm>
@@ -107,6 +109,23 @@ inline ClumpedState clumped_state(std::size_t count, std::uint64_t seed, double 
 inline std::vector<Vec3> accelerations(GravitySolver& solver, const GravityProblem& problem) {
   std::vector<Vec3> result(problem.positions.size(), Vec3::Constant(1e300));
   solver.accelerate(problem, result);
+  return result;
+}
+
+/// The exact periodic force, pair by pair, by Ewald's sums to that tolerance.
+inline std::vector<Vec3> exact_pair_by_pair(const ClumpedState& state, double tolerance = 1e-15) {
+  const GravityProblem problem = state.problem();
+  const Lattice lattice(state.box, state.offset, tolerance);
+  std::vector<Vec3> result(state.positions.size(), Vec3::Zero());
+  parallel_for(
+      result.size(),
+      [&](std::size_t k) {
+        for (std::size_t j = 0; j < result.size(); ++j)
+          if (j != k)
+            result[k] +=
+                problem.newton_g * state.masses[j] * lattice.acceleration(state.positions[k] - state.positions[j]);
+      },
+      1);
   return result;
 }
 

@@ -35,9 +35,12 @@ template<class A, class B> double worst(const A& a, const B& b, std::size_t coun
 }
 
 template<class Block> void check_same_sums(const Block& a, const Block& b, std::size_t count) {
-  CHECK(std::memcmp(a.ax, b.ax, count * sizeof(double)) == 0);
-  CHECK(std::memcmp(a.ay, b.ay, count * sizeof(double)) == 0);
-  CHECK(std::memcmp(a.az, b.az, count * sizeof(double)) == 0);
+  const auto same_bits = [&](const auto& one, const auto& other) {
+    return std::memcmp(one, other, count * sizeof(double)) == 0;
+  };
+  CHECK(same_bits(a.ax, b.ax));
+  CHECK(same_bits(a.ay, b.ay));
+  CHECK(same_bits(a.az, b.az));
 }
 
 } // namespace
