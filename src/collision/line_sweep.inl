@@ -1,6 +1,6 @@
 // Text of the sweep; see line_sweep.hpp. The including file sets KEELER_KERNEL_SPACE and defines the vectors Floats and
 // Integers of `lanes` lanes, `Fields load(const Line*)`, which turns that many lines into a vector a field, and
-// `unsigned nonzero(Integers)`, a bit a lane. Everything here has internal linkage except `sweep`.
+// `unsigned nonzero(Integers)`, a bit a lane. Everything here has internal linkage except `sweeps`.
 
 namespace keeler::KEELER_KERNEL_SPACE {
 namespace {
@@ -38,11 +38,8 @@ inline unsigned near(const Line& line, const Fields& other, const LineFrame& fra
   return nonzero(cx * cx + cy * cy + cz * cz <= size * size);
 }
 
-} // namespace
-
-extern const LineSweep sweep;
-const LineSweep sweep = [](const Line& line, const Line* lines, const LineFrame& frame, const LineSpan& span,
-                           std::size_t begin, std::size_t end, std::uint32_t* found) -> std::size_t {
+inline std::size_t sweep(const Line& line, const Line* lines, const LineFrame& frame, const LineSpan& span,
+                         std::size_t begin, std::size_t end, std::uint32_t* found) {
   std::size_t count = 0;
   for (std::size_t k = begin; k < end; k += lanes) {
     unsigned bits = near(line, load(lines + k), frame, span);
@@ -52,6 +49,30 @@ const LineSweep sweep = [](const Line& line, const Line* lines, const LineFrame&
       found[count++] = static_cast<std::uint32_t>(k + static_cast<unsigned>(__builtin_ctz(bits)));
   }
   return count;
-};
+}
+
+inline std::size_t sweep_group(const Line* lines, std::size_t first, std::size_t last, const LineFrame& frame,
+                               const LineSpan& span, std::size_t begin, std::size_t end, LinePair* found) {
+  std::size_t count = 0;
+  for (std::size_t k = begin; k < end; k += lanes) {
+    const Fields others = load(lines + k);
+    const unsigned inside = k + lanes > end ? (1u << (end - k)) - 1u : ~0u;
+    const bool own = first < end; // then each pair is met twice
+    for (std::size_t m = first; m < (own ? std::min(last, k + lanes - 1) : last); ++m) {
+      unsigned bits = near(lines[m], others, frame, span) & inside;
+      if (own && m >= k)
+        bits &= ~0u << (m + 1 - k);
+      for (; bits; bits &= bits - 1)
+        found[count++] = {static_cast<std::uint32_t>(m),
+                          static_cast<std::uint32_t>(k + static_cast<unsigned>(__builtin_ctz(bits)))};
+    }
+  }
+  return count;
+}
+
+} // namespace
+
+extern const LineSweeps sweeps;
+const LineSweeps sweeps = {sweep, sweep_group};
 
 } // namespace keeler::KEELER_KERNEL_SPACE

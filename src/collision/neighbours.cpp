@@ -109,7 +109,7 @@ void Neighbours::list_pairs() {
   parallel_for(
       first_lists_,
       [&](std::size_t b) {
-        std::vector<std::uint32_t> buffer;
+        std::vector<LinePair> buffer;
         std::vector<Entry>& list = lists_[b].entries;
         list.clear();
         lists_[b].made = 0;

@@ -48,7 +48,7 @@ private:
   Body then_; // the centre when this began
   double half_step_ = 0.0, margin_ = 0.0;
   LineFrame frame_{};
-  LineSweep sweep_ = line_sweep(choose_instruction_set());
+  LineSweep sweep_ = line_sweeps(choose_instruction_set()).one;
   Line middle_; // the centre's: zero, sizes are all in the others
   std::size_t count_ = 0;
   std::vector<Line> lines_; // with padding

@@ -40,6 +40,22 @@ using LineSweep = std::size_t (*)(const Line& line, const Line* lines, const Lin
                                   std::size_t begin, std::size_t end, std::uint32_t* found);
 inline constexpr std::size_t sweep_padding = 16;
 
-LineSweep line_sweep(InstructionSet set);
+/// Indices of two lines.
+struct LinePair {
+  std::uint32_t first, second;
+};
+
+/// The same for each of the lines [first, last) at once. [begin, end) lies before all of them or begins after the first
+/// one; then pairs are of a line with those that come after it. Writes those that may touch; `found` must have room for
+/// all.
+using LineGroupSweep = std::size_t (*)(const Line* lines, std::size_t first, std::size_t last, const LineFrame& frame,
+                                       const LineSpan& span, std::size_t begin, std::size_t end, LinePair* found);
+
+struct LineSweeps {
+  LineSweep one;
+  LineGroupSweep group;
+};
+
+LineSweeps line_sweeps(InstructionSet set);
 
 } // namespace keeler

@@ -121,8 +121,8 @@ public:
   /// Pairs of slots that may touch in the span, of the slots [begin, end) with all after them: found(slot, slot, ...).
   /// Returns how many pairs were tested.
   template<class Found>
-  std::uint64_t sweep_pairs(std::size_t begin, std::size_t end, const LineSpan& span,
-                            std::vector<std::uint32_t>& buffer, const Found& found) const;
+  std::uint64_t sweep_pairs(std::size_t begin, std::size_t end, const LineSpan& span, std::vector<LinePair>& buffer,
+                            const Found& found) const;
 
   /// Slots that may touch a line in the span, put into the buffer; returns how many. The part encloses the line.
   std::size_t near(const MirrorPart& part, const Line& line, const LineSpan& span,
@@ -155,25 +155,26 @@ private:
     std::int64_t first, last; // beyond the box's edges they count on
   };
   Columns columns_near(const MirrorLevel& level, const Line& line) const;
-  // The places that a line takes in a span: so many metres around one.
+  // The places that a line, or each of several, takes in a span: so many metres around one.
   struct Lookout {
-    std::int64_t x;      // across
-    std::uint32_t along; // from the line's own place
+    std::int64_t x;  // across
+    std::uint32_t y; // along
     double around_x, around_y;
+    double reach_x; // of the lines in the whole window
   };
-  Lookout lookout(const Line& line) const { return {across(line), 0, reach_x(line), reach_y(line)}; }
+  Lookout lookout(std::size_t first, std::size_t last) const;
   Lookout lookout(const Line& line, const LineSpan& span) const;
+  std::size_t group_end(std::size_t first, std::size_t end, const MirrorLevel& level) const;
   std::size_t sweep_copy(const Line& line, const LineSpan& span, std::uint32_t begin, std::uint32_t end,
                          std::uint32_t* found) const;
   template<class Range>
-  void ranges_in(const MirrorLevel& level, const Line& line, const Lookout& from, std::uint32_t after,
-                 const Range& range) const;
+  void ranges_in(const MirrorLevel& level, const Lookout& from, std::uint32_t after, const Range& range) const;
   template<class Slots>
   void rows_in(const MirrorLevel& level, std::size_t cell, std::uint32_t y, std::int64_t far, const Slots& slots) const;
-  // Where a line looks for those whose images stand so many boxes outward, as a fraction of the box.
-  std::uint32_t image_y(const Line& line, int boxes) const {
-    return static_cast<std::uint32_t>(line.y) + (std::uint32_t{1} << 31) +
-           static_cast<std::uint32_t>(boxes) * static_cast<std::uint32_t>(frame_.offset_y);
+  static std::uint32_t along(const Line& line) { return static_cast<std::uint32_t>(line.y) + (std::uint32_t{1} << 31); }
+  // Where to look for those whose images stand so many boxes outward.
+  std::uint32_t image_y(std::uint32_t y, int boxes) const {
+    return y + static_cast<std::uint32_t>(boxes) * static_cast<std::uint32_t>(frame_.offset_y);
   }
 
   ShearingBox box_;
@@ -186,7 +187,7 @@ private:
   MirrorMeans means_;
   LineFrame frame_{};
   double per_metre_x_ = 0.0, per_metre_y_ = 0.0; // box fractions, in units of 2⁻³²
-  LineSweep sweep_ = line_sweep(choose_instruction_set());
+  LineSweeps sweeps_ = line_sweeps(choose_instruction_set());
 
   std::vector<Line> unsorted_; // by place, while building; then notes
   MirrorPart whole_;
@@ -203,13 +204,12 @@ inline Mirror::Columns Mirror::columns_near(const MirrorLevel& level, const Line
   return {(x - far) * level.columns >> 32, (x + far) * level.columns >> 32};
 }
 
-// Slots from `after` on that lie in the level's cells within reach of the line.
+// Slots from `after` on that lie in the level's cells within reach.
 template<class Range>
-void Mirror::ranges_in(const MirrorLevel& level, const Line& line, const Lookout& from, std::uint32_t after,
-                       const Range& range) const {
+void Mirror::ranges_in(const MirrorLevel& level, const Lookout& from, std::uint32_t after, const Range& range) const {
   if (level.end <= after)
     return;
-  const double sheared = box_.shear * window_.half_length * (reach_x(line) + level.reach_x);
+  const double sheared = box_.shear * window_.half_length * (from.reach_x + level.reach_x);
   const double metres_x = from.around_x + level.reach_x + level.stray_x;
   const double metres_y = from.around_y + level.reach_y + level.stray_y + sheared;
   const std::int64_t far_x = static_cast<std::int64_t>(metres_x * per_metre_x_) + 4;
@@ -228,7 +228,7 @@ void Mirror::ranges_in(const MirrorLevel& level, const Line& line, const Lookout
     const int boxes = c < 0 ? -1 : c >= level.columns ? 1 : 0; // outward
     const std::size_t cell = level.first_cell + static_cast<std::size_t>((c - boxes * level.columns) * level.rows);
     if (starts_[cell + static_cast<std::size_t>(level.rows)] > after)
-      rows_in(level, cell, image_y(line, boxes) + from.along, far_y, slots);
+      rows_in(level, cell, image_y(from.y, boxes), far_y, slots);
   }
 }
 
@@ -256,25 +256,30 @@ void Mirror::rows_in(const MirrorLevel& level, std::size_t cell, std::uint32_t y
 
 template<class Found>
 std::uint64_t Mirror::sweep_pairs(std::size_t begin, std::size_t end, const LineSpan& span,
-                                  std::vector<std::uint32_t>& buffer, const Found& found) const {
+                                  std::vector<LinePair>& buffer, const Found& found) const {
   std::uint64_t tested = 0;
+  // the slots [first, last) with those of a level from `after` on
+  const auto sweep = [&](std::size_t first, std::size_t last, const MirrorLevel& level, std::size_t after) {
+    ranges_in(
+        level, lookout(first, last), static_cast<std::uint32_t>(after), [&](std::uint32_t low, std::uint32_t high) {
+          const std::size_t most = (last - first) * (high - low);
+          tested += most;
+          if (buffer.size() < most)
+            buffer.resize(most);
+          const std::size_t count = sweeps_.group(lines_.data(), first, last, frame_, span, low, high, buffer.data());
+          for (std::size_t k = 0; k < count; ++k)
+            found(buffer[k].first, buffer[k].second);
+        });
+  };
   auto own = whole_.levels.begin();
-  for (std::size_t slot = begin; slot < end; ++slot) {
-    while (slot >= own->end)
+  for (std::size_t first = begin, last = begin; first < end; first = last) {
+    while (first >= own->end)
       ++own;
-    const Line& line = lines_[slot];
-    const Lookout from = lookout(line);
-    const auto range = [&](std::uint32_t first, std::uint32_t last) {
-      tested += last - first;
-      if (buffer.size() < last - first + sweep_padding)
-        buffer.resize(last - first + sweep_padding);
-      const std::size_t count = sweep_(line, lines_.data(), frame_, span, first, last, buffer.data());
-      for (std::size_t k = 0; k < count; ++k)
-        found(slot, std::size_t{buffer[k]});
-    };
-    for (auto level = whole_.levels.begin(); level != own; ++level)
-      ranges_in(*level, line, from, 0, range);
-    ranges_in(*own, line, from, static_cast<std::uint32_t>(slot) + 1, range);
+    last = group_end(first, std::min<std::size_t>(end, own->end), *own);
+    sweep(first, last, *own, first + 1);
+    for (auto finer = whole_.levels.begin(); finer != own; ++finer) // much smaller than the group
+      for (std::size_t slot = first; slot < last; ++slot)
+        sweep(slot, slot + 1, *finer, 0);
   }
   return tested;
 }

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 using namespace keeler;
 
@@ -105,11 +107,23 @@ struct Row {
     return least;
   }
 
+  LineSpan span() const { return {static_cast<float>(-half * (1.0 + 1e-6)), static_cast<float>(half * (1.0 + 1e-6))}; }
+
   std::vector<std::uint32_t> sweep(InstructionSet set, std::size_t begin, std::size_t end) const {
     std::vector<std::uint32_t> found(end - begin + sweep_padding);
-    const LineSpan span{static_cast<float>(-half * (1.0 + 1e-6)), static_cast<float>(half * (1.0 + 1e-6))};
-    found.resize(line_sweep(set)(one, others.data(), frame, span, begin, end, found.data()));
+    found.resize(line_sweeps(set).one(one, others.data(), frame, span(), begin, end, found.data()));
     return found;
+  }
+
+  std::vector<std::pair<std::uint32_t, std::uint32_t>>
+  sweep_group(InstructionSet set, std::size_t first, std::size_t last, std::size_t begin, std::size_t end) const {
+    std::vector<LinePair> found((last - first) * (end - begin));
+    found.resize(line_sweeps(set).group(others.data(), first, last, frame, span(), begin, end, found.data()));
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    for (const LinePair& pair : found)
+      pairs.emplace_back(pair.first, pair.second);
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
   }
 };
 
@@ -152,4 +166,35 @@ TEST_CASE("all instruction sets leave out the same lines, of any stretch of a ro
         CHECK((row.sweep(set, begin, end) == expected));
       }
   }
+}
+
+TEST_CASE("a group of lines finds what each of them finds, and each pair within it once") {
+  std::size_t pairs = 0;
+  for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+    Row row(seed);
+    for (Line& line : row.others)
+      line.size *= 20.0f; // they stand about the one line, and few would touch each other
+    const auto below = [&](std::size_t count) {
+      return static_cast<std::size_t>(row.random.uniform() * static_cast<double>(count));
+    };
+    const std::size_t first = below(number), last = first + 1 + below(std::min<std::size_t>(8, number - first));
+    const bool before = seed % 2 == 0;
+    const std::size_t begin = before ? below(first + 1) : first + 1,
+                      end = before ? begin + below(first + 1 - begin) : begin + below(number + 1 - begin);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> expected;
+    for (std::size_t m = first; m < last; ++m) {
+      row.one = row.others[m];
+      for (const std::uint32_t k : row.sweep(InstructionSet::portable, begin, end))
+        if (before || k > m)
+          expected.emplace_back(static_cast<std::uint32_t>(m), k);
+    }
+    pairs += expected.size();
+    for (const InstructionSet set : {InstructionSet::portable, InstructionSet::avx2, InstructionSet::avx512})
+      if (supports(set)) {
+        CAPTURE(seed);
+        CAPTURE(instruction_set_name(set));
+        CHECK((row.sweep_group(set, first, last, begin, end) == expected));
+      }
+  }
+  CHECK(pairs > 10000);
 }
