@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <tuple>
 
 namespace keeler {
@@ -84,27 +85,29 @@ struct DriftPhase::InPlace {
       crowd->visit(last_change(i), buffer, [&](std::uint32_t j) {
         drift.neighbours_.visit_nearest(body(i), body(j), last_change(i), [&](const Image& image) { visit(j, image); });
       });
-    else if (!drift.neighbours_.visit_partners(i, last_change(i), visit))
+    else if (const std::optional<std::size_t> near = drift.neighbours_.visit_partners(i, last_change(i), visit); !near)
       drift.neighbours_.visit_everywhere(i, last_change(i), visit);
+    else
+      gather_crowd(static_cast<std::uint32_t>(i), *near);
   }
 
-  // One is gathered at the second hit of a step, and now and then when that one was lost.
-  const Crowd* crowd_of(std::uint32_t i) {
+  // At the second hit of a step, and now and then when one was lost, for a particle with many around it.
+  void gather_crowd(std::uint32_t i, std::size_t near) {
+    constexpr std::size_t many = 32;
     constexpr std::uint32_t apart = 8; // hits
-    Crowd* crowd = drift.crowds_.of(i);
-    const Neighbours& neighbours = drift.neighbours_;
-    if (!crowd && stamp(i) % apart == 2) {
-      crowd = drift.crowds_.add(drift.step_at_hand_, i);
-      if (crowd && !neighbours.gather(i, last_change(i), buffer, *crowd)) {
-        drift.crowds_.drop(crowd);
-        crowd = nullptr;
-      }
-    }
-    if (crowd && !(neighbours.holds(*crowd))) {
+    if (near < many || stamp(i) % apart != 2)
+      return;
+    Crowd* crowd = drift.crowds_.add(drift.step_at_hand_, i);
+    if (crowd && !drift.neighbours_.gather(i, last_change(i), buffer, *crowd))
       drift.crowds_.drop(crowd);
-      crowd = nullptr;
-    }
-    return crowd;
+  }
+
+  const Crowd* crowd_of(std::uint32_t i) {
+    const Crowd* crowd = drift.crowds_.of(i);
+    if (!crowd || drift.neighbours_.holds(*crowd))
+      return crowd;
+    drift.crowds_.drop(crowd);
+    return nullptr;
   }
 
   void prefetch(std::size_t i, int stage) const {

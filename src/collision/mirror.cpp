@@ -108,6 +108,7 @@ void Mirror::take_lines(const Particles& particles) {
       [&](std::size_t b) {
         Measured& m = measured[b];
         for (std::size_t k = b * block_size; k < std::min(bodies.size(), (b + 1) * block_size); ++k) {
+          particles.prefetch_after(k);
           const Elements& el = bodies[k].elements;
           if (!std::isfinite(el.guiding_x + el.guiding_y + el.e_cos + el.e_sin + el.i_sin + el.i_cos)) {
             m.broken = std::min(m.broken, k);

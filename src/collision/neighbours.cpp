@@ -10,7 +10,6 @@ constexpr double longest_window = 1.0; // rad: bounds and rounding are good for 
 constexpr double window_hits = 0.3;    // of a particle in a window: more, and lists are remade too often
 constexpr double window_skin = 0.2;    // of a mean radius
 constexpr double farthest_stray = 2.0; // of lines from their cells before a window ends
-constexpr std::size_t fewest_in_crowd = 32;
 
 } // namespace
 
@@ -138,8 +137,6 @@ bool Neighbours::gather(std::size_t i, double start, std::vector<std::uint32_t>&
     return false;
   const double now = since_middle();
   const std::size_t count = mirror_.near(mirror_.whole(), line, span(now + start, now + 0.5 * step_), buffer);
-  if (count < fewest_in_crowd)
-    return false;
   for (std::size_t k = 0; k < count; ++k)
     if (const std::uint32_t j = mirror_.place(buffer[k]); j != i)
       crowd.take(j);

@@ -102,6 +102,7 @@ void Simulation::move_on() {
   const double offset = state_.epoch_offset();
   const double gain = -0.25 * f.shear() * f.kappa * f.kappa;
   state_.energy.wrap_work += ordered_sum(state_.particles.size(), [&](std::size_t k) {
+    state_.particles.prefetch_after(k);
     Body& body = state_.particles.bodies[k];
     Elements& el = body.elements;
     rebase(el);
@@ -146,6 +147,7 @@ void Simulation::half_kick() {
       largest = a.squaredNorm();
   drift_.kicked(half * std::sqrt(largest));
   state_.energy.kick_work += ordered_sum(state_.particles.size(), [&](std::size_t k) {
+    state_.particles.prefetch_after(k);
     Body& body = state_.particles.bodies[k];
     const Vec3 dv = half * state_.accelerations[k];
     const Vec3 v = state_at(body.elements, f, rotation).velocity;
@@ -160,6 +162,7 @@ GravityProblem Simulation::gravity_problem(std::vector<Vec3>& positions, std::ve
   positions.resize(count);
   masses.resize(count);
   parallel_for(count, [&](std::size_t k) {
+    state_.particles.prefetch_after(k);
     const Body& body = state_.particles.bodies[k];
     positions[k] = state_at(body.elements, scene_.planet.frequencies, rotation).position;
     masses[k] = body.mass;

@@ -15,6 +15,7 @@
 #include <keeler/core/threads.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -52,7 +53,8 @@ public:
   bool visit_partners(const MirrorPart& part, std::size_t i, double start, std::vector<std::uint32_t>& buffer,
                       const Visit& visit) const;
   /// The same in sequence: looks around for the rest of the window at once, so that settle() need not do so again.
-  template<class Visit> bool visit_partners(std::size_t i, double start, const Visit& visit);
+  /// Returns how many may be met in it, or nothing.
+  template<class Visit> std::optional<std::size_t> visit_partners(std::size_t i, double start, const Visit& visit);
   /// The same for such an orbit, all images of all particles tried.
   template<class Visit> void visit_everywhere(std::size_t i, double start, const Visit& visit) const;
   /// Calls visit(j) for every other particle that particle i may meet from `start` to the end of the step when j has
@@ -69,8 +71,8 @@ public:
     if (step_test_.may_touch(a, b, shift.x(), shift.y(), start))
       visit(image);
   }
-  /// Takes everybody into the crowd of particle i that it may meet from `start` to the end of the step. Returns false,
-  /// with some of them missing, when they are too few for that to be of use, or when the orbit of i is too fast.
+  /// Takes everybody into the crowd of particle i that it may meet from `start` to the end of the step. Returns false
+  /// when the orbit of i is so fast that it may meet another one through several images.
   bool gather(std::size_t i, double start, std::vector<std::uint32_t>& buffer, Crowd& crowd) const;
   /// Whether a crowd still serves: the centre keeps to its path, and nearest images are all that it may meet.
   bool holds(const Crowd& crowd) const {
@@ -199,10 +201,11 @@ bool Neighbours::visit_partners(const MirrorPart& part, std::size_t i, double st
   return true;
 }
 
-template<class Visit> bool Neighbours::visit_partners(std::size_t i, double start, const Visit& visit) {
+template<class Visit>
+std::optional<std::size_t> Neighbours::visit_partners(std::size_t i, double start, const Visit& visit) {
   const Line& line = mirror_.line(i);
   if (!mirror_.one_image(line, mirror_.whole()))
-    return false;
+    return std::nullopt;
   const Body& body = particles_->bodies[i];
   const LineSpan rest = span(since_middle() + start, 0.5 * length_ * step_);
   const std::size_t count = mirror_.near(mirror_.whole(), line, rest, buffer_);
@@ -219,7 +222,7 @@ template<class Visit> bool Neighbours::visit_partners(std::size_t i, double star
   }
   if (look)
     look->end = static_cast<std::uint32_t>(seen_.size());
-  return true;
+  return count;
 }
 
 template<class Visit>
