@@ -14,7 +14,7 @@ namespace {
 namespace cost {
 // Measured on one core with AVX-512: `keeler run` of both examples, and peak memory at N = 10⁵ and 4 × 10⁵.
 constexpr double drift_ns = 150.0;         // per particle and step, uniform patch
-constexpr double clumped_drift_ns = 290.0; // the same among self-gravity wakes
+constexpr double clumped_drift_ns = 240.0; // the same among self-gravity wakes
 constexpr double tree_ns = 400.0;          // per particle and kick, 9 boxes, opening angle 0.6
 constexpr double mesh_ns = 130.0;          // per particle and kick
 constexpr double neighbours_ns = 50.0;     // the same, for each mesh spacing that they reach
@@ -42,10 +42,11 @@ double bytes_per_particle(const Scene& scene) {
   return total;
 }
 
-double gravity_ns_per_kick(const GravitySettings& settings, double count) {
+double gravity_ns_per_kick(const GravitySettings& settings, double count, const SizeLaw& sizes) {
   const GravitySettings gravity = chosen_for(static_cast<std::size_t>(count), settings);
   if (gravity.solver == GravitySettings::Solver::fft)
-    return cost::mesh_ns + cost::neighbours_ns * cut_for(gravity.force_error);
+    return cost::mesh_ns +
+           cost::neighbours_ns * cut_for(gravity.force_error, std::sqrt(sizes.mean_power(6)) / sizes.mean_power(3));
   if (gravity.solver == GravitySettings::Solver::mesh)
     return cost::mesh_ns;
   const double side = 2.0 * gravity.images.rings + 1.0;
@@ -61,7 +62,7 @@ double estimate_seconds(const Scene& scene, std::int64_t steps) {
   const double count = static_cast<double>(scene.particles.count);
   double ns_per_step = scene.gravity ? cost::clumped_drift_ns : cost::drift_ns;
   if (scene.gravity)
-    ns_per_step += gravity_ns_per_kick(*scene.gravity, count) / scene.gravity->kick_every;
+    ns_per_step += gravity_ns_per_kick(*scene.gravity, count, scene.particles.sizes) / scene.gravity->kick_every;
   return 1e-9 * ns_per_step * count * static_cast<double>(steps);
 }
 

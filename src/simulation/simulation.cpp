@@ -59,7 +59,7 @@ Simulation::Simulation(const Scene& scene, SimulationState state)
     : scene_(scene), state_(std::move(state)),
       drift_(scene.collisions, scene.planet.frequencies, scene.planet.orbital_frequency, state_.step_length) {
   if (scene_.gravity)
-    solver_ = make_gravity_solver(*scene_.gravity, state_.particles.size(), state_.box.area());
+    solver_ = make_gravity_solver(*scene_.gravity, gravity_problem(positions_, masses_).masses, state_.box.area());
 }
 
 void Simulation::advance() {

@@ -116,7 +116,7 @@ GravityBench bench_gravity(const GravityBenchSettings& settings) {
   progress.begin("timing", static_cast<double>(choices.size()));
   std::vector<Vec3> accelerations(bench.count);
   for (const GravityChoice& choice : choices) {
-    const std::unique_ptr<GravitySolver> solver = make_gravity_solver(choice.settings, bench.count, patch.box.area());
+    const std::unique_ptr<GravitySolver> solver = make_gravity_solver(choice.settings, patch.masses, patch.box.area());
     const std::vector<double> times = solve_times(*solver, problem, accelerations, settings.repeats);
     bench.rows.push_back({choice, force_errors(sample, exact, accelerations), net_force(patch.masses, accelerations),
                           1e9 * median(times) / static_cast<double>(bench.count)});

@@ -44,8 +44,7 @@ struct Bodies {
 
   std::vector<Vec3> accelerations(const GravitySettings& settings) const {
     std::vector<Vec3> result(positions.size());
-    make_gravity_solver(settings, positions.size(), box.area())
-        ->accelerate({positions, masses, ids, box, offset, 1.0}, result);
+    make_gravity_solver(settings, masses, box.area())->accelerate({positions, masses, ids, box, offset, 1.0}, result);
     return result;
   }
 };

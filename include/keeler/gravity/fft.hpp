@@ -10,6 +10,7 @@
 #include <keeler/gravity/solver.hpp>
 
 #include <memory>
+#include <span>
 
 namespace keeler {
 
@@ -22,9 +23,12 @@ struct FftSettings {
 /// The cheapest spacing of the mesh, in mean distances of particles, (their number an area)^−1/2.
 inline constexpr double cheapest_spacing = 1.6;
 
-/// A cut for a rms error of the force over its rms, with that spacing, whatever the sizes: it kept the error in every
-/// state measured (docs/dev/gravity-fft.md).
-double cut_for(double force_error);
+/// √⟨m²⟩ / ⟨m⟩: 1 for equal masses. The same bits in any order.
+double mass_spread(std::span<const double> masses);
+
+/// A cut for a rms error of the force over its rms, with that spacing: it kept the error in every state measured
+/// (docs/dev/gravity-fft.md).
+double cut_for(double force_error, double mass_spread);
 
 class FftSolver final : public GravitySolver {
 public:

@@ -51,8 +51,9 @@ struct GravitySettings {
 /// number measured (docs/theory/gravity.md); direct for a few. Others are returned as they are.
 GravitySettings chosen_for(std::size_t count, GravitySettings settings);
 
-/// The solver for so many particles on an area (m²). Throws UsageError when the environment variable KEELER_SIMD names
-/// instructions that are not to be had (simd.hpp).
-std::unique_ptr<GravitySolver> make_gravity_solver(const GravitySettings& settings, std::size_t count, double area);
+/// The solver for particles of these masses on an area (m²). Throws UsageError when the environment variable
+/// KEELER_SIMD names instructions that are not to be had (simd.hpp).
+std::unique_ptr<GravitySolver> make_gravity_solver(const GravitySettings& settings, std::span<const double> masses,
+                                                   double area);
 
 } // namespace keeler

@@ -111,7 +111,8 @@ TEST_CASE("settings for a required error keep it") {
     const ClumpedState state = clumped_state(600, 14, size_range);
     const std::vector<Vec3> reference = exact(state, 3);
     for (const double wanted : {5e-3, 2e-3, 5e-4, 1e-4}) {
-      const FftSettings settings{cheapest_spacing * std::sqrt(state.box.area() / 600), cut_for(wanted)};
+      const FftSettings settings{cheapest_spacing * std::sqrt(state.box.area() / 600),
+                                 cut_for(wanted, mass_spread(state.masses))};
       const double error = rms_error(by_fft(state, settings), reference);
       MESSAGE("wanted " << wanted << ": " << settings.spacing << " m, cut " << settings.cut << ", error " << error);
       CHECK(error < wanted);

@@ -39,7 +39,7 @@ TEST_CASE("KEELER_SIMD names the instruction set, and a wrong name is a usage er
     const Environment environment(instruction_set_name(set));
     if (supports(set)) {
       CHECK(choose_instruction_set() == set);
-      CHECK_NOTHROW(make_gravity_solver({}, 100, 1e4));
+      CHECK_NOTHROW(make_gravity_solver({}, std::vector<double>(100, 1.0), 1e4));
     } else {
       CHECK_THROWS_AS(choose_instruction_set(), UsageError);
     }
@@ -47,7 +47,7 @@ TEST_CASE("KEELER_SIMD names the instruction set, and a wrong name is a usage er
   {
     const Environment environment("sse9");
     CHECK_THROWS_WITH_AS(
-        make_gravity_solver({}, 100, 1e4),
+        make_gravity_solver({}, std::vector<double>(100, 1.0), 1e4),
         "KEELER_SIMD=sse9 is not an instruction set known here; use portable, avx2 or avx512, or unset it", UsageError);
   }
   const Environment environment("");

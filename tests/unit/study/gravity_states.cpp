@@ -74,7 +74,7 @@ TEST_CASE("every gravity solver on the list is found by its name") {
     CHECK(default_gravity_choice(name).solver == name);
   for (const bool dense : {false, true})
     for (const GravityChoice& choice : gravity_choices(dense)) {
-      CHECK(make_gravity_solver(choice.settings, 1000, 1e4)->name() == choice.solver);
+      CHECK(make_gravity_solver(choice.settings, std::vector<double>(1000, 1.0), 1e4)->name() == choice.solver);
       CHECK_FALSE(choice.text.empty());
     }
 }
