@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 #include <tuple>
 
 namespace keeler {
@@ -56,7 +55,7 @@ struct DriftPhase::InPlace {
     if (drift.through_grid_)
       drift.grid_.changed(i);
     else
-      drift.neighbours_.changed(i);
+      drift.neighbours_.changed(drift.neighbours_.whole(), 0, i);
     drift.crowds_.changed(i);
     drift.finder_->changed(i);
     if (drift.watch)
@@ -85,17 +84,17 @@ struct DriftPhase::InPlace {
       crowd->visit(last_change(i), buffer, [&](std::uint32_t j) {
         drift.neighbours_.visit_nearest(body(i), body(j), last_change(i), [&](const Image& image) { visit(j, image); });
       });
-    else if (const std::optional<std::size_t> near = drift.neighbours_.visit_partners(i, last_change(i), visit); !near)
-      drift.neighbours_.visit_everywhere(i, last_change(i), visit);
-    else
+    else if (const auto near =
+                 drift.neighbours_.visit_partners(drift.neighbours_.whole(), 0, i, last_change(i), buffer, visit))
       gather_crowd(static_cast<std::uint32_t>(i), *near);
+    else
+      drift.neighbours_.visit_everywhere(i, last_change(i), visit);
   }
 
   // At the second hit of a step, and now and then when one was lost, for a particle with many around it.
   void gather_crowd(std::uint32_t i, std::size_t near) {
-    constexpr std::size_t many = 32;
     constexpr std::uint32_t apart = 8; // hits
-    if (near < many || stamp(i) % apart != 2)
+    if (near < Neighbours::fewest_in_crowd || stamp(i) % apart != 2)
       return;
     Crowd* crowd = drift.crowds_.add(drift.step_at_hand_, i);
     if (crowd && !drift.neighbours_.gather(i, last_change(i), buffer, *crowd))
@@ -145,6 +144,7 @@ void DriftPhase::collide(Particles& particles, const ShearingBox& box, double of
   const std::uint64_t contacts_before = costs_.contacts;
   if (!in_strips(first, tally)) {
     events_.assign(first);
+    neighbours_.set_lookers(1);
     InPlace orbits{*this, tally, {}};
     ContactLoop loop(step_at_hand_, orbits, events_);
     loop.run();

@@ -53,14 +53,15 @@ inline std::size_t sweep(const Line& line, const Line* lines, const LineFrame& f
 
 inline std::size_t sweep_group(const Line* lines, std::size_t first, std::size_t last, const LineFrame& frame,
                                const LineSpan& span, std::size_t begin, std::size_t end, LinePair* found) {
+  const bool after = first < end; // the first line: then a line takes in those behind itself only
   std::size_t count = 0;
   for (std::size_t k = begin; k < end; k += lanes) {
     const Fields others = load(lines + k);
     const unsigned inside = k + lanes > end ? (1u << (end - k)) - 1u : ~0u;
-    const bool own = first < end; // then each pair is met twice
-    for (std::size_t m = first; m < (own ? std::min(last, k + lanes - 1) : last); ++m) {
+    const std::size_t stop = after && k + lanes - 1 < last ? k + lanes - 1 : last;
+    for (std::size_t m = first; m < stop; ++m) {
       unsigned bits = near(lines[m], others, frame, span) & inside;
-      if (own && m >= k)
+      if (after && m >= k)
         bits &= ~0u << (m + 1 - k);
       for (; bits; bits &= bits - 1)
         found[count++] = {static_cast<std::uint32_t>(m),

@@ -1,8 +1,6 @@
 // Lines for AVX2: eight lanes. Compiled with -mavx2.
 #include <keeler/collision/line_sweep.hpp>
 
-#include <algorithm>
-
 #include <immintrin.h>
 
 #define KEELER_KERNEL_SPACE line_sweep_avx2

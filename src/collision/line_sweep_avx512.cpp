@@ -1,8 +1,6 @@
 // Lines for AVX-512: sixteen lanes. Compiled with -mavx512f.
 #include <keeler/collision/line_sweep.hpp>
 
-#include <algorithm>
-
 #include <immintrin.h>
 
 #define KEELER_KERNEL_SPACE line_sweep_avx512

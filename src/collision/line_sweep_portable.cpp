@@ -1,8 +1,6 @@
 // Lines for any processor: four lanes.
 #include <keeler/collision/line_sweep.hpp>
 
-#include <algorithm>
-
 #define KEELER_KERNEL_SPACE line_sweep_portable
 
 namespace keeler::KEELER_KERNEL_SPACE {

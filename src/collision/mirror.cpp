@@ -16,6 +16,7 @@ constexpr double nearest_share = 0.45;     // of the box: what reaches less far 
 constexpr double cells_per_particle = 2.0; // no more,
 constexpr double fewest_cells = 64.0;      // unless these are: columns, so that strips find edges
 constexpr std::size_t most_in_group = 8;   // lines that look around together,
+constexpr std::int64_t fewest_columns = 8; // for that
 constexpr double longest_group = 4.0;      // in reaches of their level
 constexpr double single = 4e-6;            // of a path: what single precision may do to a line
 constexpr double full_turn = 4294967296.0; // 2³², the box
@@ -262,8 +263,11 @@ Mirror::Lookout Mirror::lookout(const Line& line, const LineSpan& span) const {
           line.size + half * std::fabs(line.u), line.size + half * std::fabs(line.v), reach_x(line)};
 }
 
-// Lines that follow each other in a column look around together: up to this slot.
+// Lines that follow each other and stand close together look around together: up to this slot. Not where that might be
+// all around a narrow box.
 std::size_t Mirror::group_end(std::size_t first, std::size_t end, const MirrorLevel& level) const {
+  if (level.columns < fewest_columns)
+    return first + 1;
   const auto near_x = static_cast<std::int64_t>(2.0 * level.reach_x * per_metre_x_);
   const auto near_y = static_cast<std::int64_t>(longest_group * level.reach_y * per_metre_y_);
   std::size_t last = first + 1;

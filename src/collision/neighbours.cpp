@@ -28,8 +28,8 @@ bool Neighbours::begin(const Particles& particles, const ShearingBox& box, doubl
   if (!(goes_on_ && !over_ && same && at_step_ < length_ && kick_path_ <= skin_))
     open();
   goes_on_ = false;
-  looks_.clear();
-  seen_.assign(1, 0); // looks begin behind
+  for (Looks& looks : looks_)
+    looks.too_many = false;
   const double half = 0.5 * step_;
   to_middle_ = Rotation(frequencies_, -since_middle());
   step_test_ = {frequencies_, half, half, 1e-13 * (box_.size_x + box_.size_y)};
@@ -137,6 +137,8 @@ bool Neighbours::gather(std::size_t i, double start, std::vector<std::uint32_t>&
     return false;
   const double now = since_middle();
   const std::size_t count = mirror_.near(mirror_.whole(), line, span(now + start, now + 0.5 * step_), buffer);
+  if (count < fewest_in_crowd)
+    return false;
   for (std::size_t k = 0; k < count; ++k)
     if (const std::uint32_t j = mirror_.place(buffer[k]); j != i)
       crowd.take(j);
@@ -151,21 +153,31 @@ double Neighbours::departure(const Elements& change) const {
   return s.position.norm() + half * s.velocity.norm() + 0.5 * acceleration * half * half;
 }
 
-void Neighbours::changed(std::size_t i) {
-  if (looks_needed()) {
-    mirror_.note(i) = static_cast<std::uint32_t>(looks_.size());
-    looks_.emplace_back();
+void Neighbours::set_lookers(std::size_t count) {
+  if (looks_.size() < count)
+    looks_.resize(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    looks_[k].made.clear();
+    looks_[k].seen.assign(1, 0); // looks begin behind
   }
-  changed(mirror_.whole(), i);
 }
 
-void Neighbours::changed(MirrorPart& part, std::size_t i) {
+void Neighbours::changed(MirrorPart& part, std::size_t looker, std::size_t i) {
+  if (looks_needed()) {
+    Looks& looks = looks_[looker];
+    looks.too_many |= looks.made.size() == most_looks;
+    if (looks.too_many) // which ends the window
+      looks.made.clear();
+    mirror_.note(i) = static_cast<std::uint32_t>(looker * most_looks + looks.made.size());
+    looks.made.emplace_back();
+  }
   changed_[i] = static_cast<std::uint8_t>(at_step_ + 1);
   mirror_.replace(part, i, line_of(particles_->bodies[i]));
 }
 
 void Neighbours::restore(MirrorPart& part, std::size_t i, const Line& line, Mark mark) {
-  changed_[i] = mark;
+  changed_[i] = mark.changed;
+  mirror_.note(i) = mark.look;
   mirror_.replace(part, i, line);
 }
 
@@ -173,7 +185,8 @@ void Neighbours::settle(std::span<const std::uint32_t> particles, std::uint64_t 
   hits_ += 2 * collisions;
   if (!looks_needed())
     return;
-  if (mirror_.stray() > farthest_stray) {
+  if (mirror_.stray() > farthest_stray ||
+      std::any_of(looks_.begin(), looks_.end(), [](const Looks& looks) { return looks.too_many; })) {
     over_ = true;
     return;
   }
@@ -201,8 +214,9 @@ void Neighbours::settle(std::span<const std::uint32_t> particles, std::uint64_t 
             if (j != i && (changed_[j] != this_step || lists(i, j)))
               list.push_back(entry(i, j));
           };
-          if (const Look look = looks_.empty() ? Look{} : looks_[mirror_.note(i)]; look.begin > 0) {
-            std::for_each(seen_.begin() + look.begin, seen_.begin() + look.end, keep);
+          if (const Look last = look(i); last.begin > 0) {
+            const std::vector<std::uint32_t>& seen = looks_[mirror_.note(i) / most_looks].seen;
+            std::for_each(seen.begin() + last.begin, seen.begin() + last.end, keep);
             continue;
           }
           const std::size_t count = mirror_.near(mirror_.whole(), line, rest, buffer);
@@ -220,8 +234,9 @@ void Neighbours::release() {
 }
 
 std::size_t Neighbours::bytes() const {
-  std::size_t total = mirror_.bytes() + changed_.capacity() + looks_.capacity() * sizeof(Look);
-  total += (seen_.capacity() + buffer_.capacity()) * sizeof(std::uint32_t);
+  std::size_t total = mirror_.bytes() + changed_.capacity();
+  for (const Looks& looks : looks_)
+    total += sizeof looks + looks.made.capacity() * sizeof(Look) + looks.seen.capacity() * sizeof(std::uint32_t);
   for (const List& list : lists_)
     total += list.entries.capacity() * sizeof(Entry) + sizeof list;
   return total;

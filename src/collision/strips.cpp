@@ -13,6 +13,7 @@ struct Strips::Orbits {
   std::size_t next_barred = 0;
   std::vector<std::uint32_t> barred{}, buffer{};
 
+  std::size_t number() const { return static_cast<std::size_t>(&strip - all.strips_.data()); }
   const Body& body(std::size_t i) const { return all.particles_->bodies[i]; }
   std::uint32_t stamp(std::size_t i) const { return all.so_far_->stamp(i); }
   double last_change(std::size_t i) const { return all.so_far_->last_change(i); }
@@ -83,11 +84,10 @@ struct Strips::Orbits {
     strip.failed |= strip.changes.size() + 3 > most_changes;
     if (!earlier)
       strip.touched.push_back(i);
-    const auto number = static_cast<std::size_t>(&strip - all.strips_.data());
-    all.newest_[i] = static_cast<std::uint32_t>(number * most_changes + strip.changes.size());
+    all.newest_[i] = static_cast<std::uint32_t>(number() * most_changes + strip.changes.size());
     all.so_far_->change(i, time);
     body.elements = elements;
-    all.neighbours_->changed(strip.part, i);
+    all.neighbours_->changed(strip.part, number(), i);
   }
 
   std::uint32_t newest(std::size_t i) const { return stamp(i) > 0 ? all.newest_[i] : 0; }
@@ -127,7 +127,7 @@ struct Strips::Orbits {
   }
 
   template<class Visit> void visit_partners(std::size_t i, const Visit& visit) {
-    strip.failed |= !all.neighbours_->visit_partners(strip.part, i, last_change(i), buffer, visit);
+    strip.failed |= !all.neighbours_->visit_partners(strip.part, number(), i, last_change(i), buffer, visit);
   }
 
   FinderResult find(const Query& query) const { return all.finder_->find(query); }
@@ -144,6 +144,7 @@ bool Strips::carry_out(const StepAtHand& step, Particles& particles, StepSoFar& 
   neighbours_ = &neighbours;
   across_ = strips;
   cut(first);
+  neighbours_->set_lookers(strips_.size()); // row by row, as they follow each other
   const std::uint64_t repairs_before = repairs;
   for (std::size_t row = 0; row < rows;) {
     deal(row, row == 0 ? first : left_by(row - 1));

@@ -211,7 +211,7 @@ std::vector<Key> make_keys() {
        .type = number,
        .fallback = "2e-3",
        .unit = "rms force",
-       .meaning = "rms error of the force asked for, in a clumped patch",
+       .meaning = "rms error of the force asked for",
        .range = {.low = 1e-5, .high = 0.1},
        .only_with = {"gravity.solver", {"fft", "auto"}}},
       {.path = "gravity.mesh_spacing",

@@ -58,8 +58,11 @@ Simulation::Simulation(const Scene& scene, const Patch& start) : Simulation(scen
 Simulation::Simulation(const Scene& scene, SimulationState state)
     : scene_(scene), state_(std::move(state)),
       drift_(scene.collisions, scene.planet.frequencies, scene.planet.orbital_frequency, state_.step_length) {
-  if (scene_.gravity)
-    solver_ = make_gravity_solver(*scene_.gravity, gravity_problem(positions_, masses_).masses, state_.box.area());
+  if (scene_.gravity) {
+    for (const Body& body : state_.particles.bodies)
+      masses_.push_back(body.mass);
+    solver_ = make_gravity_solver(*scene_.gravity, masses_, state_.box.area());
+  }
 }
 
 void Simulation::advance() {

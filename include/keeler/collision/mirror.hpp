@@ -258,28 +258,32 @@ template<class Found>
 std::uint64_t Mirror::sweep_pairs(std::size_t begin, std::size_t end, const LineSpan& span,
                                   std::vector<LinePair>& buffer, const Found& found) const {
   std::uint64_t tested = 0;
-  // the slots [first, last) with those of a level from `after` on
-  const auto sweep = [&](std::size_t first, std::size_t last, const MirrorLevel& level, std::size_t after) {
-    ranges_in(
-        level, lookout(first, last), static_cast<std::uint32_t>(after), [&](std::uint32_t low, std::uint32_t high) {
-          const std::size_t most = (last - first) * (high - low);
-          tested += most;
-          if (buffer.size() < most)
-            buffer.resize(most);
-          const std::size_t count = sweeps_.group(lines_.data(), first, last, frame_, span, low, high, buffer.data());
-          for (std::size_t k = 0; k < count; ++k)
-            found(buffer[k].first, buffer[k].second);
-        });
+  // the slots [first, last) with the others of a range
+  const auto sweep = [&](std::size_t first, std::size_t last, std::uint32_t low, std::uint32_t high) {
+    const std::size_t most = (last - first) * (high - low);
+    if (buffer.size() < most)
+      buffer.resize(most);
+    const std::size_t count = sweeps_.group(lines_.data(), first, last, frame_, span, low, high, buffer.data());
+    for (std::size_t k = 0; k < count; ++k)
+      found(buffer[k].first, buffer[k].second);
+    tested += most;
+    for (std::size_t slot = first + 1; low > first && slot < last; ++slot) // behind itself only
+      tested -= std::min<std::size_t>(std::max<std::size_t>(slot + 1, low), high) - low;
   };
   auto own = whole_.levels.begin();
   for (std::size_t first = begin, last = begin; first < end; first = last) {
     while (first >= own->end)
       ++own;
     last = group_end(first, std::min<std::size_t>(end, own->end), *own);
-    sweep(first, last, *own, first + 1);
-    for (auto finer = whole_.levels.begin(); finer != own; ++finer) // much smaller than the group
-      for (std::size_t slot = first; slot < last; ++slot)
-        sweep(slot, slot + 1, *finer, 0);
+    ranges_in(*own, lookout(first, last), static_cast<std::uint32_t>(first) + 1,
+              [&](std::uint32_t low, std::uint32_t high) { sweep(first, last, low, high); });
+    if (own == whole_.levels.begin())
+      continue;
+    for (std::size_t slot = first; slot < last; ++slot) { // finer ones are much smaller than the group
+      const Lookout from = lookout(slot, slot + 1);
+      for (auto finer = whole_.levels.begin(); finer != own; ++finer)
+        ranges_in(*finer, from, 0, [&](std::uint32_t low, std::uint32_t high) { sweep(slot, slot + 1, low, high); });
+    }
   }
   return tested;
 }

@@ -47,14 +47,13 @@ public:
   std::size_t first_blocks() const { return first_lists_; }
 
   /// Calls visit(j, image of j) for every other particle that one with a new orbit may meet from `start` to the end of
-  /// the step, as the store and the mirror know them. Returns false, having visited nobody, when its orbit is so fast
-  /// that it may meet another one through several images. The part encloses it.
+  /// the step, as the store and the mirror know them. Looks around for the rest of the window at once, so that settle()
+  /// need not do so again; returns how many may be met in it, itself included. Returns nothing, having visited nobody,
+  /// when the orbit is so fast that it may meet another one through several images. The part encloses it, and the
+  /// looker is that part's.
   template<class Visit>
-  bool visit_partners(const MirrorPart& part, std::size_t i, double start, std::vector<std::uint32_t>& buffer,
-                      const Visit& visit) const;
-  /// The same in sequence: looks around for the rest of the window at once, so that settle() need not do so again.
-  /// Returns how many may be met in it, or nothing.
-  template<class Visit> std::optional<std::size_t> visit_partners(std::size_t i, double start, const Visit& visit);
+  std::optional<std::size_t> visit_partners(const MirrorPart& part, std::size_t looker, std::size_t i, double start,
+                                            std::vector<std::uint32_t>& buffer, const Visit& visit);
   /// The same for such an orbit, all images of all particles tried.
   template<class Visit> void visit_everywhere(std::size_t i, double start, const Visit& visit) const;
   /// Calls visit(j) for every other particle that particle i may meet from `start` to the end of the step when j has
@@ -71,8 +70,9 @@ public:
     if (step_test_.may_touch(a, b, shift.x(), shift.y(), start))
       visit(image);
   }
+  static constexpr std::size_t fewest_in_crowd = 32; ///< for it to be of use
   /// Takes everybody into the crowd of particle i that it may meet from `start` to the end of the step. Returns false
-  /// when the orbit of i is so fast that it may meet another one through several images.
+  /// when they are too few, or when the orbit of i is too fast.
   bool gather(std::size_t i, double start, std::vector<std::uint32_t>& buffer, Crowd& crowd) const;
   /// Whether a crowd still serves: the centre keeps to its path, and nearest images are all that it may meet.
   bool holds(const Crowd& crowd) const {
@@ -85,13 +85,20 @@ public:
   const Mirror& mirror() const { return mirror_; }
   Line line_of(const Body& body) const { return mirror_.line_of(body, to_middle_); }
 
-  /// A particle has been hit and has a new orbit. May be called several times a step.
-  void changed(std::size_t i);
-  /// The same for particles of different parts at the same time.
-  void changed(MirrorPart& part, std::size_t i);
+  /// Those who look around in this step: number 0 in the whole, others each in a part, at the same time as long as
+  /// parts do not overlap. Of two parts that do, the one with the higher number comes later.
+  static constexpr std::size_t most_lookers = 256;
+  void set_lookers(std::size_t count);
+
+  /// A particle has been hit and has a new orbit. May be called several times a step; contacts make two calls each.
+  void changed(MirrorPart& part, std::size_t looker, std::size_t i);
+  MirrorPart& whole() { return mirror_.whole(); }
   /// To undo that: the particle's line and this mark of before.
-  using Mark = std::uint8_t;
-  Mark mark(std::size_t i) const { return changed_[i]; }
+  struct Mark {
+    std::uint32_t look;
+    std::uint8_t changed;
+  };
+  Mark mark(std::size_t i) const { return {mirror_.note(i), changed_[i]}; }
   void restore(MirrorPart& part, std::size_t i, const Line& line, Mark mark);
   /// The whole learns what a part has changed.
   void join(const MirrorPart& part) { mirror_.join(part); }
@@ -131,8 +138,8 @@ private:
   // Whether i lists the pair, of two that were hit in this step: if it was the last to be, and so has seen the other's
   // present line; i and j have seen each other's when they met.
   bool lists(std::uint32_t i, std::uint32_t j) const {
-    const auto contact = [&](std::uint32_t k) { return looks_.empty() ? 0 : mirror_.note(k) / 2; };
-    return contact(i) != contact(j) ? contact(i) > contact(j) : i < j;
+    const std::uint32_t contact_i = mirror_.note(i) / 2, contact_j = mirror_.note(j) / 2;
+    return contact_i != contact_j ? contact_i > contact_j : i < j;
   }
   LineSpan span(double begin, double end) const {
     const double rounding = 1e-6 * length_ * step_;
@@ -150,22 +157,31 @@ private:
   bool over_ = false;    // it ends with this step
   int at_step_ = 0, length_ = 0;
   Mirror mirror_;
-  Rotation to_middle_;        // from this step's epoch
-  std::vector<Mark> changed_; // 1 + the step of the window in which each particle was last hit; or 0
-  // Of this step, when it goes in sequence: what was seen after each change, of which each contact makes two.
+  Rotation to_middle_;                // from this step's epoch
+  std::vector<std::uint8_t> changed_; // 1 + the step of the window in which each particle was last hit; or 0
+  // Of this step: what was seen after each change, of which each contact makes two. Each particle's last look is noted
+  // in the mirror: the looker, and the number among its looks.
   struct Look {
-    std::uint32_t begin = 0, end = 0; // of seen_; from zero: nobody has looked
+    std::uint32_t begin = 0, end = 0; // of `seen`; from zero: nobody has looked
   };
-  std::vector<Look> looks_;         // by number of the change; each particle's last is noted in the mirror
-  std::vector<std::uint32_t> seen_; // places
-  std::vector<List> lists_;         // of which so many are of this window; the others keep their memory
+  struct alignas(64) Looks { // two threads share no line of cache
+    std::vector<Look> made;
+    std::vector<std::uint32_t> seen; // places
+    bool too_many = false;
+  };
+  static constexpr std::uint32_t most_looks = 1u << 24; // of one looker
+  std::vector<Looks> looks_;
+  Look& look(std::size_t i) {
+    const std::uint32_t number = mirror_.note(i);
+    return looks_[number / most_looks].made[number % most_looks];
+  }
+  std::vector<List> lists_; // of which so many are of this window; the others keep their memory
   std::size_t used_lists_ = 0, first_lists_ = 0;
   double kick_path_ = 0.0, skin_ = 0.0; // how far kicks may have moved a particle; how far the lists allow
   double last_kick_ = 0.0;
   std::uint64_t hits_ = 0;
   double last_tested_ = 0.0, last_listed_ = 0.0; // pairs a particle, when the window began
   StraightLineTest step_test_;
-  std::vector<std::uint32_t> buffer_; // of the sequence
 };
 
 template<class Visit> void Neighbours::visit_block(std::size_t block, const Visit& visit) const {
@@ -185,43 +201,28 @@ template<class Visit> void Neighbours::visit_block(std::size_t block, const Visi
 }
 
 template<class Visit>
-bool Neighbours::visit_partners(const MirrorPart& part, std::size_t i, double start, std::vector<std::uint32_t>& buffer,
-                                const Visit& visit) const {
+std::optional<std::size_t> Neighbours::visit_partners(const MirrorPart& part, std::size_t looker, std::size_t i,
+                                                      double start, std::vector<std::uint32_t>& buffer,
+                                                      const Visit& visit) {
   const Line& line = mirror_.line(i);
   if (!mirror_.one_image(line, part))
-    return false;
-  const Body& body = particles_->bodies[i];
-  const double now = since_middle();
-  const std::size_t count = mirror_.near(part, line, span(now + start, now + 0.5 * step_), buffer);
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t j = mirror_.place(buffer[k]);
-    if (j != i)
-      visit_nearest(body, particles_->bodies[j], start, [&](const Image& image) { visit(j, image); });
-  }
-  return true;
-}
-
-template<class Visit>
-std::optional<std::size_t> Neighbours::visit_partners(std::size_t i, double start, const Visit& visit) {
-  const Line& line = mirror_.line(i);
-  if (!mirror_.one_image(line, mirror_.whole()))
     return std::nullopt;
   const Body& body = particles_->bodies[i];
   const LineSpan rest = span(since_middle() + start, 0.5 * length_ * step_);
-  const std::size_t count = mirror_.near(mirror_.whole(), line, rest, buffer_);
-  Look* const look = looks_needed() ? &looks_[mirror_.note(i)] : nullptr;
-  if (look)
-    look->begin = static_cast<std::uint32_t>(seen_.size());
+  const std::size_t count = mirror_.near(part, line, rest, buffer);
+  std::vector<std::uint32_t>* const seen = looks_needed() ? &looks_[looker].seen : nullptr;
+  if (seen)
+    look(i).begin = static_cast<std::uint32_t>(seen->size());
   for (std::size_t k = 0; k < count; ++k) {
-    const std::uint32_t j = mirror_.place(buffer_[k]);
+    const std::uint32_t j = mirror_.place(buffer[k]);
     if (j == i)
       continue;
-    if (look)
-      seen_.push_back(j);
+    if (seen)
+      seen->push_back(j);
     visit_nearest(body, particles_->bodies[j], start, [&](const Image& image) { visit(j, image); });
   }
-  if (look)
-    look->end = static_cast<std::uint32_t>(seen_.size());
+  if (seen)
+    look(i).end = static_cast<std::uint32_t>(seen->size());
   return count;
 }
 

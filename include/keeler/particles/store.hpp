@@ -25,8 +25,8 @@ struct Particles {
 
   std::size_t size() const { return bodies.size(); }
 
-  /// For loops over all that do some work for each: what comes a little later is on its way. Processors that run many
-  /// instructions of each round see too few rounds ahead, and not all fetch ahead by themselves.
+  /// For loops over all that do some work for each, k < size(): what comes a little later is on its way. Processors
+  /// that run many instructions of each round see too few rounds ahead, and not all fetch ahead by themselves.
   void prefetch_after(std::size_t k) const { __builtin_prefetch(&bodies[std::min(k + 16, bodies.size() - 1)]); }
 
   /// Everything that must be stored to continue exactly.

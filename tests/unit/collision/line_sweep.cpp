@@ -1,5 +1,7 @@
-// The sweep of straight lines in single precision, in every instruction set, against the same in double precision.
+// The sweep of straight lines in single precision, in every instruction set, against the same in double precision; and
+// the pairs of a whole mirror against what each of its lines finds by itself.
 #include <keeler/collision/line_sweep.hpp>
+#include <keeler/collision/mirror.hpp>
 
 #include "unit/collision/spheres.hpp"
 
@@ -197,4 +199,58 @@ TEST_CASE("a group of lines finds what each of them finds, and each pair within 
       }
   }
   CHECK(pairs > 10000);
+}
+
+TEST_CASE("a window begins with the pairs that each line finds by itself, each once") {
+  std::size_t pairs = 0, mirrors = 0, with_levels = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    RandomStream random(seed, RandomPurpose::position, 0);
+    const auto centred = [&](double width) { return width * (random.uniform() - 0.5); };
+    const Frequencies frequencies;
+    ShearingBox box;
+    box.size_x = seed % 3 == 0 ? 14.0 : 90.0; // a few columns, or many
+    box.size_y = seed % 3 == 1 ? 20.0 : 90.0;
+    box.shear = frequencies.shear();
+    const double largest = seed % 2 ? 1.0 : 4.0, half = seed % 5 == 0 ? 0.05 : 0.003;
+    Particles particles;
+    for (std::size_t k = 0; k < 1500; ++k) {
+      Body body;
+      body.radius = std::min(std::pow(random.uniform(), -0.5), largest) / largest;
+      body.elements = {centred(box.size_x),   centred(box.size_y), 2.0 * random.normal(),
+                       2.0 * random.normal(), random.normal(),     random.normal()};
+      body.mass = 1.0;
+      particles.bodies.push_back(body);
+      particles.ids.push_back(k);
+    }
+    Mirror mirror;
+    for (int again = 0; again < 2; ++again) // levels begin where the last build found the least radius
+      mirror.build(particles, box, centred(box.size_y), frequencies, {0.0, half, 0.0});
+    if (!mirror.one_image())
+      continue;
+    ++mirrors;
+    with_levels += mirror.whole().levels.size() > 1;
+    const LineSpan span{static_cast<float>(-half), static_cast<float>(half)};
+    std::vector<std::pair<std::size_t, std::size_t>> found, expected;
+    std::vector<std::uint32_t> buffer;
+    std::vector<LinePair> pair_buffer;
+    constexpr std::size_t block = 97;
+    for (std::size_t begin = 0; begin < mirror.size(); begin += block)
+      mirror.sweep_pairs(begin, std::min(begin + block, mirror.size()), span, pair_buffer,
+                         [&](std::size_t i, std::size_t j) { found.push_back(std::minmax(i, j)); });
+    for (std::size_t slot = 0; slot < mirror.size(); ++slot) {
+      const std::size_t count = mirror.near(mirror.whole(), mirror.line(mirror.place(slot)), span, buffer);
+      for (std::size_t k = 0; k < count; ++k)
+        if (slot < buffer[k])
+          expected.emplace_back(slot, buffer[k]);
+    }
+    std::sort(found.begin(), found.end());
+    std::sort(expected.begin(), expected.end());
+    CAPTURE(seed);
+    CHECK((found == expected));
+    pairs += expected.size();
+  }
+  MESSAGE(pairs << " pairs in " << mirrors << " mirrors, of which " << with_levels << " have several levels");
+  CHECK(pairs > 10000);
+  CHECK(mirrors > 30);
+  CHECK(with_levels > 10);
 }

@@ -7,6 +7,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -119,6 +120,31 @@ TEST_CASE("settings for a required error keep it") {
       CHECK(error > 0.1 * wanted); // or it would be dearer than need be
     }
   }
+}
+
+TEST_CASE("the cut grows with what is asked for and with the spread of masses, within its limits") {
+  for (const double spread : {1.0, 1.5, 4.0, 20.0, 1e4}) {
+    double last = 1.9999;
+    for (double wanted = 0.1; wanted > 0.99e-5; wanted *= 0.99) {
+      const double cut = cut_for(wanted, spread);
+      CHECK(cut >= last);
+      CHECK(cut < 1.03 * std::max(2.0, last)); // no jumps
+      CHECK(cut <= 16.0);
+      CHECK(cut >= cut_for(wanted, 0.7 * spread));
+      last = cut;
+    }
+  }
+}
+
+TEST_CASE("the spread of masses is that of the distribution, with the same bits in any order") {
+  CHECK(mass_spread({}) == 1.0);
+  CHECK(mass_spread(std::vector<double>(10, 3.0)) == doctest::Approx(1.0).epsilon(1e-15));
+  CHECK(mass_spread(std::vector<double>{1.0, 3.0}) == doctest::Approx(std::sqrt(5.0) / 2.0).epsilon(1e-15));
+  std::vector<double> masses = clumped_state(1000, 7, 10.0).masses;
+  const double spread = mass_spread(masses);
+  CHECK(spread > 1.5);
+  std::reverse(masses.begin(), masses.begin() + 700);
+  CHECK(mass_spread(masses) == spread);
 }
 
 TEST_CASE("two spheres in contact attract each other as Newton has it") {
