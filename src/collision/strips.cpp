@@ -1,6 +1,7 @@
 #include <keeler/collision/strips.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace keeler {
 
@@ -316,8 +317,13 @@ bool Strips::undo_all() {
 bool Strips::put_in_order() {
   in_order_.clear();
   std::vector<std::size_t> next(strips_.size());
+  std::vector<double> times; // of the next ones
   bool clear = true;
-  const auto time_of = [&](std::size_t s) { return strips_[s].contacts[next[s]].time; };
+  const auto time_of = [&](std::size_t s) {
+    return next[s] < strips_[s].contacts.size() ? strips_[s].contacts[next[s]].time : HUGE_VAL;
+  };
+  for (std::size_t s = 0; s < strips_.size(); ++s)
+    times.push_back(time_of(s));
   const auto ids_of = [&](std::size_t s) {
     const Change* both = &strips_[s].changes[2 * next[s]];
     for (const Change* change : {both, both + 1})
@@ -325,17 +331,15 @@ bool Strips::put_in_order() {
         clear &= maker / most_changes == s || this->change(maker).time < change->time;
     return std::pair(particles_->ids[both[0].place], particles_->ids[both[1].place]);
   };
-  const auto before = [&](std::size_t a, std::size_t b) {
-    return time_of(a) != time_of(b) ? time_of(a) < time_of(b) : ids_of(a) < ids_of(b);
-  };
   for (;;) {
-    std::size_t first = nobody;
-    for (std::size_t s = 0; s < strips_.size(); ++s)
-      if (next[s] < strips_[s].contacts.size() && (first == nobody || before(s, first)))
+    std::size_t first = 0;
+    for (std::size_t s = 1; s < strips_.size(); ++s)
+      if (times[s] < times[first] || (times[s] == times[first] && times[s] < HUGE_VAL && ids_of(s) < ids_of(first)))
         first = s;
-    if (first == nobody || !clear)
+    if (times[first] == HUGE_VAL || !clear)
       return clear;
     in_order_.push_back(&strips_[first].contacts[next[first]++]);
+    times[first] = time_of(first);
   }
 }
 
