@@ -15,9 +15,6 @@ constexpr std::size_t block_size = 4096;   // particles
 constexpr double nearest_share = 0.45;     // of the box: what reaches less far has one image in reach
 constexpr double cells_per_particle = 2.0; // no more,
 constexpr double fewest_cells = 64.0;      // unless these are: columns, so that strips find edges
-constexpr std::size_t most_in_group = 8;   // lines that look around together,
-constexpr std::int64_t fewest_columns = 8; // for that
-constexpr double longest_group = 4.0;      // in reaches of their level
 constexpr double single = 4e-6;            // of a path: what single precision may do to a line
 constexpr double full_turn = 4294967296.0; // 2³², the box
 
@@ -253,54 +250,6 @@ void Mirror::replace(MirrorPart& part, std::size_t place, const Line& line) {
   level->stray_y = std::max(level->stray_y, outside(off_y, level->rows) / per_metre_y_);
 }
 
-// A line's size has room for what the span has beyond the window.
-Mirror::Lookout Mirror::lookout(const Line& line, const LineSpan& span) const {
-  const double begin = std::max<double>(span.begin, -window_.half_length);
-  const double end = std::min<double>(span.end, window_.half_length);
-  const double middle = 0.5 * (begin + end), half = 0.5 * (end - begin);
-  const auto on = [&](float speed, double per_metre) { return static_cast<std::int64_t>(middle * speed * per_metre); };
-  return {across(line) + on(line.u, per_metre_x_), along(line) + static_cast<std::uint32_t>(on(line.v, per_metre_y_)),
-          line.size + half * std::fabs(line.u), line.size + half * std::fabs(line.v), reach_x(line)};
-}
-
-// Lines that follow each other and stand close together look around together: up to this slot. Not where that might be
-// all around a narrow box.
-std::size_t Mirror::group_end(std::size_t first, std::size_t end, const MirrorLevel& level) const {
-  if (level.columns < fewest_columns)
-    return first + 1;
-  const auto near_x = static_cast<std::int64_t>(2.0 * level.reach_x * per_metre_x_);
-  const auto near_y = static_cast<std::int64_t>(longest_group * level.reach_y * per_metre_y_);
-  std::size_t last = first + 1;
-  const auto stands_near = [&](const Line& line) {
-    return std::abs(std::int64_t{line.x} - lines_[first].x) < near_x &&
-           std::abs(std::int64_t{line.y} - lines_[first].y) < near_y;
-  };
-  while (last < end && last - first < most_in_group && stands_near(lines_[last]))
-    ++last;
-  return last;
-}
-
-// Of a group.
-Mirror::Lookout Mirror::lookout(std::size_t first, std::size_t last) const {
-  const Line& line = lines_[first];
-  std::int64_t left = line.x, right = left, back = line.y, front = back;
-  double reach[2] = {reach_x(line), reach_y(line)};
-  for (std::size_t k = first + 1; k < last; ++k) {
-    const Line& other = lines_[k];
-    left = std::min<std::int64_t>(left, other.x);
-    right = std::max<std::int64_t>(right, other.x);
-    back = std::min<std::int64_t>(back, other.y);
-    front = std::max<std::int64_t>(front, other.y);
-    reach[0] = std::max(reach[0], reach_x(other));
-    reach[1] = std::max(reach[1], reach_y(other));
-  }
-  constexpr std::int64_t half_turn = std::int64_t{1} << 31;
-  const double half_x = 0.5 * static_cast<double>(right - left) + 1.0,
-               half_y = 0.5 * static_cast<double>(front - back) + 1.0;
-  return {(left + right) / 2 + half_turn, static_cast<std::uint32_t>((back + front) / 2 + half_turn),
-          reach[0] + half_x / per_metre_x_, reach[1] + half_y / per_metre_y_, reach[0]};
-}
-
 void Mirror::join(const MirrorPart& part) {
   for (std::size_t l = 0; l < part.levels.size(); ++l) {
     MirrorLevel& level = whole_.levels[l];
@@ -344,56 +293,6 @@ bool Mirror::encloses(const MirrorPart& part, const Line& line) const {
     const std::int64_t turn = first < level.first_column ? level.columns : 0;
     return first + turn >= level.first_column && last + turn <= level.last_column;
   });
-}
-
-std::size_t Mirror::near(const MirrorPart& part, const Line& line, const LineSpan& span,
-                         std::vector<std::uint32_t>& buffer) const {
-  std::size_t count = 0;
-  const Lookout from = lookout(line, span);
-  for (const MirrorLevel& level : part.levels)
-    ranges_in(level, from, 0, [&](std::uint32_t begin, std::uint32_t end) {
-      const std::size_t room = count + (end - begin) + sweep_padding;
-      if (buffer.size() < room)
-        buffer.resize(2 * room);
-      const std::uint32_t own_end = begin >= level.own_begin ? level.own_end : level.own_end_beyond;
-      if (part.whole() || end + sweep_padding <= own_end)
-        count += sweeps_.one(line, lines_.data(), frame_, span, begin, end, buffer.data() + count);
-      else
-        count += sweep_copy(line, span, begin, end, buffer.data() + count);
-    });
-  return count;
-}
-
-// A sweep reads on behind its range: not so here, where the lines may be another thread's.
-std::size_t Mirror::sweep_copy(const Line& line, const LineSpan& span, std::uint32_t begin, std::uint32_t end,
-                               std::uint32_t* found) const {
-  std::vector<Line> copy(lines_.begin() + begin, lines_.begin() + end);
-  copy.resize(copy.size() + sweep_padding);
-  const std::size_t count = sweeps_.one(line, copy.data(), frame_, span, 0, end - begin, found);
-  for (std::size_t k = 0; k < count; ++k)
-    found[k] += begin;
-  return count;
-}
-
-void Mirror::prefetch(std::size_t place, int stage) const {
-  if (stage == 0) {
-    __builtin_prefetch(&slots_[place]);
-    __builtin_prefetch(&cells_[place]);
-    return;
-  }
-  const std::size_t slot = slots_[place], cell = cells_[place];
-  auto level = whole_.levels.begin();
-  while (slot >= level->end)
-    ++level;
-  const auto rows = static_cast<std::size_t>(level->rows);
-  for (const std::size_t column : {cell - rows, cell, cell + rows}) { // the first may wrap around
-    const std::size_t near = std::min(column, starts_.size() - 1);
-    if (stage == 1)
-      __builtin_prefetch(&starts_[near]);
-    else
-      for (std::size_t k = 0; k < 4; k += 2)
-        __builtin_prefetch(&lines_[std::min<std::size_t>(starts_[near] + k, lines_.size() - 1)]);
-  }
 }
 
 double Mirror::stray() const {
