@@ -110,8 +110,10 @@ struct DriftPhase::InPlace {
   }
 
   void prefetch(std::size_t i, int stage) const {
+    if (stage == 0)
+      drift.so_far_.prefetch(i);
     if (!drift.through_grid_)
-      drift.neighbours_.mirror().prefetch(i, stage);
+      drift.neighbours_.prefetch(i, stage);
   }
 
   FinderResult find(const Query& query) const {

@@ -276,15 +276,6 @@ MirrorPart Mirror::part(std::uint32_t begin, std::uint64_t width) const {
   return part;
 }
 
-MirrorColumn Mirror::column_of(std::size_t place) const {
-  const std::size_t cell = cells_[place];
-  const std::vector<MirrorLevel>& levels = whole_.levels;
-  std::size_t level = 0;
-  while (level + 1 < levels.size() && cell >= levels[level + 1].first_cell)
-    ++level;
-  return {level, static_cast<std::int64_t>(cell - levels[level].first_cell) / levels[level].rows};
-}
-
 bool Mirror::encloses(const MirrorPart& part, const Line& line) const {
   if (part.whole())
     return true;

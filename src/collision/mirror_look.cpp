@@ -94,6 +94,7 @@ void Mirror::prefetch(std::size_t place, int stage) const {
   if (stage == 0) {
     __builtin_prefetch(&slots_[place]);
     __builtin_prefetch(&cells_[place]);
+    __builtin_prefetch(&unsorted_[place].place, 1);
     return;
   }
   const std::size_t slot = slots_[place], cell = cells_[place];
@@ -106,8 +107,8 @@ void Mirror::prefetch(std::size_t place, int stage) const {
     if (stage == 1)
       __builtin_prefetch(&starts_[near]);
     else
-      for (std::size_t k = 0; k < 4; k += 2)
-        __builtin_prefetch(&lines_[std::min<std::size_t>(starts_[near] + k, lines_.size() - 1)]);
+      for (std::size_t k = 0; k < 6; k += 2) // from the row before on
+        __builtin_prefetch(&lines_[std::min(std::max<std::size_t>(starts_[near], 2) - 2 + k, lines_.size() - 1)]);
   }
 }
 

@@ -132,7 +132,14 @@ struct Strips::Orbits {
   }
 
   FinderResult find(const Query& query) const { return all.finder_->find(query); }
-  void prefetch(std::size_t i, int stage) const { all.neighbours_->mirror().prefetch(i, stage); }
+  void prefetch(std::size_t i, int stage) const {
+    all.neighbours_->prefetch(i, stage);
+    if (stage == 0) {
+      all.so_far_->prefetch(i);
+      __builtin_prefetch(&all.newest_[i], 1);
+      __builtin_prefetch(&all.barred_[i], 1);
+    }
+  }
   void happened(const Event&, const Contact& contact) { strip.contacts.push_back(contact); }
 };
 
@@ -148,8 +155,7 @@ bool Strips::carry_out(const StepAtHand& step, Particles& particles, StepSoFar& 
   neighbours_->set_lookers(strips_.size()); // row by row, as they follow each other
   const std::uint64_t repairs_before = repairs;
   for (std::size_t row = 0; row < rows;) {
-    deal(row, row == 0 ? first : left_by(row - 1));
-    run(row);
+    run(row, row == 0 ? first : left_by(row - 1));
     const bool failed = std::any_of(strips_.begin(), strips_.end(), [](const Strip& s) { return s.failed; });
     if (failed || repairs - repairs_before > most_repairs)
       return undo_all();
@@ -182,30 +188,29 @@ void Strips::cut(const std::vector<Event>& first) {
   barred_.resize(particles_->size());
 }
 
-// Gives each strip of a row the events of its particles.
-void Strips::deal(std::size_t row, const std::vector<Event>& events) {
-  between_[row].clear();
-  for (std::size_t s = begin_of(row); s < strips_.size(); ++s) {
-    Strip& strip = strips_[s];
-    strip.part = neighbours_->mirror().part(slabs_[s].first, slabs_[s].second);
-    strip.given.clear();
-    strip.put_off.clear();
-    strip.barred.clear();
-    strip.changes.clear();
-    strip.contacts.clear();
-    strip.touched.clear();
-    strip.farthest = 0.0;
-    strip.most_partners = 0;
-    strip.blamed = nobody;
-    strip.failed = false;
-  }
+void Strips::Strip::begin(const MirrorPart& its_part) {
+  part = its_part;
+  given.clear();
+  aside.clear();
+  put_off.clear();
+  barred.clear();
+  changes.clear();
+  contacts.clear();
+  touched.clear();
+  farthest = 0.0;
+  most_partners = 0;
+  blamed = nobody;
+  failed = false;
+}
+
+// The events of the strip's particles. Those that no strip of the row has both particles of are put aside by one.
+void Strips::deal(std::size_t row, Strip& strip, std::span<const Event> events) {
   const Mirror& mirror = neighbours_->mirror();
-  const auto strip_of = [&](std::uint32_t place) {
-    const MirrorColumn column = mirror.column_of(place);
-    for (std::size_t s = begin_of(row); s < end_of(row); ++s)
-      if (strips_[s].part.holds(column))
-        return s;
-    return nobody;
+  const bool is_first = &strip == &strips_[begin_of(row)];
+  const auto nobody_holds = [&](std::uint32_t slot) {
+    return std::none_of(strips_.begin() + static_cast<std::ptrdiff_t>(begin_of(row)),
+                        strips_.begin() + static_cast<std::ptrdiff_t>(end_of(row)),
+                        [&](const Strip& s) { return s.part.holds(slot); });
   };
   constexpr std::size_t ahead = 12;
   for (std::size_t e = 0; e < events.size(); ++e) {
@@ -213,28 +218,34 @@ void Strips::deal(std::size_t row, const std::vector<Event>& events) {
       for (const std::uint32_t place : {events[e + ahead].low, events[e + ahead].high})
         mirror.prefetch(place, 0);
     const Event& event = events[e];
-    const std::size_t low = strip_of(event.low), high = strip_of(event.high);
-    if (low == high && low != nobody) {
-      strips_[low].given.push_back(event);
+    const std::uint32_t low_slot = mirror.slot(event.low), high_slot = mirror.slot(event.high);
+    const bool low = strip.part.holds(low_slot), high = strip.part.holds(high_slot);
+    if (low && high) {
+      strip.given.push_back(event);
       continue;
     }
-    between_[row].push_back(event);
-    if (low != nobody)
-      strips_[low].barred.push_back({event.time, event.low, event.low_stamp});
-    if (high != nobody)
-      strips_[high].barred.push_back({event.time, event.high, event.high_stamp});
+    if (low)
+      strip.barred.push_back({event.time, event.low, event.low_stamp});
+    if (high)
+      strip.barred.push_back({event.time, event.high, event.high_stamp});
+    if (low || (is_first && nobody_holds(low_slot)))
+      strip.aside.push_back(event);
   }
 }
 
-void Strips::run(std::size_t row) {
+// Each strip finds its own among the events, which are those of the whole row.
+void Strips::run(std::size_t row, const std::vector<Event>& events) {
   double farthest = 0.0;
   for (std::size_t s = 0; s < begin_of(row); ++s)
     farthest = std::max(farthest, strips_[s].farthest);
   const std::size_t begin = begin_of(row);
+  for (std::size_t s = begin; s < end_of(row); ++s)
+    strips_[s].begin(neighbours_->mirror().part(slabs_[s].first, slabs_[s].second));
   parallel_for(
       end_of(row) - begin,
       [&](std::size_t s) {
         Strip& strip = strips_[begin + s];
+        deal(row, strip, events);
         Orbits orbits{*this, strip, row, farthest};
         std::sort(strip.barred.begin(), strip.barred.end(),
                   [](const Barred& a, const Barred& b) { return a.time < b.time; });
@@ -258,9 +269,11 @@ void Strips::run(std::size_t row) {
 }
 
 std::vector<Event> Strips::left_by(std::size_t row) const {
-  std::vector<Event> left = between_[row];
-  for (std::size_t s = begin_of(row); s < end_of(row); ++s)
+  std::vector<Event> left;
+  for (std::size_t s = begin_of(row); s < end_of(row); ++s) {
+    left.insert(left.end(), strips_[s].aside.begin(), strips_[s].aside.end());
     left.insert(left.end(), strips_[s].put_off.begin(), strips_[s].put_off.end());
+  }
   return left;
 }
 
@@ -358,10 +371,8 @@ std::uint64_t Strips::most_partners() const {
 std::size_t Strips::bytes() const {
   std::size_t total =
       newest_.capacity() * sizeof(std::uint32_t) + barred_.capacity() + in_order_.capacity() * sizeof(const Contact*);
-  for (const std::vector<Event>& events : between_)
-    total += events.capacity() * sizeof(Event);
   for (const Strip& s : strips_)
-    total += (s.given.capacity() + s.put_off.capacity()) * sizeof(Event) + s.events.bytes() +
+    total += (s.given.capacity() + s.aside.capacity() + s.put_off.capacity()) * sizeof(Event) + s.events.bytes() +
              s.barred.capacity() * sizeof(Barred) + s.changes.capacity() * sizeof(Change) +
              s.contacts.capacity() * sizeof(Contact);
   return total;

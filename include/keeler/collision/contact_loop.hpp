@@ -57,6 +57,7 @@ public:
   /// Undoes the last change; `time` is that of the one before.
   void take_back(std::size_t i, double time) { entries_[i] = {time, step_, stamp(i) - 1}; }
 
+  void prefetch(std::size_t i) const { __builtin_prefetch(&entries_[i], 1); }
   std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
 
 private:
@@ -121,12 +122,13 @@ private:
     constexpr std::size_t apart = 6;
     for (int stage = 0; stage < 3; ++stage)
       if (const Event* soon = events_.ahead((3 - stage) * apart)) {
-        if (stage == 0) {
-          __builtin_prefetch(&step_.particles->bodies[soon->low]);
-          __builtin_prefetch(&step_.particles->bodies[soon->high]);
+        for (const std::uint32_t place : {soon->low, soon->high}) {
+          if (stage == 0) {
+            __builtin_prefetch(&step_.particles->bodies[place]);
+            __builtin_prefetch(&step_.particles->ids[place]);
+          }
+          orbits_.prefetch(place, stage);
         }
-        orbits_.prefetch(soon->low, stage);
-        orbits_.prefetch(soon->high, stage);
       }
   }
 

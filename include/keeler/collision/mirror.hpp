@@ -48,22 +48,18 @@ struct alignas(64) MirrorLevel {
   std::uint32_t own_begin = 0, own_end = 0, own_end_beyond = 0;
 };
 
-/// A column of cells.
-struct MirrorColumn {
-  std::size_t level;
-  std::int64_t number;
-};
-
 /// A mirror from one edge to another across the box, for one thread that changes nothing outside of it.
 struct MirrorPart {
   std::vector<MirrorLevel> levels; ///< the finest first; without empty ones; how far those of this part reach and stray
   std::uint64_t width = std::uint64_t{1} << 32; ///< as a fraction of the box, 2⁻³²
 
   bool whole() const { return width >> 32 != 0; }
-  bool holds(const MirrorColumn& column) const {
-    const MirrorLevel& level = levels[column.level];
-    const std::int64_t number = column.number + (column.number < level.first_column ? level.columns : 0);
-    return whole() || number <= level.last_column;
+  /// Whether a slot lies in one of its columns.
+  bool holds(std::uint32_t slot) const {
+    return whole() || std::any_of(levels.begin(), levels.end(), [&](const MirrorLevel& level) {
+             return (slot >= level.own_begin && slot < level.own_end) ||
+                    (slot >= level.begin && slot < level.own_end_beyond);
+           });
   }
 };
 
@@ -82,6 +78,7 @@ public:
   const MirrorMeans& means() const { return means_; }
   std::size_t size() const { return cells_.size(); }
   std::uint32_t place(std::size_t slot) const { return lines_[slot].place; }
+  std::uint32_t slot(std::size_t place) const { return slots_[place]; }
   const Line& line(std::size_t place) const { return lines_[slots_[place]]; }
   /// For whoever has a number to keep for a particle until the next build: room that only a build needs.
   std::uint32_t& note(std::size_t place) { return unsorted_[place].place; }
@@ -102,8 +99,6 @@ public:
   static std::uint32_t across(const Line& line) {
     return static_cast<std::uint32_t>(line.x) + (std::uint32_t{1} << 31);
   }
-  /// That of a particle.
-  MirrorColumn column_of(std::size_t place) const;
   /// Whether everything that a line may touch lies in a part.
   bool encloses(const MirrorPart& part, const Line& line) const;
 

@@ -19,7 +19,7 @@
 #include <keeler/collision/contact_loop.hpp>
 #include <keeler/collision/neighbours.hpp>
 
-#include <array>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -70,6 +70,7 @@ private:
   struct alignas(64) Strip { // two threads share no line of cache
     MirrorPart part;
     std::vector<Event> given, put_off;
+    std::vector<Event> aside; // of which no strip of the row has both particles
     std::vector<Barred> barred;
     std::vector<Change> changes;
     std::vector<Contact> contacts;
@@ -79,6 +80,8 @@ private:
     std::uint64_t most_partners = 0;
     std::size_t blamed = nobody; // a strip of an earlier row, for a conflict
     bool failed = false;
+
+    void begin(const MirrorPart& its_part);
   };
   struct Orbits;
 
@@ -89,8 +92,8 @@ private:
   }
 
   void cut(const std::vector<Event>& first);
-  void deal(std::size_t row, const std::vector<Event>& events);
-  void run(std::size_t row);
+  void deal(std::size_t row, Strip& strip, std::span<const Event> events);
+  void run(std::size_t row, const std::vector<Event>& events);
   std::vector<Event> left_by(std::size_t row) const;
   std::size_t repair(std::size_t row);
   void take_back(Strip& strip);
@@ -108,9 +111,8 @@ private:
   std::size_t across_ = 1;                                     // strips of the first and of the second row
   std::vector<std::pair<std::uint32_t, std::uint64_t>> slabs_; // begin and width of each strip, in 2⁻³² of the box
   std::vector<Strip> strips_;                                  // row by row
-  std::array<std::vector<Event>, rows> between_; // contacts given to a row of which no strip has both particles
-  std::vector<std::uint32_t> newest_;            // the number of each particle's last change, if it has a stamp
-  std::vector<std::uint8_t> barred_;             // each particle from its strip of the row at hand
+  std::vector<std::uint32_t> newest_; // the number of each particle's last change, if it has a stamp
+  std::vector<std::uint8_t> barred_;  // each particle from its strip of the row at hand
   std::vector<const Contact*> in_order_;
 };
 
