@@ -56,7 +56,7 @@ void StraightDrift::prepare() {
   lines_.resize(count);
   binned_.resize(count);
   stamps_.assign(count, 0);
-  events_.clear();
+  events_.assign({});
   largest_radius_ = largest_speed_ = largest_stray_ = 0.0;
   const Rotation start(frequencies_, -0.5 * step_);
   for (std::size_t k = 0; k < count; ++k) {

@@ -30,24 +30,26 @@ struct Event {
 /// come up: the caller compares stamps.
 class EventQueue {
 public:
-  bool empty() const { return next_ == first_.size() && later_.empty(); }
-  /// Replaces everything by these events, which are sorted and must stay where they are.
-  void assign(std::span<Event> events);
+  bool empty() const { return next_ == order_.size() && later_.empty(); }
+  /// Replaces everything by these events, which must stay where they are.
+  void assign(std::span<const Event> events);
   void add(const Event& event);
   Event take_first();
-  void clear() {
-    first_ = {};
-    next_ = 0;
-    later_.clear();
-  }
 
-  std::size_t bytes() const { return later_.capacity() * sizeof(Event); }
+  std::size_t bytes() const { return order_.capacity() * sizeof(Turn) + later_.capacity() * sizeof(Event); }
 
   /// One of the events that are likely to come up soon, or null.
-  const Event* ahead(std::size_t by) const { return next_ + by < first_.size() ? &first_[next_ + by] : nullptr; }
+  const Event* ahead(std::size_t by) const {
+    return next_ + by < order_.size() ? &first_[order_[next_ + by].number] : nullptr;
+  }
 
 private:
+  struct Turn { // small, to be sorted fast
+    double time;
+    std::uint32_t number; // of the event
+  };
   std::span<const Event> first_;
+  std::vector<Turn> order_;
   std::size_t next_ = 0;
   std::vector<Event> later_; // a binary heap, earliest first
 };
