@@ -188,8 +188,7 @@ void Strips::cut(const std::vector<Event>& first) {
   barred_.resize(particles_->size());
 }
 
-void Strips::Strip::begin(const MirrorPart& its_part) {
-  part = its_part;
+void Strips::Strip::clear() {
   given.clear();
   aside.clear();
   put_off.clear();
@@ -239,8 +238,10 @@ void Strips::run(std::size_t row, const std::vector<Event>& events) {
   for (std::size_t s = 0; s < begin_of(row); ++s)
     farthest = std::max(farthest, strips_[s].farthest);
   const std::size_t begin = begin_of(row);
+  for (std::size_t s = begin; s < strips_.size(); ++s) // those of later rows have nothing to undo
+    strips_[s].clear();
   for (std::size_t s = begin; s < end_of(row); ++s)
-    strips_[s].begin(neighbours_->mirror().part(slabs_[s].first, slabs_[s].second));
+    strips_[s].part = neighbours_->mirror().part(slabs_[s].first, slabs_[s].second);
   parallel_for(
       end_of(row) - begin,
       [&](std::size_t s) {

@@ -81,7 +81,7 @@ private:
     std::size_t blamed = nobody; // a strip of an earlier row, for a conflict
     bool failed = false;
 
-    void begin(const MirrorPart& its_part);
+    void clear();
   };
   struct Orbits;
 
