@@ -26,7 +26,7 @@ struct Event {
   }
 };
 
-/// A sorted array of what was known at the start, and a small heap of what came later. Stale events stay until they
+/// What was known at the start, sorted, and a small heap of what came later. Stale events stay until they
 /// come up: the caller compares stamps.
 class EventQueue {
 public:
