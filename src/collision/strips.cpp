@@ -246,19 +246,19 @@ void Strips::run(std::size_t row, const std::vector<Event>& events) {
       end_of(row) - begin,
       [&](std::size_t s) {
         Strip& strip = strips_[begin + s];
-        deal(row, strip, events);
         Orbits orbits{*this, strip, row, farthest};
-        std::sort(strip.barred.begin(), strip.barred.end(),
-                  [](const Barred& a, const Barred& b) { return a.time < b.time; });
-        strip.events.assign(strip.given);
-        strip.changes.reserve(5 * strip.given.size() / 2);
-        ContactLoop loop(*step_, orbits, strip.events);
         try {
+          deal(row, strip, events);
+          std::sort(strip.barred.begin(), strip.barred.end(),
+                    [](const Barred& a, const Barred& b) { return a.time < b.time; });
+          strip.events.assign(strip.given);
+          strip.changes.reserve(5 * strip.given.size() / 2);
+          ContactLoop loop(*step_, orbits, strip.events);
           loop.run();
+          strip.most_partners = loop.most_partners();
         } catch (...) {
           strip.failed = true; // the sequence will throw it in its order
         }
-        strip.most_partners = loop.most_partners();
         for (const std::uint32_t i : orbits.barred)
           barred_[i] = 0;
         for (const Change& change : strip.changes)
