@@ -20,8 +20,7 @@ void Crowd::begin(const StepAtHand& step, std::uint32_t centre) {
   margin_ = margin_share * then_.radius;
   const auto metres = static_cast<float>(std::max(step.box.size_x, step.box.size_y) / half_range);
   frame_ = {metres, metres, 0.0f, 0};
-  count_ = 0;
-  lines_.assign(sweep_padding, {});
+  lines_.clear();
 }
 
 // Who stays away is not taken. An older line of it may stay behind: one more to be tested, no more.
@@ -49,13 +48,11 @@ void Crowd::take(std::uint32_t place) {
                   static_cast<float>(s.velocity.z()),
                   static_cast<float>(size + rounding),
                   place};
-  const auto end = lines_.begin() + static_cast<std::ptrdiff_t>(count_);
-  const auto known = std::find_if(lines_.begin(), end, [&](const Line& l) { return l.place == place; });
-  *known = line; // or in the padding
-  if (known == end) {
-    ++count_;
-    lines_.emplace_back();
-  }
+  const auto known = std::find_if(lines_.begin(), lines_.end(), [&](const Line& l) { return l.place == place; });
+  if (known == lines_.end())
+    lines_.push_back(line);
+  else
+    *known = line;
 }
 
 Crowd* Crowds::of(std::uint32_t centre) {

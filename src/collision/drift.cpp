@@ -84,9 +84,9 @@ struct DriftPhase::InPlace {
       crowd->visit(last_change(i), buffer, [&](std::uint32_t j) {
         drift.neighbours_.visit_nearest(body(i), body(j), last_change(i), [&](const Image& image) { visit(j, image); });
       });
-    else if (const auto near =
-                 drift.neighbours_.visit_partners(drift.neighbours_.whole(), 0, i, last_change(i), buffer, visit))
-      gather_crowd(static_cast<std::uint32_t>(i), *near);
+    else if (MirrorPart& whole = drift.neighbours_.whole(); drift.neighbours_.one_image(whole, i))
+      gather_crowd(static_cast<std::uint32_t>(i),
+                   drift.neighbours_.visit_partners(whole, 0, i, last_change(i), buffer, visit));
     else
       drift.neighbours_.visit_everywhere(i, last_change(i), visit);
   }
@@ -198,6 +198,7 @@ void DriftPhase::prepare() {
     grid_.begin(*particles_, box, step_at_hand_.offset, every_candidate);
   finder_step_ = DriftStep(frequencies_, -0.5 * step_, 0.5 * step_, box.size_x + box.size_y);
   finder_step_.bodies = particles_->bodies;
+  finder_step_.tested = !every_candidate;
   finder_->begin(finder_step_);
   if (watch)
     watch->begins(finder_step_);

@@ -21,9 +21,9 @@ namespace {
 constexpr std::size_t few = 8;
 
 std::size_t sweep_wide(const Line& line, const Line* lines, const LineFrame& frame, const LineSpan& span,
-                       std::size_t begin, std::size_t end, std::uint32_t* found) {
-  const LineSweep sweep = end - begin > few ? line_sweep_avx512::sweeps.one : line_sweep_avx2::sweeps.one;
-  return sweep(line, lines, frame, span, begin, end, found);
+                       std::uint32_t* indices, std::size_t count) {
+  const LineSweep sweep = count > few ? line_sweep_avx512::sweeps.one : line_sweep_avx2::sweeps.one;
+  return sweep(line, lines, frame, span, indices, count);
 }
 
 std::size_t sweep_group_wide(const Line* lines, std::size_t first, std::size_t last, const LineFrame& frame,

@@ -1,6 +1,7 @@
 // Text of the sweep; see line_sweep.hpp. The including file sets KEELER_KERNEL_SPACE and defines the vectors Floats and
-// Integers of `lanes` lanes, `Fields load(const Line*)`, which turns that many lines into a vector a field, and
-// `unsigned nonzero(Integers)`, a bit a lane. Everything here has internal linkage except `sweeps`.
+// Integers of `lanes` lanes, `Fields load(line_at)`, which turns the lines that line_at(0), line_at(1) and so on point
+// to into a vector a field, and `unsigned nonzero(Integers)`, a bit a lane. Everything here has internal linkage except
+// `sweeps`.
 
 namespace keeler::KEELER_KERNEL_SPACE {
 namespace {
@@ -39,16 +40,21 @@ inline unsigned near(const Line& line, const Fields& other, const LineFrame& fra
 }
 
 inline std::size_t sweep(const Line& line, const Line* lines, const LineFrame& frame, const LineSpan& span,
-                         std::size_t begin, std::size_t end, std::uint32_t* found) {
-  std::size_t count = 0;
-  for (std::size_t k = begin; k < end; k += lanes) {
-    unsigned bits = near(line, load(lines + k), frame, span);
-    if (k + lanes > end)
-      bits &= (1u << (end - k)) - 1u;
+                         std::uint32_t* indices, std::size_t count) {
+  if (count == 0)
+    return 0;
+  for (std::size_t k = 0; k < lanes; ++k)
+    indices[count + k] = indices[count - 1];
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < count; k += lanes) {
+    const std::uint32_t* const from = indices + k;
+    unsigned bits = near(line, load([&](std::size_t n) { return lines + from[n]; }), frame, span);
+    if (k + lanes > count)
+      bits &= (1u << (count - k)) - 1u;
     for (; bits; bits &= bits - 1)
-      found[count++] = static_cast<std::uint32_t>(k + static_cast<unsigned>(__builtin_ctz(bits)));
+      indices[kept++] = from[__builtin_ctz(bits)];
   }
-  return count;
+  return kept;
 }
 
 inline std::size_t sweep_group(const Line* lines, std::size_t first, std::size_t last, const LineFrame& frame,
@@ -56,7 +62,7 @@ inline std::size_t sweep_group(const Line* lines, std::size_t first, std::size_t
   const bool after = first < end; // the first line: then a line takes in those behind itself only
   std::size_t count = 0;
   for (std::size_t k = begin; k < end; k += lanes) {
-    const Fields others = load(lines + k);
+    const Fields others = load([&](std::size_t n) { return lines + k + n; });
     const unsigned inside = k + lanes > end ? (1u << (end - k)) - 1u : ~0u;
     const std::size_t stop = after && k + lanes - 1 < last ? k + lanes - 1 : last;
     for (std::size_t m = first; m < stop; ++m) {

@@ -19,10 +19,10 @@ struct Fields {
 };
 
 // Eight lines of eight numbers, transposed.
-inline Fields load(const Line* from) {
+template<class LineAt> inline Fields load(const LineAt& line_at) {
   __m256 r[8], t[8];
-  for (int k = 0; k < 8; ++k)
-    r[k] = _mm256_load_ps(reinterpret_cast<const float*>(from + k));
+  for (std::size_t k = 0; k < 8; ++k)
+    r[k] = _mm256_load_ps(reinterpret_cast<const float*>(line_at(k)));
   for (int k = 0; k < 8; k += 2) {
     t[k] = _mm256_unpacklo_ps(r[k], r[k + 1]);
     t[k + 1] = _mm256_unpackhi_ps(r[k], r[k + 1]);

@@ -20,11 +20,11 @@ struct Fields {
 
 // Sixteen lines of eight numbers, transposed: line k beside line k + 8 in one register, then as eight lines of each
 // half.
-inline Fields load(const Line* from) {
+template<class LineAt> inline Fields load(const LineAt& line_at) {
   __m512 r[8], t[8];
-  for (int k = 0; k < 8; ++k) {
-    const __m512d low = _mm512_castpd256_pd512(_mm256_load_pd(reinterpret_cast<const double*>(from + k)));
-    const __m256d high = _mm256_load_pd(reinterpret_cast<const double*>(from + k + 8));
+  for (std::size_t k = 0; k < 8; ++k) {
+    const __m512d low = _mm512_castpd256_pd512(_mm256_load_pd(reinterpret_cast<const double*>(line_at(k))));
+    const __m256d high = _mm256_load_pd(reinterpret_cast<const double*>(line_at(k + 8)));
     r[k] = _mm512_castpd_ps(_mm512_insertf64x4(low, high, 1));
   }
   for (int k = 0; k < 8; k += 2) {

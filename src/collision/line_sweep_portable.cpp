@@ -16,12 +16,13 @@ struct Fields {
   Floats z, u, v, w, size;
 };
 
-inline Fields load(const Line* from) {
+template<class LineAt> inline Fields load(const LineAt& line_at) {
   Fields f;
   for (std::size_t k = 0; k < lanes; ++k) {
-    f.x[k] = from[k].x, f.y[k] = from[k].y, f.z[k] = from[k].z;
-    f.u[k] = from[k].u, f.v[k] = from[k].v, f.w[k] = from[k].w;
-    f.size[k] = from[k].size;
+    const Line& line = *line_at(k);
+    f.x[k] = line.x, f.y[k] = line.y, f.z[k] = line.z;
+    f.u[k] = line.u, f.v[k] = line.v, f.w[k] = line.w;
+    f.size[k] = line.size;
   }
   return f;
 }

@@ -142,7 +142,7 @@ void Mirror::take_lines(const Particles& particles) {
   const double count = static_cast<double>(bodies.size()) + 1e-9;
   means_ = {all.eccentricities / count, all.radii / count};
   next_least_radius_ = bodies.empty() ? 1.0 : all.least_radius;
-  whole_.levels.clear();
+  whole_ = {};
   for (int l = 0; l < most_levels; ++l) {
     level_index_[l] = static_cast<int>(whole_.levels.size());
     if (all.counts[l]) {
@@ -150,6 +150,7 @@ void Mirror::take_lines(const Particles& particles) {
       whole_.levels.back().count = all.counts[l];
       whole_.levels.back().reach_x = all.reach_x[l];
       whole_.levels.back().reach_y = all.reach_y[l];
+      whole_.widened(whole_.levels.back());
     }
   }
 }
@@ -178,10 +179,7 @@ void Mirror::lay_out_cells() {
 
 bool Mirror::one_image(const Line& line, const MirrorPart& part) const {
   const double own = std::max(reach_x(line), reach_y(line));
-  double farthest = own; // another that was hit may reach as far
-  for (const MirrorLevel& level : part.levels)
-    farthest = std::max({farthest, level.reach_x + level.stray_x, level.reach_y + level.stray_y});
-  const double reach = own + farthest;
+  const double reach = own + std::max(own, part.farthest); // another that was hit may reach as far
   const double sheared = 1.0 + box_.shear * window_.half_length;
   return reach * sheared < nearest_share * std::min(box_.size_x, box_.size_y);
 }
@@ -248,6 +246,7 @@ void Mirror::replace(MirrorPart& part, std::size_t place, const Line& line) {
   level->reach_y = std::max(level->reach_y, reach_y(line));
   level->stray_x = std::max(level->stray_x, outside(off_x, level->columns) / per_metre_x_);
   level->stray_y = std::max(level->stray_y, outside(off_y, level->rows) / per_metre_y_);
+  part.widened(*level);
 }
 
 void Mirror::join(const MirrorPart& part) {
@@ -257,11 +256,12 @@ void Mirror::join(const MirrorPart& part) {
     level.reach_y = std::max(level.reach_y, part.levels[l].reach_y);
     level.stray_x = std::max(level.stray_x, part.levels[l].stray_x);
     level.stray_y = std::max(level.stray_y, part.levels[l].stray_y);
+    whole_.widened(level);
   }
 }
 
 MirrorPart Mirror::part(std::uint32_t begin, std::uint64_t width) const {
-  MirrorPart part{whole_.levels, width};
+  MirrorPart part{whole_.levels, whole_.farthest, width};
   for (MirrorLevel& level : part.levels) {
     const auto columns = static_cast<std::uint64_t>(level.columns);
     level.first_column = static_cast<std::int64_t>((begin * columns + 0xffffffff) >> 32);

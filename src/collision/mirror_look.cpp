@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 
 namespace keeler {
 namespace {
@@ -70,24 +71,10 @@ std::size_t Mirror::near(const MirrorPart& part, const Line& line, const LineSpa
       const std::size_t room = count + (end - begin) + sweep_padding;
       if (buffer.size() < room)
         buffer.resize(2 * room);
-      const std::uint32_t own_end = begin >= level.own_begin ? level.own_end : level.own_end_beyond;
-      if (part.whole() || end + sweep_padding <= own_end)
-        count += sweeps_.one(line, lines_.data(), frame_, span, begin, end, buffer.data() + count);
-      else
-        count += sweep_copy(line, span, begin, end, buffer.data() + count);
+      std::iota(buffer.data() + count, buffer.data() + count + (end - begin), begin);
+      count += end - begin;
     });
-  return count;
-}
-
-// A sweep reads on behind its range: not so here, where the lines may be another thread's.
-std::size_t Mirror::sweep_copy(const Line& line, const LineSpan& span, std::uint32_t begin, std::uint32_t end,
-                               std::uint32_t* found) const {
-  std::vector<Line> copy(lines_.begin() + begin, lines_.begin() + end);
-  copy.resize(copy.size() + sweep_padding);
-  const std::size_t count = sweeps_.one(line, copy.data(), frame_, span, 0, end - begin, found);
-  for (std::size_t k = 0; k < count; ++k)
-    found[k] += begin;
-  return count;
+  return sweeps_.one(line, lines_.data(), frame_, span, buffer.data(), count);
 }
 
 void Mirror::prefetch(std::size_t place, int stage) const {

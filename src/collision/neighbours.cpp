@@ -145,14 +145,6 @@ bool Neighbours::gather(std::size_t i, double start, std::vector<std::uint32_t>&
   return true;
 }
 
-double Neighbours::departure(const Elements& change) const {
-  const Frequencies& f = frequencies_;
-  const State s = state_at(change, f, Rotation());
-  const double acceleration = 2.0 * f.kappa * change.eccentricity() + f.nu * f.nu * change.inclination();
-  const double half = 0.5 * step_;
-  return s.position.norm() + half * s.velocity.norm() + 0.5 * acceleration * half * half;
-}
-
 void Neighbours::set_lookers(std::size_t count) {
   if (looks_.size() < count)
     looks_.resize(count);
@@ -175,10 +167,10 @@ void Neighbours::changed(MirrorPart& part, std::size_t looker, std::size_t i) {
   mirror_.replace(part, i, line_of(particles_->bodies[i]));
 }
 
-void Neighbours::restore(MirrorPart& part, std::size_t i, const Line& line, Mark mark) {
+void Neighbours::restore(MirrorPart& part, std::size_t i, Mark mark) {
   changed_[i] = mark.changed;
   mirror_.note(i) = mark.look;
-  mirror_.replace(part, i, line);
+  mirror_.replace(part, i, line_of(particles_->bodies[i]));
 }
 
 void Neighbours::settle(std::span<const std::uint32_t> particles, std::uint64_t collisions) {
@@ -205,8 +197,7 @@ void Neighbours::settle(std::span<const std::uint32_t> particles, std::uint64_t 
         lists_[before + c].made = this_step;
         for (std::size_t k = c * chunk; k < std::min(particles.size(), (c + 1) * chunk); ++k) {
           const std::uint32_t i = particles[k];
-          const Line& line = mirror_.line(i);
-          if (!mirror_.one_image(line, mirror_.whole())) { // ends the window: nobody reads these lists
+          if (!one_image(mirror_.whole(), i)) { // ends the window: nobody reads these lists
             too_fast[c] = 1;
             continue;
           }
@@ -219,7 +210,7 @@ void Neighbours::settle(std::span<const std::uint32_t> particles, std::uint64_t 
             std::for_each(seen.begin() + last.begin, seen.begin() + last.end, keep);
             continue;
           }
-          const std::size_t count = mirror_.near(mirror_.whole(), line, rest, buffer);
+          const std::size_t count = mirror_.near(mirror_.whole(), mirror_.line(i), rest, buffer);
           for (std::size_t n = 0; n < count; ++n)
             keep(mirror_.place(buffer[n]));
         }

@@ -35,7 +35,8 @@ struct Strips::Orbits {
 
   // Of two particles that were just changed.
   bool keeps(const Event& event) {
-    if (too_fast(event.low) || too_fast(event.high)) {
+    const Neighbours& neighbours = *all.neighbours_;
+    if (!(neighbours.one_image(strip.part, event.low) && neighbours.one_image(strip.part, event.high))) {
       strip.failed = true;
       return false;
     }
@@ -51,11 +52,6 @@ struct Strips::Orbits {
       search_past(event.high, event.time);
     }
     return true;
-  }
-
-  bool too_fast(std::uint32_t i) const {
-    const Mirror& mirror = all.neighbours_->mirror();
-    return !mirror.one_image(mirror.line(i), strip.part);
   }
 
   bool lies_inside(std::uint32_t i) const {
@@ -79,9 +75,8 @@ struct Strips::Orbits {
     Body& body = all.particles_->bodies[i];
     const std::uint32_t earlier = newest(i);
     const double off = all.neighbours_->departure(elements - body.elements) + (earlier ? all.change(earlier).off : 0.0);
-    const Neighbours& neighbours = *all.neighbours_;
-    strip.changes.push_back({i, earlier, in_rows_before(earlier), neighbours.mark(i), last_change(i), time, off,
-                             body.elements, neighbours.mirror().line(i)});
+    strip.changes.push_back(
+        {i, earlier, in_rows_before(earlier), all.neighbours_->mark(i), last_change(i), time, off, body.elements});
     strip.failed |= strip.changes.size() + 3 > most_changes;
     if (!earlier)
       strip.touched.push_back(i);
@@ -128,7 +123,7 @@ struct Strips::Orbits {
   }
 
   template<class Visit> void visit_partners(std::size_t i, const Visit& visit) {
-    strip.failed |= !all.neighbours_->visit_partners(strip.part, number(), i, last_change(i), buffer, visit);
+    all.neighbours_->visit_partners(strip.part, number(), i, last_change(i), buffer, visit);
   }
 
   FinderResult find(const Query& query) const { return all.finder_->find(query); }
@@ -306,7 +301,7 @@ void Strips::take_back(Strip& strip) {
   const Change& last = strip.changes.back();
   particles_->bodies[last.place].elements = last.ended;
   so_far_->take_back(last.place, last.begin);
-  neighbours_->restore(strip.part, last.place, last.line, last.mark);
+  neighbours_->restore(strip.part, last.place, last.mark);
   newest_[last.place] = last.earlier;
   if (!last.earlier)
     strip.touched.pop_back();

@@ -10,6 +10,7 @@
 #include <keeler/collision/contact_loop.hpp>
 #include <keeler/collision/line_sweep.hpp>
 
+#include <numeric>
 #include <vector>
 
 namespace keeler {
@@ -28,9 +29,10 @@ public:
   /// Calls visit(place) for everybody that the centre may touch from `start` to the end of the step. The buffer is
   /// scratch.
   template<class Visit> void visit(double start, std::vector<std::uint32_t>& buffer, const Visit& visit) const {
-    if (buffer.size() < lines_.size())
-      buffer.resize(lines_.size());
-    const std::size_t count = sweep_(middle_, lines_.data(), frame_, span_from(start), 0, count_, buffer.data());
+    if (buffer.size() < lines_.size() + sweep_padding)
+      buffer.resize(lines_.size() + sweep_padding);
+    std::iota(buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(lines_.size()), 0);
+    const std::size_t count = sweep_(middle_, lines_.data(), frame_, span_from(start), buffer.data(), lines_.size());
     for (std::size_t k = 0; k < count; ++k)
       visit(lines_[buffer[k]].place);
   }
@@ -50,8 +52,7 @@ private:
   LineFrame frame_{};
   LineSweep sweep_ = line_sweeps(choose_instruction_set()).one;
   Line middle_; // the centre's: zero, sizes are all in the others
-  std::size_t count_ = 0;
-  std::vector<Line> lines_; // with padding
+  std::vector<Line> lines_;
 };
 
 /// Those of one step, by their centres.

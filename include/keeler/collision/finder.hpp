@@ -38,6 +38,7 @@ struct DriftStep {
   double begin = 0.0, end = 0.0;
   Rotation at_begin, at_end;
   StraightLineTest straight_line;
+  bool tested = false; ///< pairs are asked about only when straight_line has not ruled them out
 
   /// `size` is the largest coordinate that occurs, m: it sets the allowance for rounding.
   DriftStep(const Frequencies& f, double begin_time, double end_time, double size)
@@ -147,7 +148,7 @@ public:
 
   FinderResult find_between(const Query& query, const Body& low, const Body& high) const override {
     if constexpr (requires { Motion::surely_apart(query, low, high, *step_); })
-      if (Motion::surely_apart(query, low, high, *step_))
+      if (!step_->tested && Motion::surely_apart(query, low, high, *step_))
         return {};
     const Pair pair = pair_of(query, low, high, *step_);
     Motion motion = motion_of(pair, query);

@@ -34,10 +34,10 @@ struct LineSpan {
   float begin, end;
 };
 
-/// Writes the indices in [begin, end) of lines that may touch the given one; returns how many. `found` must have room
-/// for all of them, and 16 lines beyond the last must be readable.
+/// Of so many indices of lines leaves, in their order, those that may touch the given one; returns how many. There must
+/// be room for 16 more indices.
 using LineSweep = std::size_t (*)(const Line& line, const Line* lines, const LineFrame& frame, const LineSpan& span,
-                                  std::size_t begin, std::size_t end, std::uint32_t* found);
+                                  std::uint32_t* indices, std::size_t count);
 inline constexpr std::size_t sweep_padding = 16;
 
 /// Indices of two lines.
@@ -47,7 +47,7 @@ struct LinePair {
 
 /// The same for each of the lines [first, last) at once. [begin, end) lies before all of them or begins after the first
 /// one; then pairs are of a line with those that come after it. Writes those that may touch; `found` must have room for
-/// all.
+/// all, and 16 lines beyond the last must be readable.
 using LineGroupSweep = std::size_t (*)(const Line* lines, std::size_t first, std::size_t last, const LineFrame& frame,
                                        const LineSpan& span, std::size_t begin, std::size_t end, LinePair* found);
 

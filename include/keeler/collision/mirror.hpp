@@ -51,9 +51,14 @@ struct alignas(64) MirrorLevel {
 /// A mirror from one edge to another across the box, for one thread that changes nothing outside of it.
 struct MirrorPart {
   std::vector<MirrorLevel> levels; ///< the finest first; without empty ones; how far those of this part reach and stray
+  double farthest = 0.0;           ///< reach and stray of all of them, m
   std::uint64_t width = std::uint64_t{1} << 32; ///< as a fraction of the box, 2⁻³²
 
   bool whole() const { return width >> 32 != 0; }
+  /// A level reaches or strays farther than before.
+  void widened(const MirrorLevel& level) {
+    farthest = std::max({farthest, level.reach_x + level.stray_x, level.reach_y + level.stray_y});
+  }
   /// Whether a slot lies in one of its columns.
   bool holds(std::uint32_t slot) const {
     return whole() || std::any_of(levels.begin(), levels.end(), [&](const MirrorLevel& level) {
@@ -160,8 +165,6 @@ private:
   Lookout lookout(std::size_t first, std::size_t last) const;
   Lookout lookout(const Line& line, const LineSpan& span) const;
   std::size_t group_end(std::size_t first, std::size_t end, const MirrorLevel& level) const;
-  std::size_t sweep_copy(const Line& line, const LineSpan& span, std::uint32_t begin, std::uint32_t end,
-                         std::uint32_t* found) const;
   template<class Range>
   void ranges_in(const MirrorLevel& level, const Lookout& from, std::uint32_t after, const Range& range) const;
   template<class Slots>

@@ -15,7 +15,6 @@
 #include <keeler/core/threads.hpp>
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -46,15 +45,16 @@ public:
   /// The first of these are of the window's begin, in the order of places; the others are of later steps.
   std::size_t first_blocks() const { return first_lists_; }
 
-  /// Calls visit(j, image of j) for every other particle that one with a new orbit may meet from `start` to the end of
-  /// the step, as the store and the mirror know them. Looks around for the rest of the window at once, so that settle()
-  /// need not do so again; returns how many may be met in it, itself included. Returns nothing, having visited nobody,
-  /// when the orbit is so fast that it may meet another one through several images. The part encloses it, and the
-  /// looker is that part's.
+  /// Whether a particle with a new orbit may meet others of the part through their nearest images only.
+  bool one_image(const MirrorPart& part, std::size_t i) const { return mirror_.one_image(mirror_.line(i), part); }
+  /// Calls visit(j, image of j) for every other particle that such a one may meet from `start` to the end of the step,
+  /// as the store and the mirror know them. Looks around for the rest of the window at once, so that settle() need not
+  /// do so again; returns how many may be met in it, itself included. The part encloses it, and the looker is that
+  /// part's.
   template<class Visit>
-  std::optional<std::size_t> visit_partners(const MirrorPart& part, std::size_t looker, std::size_t i, double start,
-                                            std::vector<std::uint32_t>& buffer, const Visit& visit);
-  /// The same for such an orbit, all images of all particles tried.
+  std::size_t visit_partners(const MirrorPart& part, std::size_t looker, std::size_t i, double start,
+                             std::vector<std::uint32_t>& buffer, const Visit& visit);
+  /// The same for an orbit so fast that it may meet others through several images: all of all particles are tried.
   template<class Visit> void visit_everywhere(std::size_t i, double start, const Visit& visit) const;
   /// Calls visit(j) for every other particle that particle i may meet from `start` to the end of the step when j has
   /// been no farther than this (m) off its present path.
@@ -76,11 +76,17 @@ public:
   bool gather(std::size_t i, double start, std::vector<std::uint32_t>& buffer, Crowd& crowd) const;
   /// Whether a crowd still serves: the centre keeps to its path, and nearest images are all that it may meet.
   bool holds(const Crowd& crowd) const {
-    return departure(crowd.change()) < crowd.margin() &&
-           mirror_.one_image(mirror_.line(crowd.centre()), mirror_.whole());
+    return departure(crowd.change()) < crowd.margin() && one_image(mirror_.whole(), crowd.centre());
   }
-  /// How far two paths that differ by these elements are apart at any time of the step, m.
-  double departure(const Elements& change) const;
+  /// No two paths that differ by these elements are farther apart at any time of the step, m.
+  double departure(const Elements& change) const {
+    const Frequencies& f = frequencies_;
+    const State s = state_at(change, f, Rotation());
+    const double half = 0.5 * step_, eccentricity = std::fabs(change.e_cos) + std::fabs(change.e_sin),
+                 inclination = std::fabs(change.i_sin) + std::fabs(change.i_cos);
+    return s.position.lpNorm<1>() + half * s.velocity.lpNorm<1>() +
+           half * half * (f.kappa * eccentricity + 0.5 * f.nu * f.nu * inclination);
+  }
 
   const Mirror& mirror() const { return mirror_; }
   Line line_of(const Body& body) const { return mirror_.line_of(body, to_middle_); }
@@ -93,13 +99,13 @@ public:
   /// A particle has been hit and has a new orbit. May be called several times a step; contacts make two calls each.
   void changed(MirrorPart& part, std::size_t looker, std::size_t i);
   MirrorPart& whole() { return mirror_.whole(); }
-  /// To undo that: the particle's line and this mark of before.
+  /// To undo that, when the particle has its orbit of before again: the mark of before.
   struct Mark {
     std::uint32_t look;
     std::uint8_t changed;
   };
   Mark mark(std::size_t i) const { return {mirror_.note(i), changed_[i]}; }
-  void restore(MirrorPart& part, std::size_t i, const Line& line, Mark mark);
+  void restore(MirrorPart& part, std::size_t i, Mark mark);
   /// Three calls for a place, some time apart, bring what a hit needs into the cache.
   void prefetch(std::size_t i, int stage) const {
     if (stage == 0)
@@ -207,12 +213,9 @@ template<class Visit> void Neighbours::visit_block(std::size_t block, const Visi
 }
 
 template<class Visit>
-std::optional<std::size_t> Neighbours::visit_partners(const MirrorPart& part, std::size_t looker, std::size_t i,
-                                                      double start, std::vector<std::uint32_t>& buffer,
-                                                      const Visit& visit) {
+std::size_t Neighbours::visit_partners(const MirrorPart& part, std::size_t looker, std::size_t i, double start,
+                                       std::vector<std::uint32_t>& buffer, const Visit& visit) {
   const Line& line = mirror_.line(i);
-  if (!mirror_.one_image(line, part))
-    return std::nullopt;
   const Body& body = particles_->bodies[i];
   const LineSpan rest = span(since_middle() + start, 0.5 * length_ * step_);
   const std::size_t count = mirror_.near(part, line, rest, buffer);

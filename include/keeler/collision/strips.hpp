@@ -60,7 +60,6 @@ private:
     double begin, time; // of the path that ended
     double off;         // how far the new path may be from any before, m
     Elements ended;
-    Line line;
   };
   /// A contact with a partner outside of the strip: from then on a particle that has not changed is not for the strip.
   struct Barred {

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -113,7 +114,8 @@ struct Row {
 
   std::vector<std::uint32_t> sweep(InstructionSet set, std::size_t begin, std::size_t end) const {
     std::vector<std::uint32_t> found(end - begin + sweep_padding);
-    found.resize(line_sweeps(set).one(one, others.data(), frame, span(), begin, end, found.data()));
+    std::iota(found.begin(), found.end(), static_cast<std::uint32_t>(begin));
+    found.resize(line_sweeps(set).one(one, others.data(), frame, span(), found.data(), end - begin));
     return found;
   }
 

@@ -83,7 +83,7 @@ template<class Motion> FinderResult CertifiedSearch::find(const Motion& motion, 
       result.time = t;
       return result;
     }
-    t = std::max(next, std::nextafter(t, HUGE_VAL));
+    t = next > t ? next : std::nextafter(t, HUGE_VAL);
     if (t >= pair.end) {
       result.exit = FinderExit::missed;
       return result;
