@@ -162,7 +162,7 @@ void DriftPhase::collide(Particles& particles, const ShearingBox& box, double of
 bool DriftPhase::in_strips(const std::vector<Event>& first, CollisionTally& tally) {
   constexpr std::size_t fewest_contacts = 50, fewest_columns = 16; // of a strip
   constexpr std::size_t largest_share = 16;                        // one in so many particles
-  if (through_grid_ || watch || !finder_->exact())
+  if (through_grid_ || watch || !finder_->exact() || neighbours_.mirror().has_guests())
     return false;
   auto strips = std::min(Strips::most_strips, static_cast<std::size_t>(threads()));
   if (!always_in_strips) {

@@ -15,6 +15,7 @@ constexpr std::size_t block_size = 4096;   // particles
 constexpr double nearest_share = 0.45;     // of the box: what reaches less far has one image in reach
 constexpr double cells_per_particle = 2.0; // no more,
 constexpr double fewest_cells = 64.0;      // unless these are: columns, so that strips find edges
+constexpr double easy_stray = 0.5;         // of a level's reach: what may stand outside of a cell of it
 constexpr double single = 4e-6;            // of a path: what single precision may do to a line
 constexpr double full_turn = 4294967296.0; // 2³², the box
 
@@ -190,7 +191,8 @@ void Mirror::sort() {
   const std::size_t count = unsorted_.size(), parts = static_cast<std::size_t>(threads());
   cells_.resize(count);
   slots_.resize(count);
-  lines_.resize(count + sweep_padding);
+  lay_out_tiles();
+  lines_.resize(count + guests_.room + sweep_padding);
   parallel_for(
       count,
       [&](std::size_t k) {
@@ -222,40 +224,84 @@ void Mirror::sort() {
   }
 }
 
-void Mirror::replace(MirrorPart& part, std::size_t place, const Line& line) {
-  const std::size_t slot = slots_[place], cell = cells_[place];
-  lines_[slot] = line;
-  lines_[slot].place = static_cast<std::uint32_t>(place);
-  auto level = part.levels.begin();
-  while (slot >= level->end)
-    ++level;
-  // how far outside of its cell; the image that stands nearest to it
+// How far outside of a cell of a level a line stands; the image that stands nearest to it.
+Mirror::Outside Mirror::outside(const Line& line, const MirrorLevel& level, std::size_t cell) const {
   const auto from_middle = [](std::int32_t value, std::size_t cell_number, std::int64_t cells) {
     const double size = full_turn / static_cast<double>(cells);
     return static_cast<double>(value) + 0.5 * full_turn - (static_cast<double>(cell_number) + 0.5) * size;
   };
-  const auto rows = static_cast<std::size_t>(level->rows);
-  const double off_x = from_middle(line.x, (cell - level->first_cell) / rows, level->columns);
+  const auto rows = static_cast<std::size_t>(level.rows);
+  const double off_x = from_middle(line.x, (cell - level.first_cell) / rows, level.columns);
   const double outward = -std::rint(off_x / full_turn);
-  const double off_y = from_middle(line.y, (cell - level->first_cell) % rows, level->rows) - outward * frame_.offset_y;
-  const auto outside = [](double off, std::int64_t cells) {
+  const double off_y = from_middle(line.y, (cell - level.first_cell) % rows, level.rows) - outward * frame_.offset_y;
+  const auto beyond = [](double off, std::int64_t cells) {
     const double nearest = off - full_turn * std::rint(off / full_turn);
     return std::max(0.0, std::fabs(nearest) - 0.5 * full_turn / static_cast<double>(cells));
   };
-  level->reach_x = std::max(level->reach_x, reach_x(line));
-  level->reach_y = std::max(level->reach_y, reach_y(line));
-  level->stray_x = std::max(level->stray_x, outside(off_x, level->columns) / per_metre_x_);
-  level->stray_y = std::max(level->stray_y, outside(off_y, level->rows) / per_metre_y_);
+  return {beyond(off_x, level.columns) / per_metre_x_, beyond(off_y, level.rows) / per_metre_y_};
+}
+
+void Mirror::replace(MirrorPart& part, std::size_t place, const Line& line) {
+  const std::size_t cell = cells_[place];
+  auto level = part.levels.begin();
+  while (level + 1 != part.levels.end() && cell >= (level + 1)->first_cell)
+    ++level;
+  const Outside off = outside(line, *level, cell);
+  const bool fits = slots_[place] < size() && level_index_[level_of(line)] <= level - part.levels.begin() &&
+                    off.x <= std::max(level->stray_x, easy_stray * level->reach_x) &&
+                    off.y <= std::max(level->stray_y, easy_stray * level->reach_y);
+  if (!fits && &part == &whole_ && receive_guest(place, line))
+    return;
+  Line& own = lines_[slots_[place]];
+  own = line;
+  own.place = static_cast<std::uint32_t>(place);
+  level->widen(reach_x(line), reach_y(line), off.x, off.y);
   part.widened(*level);
+}
+
+// Tiles that a usual guest reaches few of.
+void Mirror::lay_out_tiles() {
+  constexpr double reaches = 8.0; // of the finest level: a tile's size
+  constexpr double most = 64.0;   // tiles a side
+  MirrorLevel& tiles = guests_.tiles = {};
+  if (!whole_.levels.empty()) {
+    const double size = reaches * std::max(whole_.levels[0].reach_x, whole_.levels[0].reach_y);
+    tiles.columns = static_cast<std::int64_t>(std::clamp(box_.size_x / size, 1.0, most));
+    tiles.rows = static_cast<std::int64_t>(std::clamp(box_.size_y / size, 1.0, most));
+  }
+  guests_.last.assign(static_cast<std::size_t>(tiles.columns * tiles.rows), 0);
+  guests_.next.clear();
+  guests_.tile.clear();
+  guests_.room = size() / 16;
+}
+
+// False when there is no more room. A guest that is hit again keeps its tile.
+bool Mirror::receive_guest(std::size_t place, const Line& line) {
+  if (slots_[place] < size()) {
+    constexpr float nowhere = 1e18f; // nobody's line comes near
+    if (guests_.tile.size() == guests_.room)
+      return false;
+    lines_[slots_[place]].z = nowhere;
+    slots_[place] = static_cast<std::uint32_t>(size() + guests_.tile.size());
+    const std::size_t tile = cell_of(line, guests_.tiles);
+    guests_.tile.push_back(static_cast<std::uint32_t>(tile));
+    guests_.next.push_back(guests_.last[tile]);
+    guests_.last[tile] = static_cast<std::uint32_t>(guests_.tile.size());
+  }
+  Line& own = lines_[slots_[place]];
+  own = line;
+  own.place = static_cast<std::uint32_t>(place);
+  MirrorLevel& tiles = guests_.tiles;
+  const Outside off = outside(line, tiles, guests_.tile[slots_[place] - size()]);
+  tiles.widen(reach_x(line), reach_y(line), off.x, off.y);
+  whole_.widened(tiles);
+  return true;
 }
 
 void Mirror::join(const MirrorPart& part) {
   for (std::size_t l = 0; l < part.levels.size(); ++l) {
-    MirrorLevel& level = whole_.levels[l];
-    level.reach_x = std::max(level.reach_x, part.levels[l].reach_x);
-    level.reach_y = std::max(level.reach_y, part.levels[l].reach_y);
-    level.stray_x = std::max(level.stray_x, part.levels[l].stray_x);
-    level.stray_y = std::max(level.stray_y, part.levels[l].stray_y);
+    const MirrorLevel& level = part.levels[l];
+    whole_.levels[l].widen(level.reach_x, level.reach_y, level.stray_x, level.stray_y);
     whole_.widened(level);
   }
 }
@@ -294,7 +340,8 @@ double Mirror::stray() const {
 }
 
 std::size_t Mirror::bytes() const {
-  return bytes_of(starts_) + bytes_of(cells_) + bytes_of(slots_) + bytes_of(unsorted_) + bytes_of(lines_);
+  return bytes_of(starts_) + bytes_of(cells_) + bytes_of(slots_) + bytes_of(unsorted_) + bytes_of(lines_) +
+         bytes_of(guests_.last) + bytes_of(guests_.next) + bytes_of(guests_.tile);
 }
 
 } // namespace keeler

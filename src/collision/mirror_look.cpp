@@ -66,13 +66,24 @@ std::size_t Mirror::near(const MirrorPart& part, const Line& line, const LineSpa
                          std::vector<std::uint32_t>& buffer) const {
   std::size_t count = 0;
   const Lookout from = lookout(line, span);
+  const auto room_for = [&](std::size_t more) {
+    if (buffer.size() < count + more + sweep_padding)
+      buffer.resize(2 * (count + more + sweep_padding));
+  };
+  const auto take = [&](std::uint32_t begin, std::uint32_t end) {
+    room_for(end - begin);
+    std::iota(buffer.data() + count, buffer.data() + count + (end - begin), begin);
+    count += end - begin;
+  };
   for (const MirrorLevel& level : part.levels)
-    ranges_in(level, from, 0, [&](std::uint32_t begin, std::uint32_t end) {
-      const std::size_t room = count + (end - begin) + sweep_padding;
-      if (buffer.size() < room)
-        buffer.resize(2 * room);
-      std::iota(buffer.data() + count, buffer.data() + count + (end - begin), begin);
-      count += end - begin;
+    ranges_in(level, from, 0, take);
+  if (has_guests())
+    cells_in(guests_.tiles, from, 0, [&](std::size_t from_tile, std::size_t to_tile) {
+      for (std::size_t tile = from_tile; tile < to_tile; ++tile)
+        for (std::uint32_t g = guests_.last[tile]; g > 0; g = guests_.next[g - 1]) {
+          room_for(1);
+          buffer[count++] = static_cast<std::uint32_t>(size()) + g - 1;
+        }
     });
   return sweeps_.one(line, lines_.data(), frame_, span, buffer.data(), count);
 }
@@ -84,9 +95,9 @@ void Mirror::prefetch(std::size_t place, int stage) const {
     __builtin_prefetch(&unsorted_[place].place, 1);
     return;
   }
-  const std::size_t slot = slots_[place], cell = cells_[place];
+  const std::size_t cell = cells_[place];
   auto level = whole_.levels.begin();
-  while (slot >= level->end)
+  while (level + 1 != whole_.levels.end() && cell >= (level + 1)->first_cell)
     ++level;
   const auto rows = static_cast<std::size_t>(level->rows);
   for (const std::size_t column : {cell - rows, cell, cell + rows}) { // the first may wrap around

@@ -8,7 +8,8 @@
 // particle can reach in a column is one or two ranges of the arrays.
 //
 // Invariant: a line stands within its level's stray of its cell. Particles that were hit get a new line but keep their
-// cell.
+// cell, unless that line reaches or strays farther than their level does. Then they become guests, in tiles of their
+// own that everybody looks into: a few fast ones do not make everybody look farther.
 #pragma once
 
 #include <keeler/box/shearing_box.hpp>
@@ -46,6 +47,14 @@ struct alignas(64) MirrorLevel {
   /// Their slots: from here to there, and those of the columns beyond the box's edge from the level's first to the
   /// last.
   std::uint32_t own_begin = 0, own_end = 0, own_end_beyond = 0;
+
+  /// Room for those that reach and stray so far.
+  void widen(double to_reach_x, double to_reach_y, double to_stray_x, double to_stray_y) {
+    reach_x = std::max(reach_x, to_reach_x);
+    reach_y = std::max(reach_y, to_reach_y);
+    stray_x = std::max(stray_x, to_stray_x);
+    stray_y = std::max(stray_y, to_stray_y);
+  }
 };
 
 /// A mirror from one edge to another across the box, for one thread that changes nothing outside of it.
@@ -82,6 +91,7 @@ public:
 
   const MirrorMeans& means() const { return means_; }
   std::size_t size() const { return cells_.size(); }
+  const LineFrame& frame() const { return frame_; }
   std::uint32_t place(std::size_t slot) const { return lines_[slot].place; }
   std::uint32_t slot(std::size_t place) const { return slots_[place]; }
   const Line& line(std::size_t place) const { return lines_[slots_[place]]; }
@@ -107,8 +117,10 @@ public:
   /// Whether everything that a line may touch lies in a part.
   bool encloses(const MirrorPart& part, const Line& line) const;
 
-  /// A particle of a part has a new line.
+  /// A particle of a part has a new line. In the whole it may become a guest.
   void replace(MirrorPart& part, std::size_t place, const Line& line);
+  /// Whether there are guests: until the next build only the whole is of use then.
+  bool has_guests() const { return !guests_.tile.empty(); }
 
   /// Of the coarsest level.
   std::size_t columns() const {
@@ -165,10 +177,18 @@ private:
   Lookout lookout(std::size_t first, std::size_t last) const;
   Lookout lookout(const Line& line, const LineSpan& span) const;
   std::size_t group_end(std::size_t first, std::size_t end, const MirrorLevel& level) const;
+  template<class Cells>
+  void cells_in(const MirrorLevel& level, const Lookout& from, std::uint32_t after, const Cells& cells) const;
   template<class Range>
   void ranges_in(const MirrorLevel& level, const Lookout& from, std::uint32_t after, const Range& range) const;
-  template<class Slots>
-  void rows_in(const MirrorLevel& level, std::size_t cell, std::uint32_t y, std::int64_t far, const Slots& slots) const;
+  template<class Cells>
+  void rows_in(const MirrorLevel& level, std::size_t cell, std::uint32_t y, std::int64_t far, const Cells& cells) const;
+  struct Outside {
+    double x, y; // m
+  };
+  Outside outside(const Line& line, const MirrorLevel& level, std::size_t cell) const;
+  void lay_out_tiles();
+  bool receive_guest(std::size_t place, const Line& line);
   static std::uint32_t along(const Line& line) { return static_cast<std::uint32_t>(line.y) + (std::uint32_t{1} << 31); }
   // Where to look for those whose images stand so many boxes outward.
   std::uint32_t image_y(std::uint32_t y, int boxes) const {
@@ -193,7 +213,17 @@ private:
   std::vector<std::uint32_t> starts_; // first slot of each cell
   std::vector<std::uint32_t> cells_;  // of each place
   std::vector<std::uint32_t> slots_;  // of each place
-  std::vector<Line> lines_;           // by slot
+  std::vector<Line> lines_;           // by slot: of cells, of guests, padding
+
+  // Those whose lines left their levels, numbered as they came. Their old slots are blank.
+  struct Guests {
+    MirrorLevel tiles;
+    std::vector<std::uint32_t> last; // of each tile: 1 + the guest that came last; 0: none
+    std::vector<std::uint32_t> next; // of each guest: the same of the one that came before
+    std::vector<std::uint32_t> tile; // of each guest
+    std::size_t room = 0;
+  };
+  Guests guests_;
 };
 
 inline Mirror::Columns Mirror::columns_near(const MirrorLevel& level, const Line& line) const {
@@ -202,42 +232,47 @@ inline Mirror::Columns Mirror::columns_near(const MirrorLevel& level, const Line
   return {(x - far) * level.columns >> 32, (x + far) * level.columns >> 32};
 }
 
-// Slots from `after` on that lie in the level's cells within reach.
-template<class Range>
-void Mirror::ranges_in(const MirrorLevel& level, const Lookout& from, std::uint32_t after, const Range& range) const {
-  if (level.end <= after)
-    return;
+// The level's cells within reach, from and to; of columns that end before slot `after` none.
+template<class Cells>
+void Mirror::cells_in(const MirrorLevel& level, const Lookout& from, std::uint32_t after, const Cells& cells) const {
   const double sheared = box_.shear * window_.half_length * (from.reach_x + level.reach_x);
   const double metres_x = from.around_x + level.reach_x + level.stray_x;
   const double metres_y = from.around_y + level.reach_y + level.stray_y + sheared;
   const std::int64_t far_x = static_cast<std::int64_t>(metres_x * per_metre_x_) + 4;
   const std::int64_t far_y = static_cast<std::int64_t>(metres_y * per_metre_y_) + 4;
   const std::int64_t first = (from.x - far_x) * level.columns >> 32, last = (from.x + far_x) * level.columns >> 32;
-  const auto slots = [&](std::size_t from_cell, std::size_t to_cell) {
-    const std::uint32_t begin = std::max(starts_[from_cell], after), end = starts_[to_cell];
-    if (begin < end)
-      range(begin, end);
-  };
   if (last - first >= level.columns) { // all columns, each once: images on either side
-    slots(level.first_cell, level.first_cell + static_cast<std::size_t>(level.columns * level.rows));
+    cells(level.first_cell, level.first_cell + static_cast<std::size_t>(level.columns * level.rows));
     return;
   }
   for (std::int64_t c = first; c <= last; ++c) {
     const int boxes = c < 0 ? -1 : c >= level.columns ? 1 : 0; // outward
     const std::size_t cell = level.first_cell + static_cast<std::size_t>((c - boxes * level.columns) * level.rows);
-    if (starts_[cell + static_cast<std::size_t>(level.rows)] > after)
-      rows_in(level, cell, image_y(from.y, boxes), far_y, slots);
+    if (after == 0 || starts_[cell + static_cast<std::size_t>(level.rows)] > after)
+      rows_in(level, cell, image_y(from.y, boxes), far_y, cells);
   }
 }
 
+// Slots from `after` on that lie in these cells.
+template<class Range>
+void Mirror::ranges_in(const MirrorLevel& level, const Lookout& from, std::uint32_t after, const Range& range) const {
+  if (level.end <= after)
+    return;
+  cells_in(level, from, after, [&](std::size_t from_cell, std::size_t to_cell) {
+    const std::uint32_t begin = std::max(starts_[from_cell], after), end = starts_[to_cell];
+    if (begin < end)
+      range(begin, end);
+  });
+}
+
 // The cells of one column, the first of which is `cell`, within reach of a place along the orbit; the box is round.
-template<class Slots>
+template<class Cells>
 void Mirror::rows_in(const MirrorLevel& level, std::size_t cell, std::uint32_t y, std::int64_t far,
-                     const Slots& slots) const {
+                     const Cells& cells) const {
   const std::int64_t rows = level.rows;
   const std::int64_t low = (std::int64_t{y} - far) * rows >> 32, high = (std::int64_t{y} + far) * rows >> 32;
   const auto of_column = [&](std::int64_t from, std::int64_t to) {
-    slots(cell + static_cast<std::size_t>(from), cell + static_cast<std::size_t>(to));
+    cells(cell + static_cast<std::size_t>(from), cell + static_cast<std::size_t>(to));
   };
   if (high - low + 1 >= rows) {
     of_column(0, rows);

@@ -203,35 +203,61 @@ TEST_CASE("a group of lines finds what each of them finds, and each pair within 
   CHECK(pairs > 10000);
 }
 
-TEST_CASE("a window begins with the pairs that each line finds by itself, each once") {
-  std::size_t pairs = 0, mirrors = 0, with_levels = 0;
-  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-    RandomStream random(seed, RandomPurpose::position, 0);
-    const auto centred = [&](double width) { return width * (random.uniform() - 0.5); };
+namespace {
+
+// Particles in a box and their mirror.
+struct Reflected {
+  RandomStream random;
+  ShearingBox box;
+  double half; // of the window
+  Particles particles;
+  Mirror mirror;
+
+  explicit Reflected(std::uint64_t seed)
+      : random(seed, RandomPurpose::position, 0), half(seed % 5 == 0 ? 0.05 : 0.003) {
     const Frequencies frequencies;
-    ShearingBox box;
     box.size_x = seed % 3 == 0 ? 14.0 : 90.0; // a few columns, or many
     box.size_y = seed % 3 == 1 ? 20.0 : 90.0;
     box.shear = frequencies.shear();
-    const double largest = seed % 2 ? 1.0 : 4.0, half = seed % 5 == 0 ? 0.05 : 0.003;
-    Particles particles;
+    const double largest = seed % 2 ? 1.0 : 4.0;
     for (std::size_t k = 0; k < 1500; ++k) {
       Body body;
       body.radius = std::min(std::pow(random.uniform(), -0.5), largest) / largest;
-      body.elements = {centred(box.size_x),   centred(box.size_y), 2.0 * random.normal(),
-                       2.0 * random.normal(), random.normal(),     random.normal()};
+      body.elements = anywhere(1.0);
       body.mass = 1.0;
       particles.bodies.push_back(body);
       particles.ids.push_back(k);
     }
-    Mirror mirror;
     for (int again = 0; again < 2; ++again) // levels begin where the last build found the least radius
       mirror.build(particles, box, centred(box.size_y), frequencies, {0.0, half, 0.0});
+  }
+
+  double centred(double width) { return width * (random.uniform() - 0.5); }
+  Elements anywhere(double heat) { // times what is usual along the plane
+    Elements el;
+    el.guiding_x = centred(box.size_x);
+    el.guiding_y = centred(box.size_y);
+    el.e_cos = 2.0 * heat * random.normal();
+    el.e_sin = 2.0 * heat * random.normal();
+    el.i_sin = random.normal();
+    el.i_cos = random.normal();
+    return el;
+  }
+  LineSpan span() const { return {static_cast<float>(-half), static_cast<float>(half)}; }
+};
+
+} // namespace
+
+TEST_CASE("a window begins with the pairs that each line finds by itself, each once") {
+  std::size_t pairs = 0, mirrors = 0, with_levels = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const Reflected reflected(seed);
+    const Mirror& mirror = reflected.mirror;
     if (!mirror.one_image())
       continue;
     ++mirrors;
     with_levels += mirror.whole().levels.size() > 1;
-    const LineSpan span{static_cast<float>(-half), static_cast<float>(half)};
+    const LineSpan span = reflected.span();
     std::vector<std::pair<std::size_t, std::size_t>> found, expected;
     std::vector<std::uint32_t> buffer;
     std::vector<LinePair> pair_buffer;
@@ -255,4 +281,57 @@ TEST_CASE("a window begins with the pairs that each line finds by itself, each o
   CHECK(pairs > 10000);
   CHECK(mirrors > 30);
   CHECK(with_levels > 10);
+}
+
+TEST_CASE("whoever has a new line is found where it is, slow or fast, near its old place or not") {
+  std::size_t found = 0, with_guests = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    Reflected reflected(seed);
+    Mirror& mirror = reflected.mirror;
+    if (!mirror.one_image())
+      continue;
+    MirrorPart a_part = mirror.part(0, std::uint64_t{1} << 32); // of which nobody becomes a guest
+    MirrorPart& part = seed % 2 ? mirror.whole() : a_part;
+    const auto below = [&](std::size_t count) {
+      return static_cast<std::size_t>(reflected.random.uniform() * static_cast<double>(count));
+    };
+    for (std::size_t change = 0; change < 300; ++change) {
+      Body& body = reflected.particles.bodies[below(change % 2 ? 40 : mirror.size())]; // some again and again
+      const Body before = body;
+      body.elements = reflected.anywhere(change % 3 ? 1.0 : 20.0);
+      if (change % 4 > 0) { // as after a hit, close to where it was
+        body.elements.guiding_x = before.elements.guiding_x + body.elements.e_cos - before.elements.e_cos;
+        body.elements.guiding_y = before.elements.guiding_y - 2.0 * (body.elements.e_sin - before.elements.e_sin);
+      }
+      const Line line = mirror.line_of(body, Rotation());
+      if (mirror.one_image(line, part))
+        mirror.replace(part, static_cast<std::size_t>(&body - reflected.particles.bodies.data()), line);
+      else
+        body = before;
+    }
+    with_guests += mirror.has_guests();
+    std::vector<Line> all;
+    for (std::size_t place = 0; place < mirror.size(); ++place)
+      all.push_back(mirror.line(place));
+    const LineFrame frame = mirror.frame();
+    std::vector<std::uint32_t> buffer, expected(all.size() + sweep_padding), places;
+    for (std::size_t place = 0; place < mirror.size(); ++place) {
+      std::iota(expected.begin(), expected.end(), 0u);
+      expected.resize(line_sweeps(InstructionSet::portable)
+                          .one(all[place], all.data(), frame, reflected.span(), expected.data(), all.size()));
+      const std::size_t count = mirror.near(part, all[place], reflected.span(), buffer);
+      places.clear();
+      for (std::size_t k = 0; k < count; ++k)
+        places.push_back(mirror.place(buffer[k]));
+      std::sort(places.begin(), places.end());
+      CAPTURE(seed);
+      CAPTURE(place);
+      CHECK((places == expected));
+      found += count;
+      expected.resize(all.size() + sweep_padding);
+    }
+  }
+  MESSAGE(found << " found; " << with_guests << " mirrors with guests");
+  CHECK(found > 100000);
+  CHECK(with_guests > 20);
 }
