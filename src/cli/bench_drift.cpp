@@ -58,6 +58,8 @@ void print_json(const DriftBenchSettings& s, const std::string& sizes, const Dri
   json["widest_list"] = b.widest_list;
   json["bytes_per_particle"] = b.bytes_per_particle;
   json["yardsticks"] = {{"line_ns", b.yardsticks.line_ns}, {"pair_ns", b.yardsticks.pair_ns}};
+  if (threads() > 1)
+    json["speedup"] = {{"step", b.speedup.step}, {"events", b.speedup.events}, {"pair", b.speedup.pair}};
   json["dispersion_r_omega"] = b.dispersion_r_omega;
   json["count"] = b.count;
   json["step_orbits"] = s.step_orbits;
@@ -81,6 +83,9 @@ void print_text(const DriftBenchSettings& s, const DriftBench& b) {
              "for a pair's |d|^2 and d.v\n",
              b.ns_per_particle_step / b.yardsticks.line_ns, b.yardsticks.line_ns,
              b.ns_per_particle_step / b.yardsticks.pair_ns, b.yardsticks.pair_ns);
+  if (threads() > 1)
+    fmt::print("over one thread, by turns           {:.2f} times as fast, the events {:.2f}, a pair {:.2f}\n",
+               b.speedup.step, b.speedup.events, b.speedup.pair);
   fmt::print("us per particle and orbit           {:.3g}\n", cost_per_orbit_us(s, b));
   if (b.contacts > 0)
     fmt::print("ns per collision                    {:.0f} for all of that time, {:.0f} for the events alone\n",

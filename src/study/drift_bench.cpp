@@ -5,6 +5,7 @@
 #include "yardsticks.hpp"
 
 #include <keeler/collision/finders.hpp>
+#include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
@@ -14,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace keeler {
 namespace {
@@ -69,6 +71,45 @@ struct Times {
   }
 };
 
+// Steps of a run, by the wall.
+struct Lap {
+  double seconds = 0.0, events = 0.0;
+
+  Lap(Simulation& simulation, int steps) {
+    const double before = simulation.drift().costs().events;
+    {
+      const Stopwatch stopwatch(seconds);
+      for (int k = 0; k < steps; ++k)
+        simulation.advance();
+    }
+    events = simulation.drift().costs().events - before;
+  }
+};
+
+// The same run on one thread, a lap after each of the other's.
+class OnOneThread {
+public:
+  OnOneThread(const Scene& scene, const Patch& patch, bool all_pairs) : simulation_(scene, patch) {
+    simulation_.drift().every_candidate = all_pairs;
+    const Lap untimed(simulation_, untimed_steps);
+  }
+
+  void compare(const Lap& other, double pair_ns, int steps) {
+    const int count = threads();
+    set_threads(1);
+    const Lap own(simulation_, steps);
+    step_.push_back(own.seconds / other.seconds);
+    events_.push_back(own.events / other.events);
+    pair_.push_back(pair_yardstick() / pair_ns);
+    set_threads(count);
+  }
+  Speedups speedups() const { return {median(step_), median(events_), median(pair_)}; }
+
+private:
+  Simulation simulation_;
+  std::vector<double> step_, events_, pair_;
+};
+
 void take_times(const Times& times, DriftBench& bench) {
   bench.ns_per_particle_step = median(times.whole);
   bench.split = {median(times.advance), median(times.build), median(times.reject), median(times.solve),
@@ -108,13 +149,15 @@ DriftBench bench_drift(const DriftBenchSettings& settings) {
   bench.dispersion_r_omega = velocity_in_radii(made.patch, velocity_dispersion(made.patch)).x();
 
   Simulation simulation(made.scene, made.patch);
-  made.patch = {}; // room: a large state is held once
+  std::optional<OnOneThread> alone;
+  if (threads() > 1)
+    alone.emplace(made.scene, made.patch, settings.all_pairs);
+  made.patch = {}; // room: on one thread a large state is held once
   time_calls(settings, made.scene, simulation.state(), bench);
   simulation.drift().every_candidate = settings.all_pairs;
   const double passes = static_cast<double>(bench.count) * bench.steps;
   progress.begin("timing", settings.repeats);
-  for (int k = 0; k < untimed_steps; ++k)
-    simulation.advance();
+  const Lap untimed(simulation, untimed_steps);
   MemoryYardstick memory(bench.count);
   Times times;
   const Reading start(simulation);
@@ -122,12 +165,15 @@ DriftBench bench_drift(const DriftBenchSettings& settings) {
     times.line.push_back(memory.measure());
     times.pair.push_back(pair_yardstick());
     const Reading before(simulation);
-    for (int k = 0; k < bench.steps; ++k)
-      simulation.advance();
+    const Lap lap(simulation, bench.steps);
     times.add(before, Reading(simulation), passes);
+    if (alone)
+      alone->compare(lap, times.pair.back(), bench.steps);
     progress.add(1.0);
   }
   take_times(times, bench);
+  if (alone)
+    bench.speedup = alone->speedups();
   take_counts(start, Reading(simulation), passes * settings.repeats, settings.step_orbits, bench);
   return bench;
 }

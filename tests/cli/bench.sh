@@ -17,8 +17,12 @@ runs 0 bench drift --count 500 --step 2e-3 --repeats 2 --json
 has_numbers "bench" ns_per_particle_step cost_per_orbit_us ns_per_collision ns_per_call pairs_per_particle \
   survivors_per_particle bytes_per_particle collisions_per_particle_orbit dispersion_r_omega advance build reject solve \
   events line_ns pair_ns
+grep -q speedup "$work/out" && fail "bench: a speedup on one thread in: $(cat "$work/out")"
 runs 0 bench drift --count 500 --repeats 1 --finder original --all-pairs --threads 2
 prints "bench" "ns per particle and step"
+prints "bench" "over one thread, by turns"
+runs 0 bench drift --count 500 --repeats 1 --threads 2 --json
+has_numbers "bench on two threads" step events pair
 runs 0 bench drift --count 400 --optical-depth 0.02 --sizes moonlet --repeats 1 --json
 grep -qF '"sizes": "moonlet"' "$work/out" || fail "bench: no moonlet in: $(cat "$work/out")"
 refuses "too few for a moonlet" "raise --count" bench drift --count 500 --sizes moonlet

@@ -42,6 +42,14 @@ struct Yardsticks {
   double pair_ns = 0.0; ///< to evaluate |d|² and d·v of a pair on its epicycles at one time, from the fastest memory
 };
 
+/// Wall time on one thread over that on several, each repeat followed by the same steps on one thread: medians of the
+/// ratios. All 1 on one thread.
+struct Speedups {
+  double step = 1.0;
+  double events = 1.0; ///< of that part alone
+  double pair = 1.0;   ///< of the yardstick pair_ns, whose threads share nothing
+};
+
 /// Times are medians over the repeats: processor time on one thread, wall time on several, the split always wall time.
 /// Counts are of all repeats together.
 struct DriftBench {
@@ -61,6 +69,7 @@ struct DriftBench {
   std::uint64_t widest_list = 0;
   std::size_t bytes_per_particle = 0;
   Yardsticks yardsticks;
+  Speedups speedup;
   double dispersion_r_omega = 0.0; ///< c_x of the state that is timed, in ⟨r⟩ Ω
 };
 
