@@ -322,6 +322,12 @@ MirrorPart Mirror::part(std::uint32_t begin, std::uint64_t width) const {
   return part;
 }
 
+std::uint32_t Mirror::column_edge(std::uint32_t across) const {
+  const auto columns = static_cast<std::uint64_t>(whole_.levels.front().columns);
+  const std::uint64_t column = across * columns >> 32;
+  return static_cast<std::uint32_t>(((column << 32) + columns - 1) / columns);
+}
+
 bool Mirror::encloses(const MirrorPart& part, const Line& line) const {
   if (part.whole())
     return true;

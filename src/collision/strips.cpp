@@ -159,16 +159,17 @@ bool Strips::carry_out(const StepAtHand& step, Particles& particles, StepSoFar& 
   return put_in_order() || undo_all();
 }
 
-// Where the first contacts are tells where to cut.
+// Where the first contacts are tells where to cut: at columns' edges, so that no column is nobody's.
 void Strips::cut(const std::vector<Event>& first) {
   constexpr std::size_t enough = 64; // for a strip
   const std::size_t stride = 1 + first.size() / (enough * across_);
+  const Mirror& mirror = neighbours_->mirror();
   std::vector<std::uint32_t> across;
-  for (std::size_t e = 0; e < first.size(); e += stride)
-    across.push_back(Mirror::across(neighbours_->mirror().line(first[e].low)));
+  for (std::size_t e = 0; e < first.size(); e += stride) // they are nearly in order across, so few tell
+    across.push_back(Mirror::across(mirror.line(first[e].low)));
   std::sort(across.begin(), across.end());
   const auto edge = [&](std::size_t half) { // strips are two halves wide
-    return across.empty() ? 0 : across[half % (2 * across_) * across.size() / (2 * across_)];
+    return across.empty() ? 0 : mirror.column_edge(across[half % (2 * across_) * across.size() / (2 * across_)]);
   };
   if (strips_.size() != 2 * across_ + 1)
     strips_ = std::vector<Strip>(2 * across_ + 1);

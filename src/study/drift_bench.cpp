@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace keeler {
 namespace {
@@ -86,28 +85,19 @@ struct Lap {
   }
 };
 
-// The same run on one thread, a lap after each of the other's.
-class OnOneThread {
-public:
-  OnOneThread(const Scene& scene, const Patch& patch, bool all_pairs) : simulation_(scene, patch) {
-    simulation_.drift().every_candidate = all_pairs;
-    const Lap untimed(simulation_, untimed_steps);
-  }
+// What several threads gain over one, lap by lap of the same run.
+struct Gains {
+  std::vector<double> step, events, pair;
 
-  void compare(const Lap& other, double pair_ns, int steps) {
+  void compare(Simulation& simulation, const Lap& before, double pair_ns, int steps) {
     const int count = threads();
     set_threads(1);
-    const Lap own(simulation_, steps);
-    step_.push_back(own.seconds / other.seconds);
-    events_.push_back(own.events / other.events);
-    pair_.push_back(pair_yardstick() / pair_ns);
+    const Lap alone(simulation, steps);
+    step.push_back(alone.seconds / before.seconds);
+    events.push_back(alone.events / before.events);
+    pair.push_back(pair_yardstick() / pair_ns);
     set_threads(count);
   }
-  Speedups speedups() const { return {median(step_), median(events_), median(pair_)}; }
-
-private:
-  Simulation simulation_;
-  std::vector<double> step_, events_, pair_;
 };
 
 void take_times(const Times& times, DriftBench& bench) {
@@ -117,20 +107,25 @@ void take_times(const Times& times, DriftBench& bench) {
   bench.yardsticks = {median(times.line), median(times.pair)};
 }
 
-void take_counts(const Reading& start, const Reading& end, double passes, double step_orbits, DriftBench& bench) {
-  const auto per_pass = [&](std::uint64_t before, std::uint64_t after) {
-    return static_cast<double>(after - before) / passes;
-  };
-  bench.pairs_per_particle = per_pass(start.costs.pairs_tested, end.costs.pairs_tested);
-  bench.survivors_per_particle = per_pass(start.costs.survivors, end.costs.survivors);
-  bench.collisions_per_particle_orbit = 2.0 * per_pass(start.tally.fast, end.tally.fast) / step_orbits;
-  bench.contacts = end.contacts() - start.contacts();
-  bench.recontacts = end.costs.recontacts - start.costs.recontacts;
-  bench.conflicts = end.costs.conflicts - start.costs.conflicts;
-  bench.repairs = end.costs.repairs - start.costs.repairs;
-  bench.windows = end.costs.windows - start.costs.windows;
-  bench.widest_list = end.costs.widest_list;
-  bench.bytes_per_particle = end.costs.bytes_per_particle;
+// Adds what happened between two readings; the numbers for each pass are sums until they are divided.
+void add_counts(const Reading& before, const Reading& after, DriftBench& bench) {
+  const auto more = [](std::uint64_t was, std::uint64_t is) { return static_cast<double>(is - was); };
+  bench.pairs_per_particle += more(before.costs.pairs_tested, after.costs.pairs_tested);
+  bench.survivors_per_particle += more(before.costs.survivors, after.costs.survivors);
+  bench.collisions_per_particle_orbit += 2.0 * more(before.tally.fast, after.tally.fast);
+  bench.contacts += after.contacts() - before.contacts();
+  bench.recontacts += after.costs.recontacts - before.costs.recontacts;
+  bench.conflicts += after.costs.conflicts - before.costs.conflicts;
+  bench.repairs += after.costs.repairs - before.costs.repairs;
+  bench.windows += after.costs.windows - before.costs.windows;
+  bench.widest_list = after.costs.widest_list;
+  bench.bytes_per_particle = after.costs.bytes_per_particle;
+}
+
+void divide_counts(double passes, double step_orbits, DriftBench& bench) {
+  bench.pairs_per_particle /= passes;
+  bench.survivors_per_particle /= passes;
+  bench.collisions_per_particle_orbit /= passes * step_orbits;
   if (bench.contacts == 0)
     return;
   const double passes_per_contact = passes / static_cast<double>(bench.contacts);
@@ -149,10 +144,7 @@ DriftBench bench_drift(const DriftBenchSettings& settings) {
   bench.dispersion_r_omega = velocity_in_radii(made.patch, velocity_dispersion(made.patch)).x();
 
   Simulation simulation(made.scene, made.patch);
-  std::optional<OnOneThread> alone;
-  if (threads() > 1)
-    alone.emplace(made.scene, made.patch, settings.all_pairs);
-  made.patch = {}; // room: on one thread a large state is held once
+  made.patch = {}; // room: a large state is held once
   time_calls(settings, made.scene, simulation.state(), bench);
   simulation.drift().every_candidate = settings.all_pairs;
   const double passes = static_cast<double>(bench.count) * bench.steps;
@@ -160,21 +152,23 @@ DriftBench bench_drift(const DriftBenchSettings& settings) {
   const Lap untimed(simulation, untimed_steps);
   MemoryYardstick memory(bench.count);
   Times times;
-  const Reading start(simulation);
+  Gains gains;
   for (int repeat = 0; repeat < settings.repeats; ++repeat) {
     times.line.push_back(memory.measure());
     times.pair.push_back(pair_yardstick());
     const Reading before(simulation);
     const Lap lap(simulation, bench.steps);
-    times.add(before, Reading(simulation), passes);
-    if (alone)
-      alone->compare(lap, times.pair.back(), bench.steps);
+    const Reading after(simulation);
+    times.add(before, after, passes);
+    add_counts(before, after, bench);
+    if (threads() > 1)
+      gains.compare(simulation, lap, times.pair.back(), bench.steps);
     progress.add(1.0);
   }
   take_times(times, bench);
-  if (alone)
-    bench.speedup = alone->speedups();
-  take_counts(start, Reading(simulation), passes * settings.repeats, settings.step_orbits, bench);
+  if (threads() > 1)
+    bench.speedup = {median(gains.step), median(gains.events), median(gains.pair)};
+  divide_counts(passes * settings.repeats, settings.step_orbits, bench);
   return bench;
 }
 

@@ -114,6 +114,8 @@ public:
   static std::uint32_t across(const Line& line) {
     return static_cast<std::uint32_t>(line.x) + (std::uint32_t{1} << 31);
   }
+  /// The nearest edge before a place across the box, of a column of the finest level.
+  std::uint32_t column_edge(std::uint32_t across) const;
   /// Whether everything that a line may touch lies in a part.
   bool encloses(const MirrorPart& part, const Line& line) const;
 

@@ -79,13 +79,16 @@ public:
     return departure(crowd.change()) < crowd.margin() && one_image(mirror_.whole(), crowd.centre());
   }
   /// No two paths that differ by these elements are farther apart at any time of the step, m.
-  double departure(const Elements& change) const {
+  double departure(const Elements& el) const {
     const Frequencies& f = frequencies_;
-    const State s = state_at(change, f, Rotation());
-    const double half = 0.5 * step_, eccentricity = std::fabs(change.e_cos) + std::fabs(change.e_sin),
-                 inclination = std::fabs(change.i_sin) + std::fabs(change.i_cos);
-    return s.position.lpNorm<1>() + half * s.velocity.lpNorm<1>() +
-           half * half * (f.kappa * eccentricity + 0.5 * f.nu * f.nu * inclination);
+    const double half = 0.5 * step_;
+    const double off =
+        std::fabs(el.guiding_x - el.e_cos) + std::fabs(el.guiding_y + (2.0 / f.kappa) * el.e_sin) + std::fabs(el.i_sin);
+    const double speed = f.kappa * std::fabs(el.e_sin) + std::fabs(2.0 * el.e_cos - f.shear() * el.guiding_x) +
+                         f.nu * std::fabs(el.i_cos);
+    const double acceleration = 2.0 * f.kappa * (std::fabs(el.e_cos) + std::fabs(el.e_sin)) +
+                                f.nu * f.nu * (std::fabs(el.i_sin) + std::fabs(el.i_cos));
+    return off + half * (speed + 0.5 * half * acceleration);
   }
 
   const Mirror& mirror() const { return mirror_; }

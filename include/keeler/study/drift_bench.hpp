@@ -42,7 +42,7 @@ struct Yardsticks {
   double pair_ns = 0.0; ///< to evaluate |d|² and d·v of a pair on its epicycles at one time, from the fastest memory
 };
 
-/// Wall time on one thread over that on several, each repeat followed by the same steps on one thread: medians of the
+/// Wall time on one thread over that on several, each repeat followed by as many steps on one thread: medians of the
 /// ratios. All 1 on one thread.
 struct Speedups {
   double step = 1.0;
@@ -73,7 +73,8 @@ struct DriftBench {
   double dispersion_r_omega = 0.0; ///< c_x of the state that is timed, in ⟨r⟩ Ω
 };
 
-/// Each repeat goes on where the one before it stopped. Throws UsageError for an unknown finder or an impossible patch.
+/// Each repeat goes on where the one before it stopped, or the steps on one thread after it. Throws UsageError for an
+/// unknown finder or an impossible patch.
 DriftBench bench_drift(const DriftBenchSettings& settings);
 
 } // namespace keeler
