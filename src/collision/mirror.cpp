@@ -15,7 +15,7 @@ constexpr std::size_t block_size = 4096;   // particles
 constexpr double nearest_share = 0.45;     // of the box: what reaches less far has one image in reach
 constexpr double cells_per_particle = 2.0; // no more,
 constexpr double fewest_cells = 64.0;      // unless these are: columns, so that strips find edges
-constexpr double easy_stray = 0.5;         // of a level's reach: what may stand outside of a cell of it
+constexpr double easy_stray = 0.5;         // of a level's reach: how far its lines may always stand from their cells
 constexpr double single = 4e-6;            // of a path: what single precision may do to a line
 constexpr double full_turn = 4294967296.0; // 2³², the box
 
@@ -149,9 +149,7 @@ void Mirror::take_lines(const Particles& particles) {
     if (all.counts[l]) {
       whole_.levels.emplace_back();
       whole_.levels.back().count = all.counts[l];
-      whole_.levels.back().reach_x = all.reach_x[l];
-      whole_.levels.back().reach_y = all.reach_y[l];
-      whole_.widened(whole_.levels.back());
+      whole_.widen(whole_.levels.back(), all.reach_x[l], all.reach_y[l], 0.0, 0.0);
     }
   }
 }
@@ -191,7 +189,7 @@ void Mirror::sort() {
   const std::size_t count = unsorted_.size(), parts = static_cast<std::size_t>(threads());
   cells_.resize(count);
   slots_.resize(count);
-  lay_out_tiles();
+  lay_out_tiles(count);
   lines_.resize(count + guests_.room + sweep_padding);
   parallel_for(
       count,
@@ -241,26 +239,34 @@ Mirror::Outside Mirror::outside(const Line& line, const MirrorLevel& level, std:
   return {beyond(off_x, level.columns) / per_metre_x_, beyond(off_y, level.rows) / per_metre_y_};
 }
 
-void Mirror::replace(MirrorPart& part, std::size_t place, const Line& line) {
-  const std::size_t cell = cells_[place];
-  auto level = part.levels.begin();
-  while (level + 1 != part.levels.end() && cell >= (level + 1)->first_cell)
+const MirrorLevel& Mirror::level_at(const std::vector<MirrorLevel>& levels, std::size_t cell) {
+  auto level = levels.begin();
+  while (level + 1 != levels.end() && cell >= (level + 1)->first_cell)
     ++level;
-  const Outside off = outside(line, *level, cell);
-  const bool fits = slots_[place] < size() && level_index_[level_of(line)] <= level - part.levels.begin() &&
-                    off.x <= std::max(level->stray_x, easy_stray * level->reach_x) &&
-                    off.y <= std::max(level->stray_y, easy_stray * level->reach_y);
-  if (!fits && &part == &whole_ && receive_guest(place, line))
-    return;
+  return *level;
+}
+
+void Mirror::replace(MirrorPart& part, std::size_t place, const Line& line) {
+  const auto number = &level_at(part.levels, cells_[place]) - part.levels.data();
+  MirrorLevel* level = &part.levels[static_cast<std::size_t>(number)];
+  Outside off = outside(line, *level, cells_[place]);
+  if (&part == &whole_) {
+    const bool fits = slots_[place] < size() && level_index_[level_of(line)] <= number &&
+                      off.x <= std::max(level->stray_x, easy_stray * level->reach_x) &&
+                      off.y <= std::max(level->stray_y, easy_stray * level->reach_y);
+    if (!fits && make_guest(place, line)) {
+      level = &guests_.tiles;
+      off = outside(line, *level, guests_.tile[slots_[place] - size()]);
+    }
+  }
   Line& own = lines_[slots_[place]];
   own = line;
   own.place = static_cast<std::uint32_t>(place);
-  level->widen(reach_x(line), reach_y(line), off.x, off.y);
-  part.widened(*level);
+  part.widen(*level, reach_x(line), reach_y(line), off.x, off.y);
 }
 
 // Tiles that a usual guest reaches few of.
-void Mirror::lay_out_tiles() {
+void Mirror::lay_out_tiles(std::size_t particles) {
   constexpr double reaches = 8.0; // of the finest level: a tile's size
   constexpr double most = 64.0;   // tiles a side
   MirrorLevel& tiles = guests_.tiles = {};
@@ -270,39 +276,32 @@ void Mirror::lay_out_tiles() {
     tiles.rows = static_cast<std::int64_t>(std::clamp(box_.size_y / size, 1.0, most));
   }
   guests_.last.assign(static_cast<std::size_t>(tiles.columns * tiles.rows), 0);
-  guests_.next.clear();
+  guests_.before.clear();
   guests_.tile.clear();
-  guests_.room = size() / 16;
+  guests_.room = particles / 16;
 }
 
-// False when there is no more room. A guest that is hit again keeps its tile.
-bool Mirror::receive_guest(std::size_t place, const Line& line) {
-  if (slots_[place] < size()) {
-    constexpr float nowhere = 1e18f; // nobody's line comes near
-    if (guests_.tile.size() == guests_.room)
-      return false;
-    lines_[slots_[place]].z = nowhere;
-    slots_[place] = static_cast<std::uint32_t>(size() + guests_.tile.size());
-    const std::size_t tile = cell_of(line, guests_.tiles);
-    guests_.tile.push_back(static_cast<std::uint32_t>(tile));
-    guests_.next.push_back(guests_.last[tile]);
-    guests_.last[tile] = static_cast<std::uint32_t>(guests_.tile.size());
-  }
-  Line& own = lines_[slots_[place]];
-  own = line;
-  own.place = static_cast<std::uint32_t>(place);
-  MirrorLevel& tiles = guests_.tiles;
-  const Outside off = outside(line, tiles, guests_.tile[slots_[place] - size()]);
-  tiles.widen(reach_x(line), reach_y(line), off.x, off.y);
-  whole_.widened(tiles);
+// Gives it a slot and a tile, unless it has them: a guest that is hit again keeps its tile. False when there is no
+// room.
+bool Mirror::make_guest(std::size_t place, const Line& line) {
+  if (slots_[place] >= size())
+    return true;
+  if (guests_.tile.size() == guests_.room)
+    return false;
+  constexpr float nowhere = 1e18f; // nobody's line comes near
+  lines_[slots_[place]].z = nowhere;
+  slots_[place] = static_cast<std::uint32_t>(size() + guests_.tile.size());
+  const std::size_t tile = cell_of(line, guests_.tiles);
+  guests_.tile.push_back(static_cast<std::uint32_t>(tile));
+  guests_.before.push_back(guests_.last[tile]);
+  guests_.last[tile] = static_cast<std::uint32_t>(guests_.tile.size());
   return true;
 }
 
 void Mirror::join(const MirrorPart& part) {
   for (std::size_t l = 0; l < part.levels.size(); ++l) {
     const MirrorLevel& level = part.levels[l];
-    whole_.levels[l].widen(level.reach_x, level.reach_y, level.stray_x, level.stray_y);
-    whole_.widened(level);
+    whole_.widen(whole_.levels[l], level.reach_x, level.reach_y, level.stray_x, level.stray_y);
   }
 }
 
@@ -310,7 +309,7 @@ MirrorPart Mirror::part(std::uint32_t begin, std::uint64_t width) const {
   MirrorPart part{whole_.levels, whole_.farthest, width};
   for (MirrorLevel& level : part.levels) {
     const auto columns = static_cast<std::uint64_t>(level.columns);
-    level.first_column = static_cast<std::int64_t>((begin * columns + 0xffffffff) >> 32);
+    level.first_column = ((std::int64_t{begin} - 1) * level.columns >> 32) + 1; // the first with no place before begin
     level.last_column = static_cast<std::int64_t>((begin + width) * columns >> 32) - 1;
     const auto slot = [&](std::int64_t column) {
       return starts_[level.first_cell + static_cast<std::size_t>(std::min(column, level.columns) * level.rows)];
@@ -347,7 +346,7 @@ double Mirror::stray() const {
 
 std::size_t Mirror::bytes() const {
   return bytes_of(starts_) + bytes_of(cells_) + bytes_of(slots_) + bytes_of(unsorted_) + bytes_of(lines_) +
-         bytes_of(guests_.last) + bytes_of(guests_.next) + bytes_of(guests_.tile);
+         bytes_of(guests_.last) + bytes_of(guests_.before) + bytes_of(guests_.tile);
 }
 
 } // namespace keeler

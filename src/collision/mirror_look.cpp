@@ -66,12 +66,10 @@ std::size_t Mirror::near(const MirrorPart& part, const Line& line, const LineSpa
                          std::vector<std::uint32_t>& buffer) const {
   std::size_t count = 0;
   const Lookout from = lookout(line, span);
-  const auto room_for = [&](std::size_t more) {
-    if (buffer.size() < count + more + sweep_padding)
-      buffer.resize(2 * (count + more + sweep_padding));
-  };
   const auto take = [&](std::uint32_t begin, std::uint32_t end) {
-    room_for(end - begin);
+    const std::size_t room = count + (end - begin) + sweep_padding;
+    if (buffer.size() < room)
+      buffer.resize(2 * room);
     std::iota(buffer.data() + count, buffer.data() + count + (end - begin), begin);
     count += end - begin;
   };
@@ -80,10 +78,8 @@ std::size_t Mirror::near(const MirrorPart& part, const Line& line, const LineSpa
   if (has_guests())
     cells_in(guests_.tiles, from, 0, [&](std::size_t from_tile, std::size_t to_tile) {
       for (std::size_t tile = from_tile; tile < to_tile; ++tile)
-        for (std::uint32_t g = guests_.last[tile]; g > 0; g = guests_.next[g - 1]) {
-          room_for(1);
-          buffer[count++] = static_cast<std::uint32_t>(size()) + g - 1;
-        }
+        for (std::uint32_t g = guests_.last[tile]; g > 0; g = guests_.before[g - 1])
+          take(static_cast<std::uint32_t>(size()) + g - 1, static_cast<std::uint32_t>(size()) + g);
     });
   return sweeps_.one(line, lines_.data(), frame_, span, buffer.data(), count);
 }
@@ -96,10 +92,7 @@ void Mirror::prefetch(std::size_t place, int stage) const {
     return;
   }
   const std::size_t cell = cells_[place];
-  auto level = whole_.levels.begin();
-  while (level + 1 != whole_.levels.end() && cell >= (level + 1)->first_cell)
-    ++level;
-  const auto rows = static_cast<std::size_t>(level->rows);
+  const auto rows = static_cast<std::size_t>(level_at(whole_.levels, cell).rows);
   for (const std::size_t column : {cell - rows, cell, cell + rows}) { // the first may wrap around
     const std::size_t near = std::min(column, starts_.size() - 1);
     if (stage == 1)

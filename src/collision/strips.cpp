@@ -312,6 +312,7 @@ void Strips::take_back(Strip& strip) {
 void Strips::undo(Strip& strip) {
   while (!strip.changes.empty())
     take_back(strip);
+  neighbours_->join(strip.part);
   strip.contacts.clear();
   strip.farthest = 0.0;
 }

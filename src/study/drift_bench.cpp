@@ -70,32 +70,34 @@ struct Times {
   }
 };
 
-// Steps of a run, by the wall.
+// What some steps took, by the wall.
 struct Lap {
   double seconds = 0.0, events = 0.0;
-
-  Lap(Simulation& simulation, int steps) {
-    const double before = simulation.drift().costs().events;
-    {
-      const Stopwatch stopwatch(seconds);
-      for (int k = 0; k < steps; ++k)
-        simulation.advance();
-    }
-    events = simulation.drift().costs().events - before;
-  }
 };
+
+Lap run(Simulation& simulation, int steps) {
+  Lap lap;
+  const double before = simulation.drift().costs().events;
+  {
+    const Stopwatch stopwatch(lap.seconds);
+    for (int k = 0; k < steps; ++k)
+      simulation.advance();
+  }
+  lap.events = simulation.drift().costs().events - before;
+  return lap;
+}
 
 // What several threads gain over one, lap by lap of the same run.
 struct Gains {
   std::vector<double> step, events, pair;
 
-  void compare(Simulation& simulation, const Lap& before, double pair_ns, int steps) {
+  void compare(Simulation& simulation, const Lap& several, double pair_ns, int steps) {
     const int count = threads();
     set_threads(1);
-    const Lap alone(simulation, steps);
-    step.push_back(alone.seconds / before.seconds);
-    events.push_back(alone.events / before.events);
-    pair.push_back(pair_yardstick() / pair_ns);
+    const Lap one = run(simulation, steps);
+    step.push_back(one.seconds / several.seconds);
+    events.push_back(one.events / several.events);
+    pair.push_back(pair_yardstick(wall_seconds) / pair_ns);
     set_threads(count);
   }
 };
@@ -149,7 +151,7 @@ DriftBench bench_drift(const DriftBenchSettings& settings) {
   simulation.drift().every_candidate = settings.all_pairs;
   const double passes = static_cast<double>(bench.count) * bench.steps;
   progress.begin("timing", settings.repeats);
-  const Lap untimed(simulation, untimed_steps);
+  run(simulation, untimed_steps);
   MemoryYardstick memory(bench.count);
   Times times;
   Gains gains;
@@ -157,7 +159,7 @@ DriftBench bench_drift(const DriftBenchSettings& settings) {
     times.line.push_back(memory.measure());
     times.pair.push_back(pair_yardstick());
     const Reading before(simulation);
-    const Lap lap(simulation, bench.steps);
+    const Lap lap = run(simulation, bench.steps);
     const Reading after(simulation);
     times.add(before, after, passes);
     add_counts(before, after, bench);

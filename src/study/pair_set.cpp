@@ -55,6 +55,7 @@ PairSet PairSet::of(Particles particles, const ShearingBox& box, double offset, 
 DriftStep PairSet::view() const {
   DriftStep step = step_;
   step.bodies = bodies;
+  step.tested = false; // they may have been changed
   return step;
 }
 

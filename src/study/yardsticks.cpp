@@ -11,15 +11,15 @@ namespace {
 constexpr double least_seconds = 0.03; // of work, for one measurement
 
 // Time of one call of work(), s; the first one is not counted.
-template<class Work> double seconds_of(const Work& work) {
+template<class Work> double seconds_of(const Work& work, double (*clock)()) {
   work();
-  const double start = bench_seconds();
+  const double start = clock();
   double spent = 0.0;
   int times = 0;
   while (spent < least_seconds) {
     work();
     ++times;
-    spent = bench_seconds() - start;
+    spent = clock() - start;
   }
   return spent / times;
 }
@@ -35,10 +35,13 @@ std::vector<Elements> some_orbits(std::size_t count) {
 
 } // namespace
 
-double bench_seconds() {
+double wall_seconds() {
   static const auto start = std::chrono::steady_clock::now();
-  return threads() == 1 ? cpu_seconds()
-                        : std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double bench_seconds() {
+  return threads() == 1 ? cpu_seconds() : wall_seconds();
 }
 
 double MemoryYardstick::measure() {
@@ -61,10 +64,10 @@ double MemoryYardstick::measure() {
     for (std::size_t round = 0; round < rounds; ++round)
       once();
   };
-  return 1e9 * seconds_of(pass) / static_cast<double>(rounds * lines_.size());
+  return 1e9 * seconds_of(pass, bench_seconds) / static_cast<double>(rounds * lines_.size());
 }
 
-double pair_yardstick() {
+double pair_yardstick(double (*clock)()) {
   constexpr std::size_t orbit_count = 256, rounds = 64;
   const std::vector<Elements> orbits = some_orbits(orbit_count);
   const Frequencies frequencies;
@@ -87,7 +90,7 @@ double pair_yardstick() {
         },
         1);
   };
-  return 1e9 * seconds_of(pass) / static_cast<double>(sums.size() * rounds * orbit_count);
+  return 1e9 * seconds_of(pass, clock) / static_cast<double>(sums.size() * rounds * orbit_count);
 }
 
 } // namespace keeler

@@ -9,6 +9,7 @@ namespace keeler {
 
 /// Processor time on one thread, wall time on several, s since some moment.
 double bench_seconds();
+double wall_seconds();
 
 /// Reads and writes back an array of lines of 64 bytes, in order, all threads together.
 class MemoryYardstick {
@@ -24,6 +25,6 @@ private:
 
 /// Evaluates |d|² and d·v of a pair from the elements of both, at one time for all pairs, on all threads, in portable
 /// double precision; everything stays in the fastest cache. For one pair, ns.
-double pair_yardstick();
+double pair_yardstick(double (*clock)() = bench_seconds);
 
 } // namespace keeler

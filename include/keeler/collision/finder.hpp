@@ -148,7 +148,7 @@ public:
 
   FinderResult find_between(const Query& query, const Body& low, const Body& high) const override {
     if constexpr (requires { Motion::surely_apart(query, low, high, *step_); })
-      if (!step_->tested && Motion::surely_apart(query, low, high, *step_))
+      if (Motion::surely_apart(query, low, high, *step_))
         return {};
     const Pair pair = pair_of(query, low, high, *step_);
     Motion motion = motion_of(pair, query);

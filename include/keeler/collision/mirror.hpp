@@ -8,8 +8,8 @@
 // particle can reach in a column is one or two ranges of the arrays.
 //
 // Invariant: a line stands within its level's stray of its cell. Particles that were hit get a new line but keep their
-// cell, unless that line reaches or strays farther than their level does. Then they become guests, in tiles of their
-// own that everybody looks into: a few fast ones do not make everybody look farther.
+// cell, unless that line reaches or strays farther than their level is for. Then they become guests, as long as there
+// is room, in tiles of their own that everybody looks into: a few fast ones do not make everybody look farther.
 #pragma once
 
 #include <keeler/box/shearing_box.hpp>
@@ -47,25 +47,21 @@ struct alignas(64) MirrorLevel {
   /// Their slots: from here to there, and those of the columns beyond the box's edge from the level's first to the
   /// last.
   std::uint32_t own_begin = 0, own_end = 0, own_end_beyond = 0;
-
-  /// Room for those that reach and stray so far.
-  void widen(double to_reach_x, double to_reach_y, double to_stray_x, double to_stray_y) {
-    reach_x = std::max(reach_x, to_reach_x);
-    reach_y = std::max(reach_y, to_reach_y);
-    stray_x = std::max(stray_x, to_stray_x);
-    stray_y = std::max(stray_y, to_stray_y);
-  }
 };
 
 /// A mirror from one edge to another across the box, for one thread that changes nothing outside of it.
 struct MirrorPart {
   std::vector<MirrorLevel> levels; ///< the finest first; without empty ones; how far those of this part reach and stray
-  double farthest = 0.0;           ///< reach and stray of all of them, m
+  double farthest = 0.0;           ///< how far any of its lines may reach beyond its cell, m
   std::uint64_t width = std::uint64_t{1} << 32; ///< as a fraction of the box, 2⁻³²
 
   bool whole() const { return width >> 32 != 0; }
-  /// A level reaches or strays farther than before.
-  void widened(const MirrorLevel& level) {
+  /// Makes room in a level for those that reach and stray so far.
+  void widen(MirrorLevel& level, double reach_x, double reach_y, double stray_x, double stray_y) {
+    level.reach_x = std::max(level.reach_x, reach_x);
+    level.reach_y = std::max(level.reach_y, reach_y);
+    level.stray_x = std::max(level.stray_x, stray_x);
+    level.stray_y = std::max(level.stray_y, stray_y);
     farthest = std::max({farthest, level.reach_x + level.stray_x, level.reach_y + level.stray_y});
   }
   /// Whether a slot lies in one of its columns.
@@ -189,8 +185,9 @@ private:
     double x, y; // m
   };
   Outside outside(const Line& line, const MirrorLevel& level, std::size_t cell) const;
-  void lay_out_tiles();
-  bool receive_guest(std::size_t place, const Line& line);
+  void lay_out_tiles(std::size_t particles);
+  bool make_guest(std::size_t place, const Line& line);
+  static const MirrorLevel& level_at(const std::vector<MirrorLevel>& levels, std::size_t cell);
   static std::uint32_t along(const Line& line) { return static_cast<std::uint32_t>(line.y) + (std::uint32_t{1} << 31); }
   // Where to look for those whose images stand so many boxes outward.
   std::uint32_t image_y(std::uint32_t y, int boxes) const {
@@ -220,9 +217,9 @@ private:
   // Those whose lines left their levels, numbered as they came. Their old slots are blank.
   struct Guests {
     MirrorLevel tiles;
-    std::vector<std::uint32_t> last; // of each tile: 1 + the guest that came last; 0: none
-    std::vector<std::uint32_t> next; // of each guest: the same of the one that came before
-    std::vector<std::uint32_t> tile; // of each guest
+    std::vector<std::uint32_t> last;   // of each tile: 1 + the guest that came last; 0: none
+    std::vector<std::uint32_t> before; // of each guest: the same of the one that came before
+    std::vector<std::uint32_t> tile;   // of each guest
     std::size_t room = 0;
   };
   Guests guests_;
@@ -234,7 +231,7 @@ inline Mirror::Columns Mirror::columns_near(const MirrorLevel& level, const Line
   return {(x - far) * level.columns >> 32, (x + far) * level.columns >> 32};
 }
 
-// The level's cells within reach, from and to; of columns that end before slot `after` none.
+// The level's cells within reach, from and to; of columns that end before slot `after` none. Of guests' tiles all.
 template<class Cells>
 void Mirror::cells_in(const MirrorLevel& level, const Lookout& from, std::uint32_t after, const Cells& cells) const {
   const double sheared = box_.shear * window_.half_length * (from.reach_x + level.reach_x);

@@ -335,3 +335,19 @@ TEST_CASE("whoever has a new line is found where it is, slow or fast, near its o
   CHECK(found > 100000);
   CHECK(with_guests > 20);
 }
+
+TEST_CASE("parts that are cut at columns' edges leave no column to nobody") {
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    const Reflected reflected(seed);
+    const Mirror& mirror = reflected.mirror;
+    const std::int64_t columns = mirror.whole().levels.front().columns;
+    for (std::uint64_t place = 1; place < (std::uint64_t{1} << 32); place += 9999991 * seed) {
+      const std::uint32_t edge = mirror.column_edge(static_cast<std::uint32_t>(place));
+      const MirrorPart left = mirror.part(0, edge), right = mirror.part(edge, (std::uint64_t{1} << 32) - edge);
+      CAPTURE(place);
+      CHECK(left.levels.front().last_column + 1 == right.levels.front().first_column);
+      CHECK(right.levels.front().last_column + 1 == columns);
+      CHECK(edge <= place);
+    }
+  }
+}

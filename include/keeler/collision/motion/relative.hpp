@@ -28,7 +28,7 @@ protected:
 class BoundedMotion : public RelativeMotion {
 public:
   static bool surely_apart(const Query& query, const Body& low, const Body& high, const DriftStep& step) {
-    return !may_touch(query, low, high, step);
+    return !step.tested && !may_touch(query, low, high, step);
   }
 
   BoundedMotion(const Pair& pair, const DriftStep& step) : RelativeMotion(pair, step) {
