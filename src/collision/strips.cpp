@@ -310,11 +310,13 @@ void Strips::take_back(Strip& strip) {
 }
 
 void Strips::undo(Strip& strip) {
-  while (!strip.changes.empty())
-    take_back(strip);
-  neighbours_->join(strip.part);
   strip.contacts.clear();
   strip.farthest = 0.0;
+  if (strip.changes.empty()) // it may not have run in this step: its part is of another mirror
+    return;
+  while (!strip.changes.empty())
+    take_back(strip);
+  neighbours_->join(strip.part); // the lines were made anew
 }
 
 bool Strips::undo_all() {
