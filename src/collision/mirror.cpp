@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace keeler {
 namespace {
@@ -171,7 +172,7 @@ void Mirror::lay_out_cells() {
     two_farthest[0] = level.count > 1 ? reach : two_farthest[1];
     two_farthest[1] = reach;
   }
-  starts_.assign(cells + 2, 0);
+  starts_.resize(cells + 1);
   const double sheared = 1.0 + box_.shear * window_.half_length;
   one_image_ = (two_farthest[0] + two_farthest[1]) * sheared < nearest_share * std::min(box_.size_x, box_.size_y);
 }
@@ -184,7 +185,7 @@ bool Mirror::one_image(const Line& line, const MirrorPart& part) const {
 }
 
 // A counting sort. While it runs, starts_[c + 1] is where the next particle of cell c goes; in the end, where cell
-// c + 1 begins. Each thread counts and places the particles of some cells.
+// c + 1 begins. Each thread counts, adds up and places the particles of some cells.
 void Mirror::sort() {
   const std::size_t count = unsorted_.size(), parts = static_cast<std::size_t>(threads());
   cells_.resize(count);
@@ -198,24 +199,40 @@ void Mirror::sort() {
         cells_[k] = static_cast<std::uint32_t>(cell_of(line, whole_.levels[level_index_[level_of(line)]]));
       },
       block_size);
-  const auto for_all = [&](const auto& body) {
-    parallel_for(
-        parts,
-        [&](std::size_t p) {
-          const std::size_t cells = starts_.size(), begin = cells * p / parts, end = cells * (p + 1) / parts;
-          for (std::size_t k = 0; k < count; ++k)
-            if (cells_[k] - begin < end - begin)
-              body(k);
-        },
-        1);
+  const std::size_t cells = starts_.size() - 1;
+  const auto first_cell = [&](std::size_t p) { return cells * p / parts; };
+  const auto for_particles_of = [&](std::size_t p, const auto& body) {
+    const std::size_t begin = first_cell(p), end = first_cell(p + 1);
+    for (std::size_t k = 0; k < count; ++k)
+      if (cells_[k] - begin < end - begin)
+        body(k);
   };
-  for_all([&](std::size_t k) { ++starts_[cells_[k] + 2]; });
-  for (std::size_t c = 2; c < starts_.size(); ++c)
-    starts_[c] += starts_[c - 1];
-  for_all([&](std::size_t k) {
-    slots_[k] = starts_[cells_[k] + 1]++;
-    lines_[slots_[k]] = unsorted_[k];
-  });
+  std::vector<std::uint32_t> before(parts + 1); // particles in the cells of the parts before
+  starts_[0] = 0;
+  parallel_for(
+      parts,
+      [&](std::size_t p) {
+        const auto begin = starts_.begin() + 1 + static_cast<std::ptrdiff_t>(first_cell(p));
+        const auto end = starts_.begin() + 1 + static_cast<std::ptrdiff_t>(first_cell(p + 1));
+        std::fill(begin, end, 0);
+        for_particles_of(p, [&](std::size_t k) { ++starts_[cells_[k] + 1]; });
+        before[p + 1] = std::accumulate(begin, end, std::uint32_t{0});
+        std::exclusive_scan(begin, end, begin, std::uint32_t{0});
+      },
+      1);
+  std::partial_sum(before.begin(), before.end(), before.begin());
+  parallel_for(
+      parts,
+      [&](std::size_t p) {
+        for_particles_of(p, [&](std::size_t k) {
+          slots_[k] = before[p] + starts_[cells_[k] + 1]++;
+          lines_[slots_[k]] = unsorted_[k];
+        });
+        if (p > 0)
+          for (std::size_t c = first_cell(p); c < first_cell(p + 1); ++c)
+            starts_[c + 1] += before[p];
+      },
+      1);
   for (MirrorLevel& level : whole_.levels) {
     level.begin = starts_[level.first_cell];
     level.end = starts_[level.first_cell + static_cast<std::size_t>(level.columns * level.rows)];
