@@ -89,8 +89,12 @@ public:
   /// Until nothing is pending. Throws InvariantError when a search meets numbers that are not finite or a particle
   /// collides more than 100,000 times.
   void run() {
+    for (int stage = 0; stage < stages; ++stage) // of those that come before it is their turn in the loop
+      for (std::size_t soon = 0; soon <= events_ahead(stage); ++soon)
+        prefetch(soon, stage);
     while (!events_.empty()) {
-      prefetch();
+      for (int stage = 0; stage < stages; ++stage)
+        prefetch(events_ahead(stage), stage);
       const Event event = events_.take_first();
       if (orbits_.is_due(event))
         carry_out(event);
@@ -118,18 +122,20 @@ private:
             query.low, query.high,     orbits_.stamp(query.low), orbits_.stamp(query.high)};
   }
 
-  void prefetch() const {
-    constexpr std::size_t apart = 6;
-    for (int stage = 0; stage < 3; ++stage)
-      if (const Event* soon = events_.ahead((3 - stage) * apart)) {
-        for (const std::uint32_t place : {soon->low, soon->high}) {
-          if (stage == 0) {
-            __builtin_prefetch(&step_.particles->bodies[place]);
-            __builtin_prefetch(&step_.particles->ids[place]);
-          }
-          orbits_.prefetch(place, stage);
-        }
+  static constexpr int stages = 3; // of fetching
+  static constexpr std::size_t events_ahead(int stage) { return 6 * static_cast<std::size_t>(stages - stage); }
+
+  void prefetch(std::size_t ahead, int stage) const {
+    const Event* soon = events_.ahead(ahead);
+    if (!soon)
+      return;
+    for (const std::uint32_t place : {soon->low, soon->high}) {
+      if (stage == 0) {
+        __builtin_prefetch(&step_.particles->bodies[place]);
+        __builtin_prefetch(&step_.particles->ids[place]);
       }
+      orbits_.prefetch(place, stage);
+    }
   }
 
   // The impulse along the line of centres turns the normal approach speed into the rebound's.
