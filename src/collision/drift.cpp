@@ -125,9 +125,7 @@ struct DriftPhase::InPlace {
   }
 
   void happened(const Event& event, const Contact& contact) {
-    tally.add(contact);
-    ++drift.costs_.contacts;
-    drift.costs_.recontacts += contact.again;
+    drift.count(contact, tally);
     if (drift.watch)
       drift.watch->collided({event.time, event.low_id, event.high_id, event.image, contact.normal_speed, contact.fast});
   }
@@ -144,7 +142,8 @@ void DriftPhase::collide(Particles& particles, const ShearingBox& box, double of
   std::vector<Event> first = solve();
   const Stopwatch stopwatch(costs_.events);
   const std::uint64_t contacts_before = costs_.contacts;
-  if (!in_strips(first, tally)) {
+  const bool parted = in_strips(first);
+  if (!parted) {
     events_.assign(first);
     neighbours_.set_lookers(1);
     InPlace orbits{*this, tally, {}};
@@ -152,14 +151,25 @@ void DriftPhase::collide(Particles& particles, const ShearingBox& box, double of
     loop.run();
     costs_.widest_list = std::max(costs_.widest_list, loop.most_partners());
   }
+  const std::uint64_t contacts = parted ? strips_.contacts() : costs_.contacts - contacts_before;
+  const auto tally_strips = [&] {
+    if (parted)
+      strips_.visit_contacts([&](const Contact& contact) { count(contact, tally); });
+  };
   if (!through_grid_)
-    neighbours_.settle(touched_, costs_.contacts - contacts_before);
+    neighbours_.settle(touched_, contacts, tally_strips);
   tally.gave_up += gave_up_;
+}
+
+void DriftPhase::count(const Contact& contact, CollisionTally& tally) {
+  tally.add(contact);
+  ++costs_.contacts;
+  costs_.recontacts += contact.again;
 }
 
 // On several threads, when the result cannot tell and it is likely to be faster: with enough contacts for each strip,
 // few enough of all particles hit for conflicts to be rare, and room between the strips' edges.
-bool DriftPhase::in_strips(const std::vector<Event>& first, CollisionTally& tally) {
+bool DriftPhase::in_strips(const std::vector<Event>& first) {
   constexpr std::size_t fewest_contacts = 50, fewest_columns = 16; // of a strip
   constexpr std::size_t largest_share = 16;                        // one in so many particles
   if (through_grid_ || watch || !finder_->exact() || neighbours_.mirror().has_guests())
@@ -175,11 +185,6 @@ bool DriftPhase::in_strips(const std::vector<Event>& first, CollisionTally& tall
   if (!strips_.carry_out(step_at_hand_, *particles_, so_far_, *finder_, neighbours_, first, strips))
     return false;
   costs_.widest_list = std::max(costs_.widest_list, strips_.most_partners());
-  for (const Contact* contact : strips_.contacts()) {
-    tally.add(*contact);
-    ++costs_.contacts;
-    costs_.recontacts += contact->again;
-  }
   strips_.list_touched(touched_);
   return true;
 }

@@ -173,50 +173,54 @@ void Neighbours::restore(MirrorPart& part, std::size_t i, Mark mark) {
   mirror_.replace(part, i, line_of(particles_->bodies[i]));
 }
 
-void Neighbours::settle(std::span<const std::uint32_t> particles, std::uint64_t collisions) {
+void Neighbours::settle(std::span<const std::uint32_t> particles, std::uint64_t collisions,
+                        const std::function<void()>& beside) {
   hits_ += 2 * collisions;
-  if (!looks_needed())
-    return;
-  if (mirror_.stray() > farthest_stray ||
-      std::any_of(looks_.begin(), looks_.end(), [](const Looks& looks) { return looks.too_many; })) {
-    over_ = true;
-    return;
-  }
+  over_ = mirror_.stray() > farthest_stray ||
+          std::any_of(looks_.begin(), looks_.end(), [](const Looks& looks) { return looks.too_many; });
   constexpr std::size_t chunk = 128;
-  const std::size_t before = used_lists_, more = (particles.size() + chunk - 1) / chunk;
+  const std::size_t before = used_lists_, more = over_ || !looks_needed() ? 0 : (particles.size() + chunk - 1) / chunk;
   use_lists(before + more);
   std::vector<std::uint8_t> too_fast(more);
-  const LineSpan rest = span(since_middle() + 0.5 * step_, 0.5 * length_ * step_);
-  const auto this_step = static_cast<std::uint8_t>(at_step_ + 1);
   parallel_for(
-      more,
-      [&](std::size_t c) {
-        std::vector<std::uint32_t> buffer;
-        std::vector<Entry>& list = lists_[before + c].entries;
-        list.clear();
-        lists_[before + c].made = this_step;
-        for (std::size_t k = c * chunk; k < std::min(particles.size(), (c + 1) * chunk); ++k) {
-          const std::uint32_t i = particles[k];
-          if (!one_image(mirror_.whole(), i)) { // ends the window: nobody reads these lists
-            too_fast[c] = 1;
-            continue;
-          }
-          const auto keep = [&](std::uint32_t j) {
-            if (j != i && (changed_[j] != this_step || lists(i, j)))
-              list.push_back(entry(i, j));
-          };
-          if (const Look last = look(i); last.begin > 0) {
-            const std::vector<std::uint32_t>& seen = looks_[mirror_.note(i) / most_looks].seen;
-            std::for_each(seen.begin() + last.begin, seen.begin() + last.end, keep);
-            continue;
-          }
-          const std::size_t count = mirror_.near(mirror_.whole(), mirror_.line(i), rest, buffer);
-          for (std::size_t n = 0; n < count; ++n)
-            keep(mirror_.place(buffer[n]));
+      1 + more,
+      [&](std::size_t k) {
+        if (k == 0) {
+          beside();
+          return;
         }
+        const std::size_t c = k - 1;
+        lists_[before + c].made = static_cast<std::uint8_t>(at_step_ + 1);
+        too_fast[c] = !relist(particles.subspan(c * chunk, std::min(chunk, particles.size() - c * chunk)),
+                              lists_[before + c].entries);
       },
       1);
   over_ |= std::find(too_fast.begin(), too_fast.end(), 1) != too_fast.end();
+}
+
+// What particles that were hit may meet in the rest of the window. False: one is too fast for that, which ends it.
+bool Neighbours::relist(std::span<const std::uint32_t> particles, std::vector<Entry>& list) {
+  const LineSpan rest = span(since_middle() + 0.5 * step_, 0.5 * length_ * step_);
+  const auto this_step = static_cast<std::uint8_t>(at_step_ + 1);
+  std::vector<std::uint32_t> buffer;
+  list.clear();
+  for (const std::uint32_t i : particles) {
+    if (!one_image(mirror_.whole(), i))
+      return false;
+    const auto keep = [&](std::uint32_t j) {
+      if (j != i && (changed_[j] != this_step || lists(i, j)))
+        list.push_back(entry(i, j));
+    };
+    if (const Look last = look(i); last.begin > 0) {
+      const std::vector<std::uint32_t>& seen = looks_[mirror_.note(i) / most_looks].seen;
+      std::for_each(seen.begin() + last.begin, seen.begin() + last.end, keep);
+      continue;
+    }
+    const std::size_t count = mirror_.near(mirror_.whole(), mirror_.line(i), rest, buffer);
+    for (std::size_t n = 0; n < count; ++n)
+      keep(mirror_.place(buffer[n]));
+  }
+  return true;
 }
 
 void Neighbours::release() {

@@ -75,6 +75,8 @@ struct Strips::Orbits {
     Body& body = all.particles_->bodies[i];
     const std::uint32_t earlier = newest(i);
     const double off = all.neighbours_->departure(elements - body.elements) + (earlier ? all.change(earlier).off : 0.0);
+    if (earlier && earlier / most_changes != number()) // at the same instant, the order of the two does not show later
+      strip.failed |= all.change(earlier).time == time;
     strip.changes.push_back(
         {i, earlier, in_rows_before(earlier), all.neighbours_->mark(i), last_change(i), time, off, body.elements});
     strip.failed |= strip.changes.size() + 3 > most_changes;
@@ -156,7 +158,7 @@ bool Strips::carry_out(const StepAtHand& step, Particles& particles, StepSoFar& 
       return undo_all();
     row = repair(row);
   }
-  return put_in_order() || undo_all();
+  return true;
 }
 
 // Where the first contacts are tells where to cut: at columns' edges, so that no column is nobody's.
@@ -198,33 +200,44 @@ void Strips::Strip::clear() {
   failed = false;
 }
 
-// The events of the strip's particles. Those that no strip of the row has both particles of are put aside by one.
-void Strips::deal(std::size_t row, Strip& strip, std::span<const Event> events) {
+// Which strips of the row have the events' particles.
+void Strips::find_holders(std::size_t row, std::span<const Event> events) {
+  constexpr std::size_t ahead = 12, chunk = 64;
   const Mirror& mirror = neighbours_->mirror();
-  const bool is_first = &strip == &strips_[begin_of(row)];
-  const auto nobody_holds = [&](std::uint32_t slot) {
-    return std::none_of(strips_.begin() + static_cast<std::ptrdiff_t>(begin_of(row)),
-                        strips_.begin() + static_cast<std::ptrdiff_t>(end_of(row)),
-                        [&](const Strip& s) { return s.part.holds(slot); });
+  const auto holder_of = [&](std::uint32_t place) {
+    const std::uint32_t slot = mirror.slot(place);
+    std::size_t s = begin_of(row);
+    while (s < end_of(row) && !strips_[s].part.holds(slot))
+      ++s;
+    return static_cast<std::uint8_t>(s - begin_of(row));
   };
-  constexpr std::size_t ahead = 12;
+  holders_.resize(events.size());
+  parallel_for(
+      events.size(),
+      [&](std::size_t e) {
+        if (e + ahead < events.size())
+          for (const std::uint32_t place : {events[e + ahead].low, events[e + ahead].high})
+            mirror.prefetch(place, 0);
+        holders_[e] = {holder_of(events[e].low), holder_of(events[e].high)};
+      },
+      chunk);
+}
+
+// The events of the strip's particles. Those that no strip of the row has both particles of are put aside by one.
+void Strips::deal(std::size_t number, Strip& strip, std::span<const Event> events) {
   for (std::size_t e = 0; e < events.size(); ++e) {
-    if (e + ahead < events.size())
-      for (const std::uint32_t place : {events[e + ahead].low, events[e + ahead].high})
-        mirror.prefetch(place, 0);
-    const Event& event = events[e];
-    const std::uint32_t low_slot = mirror.slot(event.low), high_slot = mirror.slot(event.high);
-    const bool low = strip.part.holds(low_slot), high = strip.part.holds(high_slot);
+    const auto [low_holder, high_holder] = holders_[e];
+    const bool low = low_holder == number, high = high_holder == number;
     if (low && high) {
-      strip.given.push_back(event);
+      strip.given.push_back(events[e]);
       continue;
     }
     if (low)
-      strip.barred.push_back({event.time, event.low, event.low_stamp});
+      strip.barred.push_back({events[e].time, events[e].low, events[e].low_stamp});
     if (high)
-      strip.barred.push_back({event.time, event.high, event.high_stamp});
-    if (low || (is_first && nobody_holds(low_slot)))
-      strip.aside.push_back(event);
+      strip.barred.push_back({events[e].time, events[e].high, events[e].high_stamp});
+    if (low || (number == 0 && low_holder == across_))
+      strip.aside.push_back(events[e]);
   }
 }
 
@@ -238,13 +251,14 @@ void Strips::run(std::size_t row, const std::vector<Event>& events) {
     strips_[s].clear();
   for (std::size_t s = begin; s < end_of(row); ++s)
     strips_[s].part = neighbours_->mirror().part(slabs_[s].first, slabs_[s].second);
+  find_holders(row, events);
   parallel_for(
       end_of(row) - begin,
       [&](std::size_t s) {
         Strip& strip = strips_[begin + s];
         Orbits orbits{*this, strip, row, farthest};
         try {
-          deal(row, strip, events);
+          deal(s, strip, events);
           std::sort(strip.barred.begin(), strip.barred.end(),
                     [](const Barred& a, const Barred& b) { return a.time < b.time; });
           strip.events.assign(strip.given);
@@ -325,35 +339,11 @@ bool Strips::undo_all() {
   return false;
 }
 
-// Those of one strip are in order, and of the next ones of all strips the one with the smallest key comes first. False
-// when that can't be told: one was made at its own time by a contact in another strip.
-bool Strips::put_in_order() {
-  in_order_.clear();
-  std::vector<std::size_t> next(strips_.size());
-  std::vector<double> times; // of the next ones
-  bool clear = true;
-  const auto time_of = [&](std::size_t s) {
-    return next[s] < strips_[s].contacts.size() ? strips_[s].contacts[next[s]].time : HUGE_VAL;
-  };
-  for (std::size_t s = 0; s < strips_.size(); ++s)
-    times.push_back(time_of(s));
-  const auto ids_of = [&](std::size_t s) {
-    const Change* both = &strips_[s].changes[2 * next[s]];
-    for (const Change* change : {both, both + 1})
-      if (const std::uint32_t maker = change->earlier)
-        clear &= maker / most_changes == s || this->change(maker).time < change->time;
-    return std::pair(particles_->ids[both[0].place], particles_->ids[both[1].place]);
-  };
-  for (;;) {
-    std::size_t first = 0;
-    for (std::size_t s = 1; s < strips_.size(); ++s)
-      if (times[s] < times[first] || (times[s] == times[first] && times[s] < HUGE_VAL && ids_of(s) < ids_of(first)))
-        first = s;
-    if (times[first] == HUGE_VAL || !clear)
-      return clear;
-    in_order_.push_back(&strips_[first].contacts[next[first]++]);
-    times[first] = time_of(first);
-  }
+std::size_t Strips::contacts() const {
+  std::size_t count = 0;
+  for (const Strip& strip : strips_)
+    count += strip.contacts.size();
+  return count;
 }
 
 void Strips::list_touched(std::vector<std::uint32_t>& touched) const {
@@ -370,7 +360,7 @@ std::uint64_t Strips::most_partners() const {
 
 std::size_t Strips::bytes() const {
   std::size_t total =
-      newest_.capacity() * sizeof(std::uint32_t) + barred_.capacity() + in_order_.capacity() * sizeof(const Contact*);
+      newest_.capacity() * sizeof(std::uint32_t) + barred_.capacity() + holders_.capacity() * sizeof(Holders);
   for (const Strip& s : strips_)
     total += (s.given.capacity() + s.aside.capacity() + s.put_off.capacity()) * sizeof(Event) + s.events.bytes() +
              s.barred.capacity() * sizeof(Barred) + s.changes.capacity() * sizeof(Change) +

@@ -88,7 +88,8 @@ private:
   };
 
   void prepare();
-  bool in_strips(const std::vector<Event>& first, CollisionTally& tally);
+  bool in_strips(const std::vector<Event>& first);
+  void count(const Contact& contact, CollisionTally& tally);
   template<class Body> void for_each_block(const Body& body) const;
   void reject();
   void put_in_order(std::vector<Candidate>& candidates) const;

@@ -15,6 +15,7 @@
 #include <keeler/core/threads.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -119,8 +120,8 @@ public:
   void join(const MirrorPart& part) { mirror_.join(part); }
 
   /// The step's collisions are over, so many: what these particles may meet in the rest of the window. Each particle
-  /// that was changed once.
-  void settle(std::span<const std::uint32_t> particles, std::uint64_t collisions);
+  /// that was changed once. Meanwhile one of the threads calls `beside`, once.
+  void settle(std::span<const std::uint32_t> particles, std::uint64_t collisions, const std::function<void()>& beside);
 
   std::uint64_t windows = 0, tested = 0, listed = 0; ///< so far
   std::size_t bytes() const;
@@ -138,6 +139,7 @@ private:
   };
 
   void open();
+  bool relist(std::span<const std::uint32_t> particles, std::vector<Entry>& list);
   bool looks_needed() const { return at_step_ + 1 < length_; } // by later steps of the window
   void choose_length();
   double cost_of(int length) const;

@@ -19,6 +19,7 @@
 #include <keeler/collision/contact_loop.hpp>
 #include <keeler/collision/neighbours.hpp>
 
+#include <cmath>
 #include <span>
 #include <utility>
 #include <vector>
@@ -35,8 +36,10 @@ public:
   bool carry_out(const StepAtHand& step, Particles& particles, StepSoFar& so_far, const Finder& finder,
                  Neighbours& neighbours, const std::vector<Event>& first, std::size_t strips);
 
-  /// Those of the step, in the order of events.
-  const std::vector<const Contact*>& contacts() const { return in_order_; }
+  /// How many of the step there were.
+  std::size_t contacts() const;
+  /// Calls visit(contact) for each of them, in the order of events. Reads nothing but ids besides.
+  template<class Visit> void visit_contacts(const Visit& visit) const;
   /// Each particle that was hit, once.
   void list_touched(std::vector<std::uint32_t>& touched) const;
   /// Of one particle in one search of the step.
@@ -66,6 +69,9 @@ private:
     double time;
     std::uint32_t place, stamp;
   };
+  struct Holders { // of an event's particles: strips of the row by number, behind the last: none
+    std::uint8_t low, high;
+  };
   struct alignas(64) Strip { // two threads share no line of cache
     MirrorPart part;
     std::vector<Event> given, put_off;
@@ -91,14 +97,14 @@ private:
   }
 
   void cut(const std::vector<Event>& first);
-  void deal(std::size_t row, Strip& strip, std::span<const Event> events);
+  void find_holders(std::size_t row, std::span<const Event> events);
+  void deal(std::size_t number, Strip& strip, std::span<const Event> events);
   void run(std::size_t row, const std::vector<Event>& events);
   std::vector<Event> left_by(std::size_t row) const;
   std::size_t repair(std::size_t row);
   void take_back(Strip& strip);
   void undo(Strip& strip);
   bool undo_all();
-  bool put_in_order();
 
   // the step at hand
   const StepAtHand* step_ = nullptr;
@@ -110,9 +116,34 @@ private:
   std::size_t across_ = 1;                                     // strips of the first and of the second row
   std::vector<std::pair<std::uint32_t, std::uint64_t>> slabs_; // begin and width of each strip, in 2⁻³² of the box
   std::vector<Strip> strips_;                                  // row by row
+  std::vector<Holders> holders_;                               // of the row's events
   std::vector<std::uint32_t> newest_; // the number of each particle's last change, if it has a stamp
   std::vector<std::uint8_t> barred_;  // each particle from its strip of the row at hand
-  std::vector<const Contact*> in_order_;
 };
+
+// Those of one strip are in order, and of the next ones of all strips the one with the smallest key comes first.
+template<class Visit> void Strips::visit_contacts(const Visit& visit) const {
+  std::vector<std::size_t> next(strips_.size());
+  std::vector<double> times; // of the next ones
+  const auto time_of = [&](std::size_t s) {
+    return next[s] < strips_[s].contacts.size() ? strips_[s].contacts[next[s]].time : HUGE_VAL;
+  };
+  const auto ids_of = [&](std::size_t s) {
+    const Change* both = &strips_[s].changes[2 * next[s]];
+    return std::pair(step_->particles->ids[both[0].place], step_->particles->ids[both[1].place]);
+  };
+  for (std::size_t s = 0; s < strips_.size(); ++s)
+    times.push_back(time_of(s));
+  for (;;) {
+    std::size_t first = 0;
+    for (std::size_t s = 1; s < strips_.size(); ++s)
+      if (times[s] < times[first] || (times[s] == times[first] && times[s] < HUGE_VAL && ids_of(s) < ids_of(first)))
+        first = s;
+    if (times[first] == HUGE_VAL)
+      return;
+    visit(strips_[first].contacts[next[first]++]);
+    times[first] = time_of(first);
+  }
+}
 
 } // namespace keeler
