@@ -63,32 +63,49 @@ struct DriftPhase::InPlace {
   }
 
   // Who watches sees partners in the order of their ids and images.
-  template<class Visit> void visit_partners(std::size_t i, const Visit& visit) {
-    if (!drift.watch) {
-      visit_unordered(i, visit);
-      return;
-    }
+  template<class Visit> double visit_partners(std::uint32_t i, double from, const Visit& visit) {
+    if (!drift.watch)
+      return visit_unordered(i, from, visit);
     std::vector<Candidate> partners;
-    visit_unordered(i, [&](std::size_t j, const Image& image) {
-      partners.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), image});
+    visit_unordered(i, from, [&](std::size_t j, const Image& image) {
+      partners.push_back({i, static_cast<std::uint32_t>(j), image});
     });
     drift.put_in_order(partners);
     for (const Candidate& c : partners)
       visit(c.high, c.image);
+    return HUGE_VAL;
   }
 
-  template<class Visit> void visit_unordered(std::size_t i, const Visit& visit) {
+  template<class Visit> double visit_unordered(std::uint32_t i, double from, const Visit& visit) {
     if (drift.through_grid_)
-      drift.grid_.visit_partners(i, last_change(i), visit);
-    else if (const Crowd* crowd = crowd_of(static_cast<std::uint32_t>(i)))
-      crowd->visit(last_change(i), buffer, [&](std::uint32_t j) {
-        drift.neighbours_.visit_nearest(body(i), body(j), last_change(i), [&](const Image& image) { visit(j, image); });
-      });
+      drift.grid_.visit_partners(i, from, visit);
+    else if (const Crowd* crowd = crowd_of(i))
+      return visit_crowd(*crowd, from, visit);
     else if (MirrorPart& whole = drift.neighbours_.whole(); drift.neighbours_.one_image(whole, i))
-      gather_crowd(static_cast<std::uint32_t>(i),
-                   drift.neighbours_.visit_partners(whole, 0, i, last_change(i), buffer, visit));
+      gather_crowd(i, drift.neighbours_.visit_partners(whole, 0, i, from, buffer, visit));
     else
-      drift.neighbours_.visit_everywhere(i, last_change(i), visit);
+      drift.neighbours_.visit_everywhere(i, from, visit);
+    return HUGE_VAL;
+  }
+
+  // Whom the centre will have met before it is likely to be hit again: searches for contacts after that would be in
+  // vain. A finder that errs might see a contact before that can be, so it is asked about all.
+  template<class Visit> double visit_crowd(const Crowd& crowd, double from, const Visit& visit) {
+    constexpr double hits_ahead = 2.0, least_share = 1.0 / 256.0; // of the step
+    const std::uint32_t i = crowd.centre();
+    const double begin = drift.step_at_hand_.begin, end = -begin;
+    const double ahead = std::max(hits_ahead * (from - begin) / stamp(i), least_share * drift.step_);
+    if (drift.watch || !drift.finder_->exact() || from + ahead >= end) {
+      crowd.visit(from, end, buffer, [&](std::uint32_t j) {
+        drift.neighbours_.visit_nearest(body(i), body(j), from, [&](const Image& image) { visit(j, image); });
+      });
+      return HUGE_VAL;
+    }
+    const Rotation now(drift.frequencies_, from);
+    crowd.visit(from, from + ahead, buffer, [&](std::uint32_t j) {
+      drift.neighbours_.visit_nearest_soon(body(i), body(j), now, ahead, [&](const Image& image) { visit(j, image); });
+    });
+    return from + ahead;
   }
 
   // At the second hit of a step, and now and then when one was lost, for a particle with many around it.

@@ -124,8 +124,9 @@ struct Strips::Orbits {
     return contact;
   }
 
-  template<class Visit> void visit_partners(std::size_t i, const Visit& visit) {
-    all.neighbours_->visit_partners(strip.part, number(), i, last_change(i), buffer, visit);
+  template<class Visit> double visit_partners(std::size_t i, double from, const Visit& visit) {
+    all.neighbours_->visit_partners(strip.part, number(), i, from, buffer, visit);
+    return HUGE_VAL;
   }
 
   FinderResult find(const Query& query) const { return all.finder_->find(query); }

@@ -7,7 +7,8 @@
 //   bool is_due(event)           whether it still holds, and is for this loop to carry out
 //   void change(place, elements, time)                                     a new orbit from that time on
 //   bool keeps(event)                      after both changes: false has undone it all, for somebody else to carry out
-//   void visit_partners(place, visit)     visit(place, image) for all that its new orbit may bring into contact
+//   double visit_partners(place, from, visit)  visit(place, image) for all that its orbit may bring into contact from
+//                                         then on; but not later than at the time that is returned, when to ask again
 //   FinderResult find(query)
 //   void prefetch(place, stage)           a contact is to come: stages 0, 1 and 2, some contacts apart
 //   void happened(const Event&, const Contact&)     right before the changes
@@ -20,6 +21,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <vector>
 
 namespace keeler {
@@ -96,7 +98,11 @@ public:
       for (int stage = 0; stage < stages; ++stage)
         prefetch(events_ahead(stage), stage);
       const Event event = events_.take_first();
-      if (orbits_.is_due(event))
+      if (!orbits_.is_due(event))
+        continue;
+      if (event.is_look())
+        search(event.low, event.time, nobody);
+      else
         carry_out(event);
     }
   }
@@ -169,8 +175,8 @@ private:
     change(event.high, b.elements, event.time);
     if (!orbits_.keeps(event))
       return;
-    search(event.low, nobody);
-    search(event.high, event.low); // the pair itself, in all its images, has been searched
+    search(event.low, event.time, nobody);
+    search(event.high, event.time, event.low); // the pair itself, in all its images, has been searched
   }
 
   void change(std::uint32_t i, const Elements& elements, double time) {
@@ -187,9 +193,9 @@ private:
 
   static constexpr std::size_t nobody = ~std::size_t{0};
 
-  void search(std::size_t i, std::size_t except) {
+  void search(std::uint32_t i, double from, std::size_t except) {
     std::uint64_t partners = 0;
-    orbits_.visit_partners(i, [&](std::size_t j, const Image& image) {
+    const double until = orbits_.visit_partners(i, from, [&](std::size_t j, const Image& image) {
       ++partners;
       if (j == except)
         return;
@@ -202,6 +208,10 @@ private:
         events_.add(event_of(query, result.time, i, image));
     });
     most_partners_ = std::max(most_partners_, partners);
+    if (until < HUGE_VAL) {
+      const std::uint64_t id = step_.particles->ids[i];
+      events_.add({until, id, id, {}, i, i, orbits_.stamp(i), orbits_.stamp(i)});
+    }
   }
 
   const StepAtHand& step_;

@@ -26,13 +26,13 @@ public:
   /// Somebody that may touch the centre, or that was hit.
   void take(std::uint32_t place);
 
-  /// Calls visit(place) for everybody that the centre may touch from `start` to the end of the step. The buffer is
-  /// scratch.
-  template<class Visit> void visit(double start, std::vector<std::uint32_t>& buffer, const Visit& visit) const {
+  /// Calls visit(place) for everybody that the centre may touch between two times of the step. The buffer is scratch.
+  template<class Visit>
+  void visit(double begin, double end, std::vector<std::uint32_t>& buffer, const Visit& visit) const {
     if (buffer.size() < lines_.size() + sweep_padding)
       buffer.resize(lines_.size() + sweep_padding);
     std::iota(buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(lines_.size()), 0);
-    const std::size_t count = sweep_(middle_, lines_.data(), frame_, span_from(start), buffer.data(), lines_.size());
+    const std::size_t count = sweep_(middle_, lines_.data(), frame_, span(begin, end), buffer.data(), lines_.size());
     for (std::size_t k = 0; k < count; ++k)
       visit(lines_[buffer[k]].place);
   }
@@ -40,9 +40,9 @@ public:
   std::size_t bytes() const { return lines_.capacity() * sizeof(Line); }
 
 private:
-  LineSpan span_from(double start) const {
+  LineSpan span(double begin, double end) const {
     const double rounding = 1e-6 * half_step_;
-    return {static_cast<float>(start - rounding), static_cast<float>(half_step_ + rounding)};
+    return {static_cast<float>(begin - rounding), static_cast<float>(end + rounding)};
   }
 
   const StepAtHand* step_ = nullptr;

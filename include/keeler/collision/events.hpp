@@ -12,7 +12,8 @@
 
 namespace keeler {
 
-/// A predicted contact. It holds as long as neither particle has changed its velocity since.
+/// A predicted contact, or that a particle, which is both then, is to look for contacts again. It holds as long as
+/// neither particle has changed its velocity since.
 struct Event {
   double time = 0.0; ///< relative to the epoch, rad
   std::uint64_t low_id = 0, high_id = 0;
@@ -20,6 +21,7 @@ struct Event {
   std::uint32_t low = 0, high = 0;             ///< places in the store
   std::uint32_t low_stamp = 0, high_stamp = 0; ///< velocity changes of each when predicted
 
+  bool is_look() const { return low == high; }
   auto key() const { return std::tuple(time, low_id, high_id, image.nx, image.ny); }
   friend bool operator<(const Event& a, const Event& b) {
     return a.time != b.time ? a.time < b.time : a.key() < b.key();

@@ -20,7 +20,6 @@ struct StraightLineTest {
   /// False only when the closest approach of the straight lines over [start, end], with all that curvature and rounding
   /// can add, stays outside contact. The shift, at the epoch, is that of the image of `b`.
   bool may_touch(const Body& a, const Body& b, double shift_x, double shift_y, double start) const {
-    constexpr double up = 1.0 + 1e-9;
     const double shear = frequencies.shear(), kappa = frequencies.kappa, nu = frequencies.nu;
     const Elements el = b.elements - a.elements;
     const double gx = el.guiding_x + shift_x, gy = el.guiding_y + shift_y;
@@ -36,8 +35,29 @@ struct StraightLineTest {
       return false;
     const double e2 = el.e_cos * el.e_cos + el.e_sin * el.e_sin, i2 = el.i_sin * el.i_sin + el.i_cos * el.i_cos;
     const double near = contact + up * std::sqrt(4.0 * kappa * kappa * e2 + nu * nu * nu * nu * i2) * half_square;
+    return comes_near(d, v, dv, start, end, near);
+  }
+
+  /// The same over a while that begins at another time than the epoch, by the straight line of then.
+  bool may_touch_soon(const Body& a, const Body& b, double shift_x, double shift_y, const Rotation& begin,
+                      double time) const {
+    Elements el = b.elements - a.elements;
+    el.guiding_x += shift_x;
+    el.guiding_y += shift_y;
+    const State s = state_at(el, frequencies, begin);
+    const double acceleration =
+        2.0 * frequencies.kappa * el.eccentricity() + frequencies.nu * frequencies.nu * el.inclination();
+    const double near = a.radius + b.radius + allowance + 0.5 * up * acceleration * time * time;
+    return comes_near(s.position, s.velocity, s.position.dot(s.velocity), 0.0, time, near);
+  }
+
+private:
+  static constexpr double up = 1.0 + 1e-9; // for roundings
+
+  // Not false when there are numbers that are not.
+  static bool comes_near(const Vec3& d, const Vec3& v, double dv, double first, double last, double near) {
     const double v2 = v.squaredNorm();
-    const double closest = v2 > 0.0 ? std::clamp(-dv / v2, start, end) : start;
+    const double closest = v2 > 0.0 ? std::clamp(-dv / v2, first, last) : first;
     return !((d + closest * v).squaredNorm() > near * near * up);
   }
 };

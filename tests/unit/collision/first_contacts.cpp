@@ -195,6 +195,38 @@ TEST_CASE("the certified finder misses no first contact and invents none: proven
   CHECK(all.slope_error <= 1.0);
 }
 
+TEST_CASE("straight lines rule out no first contact, over the step and over any while in it") {
+  const auto finder = make_finder("certified");
+  for (int family = 0; family + 1 < families; ++family) {
+    CAPTURE(family_names[static_cast<std::size_t>(family)]);
+    RandomPairs pairs(4, static_cast<Family>(family));
+    RandomStream shares(5, RandomPurpose::position, static_cast<std::uint64_t>(family));
+    int contacts = 0, ruled_out = 0, lost = 0;
+    for (int k = 0; k < 20000; ++k) {
+      const PairCase c = pairs.draw();
+      DriftStep step(c.frequencies, c.begin, c.end, c.size);
+      step.bodies = c.bodies;
+      finder->begin(step);
+      const FinderResult result = finder->find(c.query);
+      const auto ruled_out_between = [&](double begin, double end) {
+        return !step.straight_line.may_touch_soon(c.bodies[0], c.bodies[1], c.query.shift_x, c.query.shift_y,
+                                                  Rotation(c.frequencies, begin), end - begin);
+      };
+      const double until = result.contact() ? result.time : c.end;
+      const double begin = c.query.start + (until - c.query.start) * shares.uniform();
+      if (result.contact()) {
+        ++contacts;
+        lost += !may_touch(c.query, c.bodies[0], c.bodies[1], step) || ruled_out_between(begin, until);
+      } else {
+        ruled_out += ruled_out_between(begin, until);
+      }
+    }
+    CHECK(lost == 0);
+    CHECK(contacts > 200);
+    CHECK(ruled_out > 200); // the test is of use
+  }
+}
+
 TEST_CASE("the twin convicts a finder that misses contacts") {
   Examiner examiner("linear-full");
   examiner.complaints = 0;
