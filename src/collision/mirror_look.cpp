@@ -11,6 +11,7 @@ namespace {
 constexpr std::size_t most_in_group = 8;   // lines that look around together,
 constexpr std::int64_t fewest_columns = 8; // for that
 constexpr double longest_group = 4.0;      // in reaches of their level
+constexpr std::uint32_t few_lines = 8;     // of a level: looked at all together
 
 } // namespace
 
@@ -74,7 +75,10 @@ std::size_t Mirror::near(const MirrorPart& part, const Line& line, const LineSpa
     count += end - begin;
   };
   for (const MirrorLevel& level : part.levels)
-    ranges_in(level, from, 0, take);
+    if (part.whole() && level.end - level.begin <= few_lines) // to find those in reach would take longer
+      take(level.begin, level.end);
+    else
+      ranges_in(level, from, 0, take);
   if (has_guests())
     cells_in(guests_.tiles, from, 0, [&](std::size_t from_tile, std::size_t to_tile) {
       for (std::size_t tile = from_tile; tile < to_tile; ++tile)
