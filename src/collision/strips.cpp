@@ -76,7 +76,7 @@ struct Strips::Orbits {
     const std::uint32_t earlier = newest(i);
     const double off = all.neighbours_->departure(elements - body.elements) + (earlier ? all.change(earlier).off : 0.0);
     if (earlier && earlier / most_changes != number()) // at the same instant, the order of the two does not show later
-      strip.failed |= all.change(earlier).time == time;
+      strip.failed |= all.change(earlier).time >= time;
     strip.changes.push_back(
         {i, earlier, in_rows_before(earlier), all.neighbours_->mark(i), last_change(i), time, off, body.elements});
     strip.failed |= strip.changes.size() + 3 > most_changes;
