@@ -89,7 +89,9 @@ struct DriftPhase::InPlace {
   }
 
   // Whom the centre will have met before it is likely to be hit again: searches for contacts after that would be in
-  // vain. A finder that errs might see a contact before that can be, so it is asked about all.
+  // vain. The crowd serves until then, as it depends on the centre's path alone; unless somebody became so fast that
+  // nearest images will not do, who ends the window. A finder that errs might see a contact before that can be, so it
+  // is asked about all.
   template<class Visit> double visit_crowd(const Crowd& crowd, double from, const Visit& visit) {
     constexpr double hits_ahead = 2.0, least_share = 1.0 / 256.0; // of the step
     const std::uint32_t i = crowd.centre();
@@ -103,7 +105,9 @@ struct DriftPhase::InPlace {
     }
     const Rotation now(drift.frequencies_, from);
     crowd.visit(from, from + ahead, buffer, [&](std::uint32_t j) {
-      drift.neighbours_.visit_nearest_soon(body(i), body(j), now, ahead, [&](const Image& image) { visit(j, image); });
+      const double start = std::max(last_change(i), last_change(j)); // of the search
+      drift.neighbours_.visit_nearest_soon(body(i), body(j), start, now, ahead,
+                                           [&](const Image& image) { visit(j, image); });
     });
     return from + ahead;
   }

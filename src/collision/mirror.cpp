@@ -184,8 +184,9 @@ bool Mirror::one_image(const Line& line, const MirrorPart& part) const {
   return reach * sheared < nearest_share * std::min(box_.size_x, box_.size_y);
 }
 
-// A counting sort. While it runs, starts_[c + 1] is where the next particle of cell c goes; in the end, where cell
-// c + 1 begins. Each thread counts, adds up and places the particles of some cells.
+// A counting sort. Each thread counts, adds up and places the particles of some cells: its part. While it runs,
+// starts_[c + 1] is where the next particle of cell c goes, counted from the part's first; in the end, where cell c + 1
+// begins.
 void Mirror::sort() {
   const std::size_t count = unsorted_.size(), parts = static_cast<std::size_t>(threads());
   cells_.resize(count);

@@ -75,7 +75,7 @@ struct Strips::Orbits {
     Body& body = all.particles_->bodies[i];
     const std::uint32_t earlier = newest(i);
     const double off = all.neighbours_->departure(elements - body.elements) + (earlier ? all.change(earlier).off : 0.0);
-    if (earlier && earlier / most_changes != number()) // at the same instant, the order of the two does not show later
+    if (earlier && earlier / most_changes != number()) // made at this instant: time and ids can't tell their order
       strip.failed |= all.change(earlier).time >= time;
     strip.changes.push_back(
         {i, earlier, in_rows_before(earlier), all.neighbours_->mark(i), last_change(i), time, off, body.elements});
@@ -153,7 +153,10 @@ bool Strips::carry_out(const StepAtHand& step, Particles& particles, StepSoFar& 
   neighbours_->set_lookers(strips_.size()); // row by row, as they follow each other
   const std::uint64_t repairs_before = repairs;
   for (std::size_t row = 0; row < rows;) {
-    run(row, row == 0 ? first : left_by(row - 1));
+    if (row == 0)
+      run(row, first);
+    else
+      run(row, left_by(row - 1));
     const bool failed = std::any_of(strips_.begin(), strips_.end(), [](const Strip& s) { return s.failed; });
     if (failed || repairs - repairs_before > most_repairs)
       return undo_all();
@@ -207,10 +210,10 @@ void Strips::find_holders(std::size_t row, std::span<const Event> events) {
   const Mirror& mirror = neighbours_->mirror();
   const auto holder_of = [&](std::uint32_t place) {
     const std::uint32_t slot = mirror.slot(place);
-    std::size_t s = begin_of(row);
-    while (s < end_of(row) && !strips_[s].part.holds(slot))
-      ++s;
-    return static_cast<std::uint8_t>(s - begin_of(row));
+    for (std::size_t s = begin_of(row); s < end_of(row); ++s)
+      if (strips_[s].part.holds(slot))
+        return static_cast<std::uint8_t>(s - begin_of(row));
+    return no_strip;
   };
   holders_.resize(events.size());
   parallel_for(
@@ -237,7 +240,7 @@ void Strips::deal(std::size_t number, Strip& strip, std::span<const Event> event
       strip.barred.push_back({events[e].time, events[e].low, events[e].low_stamp});
     if (high)
       strip.barred.push_back({events[e].time, events[e].high, events[e].high_stamp});
-    if (low || (number == 0 && low_holder == across_))
+    if (low || (number == 0 && low_holder == no_strip))
       strip.aside.push_back(events[e]);
   }
 }

@@ -1,5 +1,6 @@
 // The heart of a drift: take the earliest contact, give both particles their new orbits, search again around both (the
-// pair itself included), and so on until the step ends.
+// pair itself included), and so on until the step ends. A particle may put off a part of its search: a look, an event
+// too.
 //
 // Orbits is where the particles' present orbits are kept; a loop does not know whether it is the only one of a step. It
 // has
@@ -7,8 +8,8 @@
 //   bool is_due(event)           whether it still holds, and is for this loop to carry out
 //   void change(place, elements, time)                                     a new orbit from that time on
 //   bool keeps(event)                      after both changes: false has undone it all, for somebody else to carry out
-//   double visit_partners(place, from, visit)  visit(place, image) for all that its orbit may bring into contact from
-//                                         then on; but not later than at the time that is returned, when to ask again
+//   double visit_partners(place, from, visit)     visit(place, image) for all that its orbit may bring into contact
+//                                     until the time returned, when the loop asks again; infinite: in the step
 //   FinderResult find(query)
 //   void prefetch(place, stage)           a contact is to come: stages 0, 1 and 2, some contacts apart
 //   void happened(const Event&, const Contact&)     right before the changes

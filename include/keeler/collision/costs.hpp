@@ -24,7 +24,7 @@ struct DriftCosts {
   std::uint64_t recontacts = 0;   ///< of these, with the partner of both particles' last contact in the same step
   std::uint64_t conflicts = 0;    ///< contacts of one strip that came before another strip's
   std::uint64_t repairs = 0;      ///< strips undone because of that
-  std::uint64_t widest_list = 0;  ///< most partners of one particle within one search after a contact
+  std::uint64_t widest_list = 0;  ///< most partners of one particle within one search
 
   std::size_t bytes_per_particle = 0; ///< held by the drift phase now, the particles themselves included
 };

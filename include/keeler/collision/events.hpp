@@ -12,8 +12,8 @@
 
 namespace keeler {
 
-/// A predicted contact, or that a particle, which is both then, is to look for contacts again. It holds as long as
-/// neither particle has changed its velocity since.
+/// A predicted contact; or, with the same particle twice, that it is to look for contacts again. It holds as long as
+/// neither has changed its velocity since.
 struct Event {
   double time = 0.0; ///< relative to the epoch, rad
   std::uint64_t low_id = 0, high_id = 0;

@@ -71,12 +71,14 @@ public:
     if (step_test_.may_touch(a, b, shift.x(), shift.y(), start))
       visit(image);
   }
-  /// The same for a while that is short beside the step.
+  /// The same when it may also touch in the `time` after `begin`, short beside the step.
   template<class Visit>
-  void visit_nearest_soon(const Body& a, const Body& b, const Rotation& begin, double time, const Visit& visit) const {
+  void visit_nearest_soon(const Body& a, const Body& b, double start, const Rotation& begin, double time,
+                          const Visit& visit) const {
     const Image image = nearest_image(a, b);
     const Vec3 shift = box_.displacement(image, offset_);
-    if (step_test_.may_touch_soon(a, b, shift.x(), shift.y(), begin, time))
+    if (step_test_.may_touch_soon(a, b, shift.x(), shift.y(), begin, time) &&
+        step_test_.may_touch(a, b, shift.x(), shift.y(), start))
       visit(image);
   }
   static constexpr std::size_t fewest_in_crowd = 32; ///< for it to be of use

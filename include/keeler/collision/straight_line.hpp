@@ -10,7 +10,8 @@
 
 namespace keeler {
 
-/// The test over times up to `end` after the epoch, none farther from it than `longest` (rad).
+/// The test over times up to `end` after the epoch, none farther from it than `longest` (rad); may_touch_soon() has its
+/// own times.
 struct StraightLineTest {
   Frequencies frequencies;
   double end = 0.0;
@@ -38,7 +39,7 @@ struct StraightLineTest {
     return comes_near(d, v, dv, start, end, near);
   }
 
-  /// The same over a while that begins at another time than the epoch, by the straight line of then.
+  /// The same for a `time` (at least 0) from `begin` on, by the straight lines of then.
   bool may_touch_soon(const Body& a, const Body& b, double shift_x, double shift_y, const Rotation& begin,
                       double time) const {
     Elements el = b.elements - a.elements;

@@ -12,8 +12,9 @@
 // conflict, then by induction over the events every pending contact has been found and none is made up: what has
 // happened is the sequential history.
 //
-// What does not fit, be it an orbit too fast for nearest images, contacts of different strips at the very same instant,
-// an error, or conflicts without end, is left to the sequential loop, with everything as at the start of the step.
+// What does not fit, be it an orbit too fast for nearest images, contacts of different strips at an instant of which
+// one made the other, an error, or conflicts without end, is left to the sequential loop, with everything as at the
+// start of the step.
 #pragma once
 
 #include <keeler/collision/contact_loop.hpp>
@@ -69,9 +70,11 @@ private:
     double time;
     std::uint32_t place, stamp;
   };
-  struct Holders { // of an event's particles: strips of the row by number, behind the last: none
+  struct Holders { // of an event's particles: number in the row of the strip that each is in
     std::uint8_t low, high;
   };
+  static constexpr std::uint8_t no_strip = 255;
+  static_assert(most_strips < no_strip);
   struct alignas(64) Strip { // two threads share no line of cache
     MirrorPart part;
     std::vector<Event> given, put_off;
