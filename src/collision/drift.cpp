@@ -97,16 +97,16 @@ struct DriftPhase::InPlace {
     const std::uint32_t i = crowd.centre();
     const double begin = drift.step_at_hand_.begin, end = -begin;
     const double ahead = std::max(hits_ahead * (from - begin) / stamp(i), least_share * drift.step_);
+    const auto start = [&](std::size_t j) { return std::max(last_change(i), last_change(j)); }; // of a search
     if (drift.watch || !drift.finder_->exact() || from + ahead >= end) {
       crowd.visit(from, end, buffer, [&](std::uint32_t j) {
-        drift.neighbours_.visit_nearest(body(i), body(j), from, [&](const Image& image) { visit(j, image); });
+        drift.neighbours_.visit_nearest(body(i), body(j), start(j), [&](const Image& image) { visit(j, image); });
       });
       return HUGE_VAL;
     }
     const Rotation now(drift.frequencies_, from);
     crowd.visit(from, from + ahead, buffer, [&](std::uint32_t j) {
-      const double start = std::max(last_change(i), last_change(j)); // of the search
-      drift.neighbours_.visit_nearest_soon(body(i), body(j), start, now, ahead,
+      drift.neighbours_.visit_nearest_soon(body(i), body(j), start(j), now, ahead,
                                            [&](const Image& image) { visit(j, image); });
     });
     return from + ahead;
