@@ -1,23 +1,91 @@
 #include <keeler/collision/restitution.hpp>
 
 #include <keeler/collision/settings.hpp>
+#include <keeler/core/error.hpp>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace keeler {
+namespace {
 
-double RestitutionLaw::coefficient(double speed_si) const {
-  if (kind == Kind::constant)
-    return value;
-  constexpr double centimetre = 0.01;
-  return speed_si > 0.0 ? std::min(1.0, scale * std::pow(speed_si / centimetre, -0.234)) : 1.0;
+void check_table(const NumberRows& table) {
+  if (table.empty())
+    throw UsageError("it has no rows; give at least one speed and its coefficient");
+  for (std::size_t k = 0; k < table.size(); ++k) {
+    const double speed = table[k][0], coefficient = table[k][1];
+    if (!(speed > (k == 0 ? 0.0 : table[k - 1][0])))
+      throw UsageError(fmt::format("row {}: the speed {:g} is not above {}; let the speeds rise from above 0", k + 1,
+                                   speed, k == 0 ? "0" : "the one before it"));
+    if (!(coefficient >= 0.0 && coefficient <= 1.0))
+      throw UsageError(fmt::format("row {}: the coefficient {:g} is not from 0 to 1; correct it", k + 1, coefficient));
+  }
 }
 
-Rebound rebound(const CollisionSettings& settings, double approach_speed, double radius_sum, double orbital_frequency) {
-  const double cut = settings.cut_speed(radius_sum);
+} // namespace
+
+RestitutionLaw constant_restitution(double coefficient) {
+  return [coefficient](const Impact&) { return coefficient; };
+}
+
+RestitutionLaw bridges_restitution(double scale) {
+  constexpr double centimetre = 0.01;
+  return [scale](const Impact& impact) {
+    return impact.speed > 0.0 ? std::min(1.0, scale * std::pow(impact.speed / centimetre, -0.234)) : 1.0;
+  };
+}
+
+RestitutionLaw tabulated_restitution(NumberRows table) {
+  check_table(table);
+  return [table = std::move(table)](const Impact& impact) {
+    const auto after = std::upper_bound(table.begin(), table.end(), impact.speed,
+                                        [](double speed, const std::vector<double>& row) { return speed < row[0]; });
+    if (after == table.begin())
+      return table.front()[1];
+    if (after == table.end())
+      return table.back()[1];
+    const std::vector<double>&low = after[-1], &high = after[0];
+    const double share = std::log(impact.speed / low[0]) / std::log(high[0] / low[0]);
+    return low[1] + share * (high[1] - low[1]);
+  };
+}
+
+const std::vector<RestitutionEntry>& restitution_laws() {
+  static const std::vector<RestitutionEntry> laws = {
+      {"bridges",
+       {{.path = "scale",
+         .type = KeyType::number,
+         .fallback = "0.34",
+         .unit = "1",
+         .meaning = "c in min(1, c (v / 1 cm/s)^-0.234) (Bridges et al. 1984)",
+         .range = KeyRange::above(0)}},
+       [](const Parameters& p) { return bridges_restitution(p.number("scale")); }},
+      {"constant",
+       {{.path = "value",
+         .type = KeyType::number,
+         .example = "0.5",
+         .unit = "1",
+         .meaning = "the constant coefficient",
+         .range = {.low = 0, .high = 1}}},
+       [](const Parameters& p) { return constant_restitution(p.number("value")); }},
+      {"table",
+       {{.path = "table",
+         .type = KeyType::rows,
+         .example = "\"ice.txt\"",
+         .meaning = "measured coefficients; linear in log speed between rows, constant beyond them",
+         .columns = {"normal speed in m/s", "coefficient"}}},
+       [](const Parameters& p) { return tabulated_restitution(p.rows("table")); }},
+  };
+  return laws;
+}
+
+Rebound rebound(const CollisionSettings& settings, double approach_speed, double radius_low, double radius_high,
+                double orbital_frequency) {
+  const double cut = settings.cut_speed(radius_low + radius_high);
   const bool fast = approach_speed >= cut;
-  const double kept = fast ? settings.restitution.coefficient(approach_speed * orbital_frequency) : 1.0;
+  const double kept = fast ? settings.restitution({approach_speed * orbital_frequency, radius_low, radius_high}) : 1.0;
   return {std::max(kept * approach_speed, 1e-3 * cut), fast};
 }
 

@@ -1,10 +1,12 @@
 #include <keeler/particles/sizes.hpp>
 
+#include <keeler/core/error.hpp>
 #include <keeler/core/random.hpp>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace keeler {
 namespace {
@@ -15,49 +17,106 @@ double power_integral(double p, double a, double b) {
 }
 
 // The radius below which a fraction u of a power law lies.
-double power_quantile(const SizeLaw& law, double u) {
-  const double p = 1.0 - law.exponent;
+double power_quantile(double exponent, double min, double max, double u) {
+  const double p = 1.0 - exponent;
   if (std::fabs(p) < 1e-12)
-    return law.min * std::pow(law.max / law.min, u);
-  const double low = std::pow(law.min, p), high = std::pow(law.max, p);
-  return std::clamp(std::pow(low + u * (high - low), 1.0 / p), law.min, law.max);
+    return min * std::pow(max / min, u);
+  const double low = std::pow(min, p), high = std::pow(max, p);
+  return std::clamp(std::pow(low + u * (high - low), 1.0 / p), min, max);
+}
+
+SizeLaw make_power(const Parameters& p) {
+  const double min = p.number("min"), max = p.number("max");
+  if (min >= max)
+    throw UsageError(fmt::format("min = {} is not below max = {} (a power law needs a range); lower min, or write "
+                                 "law = \"equal\"",
+                                 min, max));
+  return power_sizes(p.number("exponent"), min, max);
+}
+
+SizeLaw make_listed(const Parameters& p) {
+  std::vector<double> radii;
+  for (const std::vector<double>& row : p.rows("path"))
+    radii.push_back(row[0]);
+  return listed_sizes(std::move(radii));
+}
+
+Key length_key(const char* name, const char* example, const char* meaning) {
+  return {.path = name,
+          .type = KeyType::number,
+          .example = example,
+          .unit = "m",
+          .meaning = meaning,
+          .range = KeyRange::above(0),
+          .effect = KeyEffect::start};
 }
 
 } // namespace
 
-double SizeLaw::mean_power(int k) const {
-  switch (kind) {
-  case Kind::equal:
-    return std::pow(min, k);
-  case Kind::power:
-    return power_integral(k - exponent, min, max) / power_integral(-exponent, min, max);
-  case Kind::file:
-    break;
-  }
-  double sum = 0.0;
-  for (const double radius : listed)
-    sum += std::pow(radius, k);
-  return sum / static_cast<double>(listed.size());
+SizeLaw equal_sizes(double radius) {
+  return {radius, radius, [=](int k) { return std::pow(radius, k); }, [=](double, std::size_t) { return radius; }};
 }
 
-double SizeLaw::largest() const {
-  return kind == Kind::file ? *std::max_element(listed.begin(), listed.end()) : max;
+SizeLaw power_sizes(double exponent, double min, double max) {
+  return {min, max, [=](int k) { return power_integral(k - exponent, min, max) / power_integral(-exponent, min, max); },
+          [=](double u, std::size_t) { return power_quantile(exponent, min, max, u); }};
+}
+
+SizeLaw listed_sizes(std::vector<double> radii) {
+  const auto [smallest, largest] = std::minmax_element(radii.begin(), radii.end());
+  SizeLaw law{*smallest, *largest, {}, {}};
+  law.mean_power = [radii](int k) {
+    double sum = 0.0;
+    for (const double radius : radii)
+      sum += std::pow(radius, k);
+    return sum / static_cast<double>(radii.size());
+  };
+  law.radius = [radii = std::move(radii)](double, std::size_t k) { return radii[k % radii.size()]; };
+  return law;
 }
 
 std::vector<double> draw_radii(const SizeLaw& law, std::size_t count, std::uint64_t seed) {
-  std::vector<double> radii(count, law.min);
-  if (law.kind == SizeLaw::Kind::equal)
+  std::vector<double> radii(count, law.smallest);
+  if (law.smallest == law.largest)
     return radii;
   for (std::size_t k = 0; k < count; ++k) {
     RandomStream random(seed, RandomPurpose::size, k);
-    const double u = (static_cast<double>(k) + random.uniform()) / static_cast<double>(count);
-    radii[k] = law.kind == SizeLaw::Kind::power ? power_quantile(law, u) : law.listed[k % law.listed.size()];
+    radii[k] = law.radius((static_cast<double>(k) + random.uniform()) / static_cast<double>(count), k);
   }
   for (std::size_t k = count; k > 1; --k) { // Fisher–Yates
     RandomStream random(seed, RandomPurpose::size, count + k);
     std::swap(radii[k - 1], radii[static_cast<std::size_t>(random.uniform() * static_cast<double>(k))]);
   }
   return radii;
+}
+
+const std::vector<SizeEntry>& size_laws() {
+  static const std::vector<SizeEntry> laws = {
+      {"equal",
+       {length_key("radius", "1.0", "radius of every particle")},
+       [](const Parameters& p) { return equal_sizes(p.number("radius")); }},
+      {"power",
+       {{.path = "exponent",
+         .type = KeyType::number,
+         .example = "2.9",
+         .unit = "1",
+         .meaning = "q of the power law n(r) dr ~ r^-q dr",
+         .range = {.low = -10, .high = 10},
+         .effect = KeyEffect::start},
+        length_key("min", "0.5", "smallest radius of the power law"),
+        length_key("max", "5.0", "largest radius of the power law")},
+       make_power},
+      {"file",
+       {{.path = "path",
+         .type = KeyType::rows,
+         .example = "\"radii.txt\"",
+         .meaning = "the radii, drawn in turn",
+         .range = KeyRange::above(0),
+         .columns = {"radius in m"},
+         .effect = KeyEffect::start}},
+       make_listed},
+  };
+  return laws;
 }
 
 } // namespace keeler

@@ -5,6 +5,7 @@
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/force_error.hpp>
+#include <keeler/forces/self_gravity.hpp>
 #include <keeler/gravity/direct.hpp>
 #include <keeler/io/checkpoint.hpp>
 #include <keeler/io/checkpoint_folder.hpp>
@@ -40,8 +41,8 @@ void OutputCounters::list_fields(FieldTable& table) {
 
 Recorder::Recorder(const RunFolder& folder, const Scene& scene, const std::vector<std::string>& arguments,
                    OutputCounters counters, std::optional<std::int64_t> resumed_at)
-    : folder_(folder), scene_text_(scene.resolved), provenance_(collect_provenance(arguments)), counters_(counters),
-      series_(open_series(folder, resumed_at)) {
+    : folder_(folder), orbital_frequency_(scene.planet.orbital_frequency), scene_text_(scene.resolved),
+      provenance_(collect_provenance(arguments)), counters_(counters), series_(open_series(folder, resumed_at)) {
   write_text(folder_.scene(), scene_text_);
 }
 
@@ -80,7 +81,7 @@ void Recorder::sample(const Simulation& simulation) {
                            static_cast<double>(state.collisions.fast),
                            static_cast<double>(state.collisions.slow),
                            state.collisions.energy_lost * joule,
-                           state.energy.kick_work * joule,
+                           state.kick_work() * joule,
                            edges * joule,
                            simulation.energy_residual() * joule,
                            state.collisions.momentum_flux * omega,
@@ -95,11 +96,11 @@ void Recorder::check_forces(const Simulation& simulation) {
     const Stopwatch watch(c.last_s);
     std::vector<Vec3> positions;
     std::vector<double> masses;
-    const GravityProblem problem = simulation.gravity_problem(positions, masses);
+    const GravityProblem problem = gravity_problem(simulation.boundary(), orbital_frequency_, positions, masses);
     const ForceSample sample = draw_force_sample(problem, checked_particles, 0, 0.0);
     const std::vector<Vec3> exact =
         sampled_accelerations(problem, sample.targets, {.rings = 2}, choose_instruction_set());
-    const ForceErrors errors = force_errors(sample, exact, simulation.state().accelerations);
+    const ForceErrors errors = force_errors(sample, exact, simulation.state().forces.front().accelerations);
     ++c.count;
     c.particles = sample.even;
     c.last_step = simulation.state().step;

@@ -51,6 +51,7 @@ public:
 
 private:
   RunFolder folder_;
+  double orbital_frequency_;
   std::string scene_text_;
   Provenance provenance_;
   OutputCounters counters_;

@@ -26,7 +26,7 @@ constexpr double first_check = 5e-6;        // s a particle: what a check is tak
 constexpr double share_of_checks = 0.005;   // of the wall time, for the errors of forces; one at the end besides
 
 std::int64_t whole_kicks(const Scene& scene, double steps) {
-  const double block = scene.gravity ? scene.gravity->kick_every : 1;
+  const auto block = static_cast<double>(scene.kick_interval());
   return static_cast<std::int64_t>(std::max(1.0, std::round(steps / block)) * block);
 }
 
@@ -63,12 +63,12 @@ private:
   bool due(std::int64_t every) const { return every > 0 && simulation_.state().step % every == 0; }
 
   // Half way through a kick interval the closing half kick is missing: stop and snapshot only at its end.
-  bool between_kicks() const { return !scene_.gravity || due(scene_.gravity->kick_every); }
+  bool between_kicks() const { return due(scene_.kick_interval()); }
 
   bool must_stop() const {
     if (!between_kicks())
       return false;
-    const int passes = scene_.gravity ? scene_.gravity->kick_every : 1; // until the next chance
+    const auto passes = static_cast<double>(scene_.kick_interval()); // until the next chance
     // two passes more for the last checkpoint
     const double reserve = (passes + 2) * longest_pass_ + recorder_.force_checks().last_s;
     return requests_.stop || (options_.wall_time_s && watch_.elapsed() + reserve > *options_.wall_time_s);
@@ -159,6 +159,7 @@ Loaded load(const std::filesystem::path& file) {
   Loaded loaded;
   const CheckpointHeader header = read_checkpoint_header(file);
   loaded.run.scene = parse_stored_scene(header.scene, file.string());
+  loaded.run.state = SimulationState(loaded.run.scene);
   FieldTable table = loaded.run.state.fields();
   loaded.counters.list_fields(table);
   read_checkpoint(file, table);

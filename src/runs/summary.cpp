@@ -8,13 +8,21 @@
 namespace keeler {
 namespace {
 
+nlohmann::ordered_json work_of_forces(const SimulationState& state, double joule) {
+  nlohmann::ordered_json work = nlohmann::ordered_json::object();
+  for (const ForceState& force : state.forces)
+    work[force.name] = force.work * joule;
+  return work;
+}
+
 nlohmann::ordered_json energies(const Simulation& simulation, const Scene& scene) {
   const SimulationState& state = simulation.state();
   const double joule = scene.planet.orbital_frequency * scene.planet.orbital_frequency; // per kg m² rad⁻²
   return {{"start", state.energy.start * joule},
           {"now", total_energy(state.particles, scene.planet.frequencies) * joule},
-          {"kick_work", state.energy.kick_work * joule},
+          {"kick_work", state.kick_work() * joule},
           {"edge_work", (state.energy.wrap_work + state.collisions.edge_work) * joule},
+          {"kick_work_of", work_of_forces(state, joule)},
           {"lost_in_collisions", state.collisions.energy_lost * joule},
           {"residual", simulation.energy_residual() * joule}};
 }
@@ -54,9 +62,12 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scen
   json["energy_j"] = energies(simulation, scene);
   json["wall_s"] = cost.wall_s;
   json["cpu_s"] = cost.cpu_s;
-  json["split"] = {{"drift_s", split.drift}, {"gravity_s", split.gravity}, {"output_s", cost.output_s}};
-  json["ns_per_particle_step"] = {
-      {"drift", split.drift / passes}, {"gravity", split.gravity / passes}, {"output", cost.output_s / passes}};
+  json["split"] = {{"drift_s", split.drift}, {"gravity_s", split.force("gravity")}, {"output_s", cost.output_s}};
+  for (const ForceSettings& force : scene.external_forces)
+    json["split"][std::string(force.entry->table) + "_s"] = split.force(force.entry->table);
+  json["ns_per_particle_step"] = {{"drift", split.drift / passes},
+                                  {"gravity", split.force("gravity") / passes},
+                                  {"output", cost.output_s / passes}};
   json["provenance"] = provenance;
   return json;
 }

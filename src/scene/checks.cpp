@@ -42,6 +42,12 @@ bool fits_type(const Key& key, const Value& value) {
     const auto* list = std::get_if<std::vector<double>>(&value);
     return list && list->size() == 2;
   }
+  case KeyType::rows: {
+    const auto* rows = std::get_if<NumberRows>(&value);
+    return std::holds_alternative<std::string>(value) ||
+           (rows && std::all_of(rows->begin(), rows->end(),
+                                [&](const std::vector<double>& row) { return row.size() == key.columns.size(); }));
+  }
   }
   return false;
 }
@@ -51,8 +57,12 @@ std::vector<double> numbers_in(const Value& value) {
     return {*number};
   if (const auto* integer = std::get_if<std::int64_t>(&value))
     return {static_cast<double>(*integer)};
+  std::vector<double> numbers;
+  if (const auto* rows = std::get_if<NumberRows>(&value))
+    for (const std::vector<double>& row : *rows)
+      numbers.insert(numbers.end(), row.begin(), row.end());
   const auto* list = std::get_if<std::vector<double>>(&value);
-  return list ? *list : std::vector<double>{};
+  return list ? *list : numbers;
 }
 
 bool fits_value(const Key& key, const Value& value) {
@@ -60,7 +70,7 @@ bool fits_value(const Key& key, const Value& value) {
   if (!std::all_of(numbers.begin(), numbers.end(), [&](double n) { return std::isfinite(n) && key.range.contains(n); }))
     return false;
   const auto* text = std::get_if<std::string>(&value);
-  if (key.type == KeyType::path)
+  if (key.type == KeyType::path || (key.type == KeyType::rows && text))
     return !text->empty();
   return key.type != KeyType::choice || std::find(key.choices.begin(), key.choices.end(), *text) != key.choices.end();
 }

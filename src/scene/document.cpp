@@ -7,6 +7,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <optional>
 #include <tuple>
 
 namespace keeler {
@@ -40,14 +41,33 @@ std::string place_of(const std::string& name, const toml::source_position& posit
   return fmt::format("{}:{}:{}", name, position.line, position.column);
 }
 
-Value value_of_array(const toml::array& array) {
+std::optional<std::vector<double>> numbers_in(const toml::array& array) {
   std::vector<double> numbers;
   for (const toml::node& element : array) {
     if (!element.is_number())
-      return Unusable{element.is_table() ? "a list of tables" : "a list of things that are not numbers"};
+      return std::nullopt;
     numbers.push_back(*element.value<double>());
   }
   return numbers;
+}
+
+std::optional<NumberRows> rows_in(const toml::array& array) {
+  NumberRows rows;
+  for (const toml::node& element : array) {
+    const std::optional<std::vector<double>> row = element.is_array() ? numbers_in(*element.as_array()) : std::nullopt;
+    if (!row)
+      return std::nullopt;
+    rows.push_back(*row);
+  }
+  return rows;
+}
+
+Value value_of_array(const toml::array& array) {
+  if (const std::optional<std::vector<double>> numbers = numbers_in(array))
+    return *numbers;
+  if (const std::optional<NumberRows> rows = rows_in(array))
+    return *rows;
+  return Unusable{array.front().is_table() ? "a list of tables" : "a list of things that are not numbers"};
 }
 
 Value value_of(const toml::node& node) {
@@ -139,6 +159,9 @@ std::string kind_words(const Value& value) {
     std::string operator()(const std::vector<double>& list) const {
       return fmt::format("a list of {} number{}", list.size(), list.size() == 1 ? "" : "s");
     }
+    std::string operator()(const NumberRows& rows) const {
+      return fmt::format("{} row{} of numbers", rows.size(), rows.size() == 1 ? "" : "s");
+    }
     std::string operator()(const Table&) const { return "a table"; }
     std::string operator()(const Unusable& unusable) const { return unusable.what; }
   };
@@ -159,6 +182,12 @@ std::string to_toml(const Value& value) {
       for (const double number : list)
         elements.push_back((*this)(number));
       return fmt::format("[{}]", fmt::join(elements, ", "));
+    }
+    std::string operator()(const NumberRows& rows) const {
+      std::vector<std::string> lists;
+      for (const std::vector<double>& row : rows)
+        lists.push_back((*this)(row));
+      return fmt::format("[{}]", fmt::join(lists, ", "));
     }
     std::string operator()(const Table&) const { return "a table"; }
     std::string operator()(const Unusable& unusable) const { return unusable.what; }

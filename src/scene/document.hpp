@@ -1,6 +1,8 @@
 // A TOML text as a flat list of entries, each with the place that messages name. No other file sees the TOML library.
 #pragma once
 
+#include <keeler/core/key.hpp>
+
 #include <cstdint>
 #include <string>
 #include <variant>
@@ -15,7 +17,7 @@ struct Unusable {
   std::string what;
 };
 
-using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, Table, Unusable>;
+using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, NumberRows, Table, Unusable>;
 
 /// One key or table header. Names that are not plain keep their quotes in the path, so "a.b" is never a table a.
 struct Entry {

@@ -3,6 +3,9 @@
 #include "presets.hpp"
 
 #include <keeler/collision/finders.hpp>
+#include <keeler/collision/restitution.hpp>
+#include <keeler/forces/self_gravity.hpp>
+#include <keeler/particles/sizes.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,14 +15,6 @@
 namespace keeler {
 namespace {
 
-KeyRange above(double low) {
-  return {.low = low, .low_open = true};
-}
-
-KeyRange at_least(double low) {
-  return {.low = low};
-}
-
 std::vector<std::string> finder_names() {
   std::vector<std::string> names;
   for (const FinderEntry& finder : finder_table())
@@ -27,10 +22,40 @@ std::vector<std::string> finder_names() {
   return names;
 }
 
-std::vector<Key> make_keys() {
+// The keys of the entries of a registry of laws, of which the scene names one.
+template<class Entry>
+void add_laws(std::vector<Key>& keys, Key law, const std::string& section, const std::vector<Entry>& entries) {
+  law.path = section + ".law";
+  for (const Entry& entry : entries)
+    law.choices.emplace_back(entry.name);
+  keys.push_back(law);
+  for (const Entry& entry : entries)
+    for (Key key : entry.keys) {
+      key.path = section + "." + key.path;
+      key.only_with = {law.path, {entry.name}};
+      keys.push_back(key);
+    }
+}
+
+// The keys of a force, whose paths and conditions are relative to its table.
+void add_table(std::vector<Key>& keys, const std::string& table, const std::vector<Key>& own) {
+  for (Key key : own) {
+    key.path = table + "." + key.path;
+    if (!key.only_with.key.empty())
+      key.only_with.key = table + "." + key.only_with.key;
+    keys.push_back(key);
+  }
+}
+
+std::vector<Key> patch_keys() {
   using enum KeyType;
+  using enum KeyEffect;
   return {
-      {.path = "title", .type = text, .fallback = "\"\"", .meaning = "a name for reports and pictures"},
+      {.path = "title",
+       .type = text,
+       .fallback = "\"\"",
+       .meaning = "a name for reports and pictures",
+       .effect = output},
 
       {.path = "planet.preset",
        .type = choice,
@@ -43,7 +68,7 @@ std::vector<Key> make_keys() {
        .example = "1.3175e-4",
        .unit = "rad/s",
        .meaning = "orbital frequency Omega",
-       .range = above(0),
+       .range = KeyRange::above(0),
        .alternatives = {"planet.preset"}},
       {.path = "planet.epicyclic_ratio",
        .type = number,
@@ -57,7 +82,7 @@ std::vector<Key> make_keys() {
        .fallback = "1.0",
        .unit = "Omega",
        .meaning = "vertical frequency nu",
-       .range = above(0),
+       .range = KeyRange::above(0),
        .only_with = {"planet.orbital_frequency", {}}},
 
       {.path = "box.size",
@@ -65,112 +90,96 @@ std::vector<Key> make_keys() {
        .example = "[245.0, 245.0]",
        .unit = "m",
        .meaning = "radial and azimuthal size of the patch",
-       .range = above(0),
-       .alternatives = {"box.size_in_wavelengths"}},
+       .range = KeyRange::above(0),
+       .alternatives = {"box.size_in_wavelengths"},
+       .effect = start},
       {.path = "box.size_in_wavelengths",
        .type = pair,
        .example = "[4, 4]",
        .unit = "lambda_cr",
        .meaning = "the size in Toomre wavelengths 4 pi^2 G Sigma / kappa^2",
-       .range = above(0),
-       .alternatives = {"box.size"}},
+       .range = KeyRange::above(0),
+       .alternatives = {"box.size"},
+       .effect = start},
 
       {.path = "particles.optical_depth",
        .type = number,
        .example = "0.5",
        .unit = "1",
        .meaning = "geometric optical depth, which sets the number of particles",
-       .range = above(0),
-       .alternatives = {"particles.surface_density", "particles.count"}},
+       .range = KeyRange::above(0),
+       .alternatives = {"particles.surface_density", "particles.count"},
+       .effect = start},
       {.path = "particles.surface_density",
        .type = number,
        .example = "400.0",
        .unit = "kg/m^2",
        .meaning = "surface density, which sets the number of particles",
-       .range = above(0),
-       .alternatives = {"particles.optical_depth", "particles.count"}},
+       .range = KeyRange::above(0),
+       .alternatives = {"particles.optical_depth", "particles.count"},
+       .effect = start},
       {.path = "particles.count",
        .type = integer,
        .example = "10000",
        .unit = "1",
        .meaning = "number of particles",
        .range = {.low = 1, .high = 1e9},
-       .alternatives = {"particles.optical_depth", "particles.surface_density"}},
+       .alternatives = {"particles.optical_depth", "particles.surface_density"},
+       .effect = start},
       {.path = "particles.density",
        .type = number,
        .example = "600.0",
        .unit = "kg/m^3",
        .meaning = "density of the particles' material",
-       .range = above(0)},
+       .range = KeyRange::above(0),
+       .effect = start},
       {.path = "particles.velocity_dispersion",
        .type = number,
        .fallback = "2.0",
        .unit = "mean r Omega",
        .meaning = "radial velocity dispersion at the start",
-       .range = above(0)},
+       .range = KeyRange::above(0),
+       .effect = start},
       {.path = "particles.seed",
        .type = integer,
        .fallback = "1",
        .unit = "1",
        .meaning = "seed of all random numbers",
-       .range = at_least(0)},
-      {.path = "particles.sizes.law",
-       .type = choice,
-       .example = "\"equal\"",
-       .meaning = "how sizes are distributed",
-       .choices = {"equal", "power", "file"}},
-      {.path = "particles.sizes.radius",
-       .type = number,
-       .example = "1.0",
-       .unit = "m",
-       .meaning = "radius of every particle",
-       .range = above(0),
-       .only_with = {"particles.sizes.law", {"equal"}}},
-      {.path = "particles.sizes.exponent",
-       .type = number,
-       .example = "2.9",
-       .unit = "1",
-       .meaning = "q of the power law n(r) dr ~ r^-q dr",
-       .range = {.low = -10, .high = 10},
-       .only_with = {"particles.sizes.law", {"power"}}},
-      {.path = "particles.sizes.min",
-       .type = number,
-       .example = "0.5",
-       .unit = "m",
-       .meaning = "smallest radius of the power law",
-       .range = above(0),
-       .only_with = {"particles.sizes.law", {"power"}}},
-      {.path = "particles.sizes.max",
-       .type = number,
-       .example = "5.0",
-       .unit = "m",
-       .meaning = "largest radius of the power law",
-       .range = above(0),
-       .only_with = {"particles.sizes.law", {"power"}}},
-      {.path = "particles.sizes.path",
-       .type = path,
-       .example = "\"radii.txt\"",
-       .meaning = "file of radii in m, one a line, # starts a comment; relative to the scene file",
-       .only_with = {"particles.sizes.law", {"file"}}},
+       .range = KeyRange::at_least(0)},
+  };
+}
+
+std::vector<Key> streamline_keys() {
+  using enum KeyType;
+  using enum KeyEffect;
+  return {
       {.path = "particles.streamlines.waves",
        .type = integer,
        .example = "1",
        .unit = "1",
        .meaning = "waves in the box of a pattern in the eccentricity vectors: phases at the start are 2 pi n X / L_x",
-       .range = {.low = 1, .high = 1000}},
+       .range = {.low = 1, .high = 1000},
+       .effect = start},
       {.path = "particles.streamlines.bunching",
        .type = number,
        .example = "0.6",
        .unit = "1",
        .meaning = "q = (2 pi n / L_x) e of that pattern: streamlines bunch to 1 - q of their spacing once an orbit",
-       .range = {.low = 0, .high = 0.9}},
+       .range = {.low = 0, .high = 0.9},
+       .effect = start},
       {.path = "particles.streamlines.inclination",
        .type = number,
        .fallback = "0.0",
        .unit = "mean r",
        .meaning = "inclination common to all particles, which swing up and down together; rising at the start",
-       .range = at_least(0)},
+       .range = KeyRange::at_least(0),
+       .effect = start},
+  };
+}
 
+std::vector<Key> collision_keys() {
+  using enum KeyType;
+  return {
       {.path = "collisions.finder",
        .type = choice,
        .fallback = "\"certified\"",
@@ -181,78 +190,19 @@ std::vector<Key> make_keys() {
        .fallback = "1e-2",
        .unit = "(r_i + r_j) Omega / 2",
        .meaning = "contacts slower than this bounce elastically, which ends inelastic collapse",
-       .range = at_least(0)},
-      {.path = "collisions.restitution.law",
-       .type = choice,
-       .fallback = "\"bridges\"",
-       .meaning = "how much normal speed a bounce keeps",
-       .choices = {"bridges", "constant"}},
-      {.path = "collisions.restitution.scale",
-       .type = number,
-       .fallback = "0.34",
-       .unit = "1",
-       .meaning = "c in min(1, c (v / 1 cm/s)^-0.234) (Bridges et al. 1984)",
-       .range = above(0),
-       .only_with = {"collisions.restitution.law", {"bridges"}}},
-      {.path = "collisions.restitution.value",
-       .type = number,
-       .example = "0.5",
-       .unit = "1",
-       .meaning = "the constant coefficient",
-       .range = {.low = 0, .high = 1},
-       .only_with = {"collisions.restitution.law", {"constant"}}},
+       .range = KeyRange::at_least(0)},
+  };
+}
 
-      {.path = "gravity.solver",
-       .type = choice,
-       .fallback = "\"tree\"",
-       .meaning = "how accelerations are computed",
-       .choices = {"direct", "tree", "fft", "mesh", "auto"}},
-      {.path = "gravity.force_error",
-       .type = number,
-       .fallback = "2e-3",
-       .unit = "rms force",
-       .meaning = "rms error of the force asked for",
-       .range = {.low = 1e-5, .high = 0.1},
-       .only_with = {"gravity.solver", {"fft", "auto"}}},
-      {.path = "gravity.mesh_spacing",
-       .type = number,
-       .fallback = "1.6",
-       .unit = "mean distance",
-       .meaning = "spacing of the mesh, in (particles an area)^-1/2",
-       .range = {.low = 0.1, .high = 100},
-       .only_with = {"gravity.solver", {"mesh"}}},
-      {.path = "gravity.opening_angle",
-       .type = number,
-       .fallback = "0.6",
-       .unit = "1",
-       .meaning = "a cell is opened when its size exceeds this times its distance",
-       .range = {.low = 0, .high = 1, .low_open = true},
-       .only_with = {"gravity.solver", {"tree"}}},
-      {.path = "gravity.images",
-       .type = choice,
-       .fallback = "\"periodic\"",
-       .meaning = "periodic: all images, to infinity; rings: exactly image_rings rings, to compare with other codes",
-       .choices = {"periodic", "rings"},
-       .only_with = {"gravity.solver", {"direct", "tree"}}},
-      {.path = "gravity.image_rings",
-       .type = integer,
-       .fallback = "1",
-       .unit = "1",
-       .meaning =
-           "rings of boxes around the patch that are summed one by one (1 is 9 boxes, 2 is 25); at least 1 if periodic",
-       .range = {.low = 0, .high = 10},
-       .only_with = {"gravity.solver", {"direct", "tree"}}},
-      {.path = "gravity.kick_every",
-       .type = integer,
-       .fallback = "1",
-       .unit = "steps",
-       .meaning = "drifts per kick",
-       .range = {.low = 1, .high = 1000}},
-
+std::vector<Key> course_keys() {
+  using enum KeyType;
+  using enum KeyEffect;
+  return {
       {.path = "start.from",
        .type = path,
        .example = "\"wakes.hdf\"",
-       .meaning = "snapshot to start from, relative to the scene file; without [start] the patch is fresh"},
+       .meaning = "snapshot to start from, relative to the scene file; without [start] the patch is fresh",
+       .effect = start},
 
       {.path = "time.step",
        .type = number,
@@ -265,54 +215,49 @@ std::vector<Key> make_keys() {
        .example = "3.0",
        .unit = "orbits",
        .meaning = "length of the run, rounded to whole kicks",
-       .range = above(0)},
+       .range = KeyRange::above(0),
+       .effect = output},
 
       {.path = "output.snapshot_every",
        .type = number,
        .fallback = "0.0",
        .unit = "orbits",
        .meaning = "time between snapshots, rounded to whole kicks; 0: only at start and end",
-       .range = at_least(0)},
+       .range = KeyRange::at_least(0),
+       .effect = output},
       {.path = "output.checkpoint_every",
        .type = number,
        .fallback = "0.0",
        .unit = "orbits",
        .meaning = "time between checkpoints, rounded to whole kicks; 0: only at the end or a stop",
-       .range = at_least(0)},
+       .range = KeyRange::at_least(0),
+       .effect = output},
   };
 }
 
-} // namespace
-
-bool KeyRange::contains(double value) const {
-  return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
-}
-
-bool KeyCondition::allows(const std::string& value) const {
-  return std::find(values.begin(), values.end(), value) != values.end();
-}
-
-std::string KeyCondition::words() const {
-  return values.empty() ? "" : fmt::format(" = \"{}\"", fmt::join(values, "\" or \""));
-}
-
-std::string KeyRange::words() const {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  const std::string below = fmt::format("{} {:g}", high_open ? "below" : "at most", high);
-  if (low == -infinity)
-    return high == infinity ? "" : below;
-  if (high == infinity)
-    return low_open ? fmt::format("above {:g}", low) : fmt::format("from {:g} up", low);
-  return low_open ? fmt::format("above {:g} and {}", low, below) : fmt::format("from {:g} to {:g}", low, high);
-}
-
-const std::vector<Key>& scene_keys() {
-  static const std::vector<Key> keys = make_keys();
+std::vector<Key> make_keys() {
+  std::vector<Key> keys = patch_keys();
+  const auto add = [&](const std::vector<Key>& more) { keys.insert(keys.end(), more.begin(), more.end()); };
+  add_laws(keys,
+           {.type = KeyType::choice,
+            .example = "\"equal\"",
+            .meaning = "how sizes are distributed",
+            .effect = KeyEffect::start},
+           "particles.sizes", size_laws());
+  add(streamline_keys());
+  add(collision_keys());
+  add_laws(keys,
+           {.type = KeyType::choice, .fallback = "\"bridges\"", .meaning = "how much normal speed a bounce keeps"},
+           "collisions.restitution", restitution_laws());
+  add_table(keys, "gravity", gravity_keys());
+  for (const ForceEntry& force : external_forces())
+    add_table(keys, force.table, force.keys);
+  add(course_keys());
   return keys;
 }
 
-const std::vector<Section>& scene_sections() {
-  static const std::vector<Section> sections = {
+std::vector<Section> make_sections() {
+  std::vector<Section> sections = {
       {.path = "planet", .needed = true, .meaning = "it says where the patch orbits"},
       {.path = "box", .needed = true, .meaning = "it says how large the patch is", .replaced_by = "start.from"},
       {.path = "particles", .needed = true, .meaning = "it says what is in the patch", .replaced_by = "start.from"},
@@ -325,6 +270,20 @@ const std::vector<Section>& scene_sections() {
       {.path = "time", .needed = true, .meaning = "it says how long the run is"},
       {.path = "output"},
   };
+  for (const ForceEntry& force : external_forces())
+    sections.push_back({.path = force.table});
+  return sections;
+}
+
+} // namespace
+
+const std::vector<Key>& scene_keys() {
+  static const std::vector<Key> keys = make_keys();
+  return keys;
+}
+
+const std::vector<Section>& scene_sections() {
+  static const std::vector<Section> sections = make_sections();
   return sections;
 }
 
@@ -356,6 +315,8 @@ std::string allowed_words(const Key& key) {
     return "a whole number" + suffix;
   case KeyType::pair:
     return "two numbers" + suffix;
+  case KeyType::rows:
+    return fmt::format("the path of a text file, or rows in place: {}{}", fmt::join(key.columns, ", "), suffix);
   }
   return {};
 }

@@ -1,7 +1,5 @@
 #include "particles_and_box.hpp"
 
-#include "text_files.hpp"
-
 #include <keeler/core/units.hpp>
 #include <keeler/scene/derived.hpp>
 
@@ -12,31 +10,6 @@
 
 namespace keeler {
 namespace {
-
-SizeLaw read_sizes(Settings& settings, const std::string& scene_name) {
-  SizeLaw sizes;
-  const std::string law = settings.text("particles.sizes.law");
-  if (law == "equal") {
-    sizes.min = sizes.max = settings.number("particles.sizes.radius");
-  } else if (law == "power") {
-    sizes.kind = SizeLaw::Kind::power;
-    sizes.exponent = settings.number("particles.sizes.exponent");
-    sizes.min = settings.number("particles.sizes.min");
-    sizes.max = settings.number("particles.sizes.max");
-    if (sizes.min >= sizes.max)
-      fail_at(
-          settings.place("particles.sizes.min"),
-          fmt::format("particles.sizes.min = {} is not below max = {} (a power law needs a range); lower min, or write "
-                      "law = \"equal\"",
-                      sizes.min, sizes.max));
-  } else {
-    sizes.kind = SizeLaw::Kind::file;
-    const std::string place = settings.place("particles.sizes.path");
-    sizes.path = settings.file_path("particles.sizes.path", scene_name);
-    sizes.listed = read_radii(sizes.path, place);
-  }
-  return sizes;
-}
 
 StreamlineSettings read_streamlines(const Settings& settings) {
   if (!settings.has("particles.streamlines"))
@@ -80,7 +53,7 @@ void read_box(Scene& scene, Settings& settings, const Amount& amount) {
   }
   scene.size_x = size[0];
   scene.size_y = size[1];
-  const double diameter = 2.0 * scene.particles.sizes.largest();
+  const double diameter = 2.0 * scene.particles.sizes.largest;
   if (!(std::min(size[0], size[1]) >= diameter))
     fail_at(place,
             fmt::format("the box of {:.4g} m x {:.4g} m is smaller than a particle (the largest is {:.4g} m across); "
@@ -122,7 +95,7 @@ void read_count(Scene& scene, Settings& settings, const Amount& amount) {
 void read_particles_and_box(Scene& scene, Settings& settings, const std::string& name) {
   ParticleSettings& particles = scene.particles;
   particles.density = settings.number("particles.density");
-  particles.sizes = read_sizes(settings, name);
+  particles.sizes = make_law(size_laws(), "particles.sizes", settings, name);
   particles.velocity_dispersion = settings.number("particles.velocity_dispersion");
   particles.seed = static_cast<std::uint64_t>(settings.integer("particles.seed"));
   particles.streamlines = read_streamlines(settings);

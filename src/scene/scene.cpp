@@ -7,14 +7,15 @@
 #include "settings.hpp"
 #include "text_files.hpp"
 
+#include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/forces/self_gravity.hpp>
 #include <keeler/scene/derived.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace keeler {
 namespace {
@@ -33,50 +34,32 @@ PlanetSettings read_planet(Settings& settings) {
   return planet;
 }
 
-CollisionSettings read_collisions(const Settings& settings) {
+CollisionSettings read_collisions(Settings& settings, const std::string& name) {
   CollisionSettings collisions;
   collisions.finder = settings.text("collisions.finder");
   collisions.elastic_below = settings.number("collisions.elastic_below");
-  RestitutionLaw& law = collisions.restitution;
-  if (settings.text("collisions.restitution.law") == "bridges") {
-    law.kind = RestitutionLaw::Kind::bridges;
-    law.scale = settings.number("collisions.restitution.scale");
-  } else {
-    law.kind = RestitutionLaw::Kind::constant;
-    law.value = settings.number("collisions.restitution.value");
-  }
+  collisions.restitution = make_law(restitution_laws(), "collisions.restitution", settings, name);
   return collisions;
 }
 
-std::optional<GravitySettings> read_gravity(const Settings& settings) {
+std::optional<GravitySettings> read_gravity(Settings& settings, const std::string& name) {
   if (!settings.has("gravity"))
     return {};
-  using Solver = GravitySettings::Solver;
-  static const std::map<std::string, Solver> solvers = {{"direct", Solver::direct},
-                                                        {"tree", Solver::tree},
-                                                        {"fft", Solver::fft},
-                                                        {"mesh", Solver::mesh},
-                                                        {"auto", Solver::automatic}};
-  GravitySettings gravity;
-  gravity.solver = solvers.at(settings.text("gravity.solver"));
-  if (gravity.solver == Solver::tree)
-    gravity.opening_angle = settings.number("gravity.opening_angle");
-  if (gravity.solver == Solver::fft || gravity.solver == Solver::automatic)
-    gravity.force_error = settings.number("gravity.force_error");
-  if (gravity.solver == Solver::mesh)
-    gravity.mesh_spacing = settings.number("gravity.mesh_spacing");
-  if (gravity.solver == Solver::direct || gravity.solver == Solver::tree) {
-    gravity.images.rings = static_cast<int>(settings.integer("gravity.image_rings"));
-    gravity.images.far = settings.text("gravity.images") == "periodic";
-  }
-  gravity.kick_every = static_cast<int>(settings.integer("gravity.kick_every"));
-  return gravity;
+  return gravity_settings(settings.parameters("gravity", name));
+}
+
+std::vector<ForceSettings> read_external_forces(Settings& settings, const std::string& name) {
+  std::vector<ForceSettings> forces;
+  for (const ForceEntry& entry : external_forces())
+    if (settings.has(entry.table))
+      forces.push_back({&entry, settings.parameters(entry.table, name)});
+  return forces;
 }
 
 // A time in orbits as steps: the nearest multiple of the kick interval, but at least one unless the time is 0.
 std::int64_t whole_kicks(Scene& scene, Settings& settings, const std::string& key) {
   const double orbits = settings.number(key);
-  const std::int64_t per_kick = scene.gravity ? scene.gravity->kick_every : 1;
+  const std::int64_t per_kick = scene.kick_interval();
   const double interval = scene.time.step * static_cast<double>(per_kick);
   const double kicks = orbits / interval;
   if (!(kicks < 1e15))
@@ -120,10 +103,12 @@ Scene read_scene(Document document, const std::string& name, Purpose purpose, st
     read_particles_and_box(scene, settings, name);
   else
     scene.particles.seed = static_cast<std::uint64_t>(settings.integer("particles.seed"));
-  scene.collisions = read_collisions(settings);
-  scene.gravity = read_gravity(settings);
+  scene.collisions = read_collisions(settings, name);
+  scene.gravity = read_gravity(settings, name);
+  scene.external_forces = read_external_forces(settings, name);
   read_times(scene, settings);
   scene.resolved = settings.resolved();
+  scene.motion = settings.motion();
   return scene;
 }
 

@@ -1,6 +1,7 @@
 #include "settings.hpp"
 
 #include "checks.hpp"
+#include "text_files.hpp"
 
 #include <keeler/scene/keys.hpp>
 
@@ -62,18 +63,67 @@ void Settings::resolve(const std::string& path, Value value, const std::string& 
   document_.push_back({path, "derived", "derived", std::move(value), false});
 }
 
+NumberRows Settings::rows(const Key& key, const std::string& scene_name) {
+  const Value& value = find_entry(document_, key.path)->value;
+  if (const auto* given = std::get_if<NumberRows>(&value))
+    return *given;
+  const std::string place = this->place(key.path), path = file_path(key.path, scene_name);
+  NumberRows rows = read_rows(path, key, place);
+  if (key.effect == KeyEffect::motion)
+    resolve(key.path, rows);
+  return rows;
+}
+
+Parameters::Value Settings::parameter(const Key& key, const std::string& scene_name) {
+  switch (key.type) {
+  case KeyType::number:
+    return number(key.path);
+  case KeyType::integer:
+    return integer(key.path);
+  case KeyType::pair:
+    return numbers(key.path);
+  case KeyType::rows:
+    return rows(key, scene_name);
+  case KeyType::path:
+    return file_path(key.path, scene_name);
+  case KeyType::text:
+  case KeyType::choice:
+    break;
+  }
+  return text(key.path);
+}
+
+Parameters Settings::parameters(const std::string& section, const std::string& scene_name) {
+  Parameters parameters;
+  for (const Key& key : scene_keys())
+    if (key.section() == section && has(key.path))
+      parameters.set(key.name(), parameter(key, scene_name));
+  return parameters;
+}
+
+std::string Settings::toml_of(const Key& key) const {
+  const bool as_double = key.type == KeyType::number; // 3 and 3.0 are one value, and shall be one text
+  return to_toml(as_double ? Value(number(key.path)) : find_entry(document_, key.path)->value);
+}
+
+std::string Settings::motion() const {
+  std::string out;
+  for (const Key& key : scene_keys())
+    if (key.effect == KeyEffect::motion && has(key.path))
+      out += fmt::format("{} = {}\n", key.path, toml_of(key));
+  return out;
+}
+
 std::string Settings::resolved() const {
   std::string out, open;
   for (const Key& key : scene_keys()) {
-    const Entry* entry = find_entry(document_, key.path);
-    if (!entry)
+    if (!has(key.path))
       continue;
     if (key.section() != open) {
       open = key.section();
       out += fmt::format("\n[{}]\n", open);
     }
-    const bool as_double = key.type == KeyType::number; // 3 and 3.0 are one value, and shall be one text
-    out += fmt::format("{} = {}\n", key.name(), to_toml(as_double ? Value(number(key.path)) : entry->value));
+    out += fmt::format("{} = {}\n", key.name(), toml_of(key));
   }
   return out;
 }

@@ -3,6 +3,10 @@
 
 #include "document.hpp"
 
+#include <keeler/core/error.hpp>
+#include <keeler/core/key.hpp>
+
+#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -22,6 +26,11 @@ public:
   /// Where the value (or a table's header) stands, for messages.
   std::string place(const std::string& path) const { return find_entry(document_, path)->value_place; }
 
+  /// The values in force of a table's keys. Rows are read from the file that they name; those that have a say in the
+  /// motion then stand in the resolved scene themselves, so that a run goes on without the file. `scene_name`: as
+  /// below.
+  Parameters parameters(const std::string& section, const std::string& scene_name);
+
   /// The absolute path of the file that a key names: what a scene file says is relative to it, what the command line
   /// says to the current directory. The resolved scene holds the absolute path.
   std::string file_path(const std::string& key, const std::string& scene_name);
@@ -32,8 +41,29 @@ public:
   /// The scene as TOML: every key in force, in the order of the key table. It reads back to the same scene.
   std::string resolved() const;
 
+  /// A line "path = value" for each key in force that has a say in the motion.
+  std::string motion() const;
+
 private:
+  std::string toml_of(const Key& key) const;
+  NumberRows rows(const Key& key, const std::string& scene_name);
+  Parameters::Value parameter(const Key& key, const std::string& scene_name);
+
   Document document_;
 };
+
+/// The law of a registry that a table of the scene names, made from the table's values.
+template<class Entry>
+auto make_law(const std::vector<Entry>& entries, const std::string& section, Settings& settings,
+              const std::string& scene_name) {
+  const std::string name = settings.text(section + ".law"), place = settings.place(section + ".law");
+  const auto entry = std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return name == e.name; });
+  const Parameters parameters = settings.parameters(section, scene_name);
+  try {
+    return entry->make(parameters);
+  } catch (const UsageError& fault) {
+    fail_at(place, section + ": " + fault.what());
+  }
+}
 
 } // namespace keeler

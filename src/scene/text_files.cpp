@@ -3,6 +3,7 @@
 #include <keeler/core/error.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cerrno>
 #include <charconv>
@@ -24,12 +25,34 @@ std::string_view trimmed(std::string_view line) {
   return line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
 }
 
-double parse_radius(std::string_view word, const std::string& place) {
-  double radius = 0.0;
-  const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), radius);
-  if (fault != std::errc{} || end != word.data() + word.size() || !std::isfinite(radius) || radius <= 0.0)
-    throw UsageError(place + ": not a radius (every line is one number above 0, in m); correct this line");
-  return radius;
+bool separates(char c) {
+  return c == ' ' || c == '\t' || c == ',' || c == ';';
+}
+
+// The numbers of a line, one for each column of the key.
+std::vector<double> parse_numbers(std::string_view line, const Key& key, const std::string& place) {
+  const auto refuse = [&](const std::string& what) {
+    throw UsageError(fmt::format("{}: {}, but a line must be {}{} ({}); correct this line", place, what,
+                                 key.columns.size() == 1 ? "a number" : fmt::format("{} numbers", key.columns.size()),
+                                 key.range.words().empty() ? "" : " " + key.range.words(),
+                                 fmt::join(key.columns, ", ")));
+  };
+  std::vector<double> numbers;
+  const char *at = line.data(), *const end = at + line.size();
+  while (at != end) {
+    double number = 0.0;
+    const auto [after, fault] = std::from_chars(at, end, number);
+    if (fault != std::errc{} || (after != end && !separates(*after)))
+      refuse("not a number");
+    if (!std::isfinite(number) || !key.range.contains(number))
+      refuse(fmt::format("{:g}", number));
+    numbers.push_back(number);
+    for (at = after; at != end && separates(*at);)
+      ++at;
+  }
+  if (numbers.size() != key.columns.size())
+    refuse(fmt::format("{} number{}", numbers.size(), numbers.size() == 1 ? "" : "s"));
+  return numbers;
 }
 
 } // namespace
@@ -55,17 +78,17 @@ std::string read_text_file(const std::string& path, const std::string& place) {
   return text;
 }
 
-std::vector<double> read_radii(const std::string& path, const std::string& place) {
+NumberRows read_rows(const std::string& path, const Key& key, const std::string& place) {
   std::istringstream lines(read_text_file(path, place));
-  std::vector<double> radii;
+  NumberRows rows;
   std::string line;
   for (int number = 1; std::getline(lines, line); ++number)
-    if (const std::string_view word = trimmed(line); !word.empty())
-      radii.push_back(parse_radius(word, fmt::format("{}:{}:1", path, number)));
-  if (radii.empty())
-    throw UsageError(
-        fmt::format("{}: {} has no radius in it (it is empty or all comments); write one a line", place, path));
-  return radii;
+    if (const std::string_view text = trimmed(line); !text.empty())
+      rows.push_back(parse_numbers(text, key, fmt::format("{}:{}:1", path, number)));
+  if (rows.empty())
+    throw UsageError(fmt::format("{}: {} has no numbers in it (it is empty or all comments); write {} on each line",
+                                 place, path, fmt::join(key.columns, " and ")));
+  return rows;
 }
 
 } // namespace keeler

@@ -3,10 +3,9 @@
 #include <keeler/cells/order.hpp>
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
-#include <keeler/core/random.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
-#include <keeler/core/units.hpp>
+#include <keeler/forces/self_gravity.hpp>
 
 #include <fmt/format.h>
 
@@ -31,7 +30,7 @@ SimulationState first_state(const Scene& scene, const Patch& start) {
         fmt::format("the box of the initial state, {:.4g} m x {:.4g} m, is smaller than its largest particle "
                     "({:.4g} m across); start from another state",
                     start.box.size_x, start.box.size_y, 2.0 * largest));
-  SimulationState state;
+  SimulationState state(scene);
   state.step_length = scene.step_length();
   state.box = start.box;
   state.box.shear = scene.planet.frequencies.shear();
@@ -48,37 +47,49 @@ SimulationState first_state(const Scene& scene, const Patch& start) {
   return state;
 }
 
+std::vector<std::unique_ptr<Force>> make_forces(const Scene& scene, const SimulationState& state) {
+  std::vector<double> masses;
+  if (!state.forces.empty())
+    for (const Body& body : state.particles.bodies)
+      masses.push_back(body.mass);
+  const ForceContext context{masses, state.box, scene.planet.orbital_frequency, scene.particles.seed};
+  std::vector<std::unique_ptr<Force>> forces;
+  if (scene.gravity)
+    forces.push_back(make_self_gravity(*scene.gravity, context));
+  for (const ForceSettings& force : scene.external_forces)
+    forces.push_back(force.entry->make(force.parameters, context));
+  return forces;
+}
+
 } // namespace
 
 Simulation::Simulation(const Scene& scene, const Patch& start) : Simulation(scene, first_state(scene, start)) {
-  if (solver_)
-    accelerate();
+  for (std::size_t f = 0; f < forces_.size(); ++f)
+    accelerate(f);
 }
 
 Simulation::Simulation(const Scene& scene, SimulationState state)
     : scene_(scene), state_(std::move(state)),
       drift_(scene.collisions, scene.planet.frequencies, scene.planet.orbital_frequency, state_.step_length) {
-  if (scene_.gravity) {
-    for (const Body& body : state_.particles.bodies)
-      masses_.push_back(body.mass);
-    solver_ = make_gravity_solver(*scene_.gravity, masses_, state_.box.area());
-  }
+  forces_ = make_forces(scene_, state_);
 }
 
 void Simulation::advance() {
   sort_when_due();
-  if (kick_due())
-    half_kick();
+  for (std::size_t f = 0; f < forces_.size(); ++f)
+    if (kick_due(f))
+      half_kick(f);
   {
     const Stopwatch watch(split_.drift);
     drift_.collide(state_.particles, state_.box, state_.epoch_offset(), state_.collisions);
     move_on();
     drift_.moved_on();
   }
-  if (kick_due()) {
-    accelerate();
-    half_kick();
-  }
+  for (std::size_t f = 0; f < forces_.size(); ++f)
+    if (kick_due(f)) {
+      accelerate(f);
+      half_kick(f);
+    }
 }
 
 // Memory order follows the places every tenth of an orbit. That depends on the step number alone: a restart goes on
@@ -92,8 +103,8 @@ void Simulation::sort_when_due() {
   const std::vector<std::uint32_t> order = order_by_place(state_.particles, state_.box, state_.epoch_offset());
   reorder(state_.particles.bodies, order);
   reorder(state_.particles.ids, order);
-  if (!state_.accelerations.empty())
-    reorder(state_.accelerations, order);
+  for (ForceState& force : state_.forces)
+    reorder(force.accelerations, order);
 }
 
 // To the epoch of the next step, and back into the cell by guiding centre.
@@ -118,64 +129,38 @@ void Simulation::move_on() {
   });
 }
 
-// The solver sees the patch from another origin at each kick: where cells and meshes fall among the particles changes,
-// and their errors do not add up from kick to kick. In a periodic box nothing else changes. The step number draws it,
-// so that a restart goes on with the same ones.
-Vec3 Simulation::random_origin() const {
-  RandomStream random(scene_.particles.seed, RandomPurpose::gravity_origin, static_cast<std::uint64_t>(state_.step));
-  const double x = random.uniform() - 0.5, y = random.uniform() - 0.5;
-  return {x * state_.box.size_x, y * state_.box.size_y, 0.0};
+Boundary Simulation::boundary() const {
+  return {state_.particles, scene_.planet.frequencies, 0.5 * state_.step_length,
+          state_.box,       state_.boundary_offset(),  state_.step};
 }
 
-void Simulation::accelerate() {
-  const Stopwatch watch(split_.gravity);
-  state_.accelerations.resize(state_.particles.size());
-  const GravityProblem problem = gravity_problem(positions_, masses_);
-  if (scene_.gravity->images.far) {
-    const Vec3 origin = random_origin();
-    parallel_for(positions_.size(), [&](std::size_t k) { positions_[k] -= origin; });
-  }
-  solver_->accelerate(problem, state_.accelerations);
+void Simulation::accelerate(std::size_t f) {
+  const Stopwatch watch(split_.forces[forces_[f]->name()]);
+  std::vector<Vec3>& accelerations = state_.forces[f].accelerations;
+  accelerations.resize(state_.particles.size());
+  forces_[f]->accelerate(boundary(), accelerations);
 }
 
 // Half a kick interval's velocity change, at the boundary between steps. Two half kicks are always two additions.
-void Simulation::half_kick() {
-  const Stopwatch watch(split_.gravity), kick_watch(split_.kick);
-  const Frequencies& f = scene_.planet.frequencies;
-  const Rotation rotation(f, -0.5 * state_.step_length);
-  const double half = 0.5 * state_.step_length * scene_.gravity->kick_every;
+void Simulation::half_kick(std::size_t f) {
+  const Stopwatch watch(split_.forces[forces_[f]->name()]), kick_watch(split_.kick);
+  ForceState& force = state_.forces[f];
+  const Frequencies& frequencies = scene_.planet.frequencies;
+  const Rotation rotation = boundary().rotation();
+  const double half = 0.5 * state_.step_length * static_cast<double>(forces_[f]->kick_every());
   double largest = 0.0;
-  for (const Vec3& a : state_.accelerations)
+  for (const Vec3& a : force.accelerations)
     if (!(a.squaredNorm() <= largest)) // what is not a number stays
       largest = a.squaredNorm();
   drift_.kicked(half * std::sqrt(largest));
-  state_.energy.kick_work += ordered_sum(state_.particles.size(), [&](std::size_t k) {
+  force.work += ordered_sum(state_.particles.size(), [&](std::size_t k) {
     state_.particles.prefetch_after(k);
     Body& body = state_.particles.bodies[k];
-    const Vec3 dv = half * state_.accelerations[k];
-    const Vec3 v = state_at(body.elements, f, rotation).velocity;
-    kick(body.elements, dv, f, rotation);
+    const Vec3 dv = half * force.accelerations[k];
+    const Vec3 v = state_at(body.elements, frequencies, rotation).velocity;
+    kick(body.elements, dv, frequencies, rotation);
     return body.mass * (v.dot(dv) + 0.5 * dv.squaredNorm());
   });
-}
-
-GravityProblem Simulation::gravity_problem(std::vector<Vec3>& positions, std::vector<double>& masses) const {
-  const std::size_t count = state_.particles.size();
-  const Rotation rotation(scene_.planet.frequencies, -0.5 * state_.step_length);
-  positions.resize(count);
-  masses.resize(count);
-  parallel_for(count, [&](std::size_t k) {
-    state_.particles.prefetch_after(k);
-    const Body& body = state_.particles.bodies[k];
-    positions[k] = state_at(body.elements, scene_.planet.frequencies, rotation).position;
-    masses[k] = body.mass;
-  });
-  return {positions,
-          masses,
-          state_.particles.ids,
-          state_.box,
-          state_.boundary_offset(),
-          newton_g(scene_.planet.orbital_frequency)};
 }
 
 Patch Simulation::patch() const {
@@ -188,7 +173,7 @@ Patch Simulation::patch() const {
 
 double Simulation::energy_residual() const {
   const EnergyBudget& e = state_.energy;
-  return total_energy(state_.particles, scene_.planet.frequencies) - e.start - e.kick_work - e.wrap_work -
+  return total_energy(state_.particles, scene_.planet.frequencies) - e.start - state_.kick_work() - e.wrap_work -
          state_.collisions.edge_work + state_.collisions.energy_lost;
 }
 

@@ -33,7 +33,7 @@ void require_visible_wakes(const Patch& patch) {
 
 // A whole number of kick intervals: within one the closing half kick is missing.
 std::int64_t steps_between_samples(const Scene& scene, const SettleCriterion& criterion) {
-  const std::int64_t kicks = scene.gravity->kick_every;
+  const std::int64_t kicks = scene.kick_interval();
   const double interval = static_cast<double>(kicks) * scene.time.step;
   return kicks * std::max(1L, std::lround(1.0 / (criterion.samples_per_orbit * interval)));
 }

@@ -21,6 +21,7 @@ constexpr double moonlet_orbits = 0.5; // that the particles around a moonlet ge
 // How a state of each kind is made.
 struct Recipe {
   SizeLaw sizes;
+  const char* table;        // of the scene: the same sizes
   std::size_t largest_tile; // particles
   double heat;              // of the start, over equal spheres as large as the mass is
   double orbits;            // from the start to the equilibrium
@@ -30,8 +31,9 @@ struct Recipe {
 // 230 m rad⁻¹, those above 12 m to 50–100, within four orbits from half of the heat.
 Recipe recipe_for(BenchSizes sizes) {
   if (sizes == BenchSizes::power)
-    return {{SizeLaw::Kind::power, 3.0, 1.0, 100.0, {}, {}}, 25000, 2.0, 3.0};
-  return {{}, 100000, 1.0, 1.5};
+    return {power_sizes(3.0, 1.0, 100.0), "{ law = \"power\", exponent = 3.0, min = 1.0, max = 100.0 }", 25000, 2.0,
+            3.0};
+  return {equal_sizes(1.0), "{ law = \"equal\", radius = 1.0 }", 100000, 1.0, 1.5};
 }
 
 // c_x of the start, in ⟨r⟩ Ω; more than near the equilibrium's where particles of that dispersion could not be placed.
@@ -44,12 +46,7 @@ double first_dispersion(const Recipe& recipe, double optical_depth) {
 }
 
 Scene tile_scene(const Recipe& recipe, std::size_t count, const DriftBenchSettings& s) {
-  const SizeLaw& law = recipe.sizes;
-  const double size = std::sqrt(pi * law.mean_power(2) * static_cast<double>(count) / s.optical_depth);
-  const std::string sizes =
-      law.kind == SizeLaw::Kind::equal
-          ? fmt::format("{{ law = \"equal\", radius = {} }}", law.min)
-          : fmt::format("{{ law = \"power\", exponent = {}, min = {}, max = {} }}", law.exponent, law.min, law.max);
+  const double size = std::sqrt(pi * recipe.sizes.mean_power(2) * static_cast<double>(count) / s.optical_depth);
   return parse_scene(fmt::format(R"(
 [planet]
 orbital_frequency = 1.9565e-4
@@ -67,7 +64,7 @@ restitution = {{ law = "constant", value = 0.5 }}
 step = {5}
 end = {5}
 )",
-                                 size, count, first_dispersion(recipe, s.optical_depth), sizes, s.finder,
+                                 size, count, first_dispersion(recipe, s.optical_depth), recipe.table, s.finder,
                                  s.step_orbits),
                      "bench");
 }

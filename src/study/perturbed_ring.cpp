@@ -98,7 +98,7 @@ class Mover {
 public:
   Mover(const PerturbedRing& ring, const std::string& path, double step) {
     CollisionSettings settings;
-    settings.restitution = {RestitutionLaw::Kind::constant, ring.restitution, 0.34};
+    settings.restitution = constant_restitution(ring.restitution);
     if (path == straight_path || path == control_path) {
       straight_.emplace(settings, frequencies, orbital_frequency, step);
       return;

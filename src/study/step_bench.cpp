@@ -30,7 +30,7 @@ struct Times {
     whole.push_back(ns * seconds);
     drift.push_back(ns * (after.drift - before.drift - moved));
     advance.push_back(ns * moved);
-    gravity.push_back(ns * (after.gravity - before.gravity - kicked));
+    gravity.push_back(ns * (after.force("gravity") - before.force("gravity") - kicked));
     kick.push_back(ns * kicked);
   }
 };

@@ -123,7 +123,7 @@ bool StraightDrift::carry_out(const Event& event) {
   const State shift = image_state(event.image, event.time);
   const Vec3 normal = (of_b.position + shift.position - of_a.position).normalized();
   const double speed = -(of_b.velocity + shift.velocity - of_a.velocity).dot(normal);
-  const Rebound after = rebound(settings_, speed, a.radius + b.radius, orbital_frequency_);
+  const Rebound after = rebound(settings_, speed, a.radius, b.radius, orbital_frequency_);
   if (!(speed > -after.speed))
     return false; // the lines approach but the particles do not
   const Vec3 impulse = a.mass * b.mass / (a.mass + b.mass) * (speed + after.speed) * normal;

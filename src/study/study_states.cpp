@@ -21,20 +21,18 @@ constexpr double clumped_orbits = 3.0; // in a box below four λ_cr, which holds
 struct Recipe {
   const char* name;
   SizeLaw sizes;
+  const char* table; // of the scene: the same sizes
   double optical_depth;
   double dispersion; // c_x in ⟨r⟩ Ω at the start
 };
 
 // Both make λ_cr 61–62 m: four wavelengths and more in a box of 10⁴ equal particles or 5000 of the power law.
-const Recipe recipes[] = {{"equal", {SizeLaw::Kind::equal, 3.0, 1.0, 1.0, {}, {}}, 0.5, 3.5},
-                          {"power", {SizeLaw::Kind::power, 2.9, 0.5, 5.0, {}, {}}, 0.25, 3.7}};
+const Recipe recipes[] = {
+    {"equal", equal_sizes(1.0), "{ law = \"equal\", radius = 1.0 }", 0.5, 3.5},
+    {"power", power_sizes(2.9, 0.5, 5.0), "{ law = \"power\", exponent = 2.9, min = 0.5, max = 5.0 }", 0.25, 3.7}};
 
 Scene scene_of(const Recipe& r, std::size_t count) {
   const double size = std::sqrt(static_cast<double>(count) * pi * r.sizes.mean_power(2) / r.optical_depth);
-  const std::string sizes = r.sizes.kind == SizeLaw::Kind::equal
-                                ? fmt::format("{{ law = \"equal\", radius = {} }}", r.sizes.min)
-                                : fmt::format("{{ law = \"power\", exponent = {}, min = {}, max = {} }}",
-                                              r.sizes.exponent, r.sizes.min, r.sizes.max);
   return parse_scene(fmt::format(R"(
 title = "The finders' study, {0} sizes"
 [planet]
@@ -55,7 +53,7 @@ opening_angle = 0.6
 step = 1e-3
 end = 1.0
 )",
-                                 r.name, size, count, sizes, r.dispersion),
+                                 r.name, size, count, r.table, r.dispersion),
                      "study");
 }
 
@@ -77,7 +75,7 @@ std::optional<Made> evolve(const Scene& scene, double orbits, const std::atomic<
   return Made{simulation.patch(),
               fmt::format("{} particles, {} orbits with self-gravity from a uniform start (wall time per particle and "
                           "step: gravity {:.0f} ns, drift {:.0f} ns)",
-                          scene.particles.count, orbits, split.gravity / passes, split.drift / passes)};
+                          scene.particles.count, orbits, split.force("gravity") / passes, split.drift / passes)};
 }
 
 std::optional<Made> settle(const Scene& scene, const std::function<void(const std::string&)>& say,
@@ -127,7 +125,7 @@ std::optional<std::vector<StudyState>> study_states(const std::filesystem::path&
     for (const bool clumped : {false, true}) {
       StudyState state;
       state.name = fmt::format("{}-{}", recipe.name, clumped ? "clumped" : "early");
-      state.scene = scene_of(recipe, recipe.sizes.kind == SizeLaw::Kind::equal ? count : count / 2);
+      state.scene = scene_of(recipe, recipe.sizes.smallest == recipe.sizes.largest ? count : count / 2);
       const std::filesystem::path file = folder / (state.name + ".hdf"), note = folder / (state.name + ".txt");
       if (!std::filesystem::exists(note) || !std::filesystem::exists(file)) {
         say(fmt::format("making the state {}", state.name));

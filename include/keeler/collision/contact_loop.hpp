@@ -156,7 +156,7 @@ private:
     Contact contact;
     contact.time = event.time;
     const double speed = contact.normal_speed = -relative.velocity.dot(normal);
-    const Rebound after = rebound(*step_.settings, speed, a.radius + b.radius, step_.orbital_frequency);
+    const Rebound after = rebound(*step_.settings, speed, a.radius, b.radius, step_.orbital_frequency);
     if (!(speed > -after.speed))
       return; // an inexact finder may call a pair that moves apart
     const double reduced_mass = a.mass * b.mass / (a.mass + b.mass);

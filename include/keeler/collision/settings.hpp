@@ -9,7 +9,7 @@ namespace keeler {
 
 struct CollisionSettings {
   std::string finder = "certified"; ///< a name of finder_table()
-  RestitutionLaw restitution;
+  RestitutionLaw restitution = constant_restitution(0.5);
   double elastic_below = 1e-2; ///< v_cut in units of (r_i + r_j) Omega / 2: slower contacts bounce elastically
 
   /// v_cut for a radius sum (m), m rad^-1.
@@ -24,6 +24,7 @@ struct Rebound {
 
 /// Restitution times the approach speed (m rad^-1) above v_cut, the approach speed below it, and never less than
 /// v_cut/1000: a slower hop would stay within the rounding of the contact, and so never end (ε = 0 is such a case).
-Rebound rebound(const CollisionSettings& settings, double approach_speed, double radius_sum, double orbital_frequency);
+Rebound rebound(const CollisionSettings& settings, double approach_speed, double radius_low, double radius_high,
+                double orbital_frequency);
 
 } // namespace keeler

@@ -1,29 +1,43 @@
 // Size distributions of ring particles.
 #pragma once
 
+#include <keeler/core/key.hpp>
+
 #include <cstdint>
-#include <string>
+#include <functional>
 #include <vector>
 
 namespace keeler {
 
-/// n(r) dr ∝ r^−q between two radii; `equal` when min = max; or radii listed in a file.
+/// A distribution of radii (m).
 struct SizeLaw {
-  enum class Kind { equal, power, file };
-  Kind kind = Kind::equal;
-  double exponent = 3.0;      ///< q
-  double min = 1.0;           ///< m; the radius for `equal`
-  double max = 1.0;           ///< m
-  std::string path;           ///< for `file`: one radius (m) a line, '#' starts a comment; drawn in turn
-  std::vector<double> listed; ///< the radii of that file
-
-  /// ⟨r^k⟩ over the distribution.
-  double mean_power(int k) const;
-  double largest() const;
+  double smallest = 0.0, largest = 0.0;
+  std::function<double(int k)> mean_power; ///< ⟨r^k⟩
+  /// Radius of particle k, at the quantile u in (0, 1).
+  std::function<double(double u, std::size_t k)> radius;
 };
+
+SizeLaw equal_sizes(double radius);
+
+/// n(r) dr ∝ r^−q between two radii, min < max.
+SizeLaw power_sizes(double exponent, double min, double max);
+
+/// The radii of a list, drawn in turn: particle k has the (k mod length)-th one.
+SizeLaw listed_sizes(std::vector<double> radii);
 
 /// Radii (m) of particles 0 … count−1: the quantiles of the law at jittered even spacing, in an order shuffled by id,
 /// so that even a small sample has the law's moments. Same seed, same radii.
 std::vector<double> draw_radii(const SizeLaw& law, std::size_t count, std::uint64_t seed);
+
+/// A law that a scene can choose: its name, its keys, and how it is made from their values. `make` throws UsageError
+/// when the values do not fit together.
+struct SizeEntry {
+  const char* name;
+  std::vector<Key> keys;
+  SizeLaw (*make)(const Parameters& parameters);
+};
+
+/// All laws. A new one is one more entry here.
+const std::vector<SizeEntry>& size_laws();
 
 } // namespace keeler

@@ -1,52 +1,14 @@
 // The table of everything that a scene file may say. It is the single source: checking, suggestions, the resolved
-// scene, `keeler check --defaults` and the manual's table all read it, so a new key is one entry here.
+// scene, `keeler check --defaults`, the manual's table and the state hash all read it. Restitution laws, size laws and
+// forces bring their keys with their entry in their own registry; every other new key is one entry here.
 #pragma once
 
-#include <limits>
+#include <keeler/core/key.hpp>
+
 #include <string>
 #include <vector>
 
 namespace keeler {
-
-enum class KeyType { text, path, choice, number, integer, pair };
-
-/// Allowed numbers; an open end is excluded.
-struct KeyRange {
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  bool low_open = false;
-  bool high_open = false;
-
-  bool contains(double value) const;
-  /// "above 0", "from 0 to 1", …; empty when everything is allowed.
-  std::string words() const;
-};
-
-/// A key that has a meaning only when another one is given, and has one of `values` where there are any.
-struct KeyCondition {
-  std::string key;
-  std::vector<std::string> values;
-
-  bool allows(const std::string& value) const;
-  /// " = "a" or "b"", or nothing.
-  std::string words() const;
-};
-
-struct Key {
-  std::string path; ///< "particles.sizes.radius"
-  KeyType type = KeyType::text;
-  std::string fallback{}; ///< the default as TOML; empty: the key is needed where its section and condition hold
-  std::string example{};  ///< TOML, for messages, where there is no default
-  std::string unit{};
-  std::string meaning{};
-  KeyRange range{};
-  std::vector<std::string> choices{};
-  std::vector<std::string> alternatives{}; ///< exactly one of this key and these is given
-  KeyCondition only_with{};
-
-  std::string section() const { return path.substr(0, path.rfind('.') == std::string::npos ? 0 : path.rfind('.')); }
-  std::string name() const { return path.substr(path.rfind('.') == std::string::npos ? 0 : path.rfind('.') + 1); }
-};
 
 /// A table of the scene file.
 struct Section {

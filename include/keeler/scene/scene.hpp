@@ -4,6 +4,7 @@
 
 #include <keeler/box/shearing_box.hpp>
 #include <keeler/collision/settings.hpp>
+#include <keeler/forces/force.hpp>
 #include <keeler/gravity/solver.hpp>
 #include <keeler/orbit/elements.hpp>
 #include <keeler/particles/sizes.hpp>
@@ -48,6 +49,12 @@ struct OutputSettings {
   std::int64_t checkpoint_every = 0; ///< steps; 0: only at the end or a stop
 };
 
+/// An external force that the scene asks for.
+struct ForceSettings {
+  const ForceEntry* entry = nullptr;
+  Parameters parameters;
+};
+
 struct Scene {
   std::string title;
   PlanetSettings planet;
@@ -55,15 +62,19 @@ struct Scene {
   ParticleSettings particles;
   CollisionSettings collisions;
   std::optional<GravitySettings> gravity; ///< none: no gravity code runs
-  std::optional<std::string> start_from;  ///< a snapshot to start from
+  std::vector<ForceSettings> external_forces;
+  std::optional<std::string> start_from; ///< a snapshot to start from
   TimeSettings time;
   OutputSettings output;
 
   std::string resolved;             ///< the scene as TOML, every key present, frequencies and counts filled in
+  std::string motion;               ///< of these the keys that have a say in how a state moves on, a line each
   std::vector<std::string> notices; ///< what was rounded or derived and a user should know, a line each
 
   /// Length of a step in internal time (rad).
   double step_length() const;
+  /// Steps from one kick to the next: only there does a state stand with both halves of its kicks.
+  std::int64_t kick_interval() const { return gravity ? gravity->kick_every : 1; }
   /// Surface density that the particles make, kg/m².
   double surface_density() const;
   /// Optical depth Σ π r² / area.

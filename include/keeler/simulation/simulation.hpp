@@ -1,21 +1,31 @@
-// The step: kick–drift–kick. Gravity's half kick, a drift with its collisions, gravity's half kick; the kicks only
-// every k-th drift, and none at all in a scene without gravity.
+// The step: kick–drift–kick. The forces' half kicks, a drift with its collisions, the forces' half kicks; the kicks of
+// a force only every k-th drift, and none at all in a scene without forces.
 #pragma once
 
+#include <keeler/forces/force.hpp>
 #include <keeler/gravity/solver.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/state.hpp>
 
+#include <map>
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace keeler {
 
 /// Wall time spent in each part since construction, s.
 struct TimeSplit {
   double drift = 0.0;
-  double advance = 0.0; ///< of the drift: to the next epoch and back into the cell
-  double gravity = 0.0;
-  double kick = 0.0; ///< of gravity: the half kicks
+  double advance = 0.0;                 ///< of the drift: to the next epoch and back into the cell
+  double kick = 0.0;                    ///< of the forces: their half kicks
+  std::map<std::string, double> forces; ///< by name, the half kicks included
+
+  /// 0 for a force that the scene has not.
+  double force(const std::string& name) const {
+    const auto found = forces.find(name);
+    return found == forces.end() ? 0.0 : found->second;
+  }
 };
 
 class Simulation {
@@ -35,9 +45,8 @@ public:
   /// A Cartesian copy of the present state.
   Patch patch() const;
 
-  /// What the gravity solver is asked at this boundary between steps, in the order of state().particles. The two arrays
-  /// are filled, and must outlive it.
-  GravityProblem gravity_problem(std::vector<Vec3>& positions, std::vector<double>& masses) const;
+  /// The particles at this boundary between steps, as forces see them; not to be kept beyond the next step.
+  Boundary boundary() const;
 
   /// Energy now − start − all that was booked: zero up to rounding. In kg m² rad⁻².
   double energy_residual() const;
@@ -48,21 +57,17 @@ public:
   DriftPhase& drift() { return drift_; }
 
 private:
-  void accelerate();
-  Vec3 random_origin() const;
-  void half_kick();
+  void accelerate(std::size_t f);
+  void half_kick(std::size_t f);
   void move_on();
   void sort_when_due();
-  bool kick_due() const { return solver_ && state_.step % scene_.gravity->kick_every == 0; }
+  bool kick_due(std::size_t f) const { return state_.step % forces_[f]->kick_every() == 0; }
 
   Scene scene_;
   SimulationState state_;
   DriftPhase drift_;
-  std::unique_ptr<GravitySolver> solver_;
+  std::vector<std::unique_ptr<Force>> forces_; // in the order of state_.forces
   TimeSplit split_;
-  // scratch of the gravity solve
-  std::vector<Vec3> positions_;
-  std::vector<double> masses_;
 };
 
 } // namespace keeler

@@ -105,7 +105,7 @@ TEST_CASE("the same bits any way: dense states, where contacts follow from conta
     CAPTURE(c.step);
     CAPTURE(c.restitution);
     s.step = two_pi * c.step;
-    s.restitution.value = c.restitution;
+    s.restitution = constant_restitution(c.restitution);
     const Seen seen = same_any_way(test::make_patch(s, 2), test::settings_of(s), {s.step, c.steps});
     CHECK(seen.collisions > 1000);
     CHECK(seen.conflicts > 0); // between strips: repaired
@@ -130,7 +130,7 @@ TEST_CASE("the same bits any way: rows of touching spheres, each hit at its end 
           {{4.0 * row - 80.0, 2.0 * k + (k > 0 ? 0.5 : 0.0) - 25.0, 0.0}, {0.0, k > 0 ? 0.0 : 30.0, 0.0}});
   for (const double restitution : {0.5, 1.0}) {
     CollisionSettings settings;
-    settings.restitution.value = restitution;
+    settings.restitution = constant_restitution(restitution);
     CHECK(same_any_way(test::patch_of(spheres, 160.0, 70.0), settings, {two_pi * 5e-3, 3}).collisions > 900);
   }
 }
@@ -176,7 +176,8 @@ end = 1.0
     if (way.shuffled) {
       shuffle(state.particles.bodies);
       shuffle(state.particles.ids);
-      shuffle(state.accelerations);
+      for (ForceState& force : state.forces)
+        shuffle(force.accelerations);
     }
     Simulation other(scene, state);
     for (int k = 0; k < steps; ++k)

@@ -125,7 +125,7 @@ private:
     const double speed = -(sb.velocity - sa.velocity).dot(n);
     const double cut = settings_.elastic_below * 0.5 * (a.radius + b.radius);
     const bool fast = speed >= cut;
-    const double e = fast ? settings_.restitution.coefficient(speed * omega_) : 1.0;
+    const double e = fast ? settings_.restitution({speed * omega_, a.radius, b.radius}) : 1.0;
     const Vec3 impulse = (speed + std::max(e * speed, 1e-3 * cut)) * a.mass * b.mass / (a.mass + b.mass) * n;
     kick(a.elements, -impulse / a.mass, f_, r);
     kick(b.elements, impulse / b.mass, f_, r);

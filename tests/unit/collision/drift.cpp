@@ -88,7 +88,7 @@ TEST_CASE("the same collisions as the brute-force twin: pairs, images, order, ti
     s.step = two_pi * 2e-2;
   }
   SUBCASE("the bridges law") {
-    s.restitution.kind = RestitutionLaw::Kind::bridges;
+    s.restitution = bridges_restitution(0.34);
     s.step = two_pi * 1e-2;
   }
   for (std::uint64_t seed = 1; seed <= 12; ++seed)
@@ -226,7 +226,7 @@ TEST_CASE("stacked spheres that hardly hop, and sticking ones, do not collide wi
   for (const double receding : {1e-7, 1e-8, 1e-13, 0.0})
     for (const double restitution : {0.5, 0.0}) {
       Scenario s;
-      s.restitution.value = restitution;
+      s.restitution = constant_restitution(restitution);
       Start start{{}, {100.0, 100.0, 1.5, 0.0}, 0.0};
       const Frequencies f{1.0, 1.0};
       for (int k = 0; k < 3; ++k) {
@@ -243,7 +243,7 @@ TEST_CASE("a state of perfectly inelastic spheres runs") {
   Scenario s;
   s.count = 300;
   s.step = two_pi * 5e-3;
-  s.restitution.value = 0.0;
+  s.restitution = constant_restitution(0.0);
   Start start = make_start(s, 4);
   DriftPhase drift(settings_of(s), {1.0, 1.0}, omega, s.step);
   const Rebase rebase({1.0, 1.0}, s.step);

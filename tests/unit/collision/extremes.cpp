@@ -16,7 +16,7 @@ namespace {
 
 CollisionSettings restitution(double value) {
   CollisionSettings settings;
-  settings.restitution.value = value;
+  settings.restitution = constant_restitution(value);
   return settings;
 }
 

@@ -21,7 +21,7 @@ struct Threads {
 
 CollisionSettings restitution(double value) {
   CollisionSettings settings;
-  settings.restitution.value = value;
+  settings.restitution = constant_restitution(value);
   return settings;
 }
 

@@ -204,12 +204,3 @@ TEST_CASE("linear-full finds ordinary contacts at a small step") {
   CHECK(all > 200);
   CHECK(found == all);
 }
-
-TEST_CASE("restitution laws") {
-  CHECK(RestitutionLaw{RestitutionLaw::Kind::constant, 0.4, 0.34}.coefficient(123.0) == 0.4);
-  const RestitutionLaw bridges{RestitutionLaw::Kind::bridges, 0.5, 0.34};
-  CHECK(bridges.coefficient(0.01) == doctest::Approx(0.34)); // at 1 cm/s, Bridges et al. 1984
-  CHECK(bridges.coefficient(0.1) == doctest::Approx(0.34 * std::pow(10.0, -0.234)));
-  CHECK(bridges.coefficient(1e-9) == 1.0);
-  CHECK(bridges.coefficient(0.0) == 1.0);
-}

@@ -117,7 +117,7 @@ solver = ")") + solver + "\"\n[time]\nstep = 1e-3\nend = 1.0\n",
       for (int k = 0; k < 5; ++k)
         simulation.advance();
       SimulationState state = simulation.state();
-      state.accelerations[3].y() = bad;
+      state.forces[0].accelerations[3].y() = bad;
       Simulation again(scene, state);
       REQUIRE_THROWS_AS(again.advance(), InvariantError);
     }

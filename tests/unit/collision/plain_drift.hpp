@@ -101,7 +101,7 @@ private:
     const State relative = state_at(box_.image_of(b.elements, image, offset_) - a.elements, f_, rotation);
     const Vec3 normal = relative.position.normalized();
     const double speed = -relative.velocity.dot(normal);
-    const Rebound after = rebound(settings_, speed, a.radius + b.radius, omega_);
+    const Rebound after = rebound(settings_, speed, a.radius, b.radius, omega_);
     if (!(speed > -after.speed))
       return false;
     const double reduced_mass = a.mass * b.mass / (a.mass + b.mass);

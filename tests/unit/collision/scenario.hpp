@@ -18,7 +18,7 @@ struct Scenario {
   double smallest = 1.0; ///< radius; the largest is 1
   double kappa = 1.0, nu = 1.0;
   double step = two_pi * 1e-3;
-  RestitutionLaw restitution;
+  RestitutionLaw restitution = constant_restitution(0.5);
 };
 
 inline CollisionSettings settings_of(const Scenario& s) {
@@ -31,7 +31,7 @@ inline CollisionSettings settings_of(const Scenario& s) {
 inline Patch make_patch(const Scenario& s, std::uint64_t seed) {
   UniformRequest request;
   request.frequencies = {s.kappa, s.nu};
-  const SizeLaw law{s.smallest < 1.0 ? SizeLaw::Kind::power : SizeLaw::Kind::equal, 3.0, s.smallest, 1.0, {}, {}};
+  const SizeLaw law = s.smallest < 1.0 ? power_sizes(3.0, s.smallest, 1.0) : equal_sizes(1.0);
   request.radii = draw_radii(law, s.count, seed);
   double area = 0.0, volume = 0.0;
   for (const double r : request.radii) {

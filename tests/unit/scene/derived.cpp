@@ -67,7 +67,7 @@ TEST_CASE("Toomre's Q and wavelength belong together") {
 
 TEST_CASE("the mid-plane filling is that of sampled particles") {
   // the slow twin: particles of a power law in a Gaussian layer, the volume of the slices of each at z = 0
-  const SizeLaw sizes{SizeLaw::Kind::power, 3.0, 0.5, 3.0, {}, {}};
+  const SizeLaw sizes = power_sizes(3.0, 0.5, 3.0);
   const double depth = 0.4, dispersion = 20.0, nu = 1.3; // thick compared with a particle, as the formula has it
   const std::vector<double> radii = draw_radii(sizes, 20000, 3);
   const double height = layer_height(depth, sizes, dispersion, nu);
@@ -87,7 +87,7 @@ TEST_CASE("the mid-plane filling is that of sampled particles") {
 
 TEST_CASE("the layer's height is that of the reference equilibria, and the filling can be inverted") {
   // REBOUND 6c44115f, equal spheres of 1 m without self-gravity: c_z and H; 5 %
-  const SizeLaw equal{SizeLaw::Kind::equal, 3.0, 1.0, 1.0, {}, {}};
+  const SizeLaw equal = equal_sizes(1.0);
   const double reference[][3] = {{0.1, 1.80, 1.86}, {0.5, 1.45, 1.73}, {1.0, 1.17, 1.74}};
   for (const auto& [depth, c_z, height] : reference)
     CHECK(layer_height(depth, equal, c_z / vertical_share, 1.0) == doctest::Approx(height).epsilon(0.05));

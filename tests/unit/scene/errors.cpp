@@ -129,7 +129,7 @@ TEST_CASE("impossible requests are told") {
       "s.toml:6:17: particles.optical_depth with this box makes 3.18e+16 particles (a run takes 1 to 1e9); change the "
       "box or particles.optical_depth");
   CHECK(with("law = \"equal\", radius = 1.0", "law = \"power\", exponent = 3, min = 2, max = 1")
-            .find("particles.sizes.min = 2 is not below max = 1") != std::string::npos);
+            .find("particles.sizes: min = 2 is not below max = 1") != std::string::npos);
   CHECK(with("end = 2", "end = 1e300").find("time.end = 1e+300 is too long") != std::string::npos);
 }
 

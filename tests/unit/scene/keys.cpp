@@ -20,6 +20,7 @@ TEST_CASE("the key table is consistent") {
     CHECK(key.fallback.empty() != key.example.empty()); // every key has exactly one of them
     CHECK(!key.meaning.empty());
     CHECK((key.type == KeyType::choice) == !key.choices.empty());
+    CHECK((key.type == KeyType::rows) == !key.columns.empty());
     if (!key.only_with.key.empty())
       CHECK(find_key(key.only_with.key));
     for (const std::string& other : key.alternatives) {

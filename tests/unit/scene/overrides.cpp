@@ -36,10 +36,10 @@ TEST_CASE("an override replaces what the file says against it, with a notice") {
   const Scene power = parse_scene(
       least, "s.toml",
       {"particles.sizes.law=power", "particles.sizes.min=0.5", "particles.sizes.max=2", "particles.sizes.exponent=3"});
-  CHECK(power.particles.sizes.kind == SizeLaw::Kind::power);
+  CHECK(power.particles.sizes.largest == 2.0);
   CHECK(power.notices.size() == 1);
   const Scene whole = parse_scene(least, "s.toml", {"particles.sizes={law='equal', radius=2}"});
-  CHECK(whole.particles.sizes.min == 2.0);
+  CHECK(whole.particles.sizes.smallest == 2.0);
 
   const Scene start = parse_scene(least, "s.toml", {"start.from=wakes.hdf"});
   CHECK(*start.start_from == (std::filesystem::current_path() / "wakes.hdf").string());

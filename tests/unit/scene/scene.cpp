@@ -23,17 +23,15 @@ TEST_CASE("the least scene has the documented defaults") {
   CHECK(scene.size_y == 50.0);
   CHECK(scene.particles.count == 300);
   CHECK(scene.particles.density == 900.0);
-  CHECK(scene.particles.sizes.kind == SizeLaw::Kind::equal);
-  CHECK(scene.particles.sizes.min == 1.0);
-  CHECK(scene.particles.sizes.max == 1.0);
+  CHECK(scene.particles.sizes.smallest == 1.0);
+  CHECK(scene.particles.sizes.largest == 1.0);
   CHECK(scene.particles.velocity_dispersion == 2.0);
   CHECK(scene.particles.seed == 1);
   CHECK(scene.particles.streamlines.bunching == 0.0);
   CHECK(scene.particles.streamlines.inclination == 0.0);
   CHECK(scene.collisions.finder == "certified");
   CHECK(scene.collisions.elastic_below == 1e-2);
-  CHECK(scene.collisions.restitution.kind == RestitutionLaw::Kind::bridges);
-  CHECK(scene.collisions.restitution.scale == 0.34);
+  CHECK(scene.collisions.restitution({.speed = 0.01}) == 0.34);
   CHECK(!scene.gravity);
   CHECK(!scene.start_from);
   CHECK(scene.time.step == 1e-3);
@@ -85,10 +83,11 @@ checkpoint_every = 0.25
   const double wavelength = 4 * pi * pi * newton_g_si * 100 / (0.9e-4 * 0.9e-4);
   CHECK(scene.size_x == doctest::Approx(4 * wavelength).epsilon(1e-14));
   CHECK(scene.size_y == doctest::Approx(2 * wavelength).epsilon(1e-14));
-  CHECK(scene.particles.sizes.kind == SizeLaw::Kind::power);
-  CHECK(scene.particles.sizes.exponent == 2.5);
-  CHECK(scene.particles.sizes.min == 0.5);
-  CHECK(scene.particles.sizes.max == 5.0);
+  const SizeLaw power = power_sizes(2.5, 0.5, 5.0);
+  CHECK(scene.particles.sizes.smallest == 0.5);
+  CHECK(scene.particles.sizes.largest == 5.0);
+  CHECK(scene.particles.sizes.mean_power(3) == power.mean_power(3));
+  CHECK(scene.particles.sizes.radius(0.3, 0) == power.radius(0.3, 0));
   // N is whole: the surface density that results is within half a particle of what was asked
   CHECK(std::fabs(scene.surface_density() / 100 - 1) <= 0.5 / static_cast<double>(scene.particles.count));
   CHECK(scene.particles.velocity_dispersion == 12.5);
@@ -99,8 +98,7 @@ checkpoint_every = 0.25
   CHECK(scene.bunched_optical_depth() == doctest::Approx(scene.optical_depth() / 0.3).epsilon(1e-14));
   CHECK(scene.collisions.finder == "linear-full");
   CHECK(scene.collisions.elastic_below == 0.0);
-  CHECK(scene.collisions.restitution.kind == RestitutionLaw::Kind::constant);
-  CHECK(scene.collisions.restitution.value == 0.25);
+  CHECK(scene.collisions.restitution({.speed = 1e-9}) == 0.25);
   REQUIRE(scene.gravity);
   CHECK(scene.gravity->solver == GravitySettings::Solver::direct);
   CHECK(scene.gravity->images.rings == 2);
@@ -174,18 +172,18 @@ TEST_CASE("radii come from a file beside the scene") {
     return load_scene((folder / "s.toml").string());
   };
   const Scene scene = with("radii.txt");
-  CHECK(scene.particles.sizes.kind == SizeLaw::Kind::file);
-  CHECK(scene.particles.sizes.listed == std::vector<double>{1.0, 2.5, 0.5});
-  CHECK(scene.particles.sizes.path == (folder / "radii.txt").string());
+  const SizeLaw& sizes = scene.particles.sizes;
+  CHECK(std::vector{sizes.radius(0.0, 0), sizes.radius(0.0, 1), sizes.radius(0.0, 2)} == std::vector{1.0, 2.5, 0.5});
+  CHECK(scene.resolved.find("path = \"" + (folder / "radii.txt").string() + "\"") != std::string::npos);
 
   const std::string here = folder.string();
   CHECK_THROWS_WITH_AS(
       with("bad.txt"),
-      (here + "/bad.txt:2:1: not a radius (every line is one number above 0, in m); correct this line").c_str(),
+      (here + "/bad.txt:2:1: -2, but a line must be a number above 0 (radius in m); correct this line").c_str(),
       UsageError);
   CHECK_THROWS_WITH_AS(with("empty.txt"),
                        (here + "/s.toml:8:32: " + here +
-                        "/empty.txt has no radius in it (it is empty or all comments); write one a line")
+                        "/empty.txt has no numbers in it (it is empty or all comments); write radius in m on each line")
                            .c_str(),
                        UsageError);
   CHECK_THROWS_WITH_AS(with("absent.txt"),

@@ -71,7 +71,7 @@ TEST_CASE("the same state for the same seed, whatever the threads") {
 
 TEST_CASE("sizes over a decade are placed without overlap") {
   UniformRequest request = layer(0.5, 0.1, 3000, 4);
-  request.radii = draw_radii({SizeLaw::Kind::power, 3.0, 0.3, 3.0, {}, {}}, 3000, 4);
+  request.radii = draw_radii(power_sizes(3.0, 0.3, 3.0), 3000, 4);
   request.dispersion_z = 3.0;
   CHECK(largest_overlap(uniform_patch(request)).depth == 0.0);
 }

@@ -16,7 +16,7 @@ constexpr double omega = 1.95e-4;
 
 CollisionSettings half_elastic() {
   CollisionSettings settings;
-  settings.restitution = {RestitutionLaw::Kind::constant, 0.5, 0.34};
+  settings.restitution = constant_restitution(0.5);
   return settings;
 }
 
@@ -89,7 +89,7 @@ private:
       states[k == c.j] = {legs_[k].place + (c.time - legs_[k].since) * legs_[k].velocity,
                           state_at(bodies_[k].elements, f, rotation).velocity};
     const double speed = -(states[1].velocity - slide - states[0].velocity).dot(normal);
-    const Rebound after = rebound(half_elastic(), speed, bodies_[c.i].radius + bodies_[c.j].radius, omega);
+    const Rebound after = rebound(half_elastic(), speed, bodies_[c.i].radius, bodies_[c.j].radius, omega);
     if (speed <= -after.speed)
       return;
     states[0].velocity -= 0.5 * (speed + after.speed) * normal;

@@ -1,0 +1,32 @@
+#include <keeler/core/key.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace keeler {
+
+bool KeyRange::contains(double value) const {
+  return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+}
+
+std::string KeyRange::words() const {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const std::string below = fmt::format("{} {:g}", high_open ? "below" : "at most", high);
+  if (low == -infinity)
+    return high == infinity ? "" : below;
+  if (high == infinity)
+    return low_open ? fmt::format("above {:g}", low) : fmt::format("from {:g} up", low);
+  return low_open ? fmt::format("above {:g} and {}", low, below) : fmt::format("from {:g} to {:g}", low, high);
+}
+
+bool KeyCondition::allows(const std::string& value) const {
+  return std::find(values.begin(), values.end(), value) != values.end();
+}
+
+std::string KeyCondition::words() const {
+  return values.empty() ? "" : fmt::format(" = \"{}\"", fmt::join(values, "\" or \""));
+}
+
+} // namespace keeler

@@ -1,0 +1,12 @@
+#include <keeler/forces/force.hpp>
+
+#include "constant_acceleration.hpp"
+
+namespace keeler {
+
+const std::vector<ForceEntry>& external_forces() {
+  static const std::vector<ForceEntry> forces = {constant_acceleration_entry()};
+  return forces;
+}
+
+} // namespace keeler

@@ -1,0 +1,142 @@
+#include <keeler/forces/self_gravity.hpp>
+
+#include <keeler/core/random.hpp>
+#include <keeler/core/threads.hpp>
+#include <keeler/core/units.hpp>
+
+#include <map>
+
+namespace keeler {
+namespace {
+
+class SelfGravity : public Force {
+public:
+  SelfGravity(const GravitySettings& settings, const ForceContext& context)
+      : settings_(settings), orbital_frequency_(context.orbital_frequency), seed_(context.seed),
+        solver_(make_gravity_solver(settings, context.masses, context.box.area())) {}
+
+  std::string name() const override { return "gravity"; }
+  std::int64_t kick_every() const override { return settings_.kick_every; }
+
+  void accelerate(const Boundary& boundary, std::span<Vec3> accelerations) override {
+    const GravityProblem problem = gravity_problem(boundary, orbital_frequency_, positions_, masses_);
+    if (settings_.images.far) {
+      const Vec3 origin = random_origin(boundary);
+      parallel_for(positions_.size(), [&](std::size_t k) { positions_[k] -= origin; });
+    }
+    solver_->accelerate(problem, accelerations);
+  }
+
+private:
+  Vec3 random_origin(const Boundary& boundary) const {
+    RandomStream random(seed_, RandomPurpose::gravity_origin, static_cast<std::uint64_t>(boundary.step));
+    const double x = random.uniform() - 0.5, y = random.uniform() - 0.5;
+    return {x * boundary.box.size_x, y * boundary.box.size_y, 0.0};
+  }
+
+  GravitySettings settings_;
+  double orbital_frequency_;
+  std::uint64_t seed_;
+  std::unique_ptr<GravitySolver> solver_;
+  // scratch
+  std::vector<Vec3> positions_;
+  std::vector<double> masses_;
+};
+
+} // namespace
+
+GravityProblem gravity_problem(const Boundary& boundary, double orbital_frequency, std::vector<Vec3>& positions,
+                               std::vector<double>& masses) {
+  const Particles& particles = boundary.particles;
+  const Rotation rotation = boundary.rotation();
+  positions.resize(particles.size());
+  masses.resize(particles.size());
+  parallel_for(particles.size(), [&](std::size_t k) {
+    particles.prefetch_after(k);
+    const Body& body = particles.bodies[k];
+    positions[k] = state_at(body.elements, boundary.frequencies, rotation).position;
+    masses[k] = body.mass;
+  });
+  return {positions, masses, particles.ids, boundary.box, boundary.offset, newton_g(orbital_frequency)};
+}
+
+std::unique_ptr<Force> make_self_gravity(const GravitySettings& settings, const ForceContext& context) {
+  return std::make_unique<SelfGravity>(settings, context);
+}
+
+std::vector<Key> gravity_keys() {
+  using enum KeyType;
+  return {
+      {.path = "solver",
+       .type = choice,
+       .fallback = "\"tree\"",
+       .meaning = "how accelerations are computed",
+       .choices = {"direct", "tree", "fft", "mesh", "auto"}},
+      {.path = "force_error",
+       .type = number,
+       .fallback = "2e-3",
+       .unit = "rms force",
+       .meaning = "rms error of the force asked for",
+       .range = {.low = 1e-5, .high = 0.1},
+       .only_with = {"solver", {"fft", "auto"}}},
+      {.path = "mesh_spacing",
+       .type = number,
+       .fallback = "1.6",
+       .unit = "mean distance",
+       .meaning = "spacing of the mesh, in (particles an area)^-1/2",
+       .range = {.low = 0.1, .high = 100},
+       .only_with = {"solver", {"mesh"}}},
+      {.path = "opening_angle",
+       .type = number,
+       .fallback = "0.6",
+       .unit = "1",
+       .meaning = "a cell is opened when its size exceeds this times its distance",
+       .range = {.low = 0, .high = 1, .low_open = true},
+       .only_with = {"solver", {"tree"}}},
+      {.path = "images",
+       .type = choice,
+       .fallback = "\"periodic\"",
+       .meaning = "periodic: all images, to infinity; rings: exactly image_rings rings, to compare with other codes",
+       .choices = {"periodic", "rings"},
+       .only_with = {"solver", {"direct", "tree"}}},
+      {.path = "image_rings",
+       .type = integer,
+       .fallback = "1",
+       .unit = "1",
+       .meaning =
+           "rings of boxes around the patch that are summed one by one (1 is 9 boxes, 2 is 25); at least 1 if periodic",
+       .range = {.low = 0, .high = 10},
+       .only_with = {"solver", {"direct", "tree"}}},
+      {.path = "kick_every",
+       .type = integer,
+       .fallback = "1",
+       .unit = "steps",
+       .meaning = "drifts per kick",
+       .range = {.low = 1, .high = 1000}},
+  };
+}
+
+GravitySettings gravity_settings(const Parameters& p) {
+  using Solver = GravitySettings::Solver;
+  static const std::map<std::string, Solver> solvers = {{"direct", Solver::direct},
+                                                        {"tree", Solver::tree},
+                                                        {"fft", Solver::fft},
+                                                        {"mesh", Solver::mesh},
+                                                        {"auto", Solver::automatic}};
+  GravitySettings gravity;
+  gravity.solver = solvers.at(p.text("solver"));
+  if (p.has("opening_angle"))
+    gravity.opening_angle = p.number("opening_angle");
+  if (p.has("force_error"))
+    gravity.force_error = p.number("force_error");
+  if (p.has("mesh_spacing"))
+    gravity.mesh_spacing = p.number("mesh_spacing");
+  if (p.has("images")) {
+    gravity.images.rings = static_cast<int>(p.integer("image_rings"));
+    gravity.images.far = p.text("images") == "periodic";
+  }
+  gravity.kick_every = static_cast<int>(p.integer("kick_every"));
+  return gravity;
+}
+
+} // namespace keeler
