@@ -19,7 +19,7 @@ namespace {
 Scene small_scene(const std::vector<std::string>& overrides = {}) {
   return parse_scene(R"(
 [planet]
-preset = "saturn-b-ring"
+orbital_frequency = 1.9565e-4
 [box]
 size = [30.0, 30.0]
 [particles]

@@ -157,7 +157,8 @@ TEST_CASE("every key refuses every wrong type, with one line that names the key"
   };
   for (const Key& key : scene_keys())
     for (const auto& [type, sample] : samples) {
-      const bool is_text = key.type == KeyType::text || key.type == KeyType::path || key.type == KeyType::choice;
+      const bool is_text = key.type == KeyType::text || key.type == KeyType::path ||
+                           key.type == KeyType::choice || key.type == KeyType::rows;
       const bool fits = (type == KeyType::text && is_text) ||
                         (type == KeyType::number && key.type == KeyType::number) ||
                         (type == KeyType::integer && (key.type == KeyType::number || key.type == KeyType::integer)) ||

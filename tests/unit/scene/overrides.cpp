@@ -16,7 +16,7 @@ TEST_CASE("overrides take TOML values and bare words") {
   REQUIRE(scene.gravity);
   CHECK(scene.gravity->solver == GravitySettings::Solver::direct);
   CHECK(scene.title == "a word");
-  CHECK(scene.particles.sizes.min == 0.5);
+  CHECK(scene.particles.sizes.smallest == 0.5);
   CHECK(scene.planet.frequencies.nu == 3.6);
   CHECK(scene.notices.empty());
   CHECK(parse_scene(least, "s.toml", {"particles.count=42", "particles.count=43"}).particles.count == 43);
