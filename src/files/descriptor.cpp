@@ -62,14 +62,6 @@ void Descriptor::write_all(std::span<const std::byte> content) {
   }
 }
 
-std::size_t Descriptor::read_some(std::span<std::byte> into) {
-  const std::size_t length = std::min(into.size(), largest_transfer);
-  const ssize_t count = retried([&] { return ::read(number_, into.data(), length); });
-  if (count < 0)
-    fail("read", file_);
-  return static_cast<std::size_t>(count);
-}
-
 std::size_t Descriptor::size() const {
   struct stat status = {};
   if (::fstat(number_, &status) != 0)

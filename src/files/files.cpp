@@ -1,9 +1,14 @@
 #include <keeler/files/files.hpp>
 
+#include "content.hpp"
+
 #include <keeler/core/error.hpp>
 #include <keeler/files/descriptor.hpp>
 
 #include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
 
 #include <fcntl.h>
 
@@ -23,6 +28,13 @@ struct Leftover {
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+}
+
+template<class Bytes> Bytes read(const std::filesystem::path& file) {
+  std::optional<Bytes> content = content_of<Bytes>(file);
+  if (!content)
+    throw IoError(fmt::format("cannot read '{}': {}", file.string(), std::strerror(errno)));
+  return *std::move(content);
 }
 
 } // namespace
@@ -49,21 +61,11 @@ void write_text(const std::filesystem::path& file, std::string_view text) {
 }
 
 std::vector<std::byte> read_file(const std::filesystem::path& file) {
-  Descriptor in(file, O_RDONLY);
-  std::vector<std::byte> content(in.size());
-  std::size_t have = 0;
-  while (have < content.size()) {
-    const std::size_t count = in.read_some(std::span(content).subspan(have));
-    if (count == 0)
-      throw IoError(fmt::format("cannot read '{}': it was cut short while being read", file.string()));
-    have += count;
-  }
-  return content;
+  return read<std::vector<std::byte>>(file);
 }
 
 std::string read_text(const std::filesystem::path& file) {
-  const std::vector<std::byte> content = read_file(file);
-  return std::string(reinterpret_cast<const char*>(content.data()), content.size());
+  return read<std::string>(file);
 }
 
 } // namespace keeler

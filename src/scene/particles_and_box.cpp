@@ -1,8 +1,7 @@
 #include "particles_and_box.hpp"
 
-#include "text_files.hpp"
-
 #include <keeler/core/units.hpp>
+#include <keeler/files/input.hpp>
 #include <keeler/scene/derived.hpp>
 
 #include <fmt/format.h>
@@ -12,6 +11,19 @@
 
 namespace keeler {
 namespace {
+
+std::vector<double> read_radii(const std::string& path, const std::string& place) {
+  std::vector<double> radii;
+  for_each_row(read_input(path, place), [&](int line, std::span<const double> numbers) {
+    if (numbers.size() != 1 || !std::isfinite(numbers[0]) || numbers[0] <= 0.0)
+      fail_at(fmt::format("{}:{}:1", path, line),
+              "not a radius (every line is one number above 0, in m); correct this line");
+    radii.push_back(numbers[0]);
+  });
+  if (radii.empty())
+    fail_at(place, fmt::format("{} has no radius in it (it is empty or all comments); write one a line", path));
+  return radii;
+}
 
 SizeLaw read_sizes(Settings& settings, const std::string& scene_name) {
   SizeLaw sizes;

@@ -20,8 +20,6 @@ public:
 
   /// Writes all of it at the descriptor's position; what a failure leaves half written stays.
   void write_all(std::span<const std::byte> content);
-  /// Reads up to that many bytes; 0 at the end of the file.
-  std::size_t read_some(std::span<std::byte> into);
   std::size_t size() const;
   void truncate(std::size_t size);
   /// Forces the content to disk.
