@@ -25,6 +25,7 @@ function(keeler_folder name)
   set_target_properties(keeler_${name} PROPERTIES EXPORT_NAME ${name})
   target_include_directories(keeler_${name} PUBLIC
     "$<BUILD_INTERFACE:${view}>" "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
+  target_include_directories(keeler_${name} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}") # its private headers
   target_link_libraries(keeler_${name} PRIVATE "$<BUILD_INTERFACE:keeler_flags>")
   foreach(used IN LISTS ARG_USES)
     target_link_libraries(keeler_${name} PUBLIC keeler_${used})

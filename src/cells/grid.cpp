@@ -1,40 +1,29 @@
 #include <keeler/cells/grid.hpp>
 
+#include <keeler/core/counting_sort.hpp>
+
 #include <algorithm>
 
 namespace keeler {
 
 void PeriodicGrid::build(std::span<const Vec3> points, const ShearingBox& box, double offset, double cell_size) {
-  box_ = box;
-  offset_ = offset;
   const double affordable = std::sqrt(box.area() / (2.0 * static_cast<double>(points.size()) + 1.0));
-  const double size = std::max(cell_size, affordable);
-  columns_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(box.size_x / size));
-  rows_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(box.size_y / size));
-  per_x_ = static_cast<double>(columns_) / box.size_x;
-  per_y_ = static_cast<double>(rows_) / box.size_y;
-
-  const std::size_t cells = static_cast<std::size_t>(columns_ * rows_);
+  const auto axis = [size = std::max(cell_size, affordable)](double length) {
+    const double cells = std::max(1.0, std::floor(length / size));
+    return CellAxis(length, length / cells, static_cast<std::size_t>(cells));
+  };
+  cells_ = {box, offset, axis(box.size_x), axis(box.size_y)};
   std::vector<Entry> unsorted(points.size());
   std::vector<std::uint32_t> cell_of(points.size());
-  first_.assign(cells + 1, 0);
-  for (std::size_t k = 0; k < points.size(); ++k) {
+  parallel_for(points.size(), [&](std::size_t k) {
     const Image home = box.image_into_cell(points[k].x(), points[k].y(), offset);
     const Vec3 there = points[k] + box.displacement(home, offset);
     unsorted[k] = {there.x(), there.y(), static_cast<std::uint32_t>(k), home};
-    const auto column = std::clamp<std::int64_t>(
-        static_cast<std::int64_t>(std::floor((there.x() + 0.5 * box.size_x) * per_x_)), 0, columns_ - 1);
-    const auto row = std::clamp<std::int64_t>(
-        static_cast<std::int64_t>(std::floor((there.y() + 0.5 * box.size_y) * per_y_)), 0, rows_ - 1);
-    cell_of[k] = static_cast<std::uint32_t>(column * rows_ + row);
-    ++first_[cell_of[k] + 1];
-  }
-  for (std::size_t c = 0; c < cells; ++c)
-    first_[c + 1] += first_[c];
-  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    cell_of[k] = static_cast<std::uint32_t>(cells_.cell(there.x(), there.y()));
+  });
   entries_.resize(points.size());
-  for (std::size_t k = 0; k < points.size(); ++k)
-    entries_[next[cell_of[k]]++] = unsorted[k];
+  counting_sort(cell_of, cells_.count(), first_,
+                [&](std::size_t k, std::size_t place) { entries_[place] = unsorted[k]; });
 }
 
 } // namespace keeler

@@ -1,6 +1,6 @@
 #include <keeler/cells/order.hpp>
 
-#include <keeler/core/threads.hpp>
+#include <keeler/core/counting_sort.hpp>
 
 #include <algorithm>
 
@@ -31,14 +31,9 @@ std::vector<std::uint32_t> order_by_place(const Particles& particles, const Shea
     cell_of[k] =
         static_cast<std::uint32_t>(part(place.x(), box.size_x, columns) * rows + part(place.y(), box.size_y, rows));
   });
-  // a counting sort: starts[c + 1] is where the next particle of cell c goes
-  std::vector<std::uint32_t> starts(columns * rows + 2, 0), order(count);
-  for (const std::uint32_t cell : cell_of)
-    ++starts[cell + 2];
-  for (std::size_t c = 2; c < starts.size(); ++c)
-    starts[c] += starts[c - 1];
-  for (std::size_t k = 0; k < count; ++k)
-    order[starts[cell_of[k] + 1]++] = static_cast<std::uint32_t>(k);
+  std::vector<std::uint32_t> starts, order(count);
+  counting_sort(cell_of, columns * rows, starts,
+                [&](std::size_t k, std::size_t place) { order[place] = static_cast<std::uint32_t>(k); });
   parallel_for(columns * rows, [&](std::size_t c) {
     std::sort(order.begin() + starts[c], order.begin() + starts[c + 1],
               [&](std::uint32_t a, std::uint32_t b) { return particles.ids[a] < particles.ids[b]; });

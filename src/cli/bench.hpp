@@ -34,7 +34,7 @@ inline void add_repeats(CLI::App& command, int& repeats) {
 template<class Settings, class Measure> auto measured(Settings settings, const Measure& measure) {
   constexpr double patience_s = 5.0;
   ProgressLine line;
-  settings.progress = [&line](const StudyProgress& progress) {
+  settings.progress = [&line](const Progress& progress) {
     if (progress.elapsed_s > patience_s)
       line.show(progress);
   };

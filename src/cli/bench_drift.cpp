@@ -1,8 +1,8 @@
 // keeler bench drift: the drift phase.
 #include "bench.hpp"
 
+#include <keeler/bench/drift.hpp>
 #include <keeler/collision/finders.hpp>
-#include <keeler/study/drift_bench.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

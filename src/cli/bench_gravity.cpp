@@ -1,7 +1,7 @@
 // keeler bench gravity: every solver with every setting, its error and its cost.
 #include "bench.hpp"
 
-#include <keeler/study/gravity_bench.hpp>
+#include <keeler/bench/gravity.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 // keeler bench step: a whole step with self-gravity and collisions.
 #include "bench.hpp"
 
-#include <keeler/study/step_bench.hpp>
+#include <keeler/bench/step.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -57,7 +57,7 @@ void ProgressLine::show(const RunProgress& p) {
                                   p.end_orbits, 100.0 * done, clock(p.remaining_s), p.collisions_per_second));
 }
 
-void ProgressLine::show(const StudyProgress& p) {
+void ProgressLine::show(const Progress& p) {
   if (due(p.elapsed_s, p.share == 1.0))
     print(bar_of(p.share), fmt::format("{:3.0f} %  {} left  {}", 100.0 * p.share, clock(p.remaining_s), p.what));
 }

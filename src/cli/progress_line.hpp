@@ -1,9 +1,9 @@
 // Progress on standard error: one line that redraws itself on a terminal, one line every ten seconds elsewhere.
 #pragma once
 
+#include <keeler/core/progress.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/states/clumped.hpp>
-#include <keeler/study/finder_study.hpp>
 
 #include <string>
 
@@ -15,7 +15,7 @@ public:
   ~ProgressLine();
   void show(const RunProgress& progress);
   void show(const ClumpingProgress& progress);
-  void show(const StudyProgress& progress);
+  void show(const Progress& progress);
 
   /// A message, on a line of its own.
   void note(const std::string& text);

@@ -5,7 +5,7 @@
 #include "scene_arguments.hpp"
 #include "signals.hpp"
 
-#include <keeler/io/files.hpp>
+#include <keeler/files/files.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

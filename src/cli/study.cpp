@@ -4,8 +4,8 @@
 #include "progress_line.hpp"
 #include "signals.hpp"
 
-#include <keeler/study/finder_study.hpp>
-#include <keeler/study/gravity_study.hpp>
+#include <keeler/study/finders/study.hpp>
+#include <keeler/study/gravity/study.hpp>
 
 #include <fmt/format.h>
 
@@ -21,7 +21,7 @@ ExitCode carry_out(Settings& settings, const Study& study, const std::vector<con
   {
     ProgressLine line;
     settings.notice = [&](const std::string& text) { line.note(text); };
-    settings.progress = [&](const StudyProgress& progress) { line.show(progress); };
+    settings.progress = [&](const Progress& progress) { line.show(progress); };
     finished = study(settings, requests_from_signals().stop);
   }
   if (!finished) {

@@ -1,13 +1,12 @@
 #include <keeler/collision/mirror.hpp>
 
+#include <keeler/core/counting_sort.hpp>
 #include <keeler/core/error.hpp>
-#include <keeler/core/threads.hpp>
 
 #include <fmt/format.h>
 
 #include <array>
 #include <cmath>
-#include <numeric>
 
 namespace keeler {
 namespace {
@@ -93,8 +92,7 @@ void Mirror::build(const Particles& particles, const ShearingBox& box, double of
   frame_ = {static_cast<float>(box.size_x / full_turn), static_cast<float>(box.size_y / full_turn),
             static_cast<float>(box.shear), fraction(offset_, per_metre_y_)};
   take_lines(particles);
-  lay_out_cells();
-  sort();
+  sort(lay_out_cells());
 }
 
 // All lines, levels and how far each reaches, and means.
@@ -156,8 +154,9 @@ void Mirror::take_lines(const Particles& particles) {
 }
 
 // Columns as wide as two particles of the level reach together, rows of half of that: ranges end close to what is in
-// reach. Where that makes too many cells, they are larger; where particles are few, longer.
-void Mirror::lay_out_cells() {
+// reach. Where that makes too many cells, they are larger; where particles are few, longer. Returns how many cells
+// there are.
+std::size_t Mirror::lay_out_cells() {
   std::size_t cells = 0;
   double two_farthest[2] = {0.0, 0.0};
   for (MirrorLevel& level : whole_.levels) {
@@ -172,9 +171,9 @@ void Mirror::lay_out_cells() {
     two_farthest[0] = level.count > 1 ? reach : two_farthest[1];
     two_farthest[1] = reach;
   }
-  starts_.resize(cells + 1);
   const double sheared = 1.0 + box_.shear * window_.half_length;
   one_image_ = (two_farthest[0] + two_farthest[1]) * sheared < nearest_share * std::min(box_.size_x, box_.size_y);
+  return cells;
 }
 
 bool Mirror::one_image(const Line& line, const MirrorPart& part) const {
@@ -184,11 +183,8 @@ bool Mirror::one_image(const Line& line, const MirrorPart& part) const {
   return reach * sheared < nearest_share * std::min(box_.size_x, box_.size_y);
 }
 
-// A counting sort. Each thread counts, adds up and places the particles of some cells: its part. While it runs,
-// starts_[c + 1] is where the next particle of cell c goes, counted from the part's first; in the end, where cell c + 1
-// begins.
-void Mirror::sort() {
-  const std::size_t count = unsorted_.size(), parts = static_cast<std::size_t>(threads());
+void Mirror::sort(std::size_t cells) {
+  const std::size_t count = unsorted_.size();
   cells_.resize(count);
   slots_.resize(count);
   lay_out_tiles(count);
@@ -200,40 +196,10 @@ void Mirror::sort() {
         cells_[k] = static_cast<std::uint32_t>(cell_of(line, whole_.levels[level_index_[level_of(line)]]));
       },
       block_size);
-  const std::size_t cells = starts_.size() - 1;
-  const auto first_cell = [&](std::size_t p) { return cells * p / parts; };
-  const auto for_particles_of = [&](std::size_t p, const auto& body) {
-    const std::size_t begin = first_cell(p), end = first_cell(p + 1);
-    for (std::size_t k = 0; k < count; ++k)
-      if (cells_[k] - begin < end - begin)
-        body(k);
-  };
-  std::vector<std::uint32_t> before(parts + 1); // particles in the cells of the parts before
-  starts_[0] = 0;
-  parallel_for(
-      parts,
-      [&](std::size_t p) {
-        const auto begin = starts_.begin() + 1 + static_cast<std::ptrdiff_t>(first_cell(p));
-        const auto end = starts_.begin() + 1 + static_cast<std::ptrdiff_t>(first_cell(p + 1));
-        std::fill(begin, end, 0);
-        for_particles_of(p, [&](std::size_t k) { ++starts_[cells_[k] + 1]; });
-        before[p + 1] = std::accumulate(begin, end, std::uint32_t{0});
-        std::exclusive_scan(begin, end, begin, std::uint32_t{0});
-      },
-      1);
-  std::partial_sum(before.begin(), before.end(), before.begin());
-  parallel_for(
-      parts,
-      [&](std::size_t p) {
-        for_particles_of(p, [&](std::size_t k) {
-          slots_[k] = before[p] + starts_[cells_[k] + 1]++;
-          lines_[slots_[k]] = unsorted_[k];
-        });
-        if (p > 0)
-          for (std::size_t c = first_cell(p); c < first_cell(p + 1); ++c)
-            starts_[c + 1] += before[p];
-      },
-      1);
+  counting_sort(cells_, cells, starts_, [&](std::size_t k, std::size_t slot) {
+    slots_[k] = static_cast<std::uint32_t>(slot);
+    lines_[slot] = unsorted_[k];
+  });
   for (MirrorLevel& level : whole_.levels) {
     level.begin = starts_[level.first_cell];
     level.end = starts_[level.first_cell + static_cast<std::size_t>(level.columns * level.rows)];

@@ -3,6 +3,7 @@
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/mean.hpp>
+#include <keeler/orbit/toomre.hpp>
 
 #include <algorithm>
 
@@ -26,13 +27,12 @@ double midplane_filling(const Patch& patch) {
 }
 
 double critical_wavelength(const Patch& patch) {
-  const double kappa = patch.frequencies.kappa;
-  return 4.0 * pi * pi * newton_g(patch.orbital_frequency) * surface_density(patch) / (kappa * kappa);
+  return critical_wavelength(newton_g(patch.orbital_frequency), surface_density(patch), patch.frequencies.kappa);
 }
 
 double toomre_q(const Patch& patch) {
-  return patch.frequencies.kappa * velocity_dispersion(patch).x() /
-         (3.36 * newton_g(patch.orbital_frequency) * surface_density(patch));
+  return toomre_q(newton_g(patch.orbital_frequency), surface_density(patch), patch.frequencies.kappa,
+                  velocity_dispersion(patch).x());
 }
 
 } // namespace keeler

@@ -4,6 +4,7 @@
 #include <keeler/gravity/far_images.hpp>
 #include <keeler/gravity/images.hpp>
 #include <keeler/gravity/single.hpp>
+#include <keeler/particles/order.hpp>
 
 #include <algorithm>
 #include <numeric>
@@ -11,17 +12,9 @@
 namespace keeler {
 namespace {
 
-// Indices in the order of the ids.
-std::vector<std::size_t> order_by_id(std::span<const std::uint64_t> ids) {
-  std::vector<std::size_t> order(ids.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return ids[a] < ids[b]; });
-  return order;
-}
-
 // Particles inside the cell, in the order of their ids.
 struct Ordered {
-  std::vector<std::size_t> order; // indices of the problem
+  std::vector<std::uint32_t> order; // indices of the problem
   std::vector<PointSource> sources;
 };
 

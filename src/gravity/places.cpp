@@ -1,12 +1,12 @@
 #include "places.hpp"
 
-#include <keeler/core/threads.hpp>
+#include <keeler/core/counting_sort.hpp>
 #include <keeler/gravity/images.hpp>
 
 #include <algorithm>
-#include <numeric>
 
 namespace keeler {
+
 void Places::sort(const GravityProblem& problem, double offset, const Tiling& tiling) {
   const std::size_t count = problem.positions.size();
   const bool same_count = index_.size() == count;
@@ -16,6 +16,7 @@ void Places::sort(const GravityProblem& problem, double offset, const Tiling& ti
   const double rows_per_metre = static_cast<double>(tiling.rows) / problem.box.size_y;
   constexpr std::size_t ahead = 24;
   found_.resize(count);
+  tile_of_.resize(count);
   sorted_.resize(count);
   parallel_for(count, [&](std::size_t k) {
     // in the order of the last call, where there is one: it is nearly sorted already
@@ -25,16 +26,12 @@ void Places::sort(const GravityProblem& problem, double offset, const Tiling& ti
     const Vec3 p = into_cell(problem.box, offset, problem.positions[index]);
     const std::size_t a = cell_of(p.x(), left, columns_per_metre, tiling.columns) / tiling.side;
     const std::size_t b = cell_of(p.y(), bottom, rows_per_metre, tiling.rows) / tiling.side;
-    found_[k] = {p.x(), p.y(), p.z(), static_cast<std::uint32_t>(index),
-                 static_cast<std::uint32_t>(a * tiling.tile_rows() + b)};
+    found_[k] = {p.x(), p.y(), p.z(), static_cast<std::uint32_t>(index)};
+    tile_of_[k] = static_cast<std::uint32_t>(a * tiling.tile_rows() + b);
   });
 
-  first_.assign(tiling.count() + 2, 0); // counted two behind, so that filling moves each to its own start
-  for (const Place& p : found_)
-    ++first_[p.tile + 2];
-  std::partial_sum(first_.begin(), first_.end(), first_.begin());
-  for (const Place& p : found_)
-    sorted_[first_[p.tile + 1]++] = p;
+  counting_sort(tile_of_, tiling.count(), first_,
+                [&](std::size_t k, std::size_t place) { sorted_[place] = found_[k]; });
 
   for (auto* const numbers : {&x_, &y_, &z_})
     numbers->resize(count + NearSources::widest);

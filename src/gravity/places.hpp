@@ -4,6 +4,7 @@
 
 #include "mesh_kernels.hpp"
 
+#include <keeler/cells/sheared_cells.hpp>
 #include <keeler/gravity/solver.hpp>
 
 #include <cstdint>
@@ -44,23 +45,16 @@ public:
   /// A particle on its way into the order.
   struct Place {
     double x, y, z;
-    std::uint32_t index, tile;
+    std::uint32_t index;
   };
 
 private:
   std::vector<Place> found_, sorted_; // kept for their memory
   Tiling tiling_;
-  std::vector<std::uint32_t> first_, index_;
+  std::vector<std::uint32_t> tile_of_, first_, index_;
   std::vector<double> x_, y_, z_;
   std::vector<float> mass_;
   double mass_unit_ = 1.0;
 };
-
-/// Which of `cells` cells on a box that begins at `low` holds the coordinate.
-inline std::size_t cell_of(double coordinate, double low, double cells_per_metre, std::size_t cells) {
-  const double place = (coordinate - low) * cells_per_metre;
-  const auto cell = place > 0.0 ? static_cast<std::size_t>(place) : 0;
-  return cell < cells ? cell : cells - 1; // rounding may put a coordinate on the far edge
-}
 
 } // namespace keeler

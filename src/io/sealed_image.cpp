@@ -1,7 +1,7 @@
 #include <keeler/io/sealed_image.hpp>
 
 #include <keeler/core/error.hpp>
-#include <keeler/io/files.hpp>
+#include <keeler/files/files.hpp>
 #include <keeler/io/hash.hpp>
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include <keeler/io/series.hpp>
 
 #include <keeler/core/error.hpp>
-#include <keeler/io/files.hpp>
+#include <keeler/files/files.hpp>
 
 #include <fmt/format.h>
 

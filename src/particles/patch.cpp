@@ -1,37 +1,38 @@
 #include <keeler/particles/patch.hpp>
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/threads.hpp>
+#include <keeler/particles/order.hpp>
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace keeler {
 
 Patch make_patch(const Particles& particles, const ShearingBox& box, double offset, const Frequencies& frequencies,
                  double after) {
   const std::size_t count = particles.size();
-  std::vector<std::size_t> order(count);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return particles.ids[a] < particles.ids[b]; });
-
+  const std::vector<std::uint32_t> order = order_by_id(particles.ids);
   Patch patch;
   patch.box = box;
   patch.offset = offset;
   patch.frequencies = frequencies;
+  patch.positions.resize(count);
+  patch.velocities.resize(count);
+  patch.radii.resize(count);
+  patch.masses.resize(count);
+  patch.ids.resize(count);
   const Rotation rotation(frequencies, after);
-  for (const std::size_t k : order) {
-    const Body& body = particles.bodies[k];
+  parallel_for(count, [&](std::size_t k) {
+    const Body& body = particles.bodies[order[k]];
     const State state = state_at(body.elements, frequencies, rotation);
-    patch.positions.push_back(state.position);
-    patch.velocities.push_back(state.velocity);
-    patch.radii.push_back(body.radius);
-    patch.masses.push_back(body.mass);
-    patch.ids.push_back(particles.ids[k]);
-  }
+    patch.positions[k] = state.position;
+    patch.velocities[k] = state.velocity;
+    patch.radii[k] = body.radius;
+    patch.masses[k] = body.mass;
+    patch.ids[k] = particles.ids[order[k]];
+  });
   return patch;
 }
 
@@ -53,11 +54,12 @@ void require_sound(const Patch& patch) {
 Particles particles_from(const Patch& patch, double ahead) {
   Particles particles;
   particles.ids = patch.ids;
+  particles.bodies.resize(patch.size());
   const Rotation rotation(patch.frequencies, -ahead);
-  for (std::size_t k = 0; k < patch.size(); ++k) {
+  parallel_for(patch.size(), [&](std::size_t k) {
     const State state{patch.positions[k], patch.velocities[k]};
-    particles.bodies.push_back({elements_from(state, patch.frequencies, rotation), patch.radii[k], patch.masses[k]});
-  }
+    particles.bodies[k] = {elements_from(state, patch.frequencies, rotation), patch.radii[k], patch.masses[k]};
+  });
   return particles;
 }
 

@@ -5,11 +5,11 @@
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/force_error.hpp>
+#include <keeler/files/files.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/gravity/direct.hpp>
 #include <keeler/io/checkpoint.hpp>
 #include <keeler/io/checkpoint_folder.hpp>
-#include <keeler/io/files.hpp>
 #include <keeler/io/snapshot.hpp>
 
 #include <algorithm>

@@ -6,9 +6,9 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
+#include <keeler/files/files.hpp>
 #include <keeler/io/checkpoint.hpp>
 #include <keeler/io/checkpoint_folder.hpp>
-#include <keeler/io/files.hpp>
 #include <keeler/runs/folder_lock.hpp>
 #include <keeler/runs/state_hash.hpp>
 #include <keeler/states/initial.hpp>

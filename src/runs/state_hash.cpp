@@ -1,20 +1,14 @@
 #include <keeler/runs/state_hash.hpp>
 
 #include <keeler/io/hash.hpp>
-
-#include <algorithm>
-#include <numeric>
+#include <keeler/particles/order.hpp>
 
 namespace keeler {
 
 std::string state_hash(const SimulationState& state, const Scene& scene) {
   const Particles& particles = state.particles;
-  std::vector<std::size_t> order(particles.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return particles.ids[a] < particles.ids[b]; });
   Hash hash;
-  for (const std::size_t k : order) {
+  for (const std::uint32_t k : order_by_id(particles.ids)) {
     hash.add(particles.ids[k]);
     hash.add(particles.bodies[k]);
   }

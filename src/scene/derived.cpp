@@ -3,6 +3,7 @@
 #include <keeler/gravity/fft.hpp>
 
 #include <keeler/core/units.hpp>
+#include <keeler/orbit/toomre.hpp>
 #include <keeler/particles/patch.hpp>
 
 #include <cmath>
@@ -73,13 +74,11 @@ double surface_density_per_depth(const SizeLaw& sizes, double density) {
 }
 
 double critical_wavelength(double surface_density, const PlanetSettings& planet) {
-  const double kappa = planet.frequencies.kappa * planet.orbital_frequency;
-  return 4.0 * pi * pi * newton_g_si * surface_density / (kappa * kappa);
+  return critical_wavelength(newton_g_si, surface_density, planet.frequencies.kappa * planet.orbital_frequency);
 }
 
 double toomre_q(double surface_density, double dispersion, const PlanetSettings& planet) {
-  const double kappa = planet.frequencies.kappa * planet.orbital_frequency;
-  return kappa * dispersion / (3.36 * newton_g_si * surface_density);
+  return toomre_q(newton_g_si, surface_density, planet.frequencies.kappa * planet.orbital_frequency, dispersion);
 }
 
 double distance_from_saturn(const PlanetSettings& planet) {

@@ -5,10 +5,10 @@
 #include "particles_and_box.hpp"
 #include "presets.hpp"
 #include "settings.hpp"
-#include "text_files.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/files/input.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/scene/derived.hpp>
 
@@ -144,7 +144,7 @@ Scene parse_stored_scene(const std::string& text, const std::string& name) {
 }
 
 Scene load_scene(const std::string& path, const std::vector<std::string>& overrides) {
-  return parse_scene(read_text_file(path, path), path, overrides);
+  return parse_scene(read_input(path, path), path, overrides);
 }
 
 } // namespace keeler

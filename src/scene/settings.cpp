@@ -1,14 +1,17 @@
 #include "settings.hpp"
 
 #include "checks.hpp"
-#include "text_files.hpp"
 
+#include <keeler/files/input.hpp>
 #include <keeler/scene/keys.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <span>
 
 namespace keeler {
 namespace {
@@ -16,6 +19,29 @@ namespace {
 // Sections whose defaults are in force even when the file leaves the section out.
 bool always_in_force(const std::string& section) {
   return section == "collisions" || section == "collisions.restitution" || section == "output" || section.empty();
+}
+
+// One row of a file that a key names.
+void check_row(const Key& key, std::span<const double> row, const std::string& place) {
+  const bool right = row.size() == key.columns.size() && std::all_of(row.begin(), row.end(), [&](double number) {
+                       return std::isfinite(number) && key.range.contains(number);
+                     });
+  if (!right)
+    fail_at(place, fmt::format("the line is {}, but must be {}{} ({}); correct this line", fmt::join(row, " "),
+                               key.columns.size() == 1 ? "a number" : fmt::format("{} numbers", key.columns.size()),
+                               key.range.words().empty() ? "" : " " + key.range.words(), fmt::join(key.columns, ", ")));
+}
+
+NumberRows read_rows(const std::string& path, const Key& key, const std::string& place) {
+  NumberRows rows;
+  for_each_row(read_input(path, place), [&](int line, std::span<const double> row) {
+    check_row(key, row, fmt::format("{}:{}:1", path, line));
+    rows.emplace_back(row.begin(), row.end());
+  });
+  if (rows.empty())
+    fail_at(place, fmt::format("{} has no numbers in it (it is empty or all comments); write {} on each line", path,
+                               fmt::join(key.columns, " and ")));
+  return rows;
 }
 
 } // namespace

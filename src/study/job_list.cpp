@@ -2,7 +2,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/stopwatch.hpp>
-#include <keeler/io/files.hpp>
+#include <keeler/files/files.hpp>
 
 #include <fmt/format.h>
 
@@ -32,7 +32,7 @@ void JobList::keep(const std::string& name, const Json& result) {
   results_[name] = result;
 }
 
-bool JobList::run(const std::vector<Job>& jobs, const std::function<void(const StudyProgress&)>& progress,
+bool JobList::run(const std::vector<Job>& jobs, const std::function<void(const Progress&)>& progress,
                   const std::atomic<bool>& stop) {
   double elapsed = 0.0, spent = 0.0, all = 0.0, done = 0.0;
   for (const Job& job : jobs)

@@ -2,7 +2,7 @@
 // a line of a file as soon as it is known. Started again on the same file, the list does only what is missing.
 #pragma once
 
-#include <keeler/study/progress.hpp>
+#include <keeler/core/progress.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -30,7 +30,7 @@ public:
   explicit JobList(const std::filesystem::path& file);
 
   /// Does the jobs that have no result yet, in order; returns false when `stop` was set, which is obeyed between jobs.
-  bool run(const std::vector<Job>& jobs, const std::function<void(const StudyProgress&)>& progress,
+  bool run(const std::vector<Job>& jobs, const std::function<void(const Progress&)>& progress,
            const std::atomic<bool>& stop);
 
   /// By name of the job.

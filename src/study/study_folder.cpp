@@ -1,7 +1,7 @@
 #include "study_folder.hpp"
 
 #include <keeler/core/error.hpp>
-#include <keeler/io/files.hpp>
+#include <keeler/files/files.hpp>
 #include <keeler/io/provenance.hpp>
 
 #include <fmt/format.h>
@@ -19,13 +19,6 @@ std::string processor() {
     if (line.starts_with("model name"))
       return line.substr(line.find(':') + 2);
   return "unknown";
-}
-
-std::string csv_line(const Json& row, bool names) {
-  std::string line;
-  for (const auto& [key, value] : row.items())
-    line += (line.empty() ? "" : ",") + (names ? key : value.is_string() ? value.get<std::string>() : value.dump());
-  return line + "\n";
 }
 
 } // namespace
@@ -59,13 +52,6 @@ Json open_study_folder(const fs::path& folder, const Json& options, const std::m
                                    folder.string(), key,
                                    before.is_object() && before.contains(key) ? before[key].dump() : "none"));
   return before;
-}
-
-std::string csv_of(const Json& rows) {
-  std::string csv = csv_line(rows.front(), true);
-  for (const Json& row : rows)
-    csv += csv_line(row, false);
-  return csv;
 }
 
 } // namespace keeler

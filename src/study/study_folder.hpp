@@ -18,7 +18,4 @@ std::map<std::string, std::string> study_builder(const std::vector<std::string>&
 Json open_study_folder(const std::filesystem::path& folder, const Json& options,
                        const std::map<std::string, std::string>& builder);
 
-/// Objects of plain values as CSV: the keys of the first as a header, then a line each.
-std::string csv_of(const Json& rows);
-
 } // namespace keeler

@@ -1,8 +1,9 @@
 // The paper's Figure 1: in a ring whose collisions prefer one side of the epicycle, straight paths within a step make
 // particles drift, and Keeler's do not. The size expected is what straight lines would have led beside the
 // orbits at each collision, −a t²/2 to leading order, summed over collisions that happened on exact paths.
+#include "perturbed_ring/perturbed_ring.hpp"
+
 #include <keeler/collision/finders.hpp>
-#include <keeler/study/perturbed_ring.hpp>
 
 #include <doctest/doctest.h>
 

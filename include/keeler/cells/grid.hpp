@@ -3,7 +3,7 @@
 // least once and each image at most once, also across edges and when the window is wider than the box.
 #pragma once
 
-#include <keeler/box/shearing_box.hpp>
+#include <keeler/cells/sheared_cells.hpp>
 
 #include <cmath>
 #include <cstdint>
@@ -40,50 +40,23 @@ private:
     Image home; // the image of the point that lies inside the cell
   };
 
-  ShearingBox box_;
-  double offset_ = 0.0;
-  std::int64_t columns_ = 1, rows_ = 1;
-  double per_x_ = 1.0, per_y_ = 1.0; // cells a metre
-  std::vector<std::uint32_t> first_; // first entry of each cell, column by column
+  ShearedCells cells_;
+  std::vector<std::uint32_t> first_; // first entry of each cell
   std::vector<Entry> entries_;
-};
-
-/// Quotient and remainder rounded towards minus infinity.
-struct FloorDivision {
-  std::int64_t quotient, remainder;
-  FloorDivision(std::int64_t value, std::int64_t by) : quotient(value / by), remainder(value % by) {
-    if (remainder < 0) {
-      remainder += by;
-      --quotient;
-    }
-  }
 };
 
 template<bool inside_window, class Visit>
 void PeriodicGrid::visit_cells(const Vec3& point, double reach_x, double reach_y, const Visit& visit) const {
-  const double left = point.x() + 0.5 * box_.size_x - reach_x, right = left + 2.0 * reach_x;
-  const auto first_column = static_cast<std::int64_t>(std::floor(left * per_x_));
-  const auto last_column = static_cast<std::int64_t>(std::floor(right * per_x_));
-  for (std::int64_t c = first_column; c <= last_column; ++c) {
-    const FloorDivision column(c, columns_); // quotient: how many boxes outward
-    const double shift_x = static_cast<double>(column.quotient) * box_.size_x;
-    const double shift_y = -static_cast<double>(column.quotient) * offset_;
-    const double low = point.y() + 0.5 * box_.size_y - shift_y - reach_y, high = low + 2.0 * reach_y;
-    const auto first_row = static_cast<std::int64_t>(std::floor(low * per_y_));
-    const auto last_row = static_cast<std::int64_t>(std::floor(high * per_y_));
-    for (std::int64_t r = first_row; r <= last_row; ++r) {
-      const FloorDivision row(r, rows_);
-      const double x = point.x() - shift_x;
-      const double y = point.y() - shift_y - static_cast<double>(row.quotient) * box_.size_y;
-      const std::size_t cell = static_cast<std::size_t>(column.remainder * rows_ + row.remainder);
-      for (std::uint32_t k = first_[cell]; k < first_[cell + 1]; ++k) {
-        const Entry& e = entries_[k];
-        if (!inside_window || (std::fabs(e.x - x) <= reach_x && std::fabs(e.y - y) <= reach_y))
-          visit(std::size_t{e.point}, Image{e.home.nx + static_cast<std::int32_t>(column.quotient),
-                                            e.home.ny + static_cast<std::int32_t>(row.quotient)});
-      }
-    }
-  }
+  const auto window_y = [&](double) { return std::pair(point.y() - reach_y, point.y() + reach_y); };
+  cells_.visit_window(
+      point.x() - reach_x, point.x() + reach_x, window_y, [&](std::size_t first, std::size_t last, const Image& image) {
+        const Vec3 there = point - cells_.box.displacement(image, cells_.offset);
+        for (std::uint32_t k = first_[first]; k < first_[last + 1]; ++k) {
+          const Entry& e = entries_[k];
+          if (!inside_window || (std::fabs(e.x - there.x()) <= reach_x && std::fabs(e.y - there.y()) <= reach_y))
+            visit(std::size_t{e.point}, Image{e.home.nx + image.nx, e.home.ny + image.ny});
+        }
+      });
 }
 
 } // namespace keeler

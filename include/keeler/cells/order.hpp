@@ -3,6 +3,7 @@
 #pragma once
 
 #include <keeler/box/shearing_box.hpp>
+#include <keeler/core/threads.hpp>
 #include <keeler/particles/store.hpp>
 
 #include <cstdint>
@@ -16,10 +17,8 @@ std::vector<std::uint32_t> order_by_place(const Particles& particles, const Shea
 
 /// Puts values into that order.
 template<class T> void reorder(std::vector<T>& values, const std::vector<std::uint32_t>& order) {
-  std::vector<T> sorted;
-  sorted.reserve(values.size());
-  for (const std::uint32_t k : order)
-    sorted.push_back(values[k]);
+  std::vector<T> sorted(values.size());
+  parallel_for(values.size(), [&](std::size_t k) { sorted[k] = values[order[k]]; });
   values.swap(sorted);
 }
 

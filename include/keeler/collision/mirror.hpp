@@ -155,8 +155,8 @@ private:
   struct Measured;
 
   void take_lines(const Particles& particles);
-  void lay_out_cells();
-  void sort();
+  std::size_t lay_out_cells();
+  void sort(std::size_t cells);
   int level_of(const Line& line) const;
   std::size_t cell_of(const Line& line, const MirrorLevel& level) const;
   double reach_x(const Line& line) const { return line.size + window_.half_length * std::fabs(line.u); }

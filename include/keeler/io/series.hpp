@@ -2,7 +2,7 @@
 // returns, and is there whole or not at all.
 #pragma once
 
-#include <keeler/io/descriptor.hpp>
+#include <keeler/files/descriptor.hpp>
 
 #include <cstdint>
 #include <filesystem>

@@ -11,10 +11,10 @@ namespace keeler {
 /// Mass per unit area of particles of this law at optical depth 1, (4/3) ρ ⟨r³⟩/⟨r²⟩, kg/m².
 double surface_density_per_depth(const SizeLaw& sizes, double density);
 
-/// Toomre's critical wavelength 4π²GΣ/κ², m.
+/// λ_cr, m (orbit/toomre.hpp).
 double critical_wavelength(double surface_density, const PlanetSettings& planet);
 
-/// Toomre's Q = κ c_x / (3.36 G Σ) for a radial velocity dispersion in m/s.
+/// Q for a radial velocity dispersion in m/s (orbit/toomre.hpp).
 double toomre_q(double surface_density, double dispersion, const PlanetSettings& planet);
 
 /// Distance from the centre of Saturn with these frequencies, m. The planet's oblateness speeds orbits up by as much as

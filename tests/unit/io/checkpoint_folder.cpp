@@ -1,6 +1,6 @@
 #include <keeler/io/checkpoint_folder.hpp>
 
-#include "disk.hpp"
+#include "unit/files/disk.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/io/checkpoint.hpp>

@@ -1,6 +1,6 @@
 #include <keeler/io/sealed_image.hpp>
 
-#include "disk.hpp"
+#include "unit/files/disk.hpp"
 
 #include <keeler/core/error.hpp>
 

@@ -1,6 +1,6 @@
 #include <keeler/io/series.hpp>
 
-#include "disk.hpp"
+#include "unit/files/disk.hpp"
 
 #include <keeler/core/error.hpp>
 

@@ -1,6 +1,6 @@
 #include <keeler/io/snapshot.hpp>
 
-#include "disk.hpp"
+#include "unit/files/disk.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/random.hpp>

@@ -1,0 +1,40 @@
+// Progress of a measurement in several phases, each of a known amount of work in any unit.
+#pragma once
+
+#include <keeler/core/progress.hpp>
+#include <keeler/core/stopwatch.hpp>
+
+#include <algorithm>
+#include <functional>
+
+namespace keeler {
+
+class PhaseProgress {
+public:
+  /// `report` may be empty.
+  explicit PhaseProgress(std::function<void(const Progress&)> report) : report_(std::move(report)) {}
+
+  void begin(std::string what, double work) {
+    what_ = std::move(what);
+    work_ = work;
+    done_ = 0.0;
+    begun_s_ = watch_.elapsed();
+  }
+
+  void add(double work) {
+    done_ += work;
+    if (!report_)
+      return;
+    const double share = std::min(1.0, done_ / work_), elapsed = watch_.elapsed();
+    report_({share, elapsed, (elapsed - begun_s_) * (1.0 / share - 1.0), what_});
+  }
+
+private:
+  std::function<void(const Progress&)> report_;
+  double total_ = 0.0;
+  Stopwatch watch_{total_};
+  std::string what_;
+  double work_ = 1.0, done_ = 0.0, begun_s_ = 0.0;
+};
+
+} // namespace keeler

@@ -1,0 +1,35 @@
+// An open file of the operating system, with calls that retry what a signal interrupted and notice every failure.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+
+namespace keeler {
+
+/// Owns a file descriptor. Every member throws IoError "cannot VERB 'FILE': reason".
+class Descriptor {
+public:
+  /// `flags` as for open(2).
+  Descriptor(const std::filesystem::path& file, int flags);
+  ~Descriptor();
+  Descriptor(Descriptor&& other) noexcept;
+  Descriptor& operator=(Descriptor&& other) noexcept;
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  /// Writes all of it at the descriptor's position; what a failure leaves half written stays.
+  void write_all(std::span<const std::byte> content);
+  std::size_t size() const;
+  void truncate(std::size_t size);
+  /// Forces the content to disk.
+  void sync();
+  /// Closes now, so that a failure to do so is noticed.
+  void close();
+
+private:
+  std::filesystem::path file_;
+  int number_ = -1;
+};
+
+} // namespace keeler

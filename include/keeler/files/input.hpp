@@ -1,0 +1,20 @@
+// Files that a user names: their text, and the rows of numbers in it. What is wrong with them is the user's to mend, so
+// faults are UsageErrors that begin with the place where the file was named.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+
+namespace keeler {
+
+/// The whole file, named at `place` ("scene.toml:7:9", or the file itself). Throws UsageError "PLACE: FILE cannot be
+/// read (why); …".
+std::string read_input(const std::filesystem::path& file, const std::string& place);
+
+/// Hands over each row of numbers in a text, with the number of its line, from 1. Blanks, commas or semicolons part the
+/// numbers, '#' starts a comment, and a line with nothing else is no row. A word that is not a number is handed over as NaN.
+void for_each_row(const std::string& text, const std::function<void(int line, std::span<const double> numbers)>& visit);
+
+} // namespace keeler

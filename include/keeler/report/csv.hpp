@@ -1,0 +1,13 @@
+// Tables as comma-separated values.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace keeler {
+
+/// Objects of plain values as CSV: the keys of the first as a header, then a line each. At least one object.
+std::string csv_of(const nlohmann::ordered_json& rows);
+
+} // namespace keeler

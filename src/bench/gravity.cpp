@@ -1,0 +1,127 @@
+#include <keeler/bench/gravity.hpp>
+
+#include <keeler/bench/gravity_states.hpp>
+#include <keeler/bench/median.hpp>
+#include <keeler/bench/yardsticks.hpp>
+#include <keeler/cells/order.hpp>
+#include <keeler/core/simd.hpp>
+#include <keeler/gravity/direct.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace keeler {
+namespace {
+
+constexpr ImageSettings reference_images{2, true};
+constexpr double reference_pairs = 5e9; // as many as seconds allow
+constexpr double least_sample = 500.0, most_sample = 2000.0;
+constexpr double edge_width = 5.0; // m, of a box of more than 120 m
+constexpr std::size_t least_at_edge = 64;
+constexpr std::size_t reference_block = 128; // targets between two looks at the progress
+constexpr double least_seconds = 0.05;       // of solves, in one repeat
+constexpr std::size_t most_direct = 10000;   // particles, unless it is asked for
+
+// The patch in the order of places, as a run has its particles.
+Patch in_memory_order(const Patch& patch) {
+  const std::vector<std::uint32_t> order = order_by_place(particles_from(patch, 0.0), patch.box, patch.offset);
+  Patch sorted = patch;
+  reorder(sorted.positions, order);
+  reorder(sorted.velocities, order);
+  reorder(sorted.radii, order);
+  reorder(sorted.masses, order);
+  reorder(sorted.ids, order);
+  return sorted;
+}
+
+ForceSample sample_of(const GravityProblem& problem) {
+  const double images = std::pow(2.0 * reference_images.rings + 1.0, 2);
+  const double affordable = reference_pairs / (images * static_cast<double>(problem.positions.size()));
+  const auto even = static_cast<std::size_t>(std::clamp(affordable, least_sample, most_sample));
+  return draw_force_sample(problem, even, std::max(least_at_edge, even / 8), edge_width);
+}
+
+std::vector<Vec3> exact_accelerations(const GravityProblem& problem, const ForceSample& sample,
+                                      PhaseProgress& progress) {
+  const std::span<const std::size_t> targets = sample.targets;
+  progress.begin("forces to compare with", static_cast<double>(targets.size()));
+  std::vector<Vec3> exact;
+  for (std::size_t begin = 0; begin < targets.size(); begin += reference_block) {
+    const auto block = targets.subspan(begin, std::min(reference_block, targets.size() - begin));
+    for (const Vec3& a : sampled_accelerations(problem, block, reference_images, choose_instruction_set()))
+      exact.push_back(a);
+    progress.add(static_cast<double>(block.size()));
+  }
+  return exact;
+}
+
+// Times of one solve in each repeat, s; the first one, in which buffers grow, tells how many make a repeat.
+std::vector<double> solve_times(GravitySolver& solver, const GravityProblem& problem, std::span<Vec3> accelerations,
+                                int repeats) {
+  const double start = bench_seconds();
+  solver.accelerate(problem, accelerations);
+  const double first = std::max(1e-9, bench_seconds() - start);
+  const int solves = static_cast<int>(std::ceil(std::min(1e6, least_seconds / first)));
+  std::vector<double> times;
+  for (int repeat = 0; repeat < repeats; ++repeat) {
+    const double before = bench_seconds();
+    for (int k = 0; k < solves; ++k)
+      solver.accelerate(problem, accelerations);
+    times.push_back((bench_seconds() - before) / solves);
+  }
+  return times;
+}
+
+std::vector<GravityChoice> chosen(const GravityBenchSettings& settings, std::size_t count) {
+  std::vector<GravityChoice> choices;
+  for (const GravityChoice& choice : gravity_choices(settings.dense))
+    if (settings.solver.empty() ? choice.solver != "direct" || count <= most_direct : choice.solver == settings.solver)
+      choices.push_back(choice);
+  return choices;
+}
+
+} // namespace
+
+std::vector<std::pair<std::string, double>> GravityBenchRow::numbers() const {
+  return {{"error_rms", errors.rms},
+          {"error_p999", errors.p999},
+          {"error_x", errors.component_rms[0]},
+          {"error_y", errors.component_rms[1]},
+          {"error_z", errors.component_rms[2]},
+          {"error_edge", errors.edge_rms},
+          {"edge_pull", errors.edge_pull},
+          {"net_force", net_force},
+          {"ns_per_particle", ns_per_particle}};
+}
+
+GravityBench bench_gravity(const GravityBenchSettings& settings) {
+  PhaseProgress progress(settings.progress);
+  const GravityState kind = settings.clumped ? GravityState::clumped : GravityState::uniform;
+  const Patch patch = in_memory_order(gravity_state(settings.count, kind, progress).patch);
+  const GravityProblem problem = gravity_problem(patch);
+  const ForceSample sample = sample_of(problem);
+  GravityBench bench;
+  bench.count = patch.size();
+  bench.size_x_m = patch.box.size_x;
+  bench.size_y_m = patch.box.size_y;
+  bench.offset_m = patch.offset;
+  bench.sample = sample.even;
+  bench.edge_sample = std::accumulate(sample.edges.begin(), sample.edges.end(), std::size_t{0});
+  bench.edge_width_m = edge_width;
+
+  const std::vector<Vec3> exact = exact_accelerations(problem, sample, progress);
+  const std::vector<GravityChoice> choices = chosen(settings, bench.count);
+  progress.begin("timing", static_cast<double>(choices.size()));
+  std::vector<Vec3> accelerations(bench.count);
+  for (const GravityChoice& choice : choices) {
+    const std::unique_ptr<GravitySolver> solver = make_gravity_solver(choice.settings, patch.masses, patch.box.area());
+    const std::vector<double> times = solve_times(*solver, problem, accelerations, settings.repeats);
+    bench.rows.push_back({choice, force_errors(sample, exact, accelerations), net_force(patch.masses, accelerations),
+                          1e9 * median(times) / static_cast<double>(bench.count)});
+    progress.add(1.0);
+  }
+  return bench;
+}
+
+} // namespace keeler

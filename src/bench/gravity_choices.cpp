@@ -1,0 +1,75 @@
+#include <keeler/bench/gravity_choices.hpp>
+
+#include <keeler/gravity/fft.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace keeler {
+namespace {
+
+GravityChoice tree(double opening_angle) {
+  GravitySettings settings;
+  settings.solver = GravitySettings::Solver::tree;
+  settings.opening_angle = opening_angle;
+  return {"tree", fmt::format("opening_angle {:.3g}", opening_angle), "opening angle", opening_angle, settings};
+}
+
+GravityChoice direct() {
+  GravitySettings settings;
+  settings.solver = GravitySettings::Solver::direct;
+  return {"direct", "all pairs", "", 0.0, settings};
+}
+
+GravityChoice fft(double cut) {
+  GravitySettings settings;
+  settings.solver = GravitySettings::Solver::fft;
+  settings.mesh_cut = cut;
+  return {"fft", fmt::format("cut {:.3g}", cut), "cut / mesh spacing", cut, settings};
+}
+
+GravityChoice mesh(double spacing) {
+  GravitySettings settings;
+  settings.solver = GravitySettings::Solver::mesh;
+  settings.mesh_spacing = spacing;
+  return {"mesh", fmt::format("mesh_spacing {:.3g}", spacing), "mesh spacing / mean distance", spacing, settings};
+}
+
+} // namespace
+
+std::vector<GravityChoice> gravity_choices(bool dense) {
+  std::vector<GravityChoice> choices = {direct()};
+  for (const int twentieths :
+       dense ? std::vector{4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 18, 20} : std::vector{6, 8, 10, 12, 14, 16})
+    choices.push_back(tree(0.05 * twentieths));
+  for (const int quarters :
+       dense ? std::vector{8, 9, 10, 11, 12, 14, 16, 18, 20, 24, 28, 32} : std::vector{8, 10, 12, 16, 20})
+    choices.push_back(fft(0.25 * quarters));
+  for (const int fifths : dense ? std::vector{4, 5, 6, 8, 10, 12, 16} : std::vector{8})
+    choices.push_back(mesh(0.2 * fifths));
+  return choices;
+}
+
+std::vector<std::string> gravity_solver_names() {
+  std::vector<std::string> names;
+  for (const GravityChoice& choice : gravity_choices(false))
+    if (std::find(names.begin(), names.end(), choice.solver) == names.end())
+      names.push_back(choice.solver);
+  return names;
+}
+
+GravityChoice default_gravity_choice(const std::string& solver) {
+  if (solver == "tree")
+    return tree(GravitySettings{}.opening_angle);
+  if (solver == "direct")
+    return direct();
+  if (solver == "fft")
+    return fft(cut_for(GravitySettings{}.force_error, 1.0)); // the benches' spheres are equal
+  if (solver == "mesh")
+    return mesh(GravitySettings{}.mesh_spacing);
+  throw std::invalid_argument("no gravity solver '" + solver + "'");
+}
+
+} // namespace keeler

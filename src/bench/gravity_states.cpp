@@ -1,0 +1,81 @@
+#include <keeler/bench/gravity_states.hpp>
+
+#include <keeler/simulation/simulation.hpp>
+#include <keeler/states/initial.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+constexpr double least_wavelengths = 2.0; // λ_cr along a tile
+constexpr double evolving_step = 2e-3;    // orbits
+constexpr double evolving_angle = 0.7;
+constexpr double clumping_orbits = 1.5;
+constexpr double largest_clumped_tile = 12000.0; // particles: 4.5 λ_cr
+constexpr double largest_uniform_tile = 100000.0;
+
+Scene scene_of(double wavelengths, std::uint64_t seed) {
+  return parse_scene(fmt::format(R"(
+title = "A patch of Saturn's A ring"
+[planet]
+preset = "saturn-a-ring"
+[box]
+size_in_wavelengths = [{0}, {0}]
+[particles]
+optical_depth = 0.5
+density = 600.0
+velocity_dispersion = 3.5
+sizes = {{ law = "equal", radius = 1.0 }}
+seed = {1}
+[collisions]
+restitution = {{ law = "bridges", scale = 0.34 }}
+[gravity]
+solver = "tree"
+opening_angle = 0.6
+[time]
+step = 1e-3
+end = 1.0
+)",
+                                 wavelengths, seed),
+                     "bench");
+}
+
+} // namespace
+
+Scene a_ring_scene(std::size_t count, std::uint64_t seed) {
+  const auto least = static_cast<double>(scene_of(least_wavelengths, seed).particles.count);
+  return scene_of(least_wavelengths * std::max(1.0, std::sqrt(static_cast<double>(count) / least)), seed);
+}
+
+Patch evolved_with_gravity(const Scene& scene, double orbits, PhaseProgress& progress) {
+  Scene coarse = scene;
+  coarse.time.step = evolving_step;
+  coarse.gravity = GravitySettings{};
+  coarse.gravity->opening_angle = evolving_angle;
+  Simulation simulation(coarse, initial_patch(coarse));
+  const long steps = std::lround(orbits / evolving_step);
+  progress.begin("making wakes", static_cast<double>(steps));
+  for (long k = 0; k < steps; ++k) {
+    simulation.advance();
+    progress.add(1.0);
+  }
+  return simulation.patch();
+}
+
+BenchState gravity_state(std::size_t count, GravityState kind, PhaseProgress& progress) {
+  const bool clumped = kind == GravityState::clumped;
+  const auto asked = static_cast<double>(count);
+  const double side = std::ceil(std::sqrt(asked / (clumped ? largest_clumped_tile : largest_uniform_tile)));
+  const long tile_count = std::lround(asked / (side * side));
+  BenchState state{a_ring_scene(static_cast<std::size_t>(tile_count), 1), {}};
+  state.patch = clumped ? evolved_with_gravity(state.scene, clumping_orbits, progress) : initial_patch(state.scene);
+  if (side > 1.0)
+    state.patch = tiled(state.patch, static_cast<int>(side));
+  return state;
+}
+
+} // namespace keeler

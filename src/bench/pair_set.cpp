@@ -1,0 +1,106 @@
+#include <keeler/bench/pair_set.hpp>
+
+#include <keeler/core/stopwatch.hpp>
+
+#include <limits>
+
+namespace keeler {
+namespace {
+
+struct Recorder : DriftWatch {
+  std::vector<Query> queries;
+  const DriftStep* step = nullptr;
+  bool before_events = true;
+
+  void begins(const DriftStep& now) override { step = &now; }
+  void searched(const Query& query, const FinderResult&) override {
+    if (before_events)
+      queries.push_back(query);
+  }
+  void collided(const CollisionRecord&) override { before_events = false; }
+};
+
+Separation separation(const Pair& pair, const Frequencies& f, double time) {
+  const Rotation r(f, time);
+  const State lo = state_at(pair.lo, f, r), hi = state_at(pair.hi, f, r);
+  return {hi.position - lo.position, hi.velocity - lo.velocity};
+}
+
+// The time where a condition that holds at a ends, between a and b.
+template<class Condition> double bisect(double a, double b, const Condition& holds) {
+  for (int k = 0; k < 60; ++k) {
+    const double middle = 0.5 * (a + b);
+    (holds(middle) ? a : b) = middle;
+  }
+  return b;
+}
+
+} // namespace
+
+PairSet PairSet::of(Particles particles, const ShearingBox& box, double offset, const CollisionSettings& settings,
+                    const Frequencies& frequencies, double step, bool every_candidate) {
+  const std::vector<Body> before = particles.bodies;
+  DriftPhase drift(settings, frequencies, 1.0, step);
+  Recorder recorder;
+  drift.watch = &recorder;
+  drift.every_candidate = every_candidate;
+  CollisionTally tally;
+  drift.collide(particles, box, offset, tally);
+  PairSet set(*recorder.step);
+  set.bodies = before;
+  set.queries = std::move(recorder.queries);
+  return set;
+}
+
+DriftStep PairSet::view() const {
+  DriftStep step = step_;
+  step.bodies = bodies;
+  step.tested = false; // they may have been changed
+  return step;
+}
+
+double ns_per_call(const PairSet& pairs, Finder& finder, double least_seconds) {
+  if (pairs.queries.empty())
+    return 0.0;
+  const DriftStep step = pairs.view();
+  finder.begin(step);
+  double seconds = 0.0, used = 0.0; // `used` keeps the compiler from leaving calls out
+  std::size_t calls = 0;
+  while (seconds < least_seconds) {
+    const double start = cpu_seconds();
+    for (const Query& query : pairs.queries)
+      used += finder.find(query).time;
+    seconds += cpu_seconds() - start;
+    calls += pairs.queries.size();
+  }
+  return used == std::numeric_limits<double>::infinity() ? 0.0 : 1e9 * seconds / static_cast<double>(calls);
+}
+
+ScanResult dense_scan(const Pair& pair, const Frequencies& f) {
+  constexpr int points = 512;
+  const auto approaching = [&](double t) { return separation(pair, f, t).closing() < 0.0; };
+  const auto apart = [&](double t) { return separation(pair, f, t).gap(pair.reach) > 0.0; };
+  ScanResult result;
+  result.closest = std::numeric_limits<double>::infinity();
+  double before = pair.start;
+  Separation last = separation(pair, f, before);
+  for (int k = 1; k <= points; ++k) {
+    const double now = pair.start + (pair.end - pair.start) * k / points;
+    const Separation here = separation(pair, f, now);
+    if (last.closing() < 0.0) {
+      const double deepest = here.closing() < 0.0 ? now : bisect(before, now, approaching);
+      const Separation there = separation(pair, f, deepest);
+      result.closest = std::min(result.closest, there.d.norm() / pair.reach - 1.0);
+      if (there.gap(pair.reach) <= 0.0) {
+        result.contact = true;
+        result.time = last.gap(pair.reach) > 0.0 ? bisect(before, deepest, apart) : before;
+        return result;
+      }
+    }
+    before = now;
+    last = here;
+  }
+  return result;
+}
+
+} // namespace keeler

@@ -1,0 +1,89 @@
+#include <keeler/files/descriptor.hpp>
+
+#include <keeler/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <utility>
+
+namespace keeler {
+namespace {
+
+[[noreturn]] void fail(const char* verb, const std::filesystem::path& file) {
+  throw IoError(fmt::format("cannot {} '{}': {}", verb, file.string(), std::strerror(errno)));
+}
+
+// Repeats a system call that a signal interrupted.
+template<class Call> auto retried(const Call& call) {
+  auto result = call();
+  while (result < 0 && errno == EINTR)
+    result = call();
+  return result;
+}
+
+// Linux moves at most 2 GiB a call.
+constexpr std::size_t largest_transfer = std::size_t{1} << 30;
+
+} // namespace
+
+Descriptor::Descriptor(const std::filesystem::path& file, int flags) : file_(file) {
+  number_ = retried([&] { return ::open(file.c_str(), flags | O_CLOEXEC, 0666); });
+  if (number_ < 0)
+    fail((flags & O_ACCMODE) == O_RDONLY ? "open" : "open for writing", file);
+}
+
+Descriptor::~Descriptor() {
+  if (number_ >= 0)
+    ::close(number_);
+}
+
+Descriptor::Descriptor(Descriptor&& other) noexcept
+    : file_(std::move(other.file_)), number_(std::exchange(other.number_, -1)) {}
+
+Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
+  std::swap(file_, other.file_);
+  std::swap(number_, other.number_);
+  return *this;
+}
+
+void Descriptor::write_all(std::span<const std::byte> content) {
+  while (!content.empty()) {
+    const std::size_t length = std::min(content.size(), largest_transfer);
+    const ssize_t written = retried([&] { return ::write(number_, content.data(), length); });
+    if (written < 0)
+      fail("write", file_);
+    content = content.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+std::size_t Descriptor::size() const {
+  struct stat status = {};
+  if (::fstat(number_, &status) != 0)
+    fail("read", file_);
+  return static_cast<std::size_t>(status.st_size);
+}
+
+void Descriptor::truncate(std::size_t size) {
+  if (retried([&] { return ::ftruncate(number_, static_cast<off_t>(size)); }) != 0)
+    fail("cut", file_);
+}
+
+void Descriptor::sync() {
+  // EINVAL and ENOTSUP: a file system that has nothing to force, as some network ones for directories
+  if (retried([&] { return ::fsync(number_); }) != 0 && errno != EINVAL && errno != ENOTSUP)
+    fail("force to disk", file_);
+}
+
+void Descriptor::close() {
+  // not retried: Linux has closed the descriptor even when it reports EINTR
+  if (::close(std::exchange(number_, -1)) != 0 && errno != EINTR)
+    fail("close", file_);
+}
+
+} // namespace keeler

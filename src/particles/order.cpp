@@ -1,0 +1,32 @@
+#include <keeler/particles/order.hpp>
+
+#include <keeler/core/counting_sort.hpp>
+
+#include <algorithm>
+
+namespace keeler {
+
+// A counting sort into bins of ids, as many as particles at most; then each bin by itself. Ids usually follow each
+// other without gaps, so that each has a bin of its own.
+std::vector<std::uint32_t> order_by_id(std::span<const std::uint64_t> ids) {
+  std::vector<std::uint32_t> order(ids.size()), bin_of(ids.size()), starts;
+  if (ids.empty())
+    return order;
+  const auto [least, most] = std::minmax_element(ids.begin(), ids.end());
+  const std::uint64_t range = *most - *least;
+  int shift = 0;
+  while (range >> shift >= 2 * ids.size())
+    ++shift;
+  parallel_for(ids.size(), [&](std::size_t k) { bin_of[k] = static_cast<std::uint32_t>((ids[k] - *least) >> shift); });
+  const std::size_t bins = static_cast<std::size_t>(range >> shift) + 1;
+  counting_sort(bin_of, bins, starts,
+                [&](std::size_t k, std::size_t place) { order[place] = static_cast<std::uint32_t>(k); });
+  if (shift > 0)
+    parallel_for(bins, [&](std::size_t b) {
+      std::sort(order.begin() + starts[b], order.begin() + starts[b + 1],
+                [&](std::uint32_t i, std::uint32_t j) { return ids[i] < ids[j]; });
+    });
+  return order;
+}
+
+} // namespace keeler

@@ -1,0 +1,52 @@
+#include <keeler/report/gnuplot.hpp>
+
+#include <keeler/core/error.hpp>
+#include <keeler/files/files.hpp>
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace keeler {
+namespace {
+
+constexpr int not_found = 127; // as a shell says it
+
+int run_in(const std::filesystem::path& folder, const std::string& preamble, const std::string& script) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+  std::string program = "gnuplot", option = "-e", first = preamble, file = script;
+  const std::array<char*, 5> arguments = {program.data(), option.data(), first.data(), file.data(), nullptr};
+  pid_t process = 0;
+  const int failure = posix_spawnp(&process, "gnuplot", &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failure != 0)
+    return not_found;
+  int status = 0;
+  waitpid(process, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+}
+
+} // namespace
+
+bool plot(const std::filesystem::path& folder, const std::string& name, const std::string& script, int width,
+          int height) {
+  write_text(folder / (name + ".gp"), script);
+  const std::string png = fmt::format("set terminal pngcairo size {},{} font 'DejaVu Sans,11'", width, height);
+  const std::string svg = fmt::format("set terminal svg size {},{} font 'DejaVu Sans,11'", width, height);
+  for (const auto& [terminal, ending] : {std::pair(png, "png"), std::pair(svg, "svg")}) {
+    const int code = run_in(folder, fmt::format("{}; set output '{}.{}'", terminal, name, ending), name + ".gp");
+    if (code == not_found)
+      return false;
+    if (code != 0)
+      throw IoError(fmt::format("gnuplot failed on '{}'; run it there to see why", (folder / (name + ".gp")).string()));
+  }
+  return true;
+}
+
+} // namespace keeler

@@ -1,0 +1,47 @@
+#include <keeler/report/scatter.hpp>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace keeler {
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+// |t| is smaller in 95 % of all cases, by degrees of freedom, from one; beyond the table a little too large.
+constexpr std::array<double, 20> student_95 = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228,
+                                               2.201,  2.179, 2.160, 2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086};
+
+} // namespace
+
+Scatter scatter_of(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  Scatter s{values.size(), unknown, unknown};
+  if (values.empty())
+    return s;
+  s.mean = 0.0;
+  for (const double value : values)
+    s.mean += value / n;
+  if (values.size() < 2)
+    return s;
+  double squares = 0.0;
+  for (const double value : values)
+    squares += (value - s.mean) * (value - s.mean);
+  s.deviation = std::sqrt(squares / (n - 1.0));
+  return s;
+}
+
+MeanDifference mean_difference(const Scatter& first, const Scatter& second) {
+  MeanDifference d{second.mean - first.mean, unknown};
+  if (first.count < 2 || second.count < 2)
+    return d;
+  const double n = static_cast<double>(first.count), m = static_cast<double>(second.count);
+  const double variance =
+      ((n - 1.0) * first.deviation * first.deviation + (m - 1.0) * second.deviation * second.deviation) / (n + m - 2.0);
+  const double t = student_95[std::min(first.count + second.count - 2, student_95.size()) - 1];
+  d.bound = t * std::sqrt(variance * (1.0 / n + 1.0 / m));
+  return d;
+}
+
+} // namespace keeler

@@ -1,0 +1,83 @@
+#include "audit.hpp"
+
+#include <keeler/collision/finders.hpp>
+#include <keeler/collision/motion/relative.hpp>
+
+namespace keeler {
+namespace {
+
+constexpr double noticeable = 1e-6; // of the radius sum: two hundred times the published convergence, 1e-8 in d²
+
+// How deep inside each other the spheres of a query are at a time, in R; negative: apart.
+double depth(const Query& query, const DriftStep& step, double time) {
+  const Pair pair = pair_of(query, step);
+  return 1.0 - RelativeMotion(pair, step).at(time).d.norm() / pair.reach;
+}
+
+// The deepest between two times: a contact that was passed counts, though the spheres may be apart again. Sampled: what
+// lies between two of the times is a graze.
+double deepest(const Query& query, const DriftStep& step, double from, double to) {
+  constexpr int samples = 64;
+  double depth_so_far = depth(query, step, to);
+  for (int k = 0; k < samples && from < to; ++k)
+    depth_so_far = std::max(depth_so_far, depth(query, step, from + (to - from) * k / samples));
+  return depth_so_far;
+}
+
+bool same(const Query& a, const Query& b) {
+  return a.low == b.low && a.high == b.high && a.shift_x == b.shift_x && a.shift_y == b.shift_y;
+}
+
+} // namespace
+
+FinderAudit::FinderAudit() : certified_(make_finder("certified")) {}
+
+void FinderAudit::begins(const DriftStep& step) {
+  count_misordered();
+  step_ = &step;
+  certified_->begin(step);
+  found_.assign(step.bodies.size(), {});
+  true_.assign(step.bodies.size(), {});
+}
+
+void FinderAudit::searched(const Query& query, const FinderResult& result) {
+  verdict_.counts.add(result);
+  const FinderResult truth = certified_->find(query);
+  verdict_.true_hits += truth.contact();
+  if (truth.contact() && !result.contact())
+    ++verdict_.missed;
+  if (!result.contact())
+    return;
+  const double inside = depth(query, *step_, result.time);
+  if (!truth.contact() || inside < -noticeable) {
+    ++verdict_.false_hits;
+    return;
+  }
+  const double sunk = deepest(query, *step_, truth.time, result.time);
+  verdict_.late += sunk > std::max(depth(query, *step_, truth.time), 0.0) + noticeable;
+  verdict_.deepest = std::max(verdict_.deepest, sunk);
+  if (query.start == step_->begin) {
+    note_first(found_, query, result.time);
+    note_first(true_, query, truth.time);
+  }
+}
+
+void FinderAudit::note_first(std::vector<First>& firsts, const Query& query, double time) {
+  for (const std::uint32_t particle : {query.low, query.high})
+    if (time < firsts[particle].time)
+      firsts[particle] = {time, query};
+}
+
+void FinderAudit::count_misordered() {
+  for (std::size_t k = 0; k < found_.size(); ++k)
+    verdict_.misordered += found_[k].time < HUGE_VAL && !same(found_[k].with, true_[k].with);
+  found_.clear();
+  true_.clear();
+}
+
+FinderVerdict FinderAudit::verdict() {
+  count_misordered();
+  return verdict_;
+}
+
+} // namespace keeler

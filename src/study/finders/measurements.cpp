@@ -1,0 +1,331 @@
+#include "measurements.hpp"
+
+#include "audit.hpp"
+
+#include <keeler/bench/median.hpp>
+#include <keeler/bench/pair_set.hpp>
+#include <keeler/cells/overlap.hpp>
+#include <keeler/collision/finders.hpp>
+#include <keeler/collision/motion/relative.hpp>
+#include <keeler/collision/search/certified.hpp>
+#include <keeler/core/random.hpp>
+#include <keeler/core/stopwatch.hpp>
+#include <keeler/simulation/simulation.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+constexpr double least_seconds = 0.02; // of finder calls, for the time of one
+
+PairSet first_pairs(const StudyState& state, const Scene& scene, bool every_candidate) {
+  const Simulation simulation(scene, state.patch);
+  const SimulationState& s = simulation.state();
+  return PairSet::of(s.particles, s.box, s.epoch_offset(), scene.collisions, scene.planet.frequencies, s.step_length,
+                     every_candidate);
+}
+
+int steps_of(double step) {
+  return static_cast<int>(std::lround(study_orbits / step));
+}
+
+Json trimmed(const FinderCounts::Histogram& histogram) {
+  std::size_t length = histogram.size();
+  while (length > 0 && histogram[length - 1] == 0)
+    --length;
+  return Json(std::vector<std::uint64_t>(histogram.begin(), histogram.begin() + static_cast<std::ptrdiff_t>(length)));
+}
+
+Json exits_of(const FinderCounts& counts) {
+  Json exits = Json::object();
+  for (int k = 0; k < finder_exits; ++k) {
+    const FinderCounts::Calls& calls = counts.by_exit[static_cast<std::size_t>(k)];
+    if (calls.count > 0)
+      exits[name_of(static_cast<FinderExit>(k))] = {{"calls", calls.count},
+                                                    {"iterations", trimmed(calls.by_iterations)},
+                                                    {"evaluations", trimmed(calls.by_evaluations)}};
+  }
+  return exits;
+}
+
+double run_seconds(Simulation& simulation, double step) {
+  const double start = cpu_seconds();
+  for (int k = steps_of(step); k > 0; --k)
+    simulation.advance();
+  return cpu_seconds() - start;
+}
+
+double run_seconds(const StudyState& state, const Scene& scene, bool every_candidate) {
+  Simulation simulation(scene, state.patch);
+  simulation.drift().every_candidate = every_candidate;
+  return run_seconds(simulation, scene.time.step);
+}
+
+// The certified finder's motion without the rejection that spares most calls the search.
+struct UnrejectedMotion : BoundedMotion {
+  using BoundedMotion::BoundedMotion;
+  static bool surely_apart(const Query&, const Body&, const Body&, const DriftStep&) { return false; }
+};
+
+// A finder whose answers are kept in the order of the calls. A watch would see them in another order than a run
+// without one makes them in.
+class TapeRecorder final : public Finder {
+public:
+  TapeRecorder(std::unique_ptr<Finder> finder, std::vector<FinderResult>& answers)
+      : finder_(std::move(finder)), answers_(answers) {}
+  void begin(const DriftStep& step) override { finder_->begin(step); }
+  void changed(std::size_t particle) override { finder_->changed(particle); }
+  FinderResult find(const Query& query) const override {
+    answers_.push_back(finder_->find(query));
+    return answers_.back();
+  }
+  std::size_t bytes_per_particle() const override { return finder_->bytes_per_particle(); }
+
+private:
+  std::unique_ptr<Finder> finder_;
+  std::vector<FinderResult>& answers_;
+};
+
+// Gives recorded answers again, for a run of the same calls: what such a run costs is everything but the finder.
+class Tape final : public Finder {
+public:
+  explicit Tape(const std::vector<FinderResult>& answers) : answers_(answers) {}
+  void begin(const DriftStep&) override {}
+  void changed(std::size_t) override {}
+  FinderResult find(const Query&) const override { return answers_.at(next_++); }
+  std::size_t bytes_per_particle() const override { return 0; }
+
+private:
+  const std::vector<FinderResult>& answers_;
+  mutable std::size_t next_ = 0;
+};
+
+// Every finder on the same pairs, in turn, several times: medians of the time of a call.
+Json times_per_call(const PairSet& pairs, int repeats) {
+  std::vector<std::unique_ptr<Finder>> finders;
+  for (const FinderEntry& entry : finder_table())
+    finders.push_back(entry.make());
+  std::vector<std::vector<double>> times(finders.size());
+  for (int repeat = 0; repeat < repeats; ++repeat)
+    for (std::size_t k = 0; k < finders.size(); ++k)
+      times[k].push_back(ns_per_call(pairs, *finders[k], least_seconds));
+  Json json;
+  for (std::size_t k = 0; k < finders.size(); ++k)
+    json[finder_table()[k].name] = median(times[k]);
+  return json;
+}
+
+FinderVerdict verdict_on(const PairSet& pairs, Finder& finder) {
+  const DriftStep step = pairs.view();
+  finder.begin(step);
+  FinderAudit audit;
+  audit.begins(step);
+  for (const Query& query : pairs.queries)
+    audit.searched(query, finder.find(query));
+  return audit.verdict();
+}
+
+// Leaves out pairs that are in contact when their search begins: their contact would have been carried out before.
+void drop_overlapping(PairSet& pairs) {
+  const DriftStep step = pairs.view();
+  const auto overlapping = [&](const Query& query) {
+    const Pair pair = pair_of(query, step);
+    return RelativeMotion(pair, step).at(query.start).gap(pair.reach) <= 0.0;
+  };
+  pairs.queries.erase(std::remove_if(pairs.queries.begin(), pairs.queries.end(), overlapping), pairs.queries.end());
+}
+
+// Gives a share of the particles a small velocity change at a time of its own within the step.
+void move_some(PairSet& pairs, double share, double kick_speed) {
+  const DriftStep step = pairs.view();
+  std::vector<double> changed(pairs.bodies.size(), step.begin);
+  for (std::size_t k = 0; k < pairs.bodies.size(); ++k) {
+    RandomStream random(1, RandomPurpose::relaxation, k);
+    if (random.uniform() >= share)
+      continue;
+    changed[k] = step.begin + (step.end - step.begin) * random.uniform();
+    const Vec3 dv = kick_speed * Vec3(random.normal(), random.normal(), random.normal());
+    kick(pairs.bodies[k].elements, dv, step.frequencies, Rotation(step.frequencies, changed[k]));
+  }
+  for (Query& query : pairs.queries)
+    query.start = std::max(changed[query.low], changed[query.high]);
+  drop_overlapping(pairs);
+}
+
+} // namespace
+
+std::vector<std::string> shown_finders() {
+  std::vector<std::string> names = paper_finders;
+  names.emplace_back("certified");
+  return names;
+}
+
+std::vector<std::string> all_finders() {
+  std::vector<std::string> names;
+  for (const FinderEntry& entry : finder_table())
+    names.emplace_back(entry.name);
+  return names;
+}
+
+Json timed_run(const StudyState& state, double step, const std::string& finder) {
+  const Scene scene = state.timed(step, finder);
+  const PairSet pairs = first_pairs(state, scene, true);
+  const double call = ns_per_call(pairs, *make_finder(finder), least_seconds);
+  return {{"cpu_s", run_seconds(state, scene, true)}, {"ns_per_call", call}};
+}
+
+Json audited_run(const StudyState& state, double step, const std::string& finder) {
+  Simulation simulation(state.timed(step, finder), state.patch);
+  simulation.drift().every_candidate = true;
+  FinderAudit audit;
+  simulation.drift().watch = &audit;
+  for (int k = steps_of(step); k > 0; --k)
+    simulation.advance();
+  const FinderVerdict verdict = audit.verdict();
+  const CollisionTally& tally = simulation.state().collisions;
+  return {{"calls", verdict.calls()},
+          {"hits", verdict.hits()},
+          {"true_hits", verdict.true_hits},
+          {"missed", verdict.missed},
+          {"false_hits", verdict.false_hits},
+          {"late", verdict.late},
+          {"misordered", verdict.misordered},
+          {"evaluations", verdict.counts.total().evaluations},
+          {"iterations", verdict.counts.total().iterations},
+          {"halvings", verdict.counts.total().halvings},
+          {"collisions", tally.fast + tally.slow},
+          {"deepest", verdict.deepest},
+          {"largest_overlap", largest_overlap(simulation.patch()).depth},
+          {"bytes_per_particle", simulation.drift().finder().bytes_per_particle()},
+          {"exits", exits_of(verdict.counts)}};
+}
+
+Json finder_share(const StudyState& state, double step, const std::string& finder, int repeats) {
+  const Scene scene = state.timed(step, finder);
+  std::vector<FinderResult> answers;
+  {
+    Simulation simulation(scene, state.patch);
+    simulation.drift().every_candidate = true;
+    simulation.drift().use(std::make_unique<TapeRecorder>(make_finder(finder), answers));
+    run_seconds(simulation, step);
+  }
+  std::vector<double> with, without;
+  for (int repeat = 0; repeat < repeats; ++repeat) {
+    with.push_back(run_seconds(state, scene, true));
+    Simulation simulation(scene, state.patch);
+    simulation.drift().every_candidate = true;
+    simulation.drift().use(std::make_unique<Tape>(answers));
+    without.push_back(run_seconds(simulation, step));
+  }
+  return {{"cpu_s", median(with)}, {"cpu_s_without_finder", median(without)}};
+}
+
+Json call_details(const StudyState& state, double step, int repeats) {
+  const PairSet pairs = first_pairs(state, state.timed(step, "certified"), true);
+  const DriftStep view = pairs.view();
+  Json begin;
+  for (const FinderEntry& entry : finder_table()) {
+    const std::unique_ptr<Finder> finder = entry.make();
+    if (finder->bytes_per_particle() == 0)
+      continue;
+    constexpr int rounds = 20;
+    std::vector<double> times;
+    for (int repeat = 0; repeat < repeats; ++repeat) {
+      const double start = cpu_seconds();
+      for (int round = 0; round < rounds; ++round)
+        finder->begin(view);
+      times.push_back(1e9 * (cpu_seconds() - start) / (rounds * static_cast<double>(pairs.bodies.size())));
+    }
+    begin[entry.name] = median(times);
+  }
+  std::vector<double> alone;
+  MotionSearch<UnrejectedMotion, CertifiedSearch> search;
+  for (int repeat = 0; repeat < repeats; ++repeat)
+    alone.push_back(ns_per_call(pairs, search, least_seconds));
+  return {{"begin_ns_per_particle", begin}, {"certified_search_alone_ns_per_call", median(alone)}};
+}
+
+Json scan_check(const StudyState& state, double step) {
+  const PairSet pairs = first_pairs(state, state.timed(step, "certified"), true);
+  const DriftStep view = pairs.view();
+  const std::unique_ptr<Finder> certified = make_finder("certified");
+  certified->begin(view);
+  std::uint64_t contacts = 0, only_scan = 0, only_certified = 0, other_time = 0;
+  for (const Query& query : pairs.queries) {
+    const FinderResult truth = certified->find(query);
+    const ScanResult scan = dense_scan(pair_of(query, view), view.frequencies);
+    contacts += truth.contact();
+    only_scan += scan.contact && !truth.contact();
+    only_certified += truth.contact() && !scan.contact;
+    other_time += truth.contact() && scan.contact && std::fabs(truth.time - scan.time) > 1e-6 * (view.end - view.begin);
+  }
+  return {{"pairs", pairs.queries.size()},
+          {"contacts", contacts},
+          {"only_scan", only_scan},
+          {"only_certified", only_certified},
+          {"other_time", other_time}};
+}
+
+Json rejection(const StudyState& state, double step, int repeats) {
+  const Scene plain = state.timed(step, "certified");
+  const PairSet all = first_pairs(state, plain, true), left = first_pairs(state, plain, false);
+  const std::vector<std::string> finders = all_finders();
+  std::vector<std::vector<double>> before(finders.size()), after(finders.size());
+  for (int repeat = 0; repeat < repeats; ++repeat)
+    for (std::size_t k = 0; k < finders.size(); ++k) {
+      before[k].push_back(run_seconds(state, state.timed(step, finders[k]), true));
+      after[k].push_back(run_seconds(state, state.timed(step, finders[k]), false));
+    }
+  Json times_before, times_after;
+  for (std::size_t k = 0; k < finders.size(); ++k) {
+    times_before[finders[k]] = median(before[k]);
+    times_after[finders[k]] = median(after[k]);
+  }
+  const std::unique_ptr<Finder> certified = make_finder("certified");
+  return {{"candidates", all.queries.size()},
+          {"left", left.queries.size()},
+          {"contacts", verdict_on(left, *certified).true_hits},
+          {"cpu_s_every_candidate", times_before},
+          {"cpu_s_after_rejection", times_after},
+          {"ns_per_call_after_rejection", times_per_call(left, repeats)}};
+}
+
+Json local_times(const StudyState& state, double step, double share, int repeats) {
+  PairSet pairs = first_pairs(state, state.timed(step, "certified"), true);
+  double mean_radius = 0.0;
+  for (const Body& body : pairs.bodies)
+    mean_radius += body.radius / static_cast<double>(pairs.bodies.size());
+  move_some(pairs, share, 0.2 * mean_radius);
+  Json missed, false_hits, late, evaluations;
+  std::uint64_t true_hits = 0;
+  for (const std::string& name : all_finders()) {
+    const FinderVerdict verdict = verdict_on(pairs, *make_finder(name));
+    true_hits = verdict.true_hits;
+    missed[name] = verdict.missed;
+    false_hits[name] = verdict.false_hits;
+    late[name] = verdict.late;
+    evaluations[name] =
+        static_cast<double>(verdict.counts.total().evaluations) / static_cast<double>(pairs.queries.size());
+  }
+  return {{"calls", pairs.queries.size()},
+          {"true_hits", true_hits},
+          {"missed", missed},
+          {"false_hits", false_hits},
+          {"late", late},
+          {"evaluations_per_call", evaluations},
+          {"ns_per_call", times_per_call(pairs, repeats)}};
+}
+
+Json drift_of_means(const PerturbedRing& ring, const std::string& path) {
+  Json rows = Json::array();
+  for (const DriftRow& row : perturbed_ring_drift(ring, path).rows)
+    rows.push_back({{"orbits", row.orbits},
+                    {"mean_guiding_x_r", row.mean_guiding_x_r},
+                    {"mean_vertical_r", row.mean_vertical_r},
+                    {"collisions_per_particle", row.collisions_per_particle}});
+  return {{"path", path}, {"step_orbits", ring.step_orbits}, {"rows", rows}};
+}
+
+} // namespace keeler

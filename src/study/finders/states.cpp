@@ -1,0 +1,145 @@
+#include "states.hpp"
+
+#include "job_list.hpp"
+
+#include <keeler/core/units.hpp>
+#include <keeler/files/files.hpp>
+#include <keeler/io/snapshot.hpp>
+#include <keeler/scene/derived.hpp>
+#include <keeler/simulation/simulation.hpp>
+#include <keeler/states/clumped.hpp>
+#include <keeler/states/initial.hpp>
+
+#include <fmt/format.h>
+
+namespace keeler {
+namespace {
+
+constexpr double early_orbits = 0.25;  // long enough for the start's own features to go, too short for clumps
+constexpr double clumped_orbits = 3.0; // in a box below four λ_cr, which holds too few wakes to settle
+
+struct Recipe {
+  const char* name;
+  SizeLaw sizes;
+  const char* table; // of the scene: the same sizes
+  double optical_depth;
+  double dispersion; // c_x in ⟨r⟩ Ω at the start
+};
+
+// Both make λ_cr 61–62 m: four wavelengths and more in a box of 10⁴ equal particles or 5000 of the power law.
+const Recipe recipes[] = {
+    {"equal", equal_sizes(1.0), "{ law = \"equal\", radius = 1.0 }", 0.5, 3.5},
+    {"power", power_sizes(2.9, 0.5, 5.0), "{ law = \"power\", exponent = 2.9, min = 0.5, max = 5.0 }", 0.25, 3.7}};
+
+Scene scene_of(const Recipe& r, std::size_t count) {
+  const double size = std::sqrt(static_cast<double>(count) * pi * r.sizes.mean_power(2) / r.optical_depth);
+  return parse_scene(fmt::format(R"(
+title = "The finders' study, {0} sizes"
+[planet]
+preset = "saturn-a-ring"
+[box]
+size = [{1}, {1}]
+[particles]
+count = {2}
+density = 600.0
+sizes = {3}
+velocity_dispersion = {4}
+[collisions]
+restitution = {{ law = "bridges", scale = 0.34 }}
+[gravity]
+solver = "tree"
+opening_angle = 0.6
+[time]
+step = 1e-3
+end = 1.0
+)",
+                                 r.name, size, count, r.table, r.dispersion),
+                     "study");
+}
+
+struct Made {
+  Patch patch;
+  std::string how;
+};
+
+std::optional<Made> evolve(const Scene& scene, double orbits, const std::atomic<bool>& stop) {
+  Simulation simulation(scene, initial_patch(scene));
+  const long steps = std::lround(orbits / scene.time.step);
+  for (long k = 0; k < steps; ++k) {
+    if (stop)
+      return std::nullopt;
+    simulation.advance();
+  }
+  const TimeSplit& split = simulation.time_split();
+  const double passes = 1e-9 * static_cast<double>(steps * static_cast<long>(scene.particles.count));
+  return Made{simulation.patch(),
+              fmt::format("{} particles, {} orbits with self-gravity from a uniform start (wall time per particle and "
+                          "step: gravity {:.0f} ns, drift {:.0f} ns)",
+                          scene.particles.count, orbits, split.force("gravity") / passes, split.drift / passes)};
+}
+
+std::optional<Made> settle(const Scene& scene, const std::function<void(const std::string&)>& say,
+                           const std::atomic<bool>& stop) {
+  double next = 0.0;
+  const auto progress = [&](const ClumpingProgress& p) {
+    if (p.orbits < next)
+      return;
+    say(fmt::format("clumping: {:.2f} orbits, autocorrelation amplitude {:.3f}", p.orbits, p.amplitude));
+    next = p.orbits + 0.5;
+  };
+  const std::optional<ClumpedState> state = clumped_state(scene, progress, stop);
+  if (!state)
+    return std::nullopt;
+  const Settling& s = state->clumping.settling;
+  return Made{
+      state->patch,
+      fmt::format("{} particles, {:.3g} orbits with self-gravity, until the mean autocorrelation amplitude of an "
+                  "orbit settled ({:.3g}, {:.0f} % from the orbit before)",
+                  scene.particles.count, state->clumping.orbits, s.amplitude, 100.0 * s.change)};
+}
+
+std::optional<Made> make(const Scene& scene, bool clumped, const std::function<void(const std::string&)>& say,
+                         const std::atomic<bool>& stop) {
+  const double wavelength = critical_wavelength(scene.surface_density(), scene.planet);
+  if (clumped && scene.size_x >= 4.0 * wavelength)
+    return settle(scene, say, stop);
+  return evolve(scene, clumped ? clumped_orbits : early_orbits, stop);
+}
+
+} // namespace
+
+Scene StudyState::timed(double step_orbits, const std::string& finder) const {
+  Scene timed_scene = scene;
+  timed_scene.gravity.reset();
+  timed_scene.time.step = step_orbits;
+  timed_scene.collisions.finder = finder;
+  return timed_scene;
+}
+
+std::optional<std::vector<StudyState>> study_states(const std::filesystem::path& folder, std::size_t count,
+                                                    const std::function<void(const std::string&)>& say,
+                                                    const std::atomic<bool>& stop) {
+  std::filesystem::create_directories(folder);
+  std::vector<StudyState> states;
+  for (const Recipe& recipe : recipes)
+    for (const bool clumped : {false, true}) {
+      StudyState state;
+      state.name = fmt::format("{}-{}", recipe.name, clumped ? "clumped" : "early");
+      state.scene = scene_of(recipe, recipe.sizes.smallest == recipe.sizes.largest ? count : count / 2);
+      const std::filesystem::path file = folder / (state.name + ".hdf"), note = folder / (state.name + ".txt");
+      if (!std::filesystem::exists(note) || !std::filesystem::exists(file)) {
+        say(fmt::format("making the state {}", state.name));
+        const std::optional<Made> made = make(state.scene, clumped, say, stop);
+        if (!made)
+          return std::nullopt;
+        write_snapshot(file, made->patch, {state.scene.resolved, collect_provenance({}), {}});
+        write_text(note, made->how); // last: a state is complete when it has its note
+      }
+      state.patch = read_snapshot(file).patch;
+      state.made = read_text(note);
+      states.push_back(std::move(state));
+    }
+  return states;
+}
+
+} // namespace keeler

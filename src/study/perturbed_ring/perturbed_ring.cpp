@@ -1,0 +1,198 @@
+#include "perturbed_ring.hpp"
+
+#include "straight_drift.hpp"
+
+#include <keeler/collision/drift.hpp>
+#include <keeler/core/units.hpp>
+#include <keeler/states/uniform.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <optional>
+
+namespace keeler {
+namespace {
+
+constexpr Frequencies frequencies{1.0, 1.0};
+constexpr double orbital_frequency = 1.95e-4; // rad/s; a constant restitution does not see it
+
+struct Ring {
+  Particles particles;
+  ShearingBox box;
+  Streamlines streamlines;
+};
+
+Ring make_ring(const PerturbedRing& settings, double step) {
+  const double side = std::sqrt(pi * static_cast<double>(settings.count) / settings.optical_depth);
+  UniformRequest request;
+  request.box = {side, side, frequencies.shear(), 0.0};
+  request.frequencies = frequencies;
+  request.radii.assign(settings.count, 1.0);
+  request.dispersion_x = settings.dispersion;
+  request.dispersion_z = 0.65 * settings.dispersion; // as in equilibria without self-gravity
+  request.streamlines = Streamlines::bunched(settings.waves, side, settings.bunching);
+  request.streamlines.inclination = settings.inclination;
+  request.seed = settings.seed;
+  return {particles_from(uniform_patch(request), 0.5 * step), request.box, request.streamlines};
+}
+
+// The pattern's amplitude: the mean of the eccentricity vectors, each turned back by its phase Ωt + kX at the epoch.
+std::complex<double> pattern_amplitude(const Ring& ring, double epoch) {
+  std::complex<double> sum = 0.0;
+  for (const Body& body : ring.particles.bodies)
+    sum += std::complex(body.elements.e_cos, body.elements.e_sin) *
+           std::polar(1.0, -(epoch + ring.streamlines.wave_number * body.elements.guiding_x));
+  return sum / static_cast<double>(ring.particles.size());
+}
+
+// A radial impulse 2 Im(m exp i(Ωt + kX)) brings what is missing, m, back to the mean pattern: half of it works on the
+// pattern, the other half turns against it and comes to nothing in the mean over X.
+void drive(Ring& ring, double epoch, double step) {
+  const std::complex<double> missing = ring.streamlines.eccentricity - pattern_amplitude(ring, epoch);
+  const Rotation start(frequencies, -0.5 * step);
+  for (Body& body : ring.particles.bodies) {
+    const double phase = epoch - 0.5 * step + ring.streamlines.wave_number * body.elements.guiding_x;
+    const double impulse = 2.0 * std::imag(missing * std::polar(1.0, phase));
+    kick(body.elements, Vec3(impulse, 0.0, 0.0), frequencies, start);
+  }
+}
+
+// At each collision as it happens, how far a straight line from the start of the step, or from the particle's collision
+// before, would have led beside the orbit. A displacement δx changes X by 4 δx, δz the height by itself.
+class StraightForecast final : public DriftWatch {
+public:
+  double epoch = 0.0; // of the step at hand, rad since the start
+  double guiding_x = 0.0, vertical = 0.0;
+
+  void begins(const DriftStep& step) override {
+    bodies_ = step.bodies;
+    orbits_.resize(bodies_.size());
+    since_.assign(bodies_.size(), step.begin);
+    for (std::size_t k = 0; k < bodies_.size(); ++k)
+      orbits_[k] = bodies_[k].elements;
+  }
+
+  void collided(const CollisionRecord& record) override { time_ = record.time; }
+
+  void changed(std::size_t k) override {
+    const State first = state_at(orbits_[k], frequencies, Rotation(frequencies, since_[k]));
+    const State now = state_at(orbits_[k], frequencies, Rotation(frequencies, time_));
+    const Vec3 beside = first.position + (time_ - since_[k]) * first.velocity - now.position;
+    guiding_x += 4.0 * beside.x();
+    vertical += beside.z() * std::sin(epoch + time_);
+    orbits_[k] = bodies_[k].elements;
+    since_[k] = time_;
+  }
+
+private:
+  std::span<const Body> bodies_;
+  std::vector<Elements> orbits_;
+  std::vector<double> since_;
+  double time_ = 0.0;
+};
+
+// Either kind of path; the other part stays empty.
+class Mover {
+public:
+  Mover(const PerturbedRing& ring, const std::string& path, double step) {
+    CollisionSettings settings;
+    settings.restitution = constant_restitution(ring.restitution);
+    if (path == straight_path || path == control_path) {
+      straight_.emplace(settings, frequencies, orbital_frequency, step);
+      return;
+    }
+    settings.finder = path;
+    curved_.emplace(settings, frequencies, orbital_frequency, step);
+    curved_->watch = &forecast;
+  }
+
+  void collide(Ring& ring, double offset, double epoch) {
+    if (straight_) {
+      collisions_ += straight_->collide(ring.particles, ring.box, offset);
+      return;
+    }
+    forecast.epoch = epoch;
+    curved_->collide(ring.particles, ring.box, offset, tally_);
+  }
+
+  std::uint64_t collisions() const { return collisions_ + tally_.fast + tally_.slow; }
+
+  StraightForecast forecast;
+
+private:
+  std::optional<StraightDrift> straight_;
+  std::optional<DriftPhase> curved_;
+  std::uint64_t collisions_ = 0;
+  CollisionTally tally_;
+};
+
+// To the next epoch and back into the cell; returns by how many boxes inward guiding centres were wrapped, in all.
+std::int64_t move_on(Ring& ring, const Rebase& rebase, double offset) {
+  std::int64_t wraps = 0;
+  for (Body& body : ring.particles.bodies) {
+    rebase(body.elements);
+    const Image image = ring.box.image_into_cell(body.elements.guiding_x, body.elements.guiding_y, offset);
+    body.elements = ring.box.image_of(body.elements, image, offset);
+    wraps -= image.nx;
+  }
+  return wraps;
+}
+
+struct Means {
+  double guiding_x = 0.0, vertical = 0.0;
+};
+
+// The mean of X over the cell, and of the inclination vectors along sin ζ = sin Ωt, where all stood at first.
+Means means_of(const Ring& ring, double epoch) {
+  Means means;
+  for (const Body& body : ring.particles.bodies) {
+    means.guiding_x += body.elements.guiding_x;
+    means.vertical += body.elements.i_sin * std::sin(epoch) + body.elements.i_cos * std::cos(epoch);
+  }
+  const double count = static_cast<double>(ring.particles.size());
+  return {means.guiding_x / count, means.vertical / count};
+}
+
+} // namespace
+
+Drift perturbed_ring_drift(const PerturbedRing& request, const std::string& path) {
+  PerturbedRing settings = request;
+  if (path == control_path)
+    settings.bunching = settings.inclination = 0.0;
+  const double step = two_pi * settings.step_orbits, count = static_cast<double>(settings.count);
+  const auto steps = std::llround(settings.orbits / settings.step_orbits);
+  Ring ring = make_ring(settings, step);
+  Mover mover(settings, path, step);
+  const Rebase rebase(frequencies, step);
+  const Means first = means_of(ring, 0.5 * step);
+  Drift drift;
+  std::int64_t wraps = 0;
+  for (std::int64_t k = 1; k <= steps; ++k) {
+    const double epoch = (static_cast<double>(k) - 0.5) * step;
+    drive(ring, epoch, step);
+    mover.collide(ring, ring.box.offset(2 * k - 1, 0.5 * step), epoch);
+    wraps += move_on(ring, rebase, ring.box.offset(2 * k + 1, 0.5 * step));
+    if (k * settings.samples / steps == (k - 1) * settings.samples / steps)
+      continue;
+    const Means now = means_of(ring, epoch + step);
+    drift.rows.push_back({static_cast<double>(k) * settings.step_orbits, path, settings.step_orbits,
+                          now.guiding_x - first.guiding_x + static_cast<double>(wraps) * ring.box.size_x / count,
+                          now.vertical - first.vertical, 2.0 * static_cast<double>(mover.collisions()) / count});
+  }
+  drift.forecast_guiding_x_r = mover.forecast.guiding_x / count;
+  drift.forecast_vertical_r = mover.forecast.vertical / count;
+  return drift;
+}
+
+std::string drift_csv(const std::vector<DriftRow>& rows) {
+  std::string text = "orbits,path,step_orbits,mean_guiding_x_r,mean_vertical_r,collisions_per_particle\n";
+  for (const DriftRow& row : rows)
+    text += fmt::format("{:.9g},{},{:g},{:.9g},{:.9g},{:.9g}\n", row.orbits, row.path, row.step_orbits,
+                        row.mean_guiding_x_r, row.mean_vertical_r, row.collisions_per_particle);
+  return text;
+}
+
+} // namespace keeler

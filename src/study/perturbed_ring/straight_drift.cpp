@@ -1,0 +1,147 @@
+#include "straight_drift.hpp"
+
+#include <keeler/core/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+constexpr std::uint32_t most_collisions = 100000; // of one particle in one step
+constexpr double wider = 1.0 + 1e-9;              // windows must hold after their own rounding
+
+// How fast a line leaves the shear that holds at its mid-step place.
+double own_speed(const Vec3& mid_place, const Vec3& velocity, double shear) {
+  return (velocity + Vec3(0.0, shear * mid_place.x(), 0.0)).norm();
+}
+
+// The time after which two straight lines touch, approaching; infinite when they do not.
+double time_to_contact(const State& relative, double reach) {
+  const double slope = relative.position.dot(relative.velocity);
+  const double gap = relative.position.squaredNorm() - reach * reach;
+  const double discriminant = slope * slope - relative.velocity.squaredNorm() * gap;
+  if (slope >= 0.0 || discriminant < 0.0)
+    return HUGE_VAL;
+  return gap <= 0.0 ? 0.0 : gap / (-slope + std::sqrt(discriminant));
+}
+
+} // namespace
+
+StraightDrift::StraightDrift(const CollisionSettings& settings, const Frequencies& frequencies,
+                             double orbital_frequency, double step)
+    : settings_(settings), frequencies_(frequencies), orbital_frequency_(orbital_frequency), step_(step) {}
+
+std::uint64_t StraightDrift::collide(Particles& particles, const ShearingBox& box, double offset) {
+  particles_ = &particles;
+  box_ = box;
+  offset_ = offset;
+  prepare();
+  for (std::size_t i = 0; i < particles.size(); ++i)
+    visit_candidates(i, [&](std::size_t j, const Image& image) {
+      if (particles.ids[i] < particles.ids[j])
+        predict(i, j, image);
+    });
+  std::uint64_t collisions = 0;
+  while (!events_.empty()) {
+    const Event event = events_.take_first();
+    if (event.low_stamp == stamps_[event.low] && event.high_stamp == stamps_[event.high])
+      collisions += carry_out(event);
+  }
+  return collisions;
+}
+
+void StraightDrift::prepare() {
+  const std::size_t count = particles_->size();
+  lines_.resize(count);
+  binned_.resize(count);
+  stamps_.assign(count, 0);
+  events_.assign({});
+  largest_radius_ = largest_speed_ = largest_stray_ = 0.0;
+  const Rotation start(frequencies_, -0.5 * step_);
+  for (std::size_t k = 0; k < count; ++k) {
+    const State state = state_at(particles_->bodies[k].elements, frequencies_, start);
+    binned_[k] = state.position + 0.5 * step_ * state.velocity;
+    follow(k, state, -0.5 * step_);
+    largest_radius_ = std::max(largest_radius_, particles_->bodies[k].radius);
+  }
+  grid_.build(binned_, box_, offset_, 2.0 * largest_radius_ + step_ * largest_speed_);
+}
+
+// A new line for particle i; the windows of later searches cover where it leads.
+void StraightDrift::follow(std::size_t i, const State& state, double since) {
+  lines_[i] = {state.position, state.velocity, since};
+  const Vec3 mid_place = lines_[i].at(0.0);
+  largest_speed_ = std::max(largest_speed_, own_speed(mid_place, state.velocity, box_.shear));
+  largest_stray_ = std::max(largest_stray_, (mid_place - binned_[i]).cwiseAbs().maxCoeff());
+}
+
+// Calls visit(j, image) for every particle image whose line particle i could meet: seen from mid-step, coordinates
+// change by no more than the relative speed over half a step, the shear between the two included.
+template<class Visit> void StraightDrift::visit_candidates(std::size_t i, const Visit& visit) const {
+  const double half = 0.5 * step_;
+  const Vec3 place = lines_[i].at(0.0);
+  const double speed = own_speed(place, lines_[i].velocity, box_.shear) + largest_speed_;
+  const double contact = particles_->bodies[i].radius + largest_radius_;
+  const double reach_x = contact + half * speed;
+  const double reach_y = contact + half * (speed + box_.shear * reach_x);
+  const double stray = largest_stray_ + 1e-12 * (box_.size_x + box_.size_y);
+  grid_.visit_near(place, wider * reach_x + stray, wider * reach_y + stray, [&](std::size_t j, const Image& image) {
+    if (j != i)
+      visit(j, image);
+  });
+}
+
+// Where an image stands relative to its particle, and how it moves: columns slide past each other.
+State StraightDrift::image_state(const Image& image, double time) const {
+  const double slide = image.nx * box_.shear * box_.size_x;
+  return {box_.displacement(image, offset_) - Vec3(0.0, slide * time, 0.0), Vec3(0.0, -slide, 0.0)};
+}
+
+// `image` is that of particle j.
+void StraightDrift::predict(std::size_t i, std::size_t j, const Image& image) {
+  const bool ordered = particles_->ids[i] < particles_->ids[j];
+  const std::size_t low = ordered ? i : j, high = ordered ? j : i;
+  const Image of_high = ordered ? image : -image;
+  const Line &a = lines_[low], &b = lines_[high];
+  const double start = std::max(a.since, b.since);
+  const State shift = image_state(of_high, start);
+  const State relative{b.at(start) + shift.position - a.at(start), b.velocity + shift.velocity - a.velocity};
+  const double reach = particles_->bodies[low].radius + particles_->bodies[high].radius;
+  const double time = start + time_to_contact(relative, reach);
+  if (time < 0.5 * step_)
+    events_.add({time, particles_->ids[low], particles_->ids[high], of_high, static_cast<std::uint32_t>(low),
+                 static_cast<std::uint32_t>(high), stamps_[low], stamps_[high]});
+}
+
+// Places from the lines, velocities from the epicycles; the new epicycles pass through both.
+bool StraightDrift::carry_out(const Event& event) {
+  Body &a = particles_->bodies[event.low], &b = particles_->bodies[event.high];
+  const Rotation rotation(frequencies_, event.time);
+  State of_a{lines_[event.low].at(event.time), state_at(a.elements, frequencies_, rotation).velocity};
+  State of_b{lines_[event.high].at(event.time), state_at(b.elements, frequencies_, rotation).velocity};
+  const State shift = image_state(event.image, event.time);
+  const Vec3 normal = (of_b.position + shift.position - of_a.position).normalized();
+  const double speed = -(of_b.velocity + shift.velocity - of_a.velocity).dot(normal);
+  const Rebound after = rebound(settings_, speed, a.radius, b.radius, orbital_frequency_);
+  if (!(speed > -after.speed))
+    return false; // the lines approach but the particles do not
+  const Vec3 impulse = a.mass * b.mass / (a.mass + b.mass) * (speed + after.speed) * normal;
+  of_a.velocity -= impulse / a.mass;
+  of_b.velocity += impulse / b.mass;
+  a.elements = elements_from(of_a, frequencies_, rotation);
+  b.elements = elements_from(of_b, frequencies_, rotation);
+  follow(event.low, of_a, event.time);
+  follow(event.high, of_b, event.time);
+  if (++stamps_[event.low] > most_collisions || ++stamps_[event.high] > most_collisions)
+    throw InvariantError("a particle collided more than 100000 times in one step on straight lines");
+
+  visit_candidates(event.low, [&](std::size_t k, const Image& image) { predict(event.low, k, image); });
+  visit_candidates(event.high, [&](std::size_t k, const Image& image) {
+    if (k != event.low) // the pair itself, in all its images, has been searched
+      predict(event.high, k, image);
+  });
+  return true;
+}
+
+} // namespace keeler

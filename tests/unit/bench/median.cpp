@@ -1,0 +1,10 @@
+#include <keeler/bench/median.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace keeler;
+
+TEST_CASE("medians") {
+  CHECK(median({3.0, 1.0, 2.0}) == 2.0);
+  CHECK(median({4.0, 1.0, 2.0, 3.0}) == 2.5);
+}

@@ -1,0 +1,106 @@
+#include <keeler/bench/states.hpp>
+
+#include <keeler/cells/overlap.hpp>
+#include <keeler/core/error.hpp>
+#include <keeler/diagnostics/dispersion.hpp>
+#include <keeler/diagnostics/energy.hpp>
+#include <keeler/diagnostics/surface.hpp>
+#include <keeler/simulation/simulation.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <set>
+
+using namespace keeler;
+
+namespace {
+
+// Spheres in contact, moved by a thousand metres and back: places are rounded to 1e-13 m.
+constexpr double rounding = 1e-12;
+
+BenchState state_of(BenchSizes sizes, std::size_t count, double optical_depth) {
+  DriftBenchSettings settings;
+  settings.sizes = sizes;
+  settings.count = count;
+  settings.optical_depth = optical_depth;
+  PhaseProgress silent({});
+  return bench_state(settings, silent);
+}
+
+double random_energy(const Patch& patch) {
+  const PatchEnergy energy = patch_energy(patch);
+  return energy.horizontal + energy.vertical;
+}
+
+bool inside(const Patch& patch, std::size_t k) {
+  const Elements el = elements_from({patch.positions[k], patch.velocities[k]}, patch.frequencies, Rotation());
+  return patch.box.image_into_cell(el.guiding_x, el.guiding_y, patch.offset) == Image{};
+}
+
+} // namespace
+
+TEST_CASE("tiles fill a larger box, and go on filling it") {
+  BenchState state = state_of(BenchSizes::equal, 400, 0.5);
+  REQUIRE(state.patch.offset > 1.0); // else it tests nothing
+  for (const int side : {2, 3}) {
+    const Patch large = tiled(state.patch, side);
+    CHECK(large.size() == state.patch.size() * side * side);
+    CHECK(std::set<std::uint64_t>(large.ids.begin(), large.ids.end()).size() == large.size());
+    std::size_t outside = 0;
+    for (std::size_t k = 0; k < large.size(); ++k)
+      outside += !inside(large, k);
+    CHECK(outside == 0);
+    CHECK(largest_overlap(large).depth < rounding);
+    CHECK(optical_depth(large) == doctest::Approx(optical_depth(state.patch)).epsilon(1e-12));
+    CHECK(random_energy(large) == doctest::Approx(random_energy(state.patch)).epsilon(1e-12));
+
+    // Every copy of a particle meets its neighbours as the particle itself does, across the edges of tiles too.
+    Simulation one(state.scene, state.patch), many(state.scene, large);
+    for (int k = 0; k < 50; ++k) {
+      one.advance();
+      many.advance();
+    }
+    CHECK(one.state().collisions.fast > 20);
+    CHECK(many.state().collisions.fast == one.state().collisions.fast * static_cast<std::uint64_t>(side * side));
+    CHECK(random_energy(many.patch()) == doctest::Approx(random_energy(one.patch())).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("a large state is made of tiles") {
+  const Patch patch = state_of(BenchSizes::equal, 100050, 0.05).patch; // 2 × 2
+  CHECK(patch.size() == 100052);
+  CHECK(optical_depth(patch) == doctest::Approx(0.05).epsilon(1e-9));
+  CHECK(largest_overlap(patch).depth < rounding);
+}
+
+TEST_CASE("a moonlet takes the place of what it touches") {
+  const Patch before = state_of(BenchSizes::equal, 1000, 0.5).patch;
+  const Patch after = with_moonlet(before, 10.0);
+  CHECK(largest_overlap(after).depth < rounding);
+  CHECK(after.radii.back() == 10.0);
+  CHECK(after.masses.back() == doctest::Approx(1000.0 * after.masses.front()).epsilon(1e-12));
+  CHECK(std::find(after.ids.begin(), after.ids.end() - 1, after.ids.back()) == after.ids.end() - 1);
+  // its cross-section and a margin: between (R − H)² and (R + 3r)² of τ/r², where the layer is H = 2 r high
+  CHECK(before.size() - after.size() > 30);
+  CHECK(before.size() - after.size() < 85);
+}
+
+TEST_CASE("sizes of a bench") {
+  SUBCASE("a power law") {
+    const Patch patch = state_of(BenchSizes::power, 300, 0.1).patch;
+    CHECK(patch.size() == 300);
+    CHECK(*std::min_element(patch.radii.begin(), patch.radii.end()) < 1.01);
+    CHECK(*std::max_element(patch.radii.begin(), patch.radii.end()) > 17.0);
+    // ⟨r²⟩ of so small a sample hangs on its largest particle: a tenth at 50 m, 30 % at 90 m
+    CHECK(optical_depth(patch) == doctest::Approx(0.1).epsilon(0.3));
+    CHECK(largest_overlap(patch).depth < rounding);
+  }
+  SUBCASE("a moonlet") {
+    const Patch patch = state_of(BenchSizes::moonlet, 400, 0.02).patch;
+    CHECK(patch.radii.back() == 100.0);
+    CHECK(static_cast<double>(patch.size()) == doctest::Approx(400.0).epsilon(0.1)); // 200 ± 14 were in its place
+    CHECK(largest_overlap(patch).depth < rounding);
+    CHECK_THROWS_AS(state_of(BenchSizes::moonlet, 1000, 5.0), UsageError);
+  }
+}

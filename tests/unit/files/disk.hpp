@@ -1,0 +1,90 @@
+// Places to write to, and disks that fill up.
+#pragma once
+
+#include <keeler/files/files.hpp>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <sys/resource.h>
+#include <vector>
+
+namespace keeler::test {
+
+/// A new folder, removed with all that is in it.
+class TemporaryFolder {
+public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "keeler-test-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr)
+      throw std::runtime_error("cannot make a temporary folder");
+    path_ = name;
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  const std::filesystem::path& path() const { return path_; }
+  std::size_t file_count() const {
+    return static_cast<std::size_t>(
+        std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));
+  }
+
+private:
+  std::filesystem::path path_;
+};
+
+/// While it lives no file can grow beyond a size: to the writer that is a disk that becomes full (also for root).
+class SmallDisk {
+public:
+  explicit SmallDisk(std::size_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &former_);
+    rlimit limit = former_;
+    limit.rlim_cur = bytes;
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~SmallDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &former_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+
+private:
+  void (*handler_)(int);
+  rlimit former_ = {};
+};
+
+/// Writes without forcing to disk, which would take most of a test's time; ext4 also does so for a file cut to nothing.
+inline void write_quickly(const std::filesystem::path& file, std::string_view text) {
+  std::filesystem::remove(file);
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+/// Calls `judge` with a damaged copy of a file in its place: cut at many lengths, one byte changed at many places.
+/// All of the last 200 bytes, where the seal stands, are tried.
+inline void for_each_damage(const std::filesystem::path& file, std::size_t stride,
+                            const std::function<void(const std::string& damage)>& judge) {
+  const std::string whole = read_text(file);
+  for (std::size_t at = 0; at < whole.size(); at += at + 200 < whole.size() ? stride : 1) {
+    write_quickly(file, std::string_view(whole).substr(0, at));
+    judge("cut at " + std::to_string(at));
+    for (const char flip : {'\x01', '\x80'}) {
+      std::string changed = whole;
+      changed[at] = static_cast<char>(changed[at] ^ flip);
+      write_quickly(file, changed);
+      judge("changed at " + std::to_string(at));
+    }
+  }
+  write_quickly(file, whole + '\0');
+  judge("a byte longer");
+  write_quickly(file, whole);
+}
+
+} // namespace keeler::test

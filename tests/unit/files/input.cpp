@@ -1,0 +1,51 @@
+#include <keeler/files/input.hpp>
+
+#include "disk.hpp"
+
+#include <keeler/core/error.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <thread>
+
+#include <sys/stat.h>
+
+using namespace keeler;
+using namespace keeler::test;
+
+TEST_CASE("what a user names and cannot be read is told with the place where it was named") {
+  const TemporaryFolder folder;
+  const std::string absent = folder / "absent";
+  CHECK_THROWS_WITH_AS(
+      read_input(absent, "s.toml:3:4"),
+      ("s.toml:3:4: " + absent + " cannot be read (No such file or directory); check the path and its permissions")
+          .c_str(),
+      UsageError);
+  CHECK_THROWS_WITH_AS(
+      read_input(folder.path(), folder.path()),
+      (folder.path().string() + ": cannot be read (Is a directory); check the path and its permissions").c_str(),
+      UsageError);
+}
+
+TEST_CASE("a pipe is read to its end") {
+  const TemporaryFolder folder;
+  const std::string pipe = folder / "pipe", text(100000, 'x'); // more than a pipe holds
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  std::thread writer([&] { std::ofstream(pipe) << text; });
+  CHECK(read_input(pipe, pipe) == text);
+  writer.join();
+}
+
+TEST_CASE("rows of numbers are told with their lines") {
+  std::vector<std::pair<int, std::vector<double>>> rows;
+  for_each_row("# speed  value\n1e-3, 0.9\n\n  -2;.5 # a comment\r\n  \r\n7 1.5x", [&](int line, auto numbers) {
+    rows.emplace_back(line, std::vector<double>(numbers.begin(), numbers.end()));
+  });
+  REQUIRE(rows.size() == 3);
+  CHECK(rows[0] == std::pair(2, std::vector{1e-3, 0.9}));
+  CHECK(rows[1] == std::pair(4, std::vector{-2.0, 0.5}));
+  CHECK(rows[2].first == 6);
+  CHECK(rows[2].second[0] == 7.0);
+  CHECK(std::isnan(rows[2].second[1]));
+}
