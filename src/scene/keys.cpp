@@ -267,6 +267,12 @@ std::vector<Key> make_keys() {
        .meaning = "length of the run, rounded to whole kicks",
        .range = above(0)},
 
+      {.path = "output.series_every",
+       .type = number,
+       .fallback = "0.02",
+       .unit = "orbits",
+       .meaning = "time between rows of series.csv, rounded to whole kicks; 0: only one at the start",
+       .range = at_least(0)},
       {.path = "output.snapshot_every",
        .type = number,
        .fallback = "0.0",
@@ -277,7 +283,13 @@ std::vector<Key> make_keys() {
        .type = number,
        .fallback = "0.0",
        .unit = "orbits",
-       .meaning = "time between checkpoints, rounded to whole kicks; 0: only at the end or a stop",
+       .meaning = "time between checkpoints, rounded to whole kicks; 0: only those below, at the end and at a stop",
+       .range = at_least(0)},
+      {.path = "output.checkpoint_every_minutes",
+       .type = number,
+       .fallback = "10.0",
+       .unit = "minutes",
+       .meaning = "wall time between checkpoints, besides those by checkpoint_every; 0: none by the clock",
        .range = at_least(0)},
   };
 }

@@ -1,5 +1,7 @@
 #include <keeler/runs/state_hash.hpp>
 
+#include "scenes.hpp"
+
 #include <keeler/simulation/simulation.hpp>
 #include <keeler/states/initial.hpp>
 
@@ -8,29 +10,9 @@
 #include <algorithm>
 
 using namespace keeler;
+using namespace keeler::test;
 
 namespace {
-
-Scene small_scene() {
-  return parse_scene(R"(
-[planet]
-preset = "saturn-b-ring"
-[box]
-size = [30.0, 30.0]
-[particles]
-count = 100
-density = 500.0
-sizes = { law = "power", exponent = 3.0, min = 0.3, max = 1.0 }
-[gravity]
-solver = "tree"
-[time]
-step = 5e-3
-end = 1.0
-[output]
-snapshot_every = 0.5
-)",
-                     "test scene");
-}
 
 SimulationState evolved(const Scene& scene, int steps) {
   Simulation simulation(scene, initial_patch(scene));
