@@ -63,13 +63,16 @@ void print_summary(const std::string& folder, const nlohmann::json& s) {
              energy("now") - energy("start"), energy("kick_work"), energy("edge_work"), energy("lost_in_collisions"),
              energy("residual"));
   const nlohmann::json& split = s["split"];
-  fmt::print("time                                {:.1f} s wall, {:.1f} s processor: drift {:.1f} s, gravity {:.1f} s, "
-             "output {:.1f} s\n",
-             number("wall_s"), number("cpu_s"), split["drift_s"].get<double>(), split["gravity_s"].get<double>(),
-             split["output_s"].get<double>());
+  const auto part = [&](const char* key) { return split.value(key, 0.0); };
+  fmt::print(
+      "time                                {:.1f} s wall, {:.1f} s processor: drift {:.1f} s, gravity {:.1f} s\n",
+      number("wall_s"), number("cpu_s"), part("drift_s"), part("gravity_s"));
+  fmt::print("time of output                      series {:.2g} s, snapshots {:.2g} s, checkpoints {:.2g} s, checks of "
+             "forces {:.2g} s\n",
+             part("series_s"), part("snapshots_s"), part("checkpoints_s"), part("force_checks_s"));
   const nlohmann::json& cost = s["ns_per_particle_step"];
-  fmt::print("ns per particle and step            drift {:.0f}, gravity {:.0f}, output {:.0f}\n",
-             cost["drift"].get<double>(), cost["gravity"].get<double>(), cost["output"].get<double>());
+  fmt::print("ns per particle and step            drift {:.0f}, gravity {:.0f}, series {:.1f}\n",
+             cost.value("drift", 0.0), cost.value("gravity", 0.0), cost.value("series", 0.0));
   fmt::print("state                               {}\n", s["state_hash"].get<std::string>());
   fmt::print("folder                              {}\n", folder);
 }
@@ -82,9 +85,7 @@ ExitCode report(const JobOptions& job, const RunResult& result) {
     print_summary(job.folder, nlohmann::json::parse(text));
   if (result.finished)
     return ExitCode::done;
-  const std::string until = job.until > 0.0 ? fmt::format(" --until {}", job.until) : "";
-  say(fmt::format("stopped at step {} with a checkpoint; continue with \"keeler resume {}{}\"", result.step, job.folder,
-                  until));
+  say(fmt::format("stopped at step {} with a checkpoint; continue with \"{}\"", result.step, result.resume_command));
   return ExitCode::stopped;
 }
 

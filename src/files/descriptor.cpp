@@ -16,7 +16,11 @@ namespace keeler {
 namespace {
 
 [[noreturn]] void fail(const char* verb, const std::filesystem::path& file) {
-  throw IoError(fmt::format("cannot {} '{}': {}", verb, file.string(), std::strerror(errno)));
+  const int reason = errno;
+  const std::string message = fmt::format("cannot {} '{}': {}", verb, file.string(), std::strerror(reason));
+  if (reason == ENOSPC || reason == EDQUOT || reason == EFBIG)
+    throw DiskFullError(message);
+  throw IoError(message);
 }
 
 // Repeats a system call that a signal interrupted.
@@ -59,6 +63,16 @@ void Descriptor::write_all(std::span<const std::byte> content) {
     if (written < 0)
       fail("write", file_);
     content = content.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+void Descriptor::append_whole(std::span<const std::byte> content) {
+  const std::size_t before = size();
+  try {
+    write_all(content);
+  } catch (const IoError&) {
+    truncate(before);
+    throw;
   }
 }
 

@@ -73,7 +73,10 @@ NewestCheckpoint newest_valid_checkpoint(const std::filesystem::path& folder) {
     }
   }
   if (newest.warnings.empty())
-    throw IoError(fmt::format("there is no checkpoint in '{}'", folder.string()));
+    throw IoError(
+        fmt::format("there is no checkpoint in '{}' (a run that ends before its first one leaves none); start "
+                    "again with \"keeler run\" and --force",
+                    folder.string()));
   throw IoError(
       fmt::format("no checkpoint in '{}' can be used: {}", folder.string(), fmt::join(newest.warnings, "; ")));
 }

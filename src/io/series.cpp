@@ -41,7 +41,7 @@ std::string_view rows_up_to(const std::filesystem::path& file, std::string_view 
 } // namespace
 
 Series::Series(const std::filesystem::path& file, std::size_t columns)
-    : file_(file, O_WRONLY | O_APPEND), columns_(columns), size_(file_.size()) {}
+    : file_(file, O_WRONLY | O_APPEND), columns_(columns) {}
 
 Series Series::begin(const std::filesystem::path& file, const std::vector<std::string>& columns) {
   write_text(file, header_line(columns));
@@ -66,13 +66,7 @@ Series Series::resume(const std::filesystem::path& file, const std::vector<std::
 void Series::append(std::int64_t step, std::span<const double> values) {
   assert(values.size() == columns_);
   const std::string row = fmt::format("{},{}\n", step, fmt::join(values, ","));
-  try {
-    file_.write_all(std::as_bytes(std::span(row)));
-  } catch (const IoError&) {
-    file_.truncate(size_);
-    throw;
-  }
-  size_ += row.size();
+  file_.append_whole(std::as_bytes(std::span(row)));
 }
 
 void Series::sync() {

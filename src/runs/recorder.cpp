@@ -1,9 +1,7 @@
 #include "recorder.hpp"
 
-#include <keeler/cells/overlap.hpp>
 #include <keeler/core/simd.hpp>
 #include <keeler/core/stopwatch.hpp>
-#include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/force_error.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/forces/self_gravity.hpp>
@@ -21,14 +19,9 @@ namespace {
 
 constexpr std::size_t checked_particles = 200;
 
-const std::vector<std::string> series_columns = {
-    "time_orbits",       "dispersion_x_m_s",      "dispersion_y_m_s", "dispersion_z_m_s", "scale_height_m",
-    "collisions",        "slow_contacts",         "energy_lost_j",    "kick_work_j",      "edge_work_j",
-    "energy_residual_j", "momentum_flux_kg_m2_s", "largest_overlap"};
-
-Series open_series(const RunFolder& folder, std::optional<std::int64_t> resumed_at) {
-  return resumed_at ? Series::resume(folder.series(), series_columns, *resumed_at)
-                    : Series::begin(folder.series(), series_columns);
+Series open_series(const RunFolder& folder, const std::vector<std::string>& columns,
+                   std::optional<std::int64_t> resumed_at) {
+  return resumed_at ? Series::resume(folder.series(), columns, *resumed_at) : Series::begin(folder.series(), columns);
 }
 
 } // namespace
@@ -41,52 +34,34 @@ void OutputCounters::list_fields(FieldTable& table) {
 
 Recorder::Recorder(const RunFolder& folder, const Scene& scene, const std::vector<std::string>& arguments,
                    OutputCounters counters, std::optional<std::int64_t> resumed_at)
-    : folder_(folder), orbital_frequency_(scene.planet.orbital_frequency), scene_text_(scene.resolved),
-      provenance_(collect_provenance(arguments)), counters_(counters), series_(open_series(folder, resumed_at)) {
-  write_text(folder_.scene(), scene_text_);
+    : folder_(folder), scene_(scene), provenance_(collect_provenance(arguments)), counters_(counters),
+      columns_(series_columns_of(scene)), series_(open_series(folder, names_of(columns_), resumed_at)) {
+  write_text(folder_.scene(), scene_.resolved);
 }
 
 void Recorder::snapshot(const Simulation& simulation) {
-  const Stopwatch watch(seconds_);
-  write_snapshot(folder_.snapshot(counters_.snapshots), simulation.patch(), {scene_text_, provenance_});
+  const Stopwatch watch(costs_.snapshots);
+  write_snapshot(folder_.snapshot(counters_.snapshots), simulation.patch(), {scene_.resolved, provenance_});
   ++counters_.snapshots;
   counters_.last_snapshot_step = simulation.state().step;
 }
 
 void Recorder::checkpoint(const Simulation& simulation) {
-  const Stopwatch watch(seconds_);
+  const Stopwatch watch(costs_.checkpoints);
   series_.sync();
   SimulationState copy = simulation.state();
   OutputCounters counters = counters_;
   ++counters.checkpoints;
   FieldTable table = copy.fields();
   counters.list_fields(table);
-  write_checkpoint(checkpoint_path(folder_.path(), counters_.checkpoints), table, {scene_text_, provenance_});
+  write_checkpoint(checkpoint_path(folder_.path(), counters_.checkpoints), table, {scene_.resolved, provenance_});
   counters_ = counters;
   prune_checkpoints(folder_.path());
 }
 
 void Recorder::sample(const Simulation& simulation) {
-  const Stopwatch watch(seconds_);
-  const Patch patch = simulation.patch();
-  const SimulationState& state = simulation.state();
-  const double omega = patch.orbital_frequency, joule = omega * omega; // per kg m² rad⁻²
-  const Vec3 c = velocity_dispersion(patch) * omega;
-  const double edges = state.energy.wrap_work + state.collisions.edge_work;
-  const double values[] = {simulation.orbits(),
-                           c.x(),
-                           c.y(),
-                           c.z(),
-                           scale_height(patch),
-                           static_cast<double>(state.collisions.fast),
-                           static_cast<double>(state.collisions.slow),
-                           state.collisions.energy_lost * joule,
-                           state.kick_work() * joule,
-                           edges * joule,
-                           simulation.energy_residual() * joule,
-                           state.collisions.momentum_flux * omega,
-                           largest_overlap(patch).depth};
-  series_.append(state.step, values);
+  const Stopwatch watch(costs_.series);
+  series_.append(simulation.state().step, values_of(columns_, SeriesSample(scene_, simulation)));
 }
 
 void Recorder::check_forces(const Simulation& simulation) {
@@ -96,7 +71,7 @@ void Recorder::check_forces(const Simulation& simulation) {
     const Stopwatch watch(c.last_s);
     std::vector<Vec3> positions;
     std::vector<double> masses;
-    const GravityProblem problem = gravity_problem(simulation.boundary(), orbital_frequency_, positions, masses);
+    const GravityProblem problem = gravity_problem(simulation.boundary(), scene_.planet.orbital_frequency, positions, masses);
     const ForceSample sample = draw_force_sample(problem, checked_particles, 0, 0.0);
     const std::vector<Vec3> exact =
         sampled_accelerations(problem, sample.targets, {.rings = 2}, choose_instruction_set());
@@ -109,7 +84,6 @@ void Recorder::check_forces(const Simulation& simulation) {
     log("force_error", {{"step", c.last_step}, {"rms", errors.rms}, {"largest", errors.p999}});
   }
   c.seconds += c.last_s;
-  seconds_ += c.last_s;
 }
 
 void Recorder::log(const std::string& event, const nlohmann::ordered_json& details) {
@@ -118,7 +92,7 @@ void Recorder::log(const std::string& event, const nlohmann::ordered_json& detai
   line.update(details);
   const std::string text = line.dump() + "\n";
   Descriptor file(folder_.log(), O_WRONLY | O_CREAT | O_APPEND);
-  file.write_all(std::as_bytes(std::span(text)));
+  file.append_whole(std::as_bytes(std::span(text)));
   file.close();
 }
 

@@ -5,6 +5,7 @@
 
 #include <keeler/io/provenance.hpp>
 #include <keeler/io/series.hpp>
+#include <keeler/runs/series_columns.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <nlohmann/json.hpp>
@@ -22,6 +23,11 @@ struct OutputCounters {
   void list_fields(FieldTable& table);
 };
 
+/// Wall time that output took, s.
+struct OutputCosts {
+  double series = 0.0, snapshots = 0.0, checkpoints = 0.0;
+};
+
 /// What became of the checks of forces.
 struct ForceChecks {
   int count = 0;
@@ -33,7 +39,7 @@ struct ForceChecks {
 
 class Recorder {
 public:
-  /// `resumed`: the series is continued, else begun anew.
+  /// `resumed_at`: the series is continued from that step, else begun anew. The scene must outlive it.
   Recorder(const RunFolder& folder, const Scene& scene, const std::vector<std::string>& arguments,
            OutputCounters counters, std::optional<std::int64_t> resumed_at);
 
@@ -47,17 +53,17 @@ public:
   const OutputCounters& counters() const { return counters_; }
   const Provenance& provenance() const { return provenance_; }
   const ForceChecks& force_checks() const { return force_checks_; }
-  double seconds() const { return seconds_; } ///< wall time spent writing and checking
+  const OutputCosts& costs() const { return costs_; }
 
 private:
   RunFolder folder_;
-  double orbital_frequency_;
-  std::string scene_text_;
+  const Scene& scene_;
   Provenance provenance_;
   OutputCounters counters_;
+  std::vector<SeriesColumn> columns_;
   Series series_;
   ForceChecks force_checks_;
-  double seconds_ = 0.0;
+  OutputCosts costs_;
 };
 
 } // namespace keeler

@@ -21,13 +21,29 @@
 namespace keeler {
 namespace {
 
-constexpr double samples_per_orbit = 100.0; // rows of series.csv
-constexpr double first_check = 5e-6;        // s a particle: what a check is taken to cost before there was one
-constexpr double share_of_checks = 0.005;   // of the wall time, for the errors of forces; one at the end besides
+constexpr double first_check = 5e-6;      // s a particle: what a check is taken to cost before there was one
+constexpr double share_of_checks = 0.005; // of the wall time, for the errors of forces; one at the end besides
 
 std::int64_t whole_kicks(const Scene& scene, double steps) {
   const auto block = static_cast<double>(scene.kick_interval());
   return static_cast<std::int64_t>(std::max(1.0, std::round(steps / block)) * block);
+}
+
+std::string resume_command(const RunOptions& options) {
+  const std::string until = options.until_orbits ? fmt::format(" --until {}", *options.until_orbits) : "";
+  return fmt::format("keeler resume {}{}", options.folder.string(), until);
+}
+
+// A full disk leaves the newest checkpoint as it was: the user hears how to go on.
+template<class Work> RunResult with_advice(const RunOptions& options, const Work& work) {
+  try {
+    return work();
+  } catch (const DiskFullError& full) {
+    const std::string advice = list_checkpoints(options.folder).empty()
+                                   ? "start again with --force (there is no checkpoint yet)"
+                                   : fmt::format("continue with \"{}\"", resume_command(options));
+    throw DiskFullError(fmt::format("{}; free some space, then {}", full.what(), advice));
+  }
 }
 
 class Runner {
@@ -36,8 +52,7 @@ public:
          Recorder& recorder, const Stopwatch& watch, std::int64_t last_checkpoint)
       : scene_(scene), options_(options), requests_(requests), simulation_(simulation), recorder_(recorder),
         watch_(watch), first_step_(simulation.state().step), last_checkpoint_(last_checkpoint),
-        first_collisions_(simulation.state().collisions.fast + simulation.state().collisions.slow),
-        sample_every_(whole_kicks(scene, 1.0 / (samples_per_orbit * scene.time.step))) {}
+        first_collisions_(simulation.state().collisions.fast + simulation.state().collisions.slow) {}
 
   RunResult run() {
     const SimulationState& state = simulation_.state();
@@ -56,6 +71,7 @@ public:
       recorder_.check_forces(simulation_);
     result.step = state.step;
     result.state_hash = state_hash(state, scene_);
+    result.resume_command = resume_command(options_);
     return result;
   }
 
@@ -76,14 +92,15 @@ private:
 
   void record() {
     const std::int64_t step = simulation_.state().step;
-    if (due(sample_every_))
+    if (due(scene_.output.series_every))
       recorder_.sample(simulation_);
     const bool asked = between_kicks() && requests_.snapshot.exchange(false);
     if (due(scene_.output.snapshot_every) || asked)
       recorder_.snapshot(simulation_);
-    if (due(scene_.output.checkpoint_every)) {
+    if (due(scene_.output.checkpoint_every) || checkpoint_due_by_clock()) {
       recorder_.checkpoint(simulation_);
       last_checkpoint_ = step;
+      last_checkpoint_time_ = watch_.elapsed();
     }
     if (force_check_due()) {
       recorder_.check_forces(simulation_);
@@ -91,13 +108,18 @@ private:
     }
   }
 
-  // As often as a small share of the time allows, and as the rows of the series at most: that is another number of
-  // steps for each solver and machine, and no state hangs on it.
+  bool checkpoint_due_by_clock() const {
+    const double interval = 60.0 * scene_.output.checkpoint_every_minutes;
+    return interval > 0.0 && between_kicks() && watch_.elapsed() - last_checkpoint_time_ >= interval;
+  }
+
+  // As often as a small share of the time allows: that is another number of steps for each solver and machine, and no
+  // state hangs on it.
   bool force_check_due() const {
     const ForceChecks& checks = recorder_.force_checks();
     const double next =
         checks.count > 0 ? checks.last_s : first_check * static_cast<double>(simulation_.state().particles.size());
-    return scene_.gravity && due(sample_every_) && checks.seconds + next <= share_of_checks * watch_.elapsed();
+    return scene_.gravity && between_kicks() && checks.seconds + next <= share_of_checks * watch_.elapsed();
   }
 
   void report() {
@@ -126,8 +148,7 @@ private:
   const Stopwatch& watch_; // since the command began, as a queue counts
   std::int64_t first_step_, last_checkpoint_;
   std::uint64_t first_collisions_;
-  std::int64_t sample_every_;
-  double start_ = watch_.elapsed(), last_time_ = start_, longest_pass_ = 0.0;
+  double start_ = watch_.elapsed(), last_time_ = start_, last_checkpoint_time_ = start_, longest_pass_ = 0.0;
 };
 
 // When the command began, and the step whose checkpoint it found.
@@ -142,7 +163,7 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
   const std::int64_t first_step = simulation.state().step;
   Runner runner(scene, options, requests, simulation, recorder, start.watch, start.checkpoint_step);
   const RunResult result = runner.run();
-  const RunCost cost{first_step, start.watch.elapsed(), cpu_seconds() - start.cpu, recorder.seconds(),
+  const RunCost cost{first_step, start.watch.elapsed(), cpu_seconds() - start.cpu, recorder.costs(),
                      recorder.force_checks()};
   const nlohmann::ordered_json summary = summarise(simulation, scene, result, cost, recorder.provenance());
   write_text(folder.summary(), summary.dump(2) + "\n");
@@ -181,13 +202,7 @@ Scene until(Scene scene, const RunOptions& options, std::int64_t step) {
   return scene;
 }
 
-} // namespace
-
-StoredRun load_checkpoint(const std::filesystem::path& file) {
-  return load(file).run;
-}
-
-RunResult start_run(const Scene& scene, const RunOptions& options, RunRequests& requests) {
+RunResult begin(const Scene& scene, const RunOptions& options, RunRequests& requests) {
   const Start start;
   const RunFolder folder(options.folder);
   if (!options.force)
@@ -206,7 +221,7 @@ RunResult start_run(const Scene& scene, const RunOptions& options, RunRequests& 
   return carry_on(scene, options, requests, folder, simulation, recorder, start);
 }
 
-RunResult resume_run(const RunOptions& options, RunRequests& requests) {
+RunResult go_on(const RunOptions& options, RunRequests& requests) {
   Start start;
   const RunFolder folder(options.folder);
   const FolderLock lock(folder.path());
@@ -217,11 +232,33 @@ RunResult resume_run(const RunOptions& options, RunRequests& requests) {
   Loaded loaded = load(newest.path);
   const std::int64_t step = start.checkpoint_step = loaded.run.state.step;
   const Scene scene = until(std::move(loaded.run.scene), options, step);
+  if (step >= scene.time.end_step && says_finished(folder.summary())) {
+    if (options.notice)
+      options.notice(fmt::format("the run in '{}' is finished, nothing was changed; --until with a later orbit than "
+                                 "{:.6g} goes on",
+                                 options.folder.string(), static_cast<double>(step) * scene.time.step));
+    return {true, step, state_hash(loaded.run.state, scene), resume_command(options)};
+  }
   Simulation simulation(scene, std::move(loaded.run.state));
   folder.cut_snapshots(loaded.counters.snapshots);
+  folder.remove_summary();
   Recorder recorder(folder, scene, options.arguments, loaded.counters, step);
   recorder.log("resumed", {{"checkpoint", newest.path.filename().string()}, {"step", step}, {"threads", threads()}});
   return carry_on(scene, options, requests, folder, simulation, recorder, start);
+}
+
+} // namespace
+
+StoredRun load_checkpoint(const std::filesystem::path& file) {
+  return load(file).run;
+}
+
+RunResult start_run(const Scene& scene, const RunOptions& options, RunRequests& requests) {
+  return with_advice(options, [&] { return begin(scene, options, requests); });
+}
+
+RunResult resume_run(const RunOptions& options, RunRequests& requests) {
+  return with_advice(options, [&] { return go_on(options, requests); });
 }
 
 } // namespace keeler

@@ -71,4 +71,11 @@ void RunFolder::cut_snapshots(std::int64_t from_number) const {
     fs::remove(snapshot(number), ignored);
 }
 
+void RunFolder::remove_summary() const {
+  std::error_code error;
+  fs::remove(summary(), error);
+  if (error)
+    throw IoError(fmt::format("cannot remove '{}': {}", summary().string(), error.message()));
+}
+
 } // namespace keeler

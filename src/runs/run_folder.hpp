@@ -30,6 +30,9 @@ public:
   /// Removes snapshots from this number on: the resumed run makes them again.
   void cut_snapshots(std::int64_t from_number) const;
 
+  /// Removes the summary of what the run was before: it is true no more. Throws IoError.
+  void remove_summary() const;
+
 private:
   std::filesystem::path path_;
 };

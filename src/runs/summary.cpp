@@ -2,6 +2,7 @@
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/threads.hpp>
+#include <keeler/io/files.hpp>
 
 #include <algorithm>
 
@@ -38,6 +39,14 @@ nlohmann::ordered_json force_error(const ForceChecks& checks) {
 
 } // namespace
 
+bool says_finished(const std::filesystem::path& summary) {
+  std::error_code unknown;
+  if (!std::filesystem::exists(summary, unknown))
+    return false;
+  const nlohmann::json json = nlohmann::json::parse(read_text(summary), nullptr, false);
+  return json.is_object() && json.contains("finished") && json["finished"] == true;
+}
+
 nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scene, const RunResult& result,
                                  const RunCost& cost, const Provenance& provenance) {
   const SimulationState& state = simulation.state();
@@ -62,12 +71,16 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scen
   json["energy_j"] = energies(simulation, scene);
   json["wall_s"] = cost.wall_s;
   json["cpu_s"] = cost.cpu_s;
-  json["split"] = {{"drift_s", split.drift}, {"gravity_s", split.force("gravity")}, {"output_s", cost.output_s}};
+  json["split"] = {{"drift_s", split.drift},
+                   {"gravity_s", split.force("gravity")},
+                   {"series_s", cost.output.series},
+                   {"snapshots_s", cost.output.snapshots},
+                   {"checkpoints_s", cost.output.checkpoints},
+                   {"force_checks_s", cost.force_checks.seconds}};
+  json["ns_per_particle_step"] = {
+      {"drift", split.drift / passes}, {"gravity", split.force("gravity") / passes}, {"series", cost.output.series / passes}};
   for (const ForceSettings& force : scene.external_forces)
     json["split"][std::string(force.entry->table) + "_s"] = split.force(force.entry->table);
-  json["ns_per_particle_step"] = {{"drift", split.drift / passes},
-                                  {"gravity", split.force("gravity") / passes},
-                                  {"output", cost.output_s / passes}};
   json["provenance"] = provenance;
   return json;
 }

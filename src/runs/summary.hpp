@@ -13,12 +13,16 @@ namespace keeler {
 /// What this stretch of the run took: since it began or was resumed at first_step.
 struct RunCost {
   std::int64_t first_step = 0;
-  double wall_s = 0.0, cpu_s = 0.0, output_s = 0.0;
+  double wall_s = 0.0, cpu_s = 0.0;
+  OutputCosts output;
   ForceChecks force_checks;
 };
 
 /// Counts and energies are those of the whole run, times those of this stretch.
 nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scene, const RunResult& result,
                                  const RunCost& cost, const Provenance& provenance);
+
+/// Whether the folder's summary is that of a finished run. False when there is none.
+bool says_finished(const std::filesystem::path& summary);
 
 } // namespace keeler

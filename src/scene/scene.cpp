@@ -74,8 +74,9 @@ std::int64_t whole_kicks(Scene& scene, Settings& settings, const std::string& ke
   if (std::fabs(kicks - static_cast<double>(whole)) > 1e-9 * kicks) {
     const double rounded = static_cast<double>(steps) * scene.time.step;
     const std::string kicks_every = per_kick > 1 ? fmt::format("kicks, one every {} steps", per_kick) : "steps";
-    scene.notices.push_back(fmt::format("{} = {} is rounded to {:.12g} orbits (whole {} of {} orbits)", key, orbits,
-                                        rounded, kicks_every, scene.time.step));
+    if (settings.given(key))
+      scene.notices.push_back(fmt::format("{} = {} is rounded to {:.12g} orbits (whole {} of {} orbits)", key, orbits,
+                                          rounded, kicks_every, scene.time.step));
     settings.resolve(key, rounded);
   }
   return steps;
@@ -84,8 +85,10 @@ std::int64_t whole_kicks(Scene& scene, Settings& settings, const std::string& ke
 void read_times(Scene& scene, Settings& settings) {
   scene.time.step = settings.number("time.step");
   scene.time.end_step = whole_kicks(scene, settings, "time.end");
+  scene.output.series_every = whole_kicks(scene, settings, "output.series_every");
   scene.output.snapshot_every = whole_kicks(scene, settings, "output.snapshot_every");
   scene.output.checkpoint_every = whole_kicks(scene, settings, "output.checkpoint_every");
+  scene.output.checkpoint_every_minutes = settings.number("output.checkpoint_every_minutes");
 }
 
 enum class Purpose { start, go_on };

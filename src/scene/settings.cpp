@@ -51,8 +51,8 @@ Settings::Settings(Document document) : document_(std::move(document)) {
     const bool in_force = has(key.section()) || always_in_force(key.section());
     if (!in_force || has(key.path) || key.fallback.empty() || !condition_holds(document_, key.path))
       continue;
-    const Value value = parse_override_value(key.fallback, key.path, "default").front().value;
-    document_.push_back({key.path, "default", "default", value, false});
+    const Value value = parse_override_value(key.fallback, key.path, default_place).front().value;
+    document_.push_back({key.path, default_place, default_place, value, false});
   }
 }
 

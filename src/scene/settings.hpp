@@ -23,6 +23,9 @@ public:
   std::string text(const std::string& path) const;
   std::vector<double> numbers(const std::string& path) const;
 
+  /// Whether the scene says it: it is no default.
+  bool given(const std::string& path) const { return place(path) != default_place; }
+
   /// Where the value (or a table's header) stands, for messages.
   std::string place(const std::string& path) const { return find_entry(document_, path)->value_place; }
 
@@ -49,6 +52,7 @@ private:
   NumberRows rows(const Key& key, const std::string& scene_name);
   Parameters::Value parameter(const Key& key, const std::string& scene_name);
 
+  static constexpr const char* default_place = "default";
   Document document_;
 };
 

@@ -172,9 +172,12 @@ Patch Simulation::patch() const {
 }
 
 double Simulation::energy_residual() const {
+  return energy_residual(total_energy(state_.particles, scene_.planet.frequencies));
+}
+
+double Simulation::energy_residual(double energy_now) const {
   const EnergyBudget& e = state_.energy;
-  return total_energy(state_.particles, scene_.planet.frequencies) - e.start - state_.kick_work() - e.wrap_work -
-         state_.collisions.edge_work + state_.collisions.energy_lost;
+  return energy_now - e.start - state_.kick_work() - e.wrap_work - state_.collisions.edge_work + state_.collisions.energy_lost;
 }
 
 } // namespace keeler

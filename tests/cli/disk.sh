@@ -1,6 +1,6 @@
 #!/bin/bash
-# disk.sh KEELER SOURCE_DIR: on a full disk a run ends with exit code 4 and one line, the last checkpoint stays whole, and
-# with room again the run goes on to the state that it would have reached. A limit on file size stands for the full disk
+# disk.sh KEELER SOURCE_DIR: on a full disk a run ends with exit code 4 and one line that says how to go on, the last
+# checkpoint stays whole, and with room again the run goes on to the state that it would have reached. A limit on file size stands for the full disk
 # everywhere; where mounting is permitted, a disk of 600 KiB fills up.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
@@ -14,6 +14,7 @@ expected=$(state_hash "$work/whole")
 goes_on() {
   runs 0 info "$(newest_checkpoint "$2")"
   compgen -G "$2/*.tmp" && fail "$1: a part of a file was left"
+  tail -n 1 "$2/log.jsonl" | grep -q '}$' || fail "$1: a part of a line in the log"
   runs 0 resume "$2" --until 0.5
   [ "$(state_hash "$2")" = "$expected" ] || fail "$1: another state"
   cmp "$work/whole/series.csv" "$2/series.csv" || fail "$1: another series"
@@ -30,6 +31,7 @@ limited() {
   code=$?
   [ "$code" -eq 4 ] || fail "limit of $1 KiB: exit $code: $(cat "$work/err")"
   one_line "limit of $1 KiB" "cannot write"
+  one_line "limit of $1 KiB" "free some space, then continue with \"keeler resume $work/limited --until 0.5\""
   goes_on "limit of $1 KiB" "$work/limited"
   rm -rf "$work/limited"
 }
@@ -37,6 +39,18 @@ limited() {
 runs 0 run "$work/scene.toml" -o "$work/start" --set time.end=0.2
 limited 1  # the scene fits, the series does not
 limited 40 # snapshots and checkpoints do not fit
+
+# A disk that is full before the first checkpoint: the message says so, and so does resume.
+(
+  ulimit -f 20
+  exec "$keeler" run "$work/scene.toml" -o "$work/early" >"$work/out" 2>"$work/err"
+)
+code=$?
+[ "$code" -eq 4 ] || fail "no room for the first snapshot: exit $code: $(cat "$work/err")"
+one_line "no room for the first snapshot" "free some space, then start again with --force (there is no checkpoint yet)"
+refuses_with 4 "no checkpoint yet" "start again with \"keeler run\" and --force" resume "$work/early"
+runs 0 run "$work/scene.toml" -o "$work/early" --force
+[ "$(state_hash "$work/early")" = "$expected" ] || fail "started again: another state"
 
 # The same command inside and outside of a mount namespace of our own, as root or as one's own root.
 # shellcheck disable=SC2016 # that shell expands it
@@ -56,7 +70,7 @@ if [ "$code" -eq 99 ]; then
   echo "SKIPPED: a full disk (mounting is not permitted here); the limits on file size were tested"
 else
   [ "$code" -eq 4 ] || fail "full disk: exit $code: $(cat "$work/err")"
-  one_line "full disk" "No space left on device"
+  one_line "full disk" "No space left on device; free some space, then continue with \"keeler resume "
   [ "$(find "$work/full" -name 'checkpoint_*.h5' | wc -l)" -eq 2 ] || fail "full disk: $(ls "$work/full")"
   goes_on "full disk" "$work/full"
 fi

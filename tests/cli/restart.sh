@@ -28,13 +28,29 @@ runs 0 run "$work/scene.toml" -o "$work/threads" --set time.end=0.5 --threads 1
 runs 0 resume "$work/threads" --until 1 --threads 2
 same "half with one thread, half with two" "$work/threads"
 
+# A finished run: nothing is changed, not even the time of a file.
+times() { stat -c '%n %Y %y %s' "$work/threads"/*; }
+times >"$work/before"
+cp -r "$work/threads" "$work/copy"
 runs 0 resume "$work/threads"
-same "a finished run, resumed" "$work/threads"
+one_line "a finished run, resumed" "is finished, nothing was changed"
+prints "a finished run, resumed" "$(state_hash "$work/threads")"
+runs 0 resume "$work/threads" --until 1 --json
+cmp "$work/out" "$work/threads/summary.json" || fail "a finished run, resumed: another summary"
+times | diff "$work/before" - || fail "a finished run, resumed: files were touched"
+diff -r "$work/copy" "$work/threads" || fail "a finished run, resumed: files were changed"
+runs 0 resume "$work/copy" --until 1.1
+[ "$(text steps "$work/copy/summary.json")" -eq 550 ] || fail "a finished run did not go on to a later end"
 
 interrupted KILL 137 "$work/killed"
 [ -e "$work/killed/summary.json" ] && fail "killed after its end"
 runs 0 resume "$work/killed"
 same "kill -9" "$work/killed"
+
+# Checkpoints by the clock alone, a thousandth of a minute apart.
+interrupted KILL 137 "$work/clock" --set output.checkpoint_every=0 --set output.checkpoint_every_minutes=0.001
+runs 0 resume "$work/clock"
+same "kill -9, checkpoints by the clock" "$work/clock"
 
 interrupted TERM 75 "$work/stopped" --threads 2
 runs 0 resume "$work/stopped" --threads 1

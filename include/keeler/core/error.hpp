@@ -42,4 +42,9 @@ struct IoError : Error {
   explicit IoError(const std::string& message) : Error(ExitCode::input_output, message) {}
 };
 
+/// The disk, a quota or a limit on file size leaves no room.
+struct DiskFullError : IoError {
+  explicit DiskFullError(const std::string& message) : IoError(message) {}
+};
+
 } // namespace keeler

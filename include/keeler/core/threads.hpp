@@ -46,23 +46,29 @@ template<class Body> void parallel_for(std::size_t count, const Body& body, std:
     work_on(ranges[(static_cast<std::size_t>(omp_get_thread_num()) + r) % ranges_count]);
 }
 
-/// Sum of term(k) over [0, count): blocks of fixed length, added in order, so the bits do not depend on the threads.
-template<class Term> double ordered_sum(std::size_t count, const Term& term) {
+/// What add(total, k) makes of Total{} over k in [0, count): blocks of fixed length, their totals added in order with
+/// +=, so the bits do not depend on the threads. Total may hold several sums, made in one pass.
+template<class Total, class Add> Total ordered_total(std::size_t count, const Add& add) {
   constexpr std::size_t block = 1024;
-  std::vector<double> sums((count + block - 1) / block, 0.0);
+  std::vector<Total> totals((count + block - 1) / block);
   parallel_for(
-      sums.size(),
+      totals.size(),
       [&](std::size_t b) {
-        double sum = 0.0;
+        Total total{};
         for (std::size_t k = b * block; k < std::min(count, (b + 1) * block); ++k)
-          sum += term(k);
-        sums[b] = sum;
+          add(total, k);
+        totals[b] = total;
       },
       1);
-  double total = 0.0;
-  for (const double sum : sums)
-    total += sum;
+  Total total{};
+  for (const Total& part : totals)
+    total += part;
   return total;
+}
+
+/// Sum of term(k) over [0, count), made in the same way.
+template<class Term> double ordered_sum(std::size_t count, const Term& term) {
+  return ordered_total<double>(count, [&](double& total, std::size_t k) { total += term(k); });
 }
 
 } // namespace keeler

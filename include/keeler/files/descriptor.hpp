@@ -7,7 +7,8 @@
 
 namespace keeler {
 
-/// Owns a file descriptor. Every member throws IoError "cannot VERB 'FILE': reason".
+/// Owns a file descriptor. Every member throws IoError "cannot VERB 'FILE': reason"; DiskFullError where room is
+/// missing.
 class Descriptor {
 public:
   /// `flags` as for open(2).
@@ -20,6 +21,8 @@ public:
 
   /// Writes all of it at the descriptor's position; what a failure leaves half written stays.
   void write_all(std::span<const std::byte> content);
+  /// Adds it to a file opened with O_APPEND; after a failure the file ends where it did before.
+  void append_whole(std::span<const std::byte> content);
   std::size_t size() const;
   void truncate(std::size_t size);
   /// Forces the content to disk.

@@ -34,7 +34,6 @@ private:
 
   Descriptor file_;
   std::size_t columns_; // without the step
-  std::size_t size_;    // bytes of whole rows
 };
 
 } // namespace keeler

@@ -3,6 +3,7 @@
 // The folder holds scene.toml (resolved), snap_NNNNNN.hdf, checkpoint_NNNNNN.h5 (the last two), series.csv,
 // summary.json and log.jsonl. There is always a snapshot at the start and at the end, and a checkpoint at the end or at
 // a stop. Files are numbered as they are written, from 000000; a resumed run goes on counting from its checkpoint.
+// summary.json is there when the run has ended or stopped, not while it works or when it was killed.
 #pragma once
 
 #include <keeler/scene/scene.hpp>
@@ -46,12 +47,15 @@ struct RunResult {
   bool finished = false; ///< false: stopped on request, a checkpoint is on disk
   std::int64_t step = 0;
   std::string state_hash;
+  std::string resume_command; ///< goes on from here: for messages
 };
 
-/// Starts a run. Throws UsageError when the folder holds a run already and force is not given, IoError, InvariantError.
+/// Starts a run. Throws UsageError when the folder holds a run already and force is not given, IoError, InvariantError;
+/// DiskFullError says how to go on.
 RunResult start_run(const Scene& scene, const RunOptions& options, RunRequests& requests);
 
-/// Continues the run of a folder from its newest whole checkpoint. Throws IoError when there is none.
+/// Continues the run of a folder from its newest whole checkpoint. A run that has reached its end is left as it is,
+/// with a notice. Throws IoError when there is no checkpoint, DiskFullError as above.
 RunResult resume_run(const RunOptions& options, RunRequests& requests);
 
 /// The state in a checkpoint, and its scene. Throws IoError.

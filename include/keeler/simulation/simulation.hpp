@@ -50,6 +50,8 @@ public:
 
   /// Energy now − start − all that was booked: zero up to rounding. In kg m² rad⁻².
   double energy_residual() const;
+  /// The same where the energy now, total_energy(), is known already.
+  double energy_residual(double energy_now) const;
 
   const TimeSplit& time_split() const { return split_; }
 

@@ -79,7 +79,7 @@ TEST_CASE("a full disk is noticed at the row that does not fit, which leaves not
   const std::string before = read_text(file);
   {
     const SmallDisk disk(before.size() + 8);
-    CHECK_THROWS_AS(append(series, 5), IoError);
+    CHECK_THROWS_AS(append(series, 5), DiskFullError);
     CHECK(read_text(file) == before);
   }
   append(series, 5);

@@ -1,5 +1,7 @@
 #include <keeler/runs/state_hash.hpp>
 
+#include "scenes.hpp"
+
 #include <keeler/simulation/simulation.hpp>
 #include <keeler/states/initial.hpp>
 
@@ -13,29 +15,9 @@
 #include <map>
 
 using namespace keeler;
+using namespace keeler::test;
 
 namespace {
-
-Scene small_scene(const std::vector<std::string>& overrides = {}) {
-  return parse_scene(R"(
-[planet]
-orbital_frequency = 1.9565e-4
-[box]
-size = [30.0, 30.0]
-[particles]
-count = 100
-density = 500.0
-sizes = { law = "power", exponent = 3.0, min = 0.3, max = 1.0 }
-[gravity]
-solver = "tree"
-[time]
-step = 5e-3
-end = 1.0
-[output]
-snapshot_every = 0.5
-)",
-                     "test scene", overrides);
-}
 
 SimulationState evolved(const Scene& scene, int steps) {
   Simulation simulation(scene, initial_patch(scene));
@@ -99,6 +81,8 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
       {"time.end", "2.0"},
       {"output.snapshot_every", "0.25"},
       {"output.checkpoint_every", "0.25"},
+      {"output.checkpoint_every_minutes", "5.0"},
+      {"output.series_every", "0.05"},
   };
   const Scene scene = small_scene();
   const SimulationState state = evolved(scene, 2);

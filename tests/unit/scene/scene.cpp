@@ -36,8 +36,10 @@ TEST_CASE("the least scene has the documented defaults") {
   CHECK(!scene.start_from);
   CHECK(scene.time.step == 1e-3);
   CHECK(scene.time.end_step == 2000);
+  CHECK(scene.output.series_every == 20);
   CHECK(scene.output.snapshot_every == 0);
   CHECK(scene.output.checkpoint_every == 0);
+  CHECK(scene.output.checkpoint_every_minutes == 10.0);
   CHECK(scene.notices.empty());
   CHECK(scene.step_length() == doctest::Approx(two_pi * 1e-3).epsilon(1e-15));
   CHECK(scene.optical_depth() == doctest::Approx(300 * pi / 5000).epsilon(1e-14));
@@ -213,6 +215,14 @@ TEST_CASE("times are rounded to whole kicks, and a change is reported") {
         std::vector<std::string>{"time.end = 0.0042 is rounded to 0.004 orbits (whole steps of 0.001 orbits)"});
 }
 
+TEST_CASE("a default schedule is rounded too, but nobody is told what nobody wrote") {
+  const Scene scene = parse_scene(least + "step = 3e-3\n", "s.toml"); // 0.02 is 6.7 steps, and 2 is 666.7
+  CHECK(scene.output.series_every == 7);
+  CHECK(scene.notices ==
+        std::vector<std::string>{"time.end = 2 is rounded to 2.001 orbits (whole steps of 0.003 orbits)"});
+  CHECK(parse_scene(least + "[output]\nseries_every = 0\n", "s.toml").output.series_every == 0);
+}
+
 TEST_CASE("the resolved scene has every key in force and reads back to the same scene") {
   const std::string text = R"(
 title = "line\nbreak"
@@ -275,7 +285,9 @@ step = 0.001
 end = 2.0
 
 [output]
+series_every = 0.02
 snapshot_every = 0.0
 checkpoint_every = 0.0
+checkpoint_every_minutes = 10.0
 )");
 }

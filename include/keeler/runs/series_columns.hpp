@@ -1,0 +1,42 @@
+// The columns of series.csv. Each is declared once, with its name, unit, meaning and how it is computed: the header,
+// the rows and the table in docs/formats.md come from here. A new column is one more entry in series_columns.cpp.
+#pragma once
+
+#include <keeler/diagnostics/particle_means.hpp>
+#include <keeler/scene/scene.hpp>
+#include <keeler/simulation/simulation.hpp>
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace keeler {
+
+/// One instant of a run, between two steps, and what one pass over its particles gives.
+struct SeriesSample {
+  const Scene& scene;
+  const Simulation& simulation;
+  ParticleMeans means;
+
+  /// Both must outlive it.
+  SeriesSample(const Scene& of_scene, const Simulation& of_simulation);
+};
+
+struct SeriesColumn {
+  const char* name; ///< in the header: what and unit
+  const char* unit;
+  const char* meaning;
+  double (*value)(const SeriesSample&);
+  bool (*in)(const Scene&) = nullptr; ///< scenes that have the column; null: all
+};
+
+/// All columns, in their order. The step, which every row begins with, is none of them.
+std::span<const SeriesColumn> series_columns();
+
+/// Those that a scene has.
+std::vector<SeriesColumn> series_columns_of(const Scene& scene);
+
+std::vector<std::string> names_of(std::span<const SeriesColumn> columns);
+std::vector<double> values_of(std::span<const SeriesColumn> columns, const SeriesSample& sample);
+
+} // namespace keeler

@@ -1,0 +1,96 @@
+#include <keeler/runs/series_columns.hpp>
+
+#include "scenes.hpp"
+
+#include <keeler/cells/overlap.hpp>
+#include <keeler/diagnostics/dispersion.hpp>
+#include <keeler/diagnostics/energy.hpp>
+#include <keeler/diagnostics/mean.hpp>
+#include <keeler/io/files.hpp>
+#include <keeler/states/initial.hpp>
+
+#include <doctest/doctest.h>
+
+#include <map>
+#include <set>
+
+using namespace keeler;
+using namespace keeler::test;
+
+namespace {
+
+std::map<std::string, double> row_of(const Scene& scene, const Simulation& simulation) {
+  const std::vector<SeriesColumn> columns = series_columns_of(scene);
+  const std::vector<std::string> names = names_of(columns);
+  const std::vector<double> values = values_of(columns, SeriesSample(scene, simulation));
+  REQUIRE(names.size() == values.size());
+  std::map<std::string, double> row;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    row[names[k]] = values[k];
+  return row;
+}
+
+std::string markdown_row(const SeriesColumn& column) {
+  return std::string("| `") + column.name + "` | " + column.unit + " | " + column.meaning + " |\n";
+}
+
+} // namespace
+
+TEST_CASE("a row is what the patch says, measured particle by particle") {
+  const Scene scene = small_scene();
+  Simulation simulation(scene, initial_patch(scene));
+  for (int k = 0; k < 40; ++k)
+    simulation.advance();
+  std::map<std::string, double> row = row_of(scene, simulation);
+  const Patch patch = simulation.patch();
+  const double omega = patch.orbital_frequency, joule = omega * omega;
+  const Vec3 c = velocity_si(patch, velocity_dispersion(patch));
+  CHECK(row["time_orbits"] == simulation.orbits());
+  CHECK(row["dispersion_x_m_s"] == doctest::Approx(c.x()).epsilon(1e-12));
+  CHECK(row["dispersion_y_m_s"] == doctest::Approx(c.y()).epsilon(1e-12));
+  CHECK(row["dispersion_z_m_s"] == doctest::Approx(c.z()).epsilon(1e-12));
+  CHECK(row["scale_height_m"] == doctest::Approx(scale_height(patch)).epsilon(1e-12));
+
+  const SimulationState& state = simulation.state();
+  CHECK(state.collisions.fast > 0);
+  CHECK(row["collisions"] == static_cast<double>(state.collisions.fast));
+  CHECK(row["slow_contacts"] == static_cast<double>(state.collisions.slow));
+  CHECK(row["momentum_flux_kg_m2_s"] == state.collisions.momentum_flux * omega);
+  // what the energy of the patch has become is what was booked: the Cartesian sum, to its rounding
+  const double now = patch_energy(patch).total() * total_mass(patch), scale = std::fabs(now);
+  const double booked = row["kick_work_j"] + row["edge_work_j"] - row["energy_lost_j"] + row["energy_residual_j"];
+  CHECK(std::fabs((now - state.energy.start) * joule - booked) < 1e-12 * scale * joule);
+  CHECK(std::fabs(row["energy_residual_j"]) < 1e-12 * scale * joule);
+  CHECK(row["energy_lost_j"] > 0.0);
+}
+
+TEST_CASE("the largest overlap is a column only where particles can overlap") {
+  const Scene exact = small_scene();
+  CHECK(row_of(exact, Simulation(exact, initial_patch(exact))).count("largest_overlap") == 0);
+
+  const Scene scene = small_scene({"collisions.finder=linear-full", "time.step=0.03"}); // misses contacts
+  Simulation simulation(scene, initial_patch(scene));
+  double deepest = 0.0;
+  for (int k = 0; k < 60; ++k) {
+    simulation.advance();
+    const double depth = largest_overlap(simulation.patch()).depth;
+    CHECK(row_of(scene, simulation).at("largest_overlap") == depth);
+    deepest = std::max(deepest, depth);
+  }
+  CHECK(deepest > 1e-6);
+}
+
+TEST_CASE("every column has a name of its own and says what it is; docs/formats.md has the table") {
+  std::set<std::string> names;
+  std::string table = "| column | unit | meaning |\n|---|---|---|\n| `step` | 1 | steps done |\n";
+  for (const SeriesColumn& column : series_columns()) {
+    const std::string name = column.name;
+    CAPTURE(name);
+    CHECK(names.insert(name).second);
+    CHECK(name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == name.npos);
+    table += markdown_row(column);
+  }
+  const std::string page = read_text(KEELER_SOURCE_DIR "/docs/formats.md");
+  INFO("docs/formats.md must hold this table:\n" << table);
+  CHECK(page.find(table) != page.npos);
+}
