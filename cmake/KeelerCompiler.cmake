@@ -1,9 +1,11 @@
 # Flags shared by everything that Keeler compiles.
 # -ffp-contract=off: a fused multiply-add that appears in one build and not in another would change the bits of a result.
 # -fno-math-errno: sqrt becomes one instruction; nothing here reads errno after a mathematical function.
+# -fno-semantic-interposition: position-independent code calls and inlines its own functions as other code does.
 add_library(keeler_flags INTERFACE)
 target_compile_options(keeler_flags INTERFACE
-  -ffp-contract=off -fno-math-errno -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror)
+  -ffp-contract=off -fno-math-errno -fno-semantic-interposition
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # gcc 12 gives false alarms from these two on plain std::string and std::vector code.
   target_compile_options(keeler_flags INTERFACE -Wno-restrict -Wno-array-bounds)

@@ -22,7 +22,8 @@ function(keeler_folder name)
 
   add_library(keeler_${name} STATIC ${ARG_SOURCES})
   add_library(keeler::${name} ALIAS keeler_${name})
-  set_target_properties(keeler_${name} PROPERTIES EXPORT_NAME ${name})
+  set_target_properties(keeler_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(keeler_${name} PUBLIC cxx_std_20)
   target_include_directories(keeler_${name} PUBLIC
     "$<BUILD_INTERFACE:${view}>" "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
   target_include_directories(keeler_${name} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}") # its private headers

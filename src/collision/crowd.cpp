@@ -1,4 +1,4 @@
-#include <keeler/collision/crowd.hpp>
+#include "crowd.hpp"
 
 #include <algorithm>
 #include <cmath>

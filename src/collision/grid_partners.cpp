@@ -1,4 +1,4 @@
-#include <keeler/collision/grid_partners.hpp>
+#include "grid_partners.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>

@@ -1,4 +1,4 @@
-#include <keeler/collision/line_sweep.hpp>
+#include "line_sweep.hpp"
 
 namespace keeler {
 

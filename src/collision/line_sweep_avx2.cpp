@@ -1,5 +1,5 @@
 // Lines for AVX2: eight lanes. Compiled with -mavx2.
-#include <keeler/collision/line_sweep.hpp>
+#include "line_sweep.hpp"
 
 #include <immintrin.h>
 

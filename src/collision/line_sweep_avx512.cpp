@@ -1,5 +1,5 @@
 // Lines for AVX-512: sixteen lanes. Compiled with -mavx512f.
-#include <keeler/collision/line_sweep.hpp>
+#include "line_sweep.hpp"
 
 #include <immintrin.h>
 

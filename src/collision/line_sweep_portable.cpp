@@ -1,5 +1,5 @@
 // Lines for any processor: four lanes.
-#include <keeler/collision/line_sweep.hpp>
+#include "line_sweep.hpp"
 
 #define KEELER_KERNEL_SPACE line_sweep_portable
 

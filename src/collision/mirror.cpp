@@ -1,4 +1,4 @@
-#include <keeler/collision/mirror.hpp>
+#include "mirror.hpp"
 
 #include <keeler/core/counting_sort.hpp>
 #include <keeler/core/error.hpp>

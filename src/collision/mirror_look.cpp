@@ -1,5 +1,5 @@
 // Looking around in a mirror: where lines may meet others, which ranges that is, and the sweeps.
-#include <keeler/collision/mirror.hpp>
+#include "mirror.hpp"
 
 #include <cmath>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-#include <keeler/collision/neighbours.hpp>
+#include "neighbours.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include <keeler/collision/strips.hpp>
+#include "strips.hpp"
 
 #include <algorithm>
 #include <cmath>

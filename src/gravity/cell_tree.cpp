@@ -1,7 +1,8 @@
-#include <keeler/gravity/cell_tree.hpp>
+#include "cell_tree.hpp"
+
+#include "single.hpp"
 
 #include <keeler/core/threads.hpp>
-#include <keeler/gravity/single.hpp>
 
 #include <algorithm>
 #include <cmath>

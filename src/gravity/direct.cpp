@@ -1,9 +1,10 @@
 #include <keeler/gravity/direct.hpp>
 
+#include "far_images.hpp"
+#include "single.hpp"
+
 #include <keeler/core/threads.hpp>
-#include <keeler/gravity/far_images.hpp>
 #include <keeler/gravity/images.hpp>
-#include <keeler/gravity/single.hpp>
 #include <keeler/particles/order.hpp>
 
 #include <algorithm>

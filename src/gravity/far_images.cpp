@@ -1,8 +1,9 @@
-#include <keeler/gravity/far_images.hpp>
+#include "far_images.hpp"
+
+#include "lattice.hpp"
 
 #include <keeler/core/units.hpp>
 #include <keeler/gravity/images.hpp>
-#include <keeler/gravity/lattice.hpp>
 
 #include <array>
 #include <cmath>

@@ -1,5 +1,5 @@
-#include <keeler/gravity/far_kernels.hpp>
-#include <keeler/gravity/kernels.hpp>
+#include "kernels.hpp"
+#include "far_kernels.hpp"
 
 namespace keeler {
 

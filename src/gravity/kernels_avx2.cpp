@@ -1,6 +1,6 @@
 // Kernels for AVX2: registers of 32 bytes. Compiled with -mavx2.
-#include <keeler/gravity/far_kernels.hpp>
-#include <keeler/gravity/kernels.hpp>
+#include "far_kernels.hpp"
+#include "kernels.hpp"
 
 #include <immintrin.h>
 

@@ -1,6 +1,6 @@
 // Kernels for AVX-512: registers of 64 bytes. Compiled with -mavx512f.
-#include <keeler/gravity/far_kernels.hpp>
-#include <keeler/gravity/kernels.hpp>
+#include "far_kernels.hpp"
+#include "kernels.hpp"
 
 #include <immintrin.h>
 

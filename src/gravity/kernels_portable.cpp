@@ -1,6 +1,6 @@
 // Kernels for any processor: registers of 16 bytes, which is what x86-64 (SSE2) and 64-bit ARM both have.
-#include <keeler/gravity/far_kernels.hpp>
-#include <keeler/gravity/kernels.hpp>
+#include "far_kernels.hpp"
+#include "kernels.hpp"
 
 #define KEELER_KERNEL_SPACE kernels_portable
 #define KEELER_LANES 2

@@ -1,4 +1,4 @@
-#include <keeler/gravity/lattice.hpp>
+#include "lattice.hpp"
 
 #include <keeler/core/units.hpp>
 #include <keeler/gravity/images.hpp>

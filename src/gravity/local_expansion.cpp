@@ -1,4 +1,4 @@
-#include <keeler/gravity/local_expansion.hpp>
+#include "local_expansion.hpp"
 
 namespace keeler {
 namespace {

@@ -1,8 +1,9 @@
 #include <keeler/gravity/solver.hpp>
 
+#include "tree.hpp"
+
 #include <keeler/gravity/direct.hpp>
 #include <keeler/gravity/fft.hpp>
-#include <keeler/gravity/tree.hpp>
 
 #include <algorithm>
 #include <cmath>

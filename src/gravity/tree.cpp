@@ -1,10 +1,11 @@
-#include <keeler/gravity/tree.hpp>
+#include "tree.hpp"
+
+#include "far_images.hpp"
+#include "local_expansion.hpp"
+#include "single.hpp"
 
 #include <keeler/core/threads.hpp>
-#include <keeler/gravity/far_images.hpp>
 #include <keeler/gravity/images.hpp>
-#include <keeler/gravity/local_expansion.hpp>
-#include <keeler/gravity/single.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 #include <keeler/io/describe.hpp>
 
 #include "formats.hpp"
+#include "sealed_image.hpp"
 
 #include <keeler/core/error.hpp>
-#include <keeler/io/sealed_image.hpp>
 
 #include <fmt/format.h>
 

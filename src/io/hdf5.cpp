@@ -1,4 +1,4 @@
-#include <keeler/io/hdf5.hpp>
+#include "hdf5.hpp"
 
 #include "hdf5_checked.hpp"
 

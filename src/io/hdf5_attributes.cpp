@@ -1,6 +1,5 @@
 // Attributes, and texts in attributes and datasets.
-#include <keeler/io/hdf5.hpp>
-
+#include "hdf5.hpp"
 #include "hdf5_checked.hpp"
 
 #include <keeler/core/error.hpp>

@@ -2,7 +2,7 @@
 // reason.
 #pragma once
 
-#include <keeler/io/hdf5.hpp>
+#include "hdf5.hpp"
 
 #include <string>
 

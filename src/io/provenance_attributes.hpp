@@ -1,7 +1,8 @@
 // For checkpoint.cpp, snapshot.cpp: provenance as text attributes of an HDF5 object.
 #pragma once
 
-#include <keeler/io/hdf5.hpp>
+#include "hdf5.hpp"
+
 #include <keeler/io/provenance.hpp>
 
 namespace keeler {

@@ -1,4 +1,4 @@
-#include <keeler/io/sealed_image.hpp>
+#include "sealed_image.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/files/files.hpp>

@@ -2,10 +2,10 @@
 
 #include "formats.hpp"
 #include "provenance_attributes.hpp"
+#include "sealed_image.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/io/sealed_image.hpp>
 
 #include <fmt/format.h>
 

@@ -1,11 +1,12 @@
 #!/bin/bash
-# examples.sh KEELER SOURCE_DIR: the commands in the examples' READMEs work as they stand there; runs are cut to two
-# steps, and what is clumped to a quarter of the box with steps that are coarse.
+# examples.sh KEELER SOURCE_DIR: the commands in the READMEs of the examples' scenes work as they stand there;
+# runs are cut to two steps, and what is clumped to a quarter of the box with steps that are coarse.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 ln -s "$source_dir/examples" "$work/examples"
 cd "$work" || exit 1
-for readme in examples/*/README.md; do
+for scene in examples/*/scene.toml; do
+  readme=${scene%/*}/README.md
   count=0
   while read -r program command; do
     [ "$program" = keeler ] || { fail "$readme: not a command of keeler: $program $command"; continue; }

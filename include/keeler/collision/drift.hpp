@@ -7,14 +7,17 @@
 
 #include <keeler/box/shearing_box.hpp>
 #include <keeler/collision/costs.hpp>
-#include <keeler/collision/crowd.hpp>
-#include <keeler/collision/finders.hpp>
-#include <keeler/collision/grid_partners.hpp>
+#include <keeler/collision/finder.hpp>
 #include <keeler/collision/settings.hpp>
-#include <keeler/collision/strips.hpp>
+#include <keeler/core/field_table.hpp>
 #include <keeler/particles/store.hpp>
 
+#include <memory>
+
 namespace keeler {
+
+struct Contact;
+class DriftEngine;
 
 /// What collisions did, summed in the order of the events. Energies in kg m² rad⁻².
 struct CollisionTally {
@@ -53,23 +56,27 @@ public:
   /// `step` is the length h of a drift (rad). Throws UsageError for an unknown finder.
   DriftPhase(const CollisionSettings& settings, const Frequencies& frequencies, double orbital_frequency, double step);
 
+  ~DriftPhase();
+  DriftPhase(DriftPhase&& other) noexcept;
+  DriftPhase& operator=(DriftPhase&& other) noexcept;
+
   /// Carries out all collisions in [−h/2, h/2) around the epoch of the elements; `offset` is the box's shear offset at
   /// the epoch. The elements stay at their epoch. Throws InvariantError when elements are not finite or a particle
   /// collides more than 100,000 times in the step.
   void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally);
 
-  const Finder& finder() const { return *finder_; }
+  const Finder& finder() const;
   DriftCosts costs() const;
 
   /// Promises that keep neighbours over steps; no result depends on them. The particles of the last collide() have
   /// moved on by one step and been wrapped, nothing else but kicks happened.
-  void moved_on() { neighbours_.moved_on(); }
+  void moved_on();
   /// All particles have been kicked by no more than this (m rad⁻¹).
-  void kicked(double largest) { neighbours_.kicked(largest); }
+  void kicked(double largest);
   /// Anything else is about to happen to them: a change of their places in the store, say.
-  void forget() { neighbours_.release(); }
+  void forget();
   /// Puts another finder in place of the settings' one: to measure finders.
-  void use(std::unique_ptr<Finder> finder) { finder_ = std::move(finder); }
+  void use(std::unique_ptr<Finder> finder);
 
   DriftWatch* watch = nullptr; ///< searches then run on one thread
 
@@ -80,42 +87,7 @@ public:
   bool every_candidate = false;
 
 private:
-  struct InPlace;
-  /// A pair that may touch in the step: the lower id first, the image that of the higher.
-  struct Candidate {
-    std::uint32_t low, high;
-    Image image;
-  };
-
-  void prepare();
-  bool in_strips(const std::vector<Event>& first);
-  void count(const Contact& contact, CollisionTally& tally);
-  template<class Body> void for_each_block(const Body& body) const;
-  void reject();
-  void put_in_order(std::vector<Candidate>& candidates) const;
-  std::vector<Event> solve();
-  std::size_t bytes() const;
-
-  CollisionSettings settings_;
-  Frequencies frequencies_;
-  double orbital_frequency_, step_;
-  std::unique_ptr<Finder> finder_;
-
-  // the step at hand
-  Particles* particles_ = nullptr;
-  StepAtHand step_at_hand_;
-  DriftStep finder_step_;
-  bool through_grid_ = false;
-  Neighbours neighbours_;
-  GridPartners grid_;
-  std::vector<std::vector<Candidate>> candidates_;
-  EventQueue events_;
-  Strips strips_;
-  StepSoFar so_far_;
-  Crowds crowds_;
-  std::vector<std::uint32_t> touched_; // who has changed in this step
-  std::uint64_t gave_up_ = 0;
-  DriftCosts costs_;
+  std::unique_ptr<DriftEngine> engine_;
 };
 
 } // namespace keeler

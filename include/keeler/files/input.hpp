@@ -14,7 +14,8 @@ namespace keeler {
 std::string read_input(const std::filesystem::path& file, const std::string& place);
 
 /// Hands over each row of numbers in a text, with the number of its line, from 1. Blanks, commas or semicolons part the
-/// numbers, '#' starts a comment, and a line with nothing else is no row. A word that is not a number is handed over as NaN.
+/// numbers, '#' starts a comment, and a line with nothing else is no row. A word that is not a number is handed over as
+/// NaN.
 void for_each_row(const std::string& text, const std::function<void(int line, std::span<const double> numbers)>& visit);
 
 } // namespace keeler

@@ -1,8 +1,7 @@
 // Gravity as the exact sum over all pairs and images: the reference, and the best choice for a few hundred particles.
 #pragma once
 
-#include <keeler/gravity/images.hpp>
-#include <keeler/gravity/kernels.hpp>
+#include <keeler/core/simd.hpp>
 #include <keeler/gravity/solver.hpp>
 
 namespace keeler {

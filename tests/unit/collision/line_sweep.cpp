@@ -1,8 +1,8 @@
 // The sweep of straight lines in single precision, in every instruction set, against the same in double precision; and
 // the pairs of a whole mirror against what each of its lines finds by itself.
-#include <keeler/collision/line_sweep.hpp>
-#include <keeler/collision/mirror.hpp>
+#include "line_sweep.hpp"
 
+#include "mirror.hpp"
 #include "unit/collision/spheres.hpp"
 
 #include <doctest/doctest.h>

@@ -1,8 +1,9 @@
 // Blocks of targets and lists of sources to test kernels on, and the plain loop that they must equal.
 #pragma once
 
+#include "single.hpp"
+
 #include <keeler/core/random.hpp>
-#include <keeler/gravity/single.hpp>
 
 #include <cmath>
 #include <vector>

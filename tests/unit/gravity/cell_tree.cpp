@@ -1,4 +1,4 @@
-#include <keeler/gravity/cell_tree.hpp>
+#include "cell_tree.hpp"
 
 #include "clumped_state.hpp"
 

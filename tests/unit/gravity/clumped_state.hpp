@@ -2,11 +2,12 @@
 // wakes, the rest a thin background, and no two spheres overlap (a buried pair would dominate every rms).
 #pragma once
 
+#include "lattice.hpp"
+
 #include <keeler/core/random.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/gravity/images.hpp>
-#include <keeler/gravity/lattice.hpp>
 #include <keeler/gravity/solver.hpp>
 
 #include <algorithm>

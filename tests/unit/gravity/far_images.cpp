@@ -1,11 +1,11 @@
-#include <keeler/gravity/far_images.hpp>
+#include "far_images.hpp"
+
+#include "clumped_state.hpp"
+#include "lattice.hpp"
 
 #include <keeler/core/random.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/gravity/images.hpp>
-#include <keeler/gravity/lattice.hpp>
-
-#include "clumped_state.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,10 +1,10 @@
-#include <keeler/gravity/kernels.hpp>
+#include "kernels.hpp"
+
+#include "blocks.hpp"
 
 #include <keeler/core/random.hpp>
 
 #include <doctest/doctest.h>
-
-#include "blocks.hpp"
 
 #include <cmath>
 #include <cstring>

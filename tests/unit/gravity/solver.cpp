@@ -1,11 +1,11 @@
 // What every solver behind the interface promises, each one checked the same way.
 #include <keeler/gravity/solver.hpp>
 
+#include "clumped_state.hpp"
+#include "tree.hpp"
+
 #include <keeler/core/threads.hpp>
 #include <keeler/gravity/direct.hpp>
-#include <keeler/gravity/tree.hpp>
-
-#include "clumped_state.hpp"
 
 #include <doctest/doctest.h>
 

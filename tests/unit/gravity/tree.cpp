@@ -1,8 +1,8 @@
-#include <keeler/gravity/tree.hpp>
-
-#include <keeler/gravity/direct.hpp>
+#include "tree.hpp"
 
 #include "clumped_state.hpp"
+
+#include <keeler/gravity/direct.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,10 +1,10 @@
 #include <keeler/io/checkpoint.hpp>
 
+#include "sealed_image.hpp"
 #include "unit/files/disk.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/random.hpp>
-#include <keeler/io/sealed_image.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,12 +1,12 @@
 #include <keeler/io/snapshot.hpp>
 
+#include "sealed_image.hpp"
 #include "unit/files/disk.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/io/describe.hpp>
-#include <keeler/io/sealed_image.hpp>
 
 #include <doctest/doctest.h>
 

@@ -55,7 +55,8 @@ template<class Motion> FinderResult CertifiedSearch::find(const Motion& motion, 
     const double slower = std::max(0.0, speed * down - acceleration_bound * s);
     const double positive = 2.0 * slower * slower, negative = 2.0 * (distance + speed_bound * s) * acceleration_bound;
     const double m = positive * down - negative / down; // f'' >= m over the next s
-    const double slack = error * (1.0 + result.iterations / 1024);
+    const int thousands = result.iterations / 1024;
+    const double slack = error * (1.0 + thousands);
     const double low_slope = slope - motion.closing_error(distance, speed);
 
     double step; // no contact before t + step; infinite when there is none within s

@@ -2,9 +2,10 @@
 // neighbouring particles (Barnes 1990, J. Comput. Phys. 87, 161).
 #pragma once
 
-#include <keeler/gravity/cell_tree.hpp>
+#include "cell_tree.hpp"
+#include "kernels.hpp"
+
 #include <keeler/gravity/images.hpp>
-#include <keeler/gravity/kernels.hpp>
 #include <keeler/gravity/solver.hpp>
 
 namespace keeler {

@@ -1,7 +1,7 @@
 // Fills what the kernels in single precision read. Apart from kernels.hpp, whose readers may hold no inline functions.
 #pragma once
 
-#include <keeler/gravity/kernels.hpp>
+#include "kernels.hpp"
 
 #include <bit>
 

@@ -9,8 +9,9 @@
 // The image of a partner is the nearest one. A box that is too small for that is a matter for grid_partners.hpp.
 #pragma once
 
-#include <keeler/collision/crowd.hpp>
-#include <keeler/collision/mirror.hpp>
+#include "crowd.hpp"
+#include "mirror.hpp"
+
 #include <keeler/collision/straight_line.hpp>
 #include <keeler/core/threads.hpp>
 

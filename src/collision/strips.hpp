@@ -17,8 +17,8 @@
 // start of the step.
 #pragma once
 
-#include <keeler/collision/contact_loop.hpp>
-#include <keeler/collision/neighbours.hpp>
+#include "contact_loop.hpp"
+#include "neighbours.hpp"
 
 #include <cmath>
 #include <span>

@@ -7,8 +7,8 @@
 // path, has a line in the crowd, that of its present orbit.
 #pragma once
 
-#include <keeler/collision/contact_loop.hpp>
-#include <keeler/collision/line_sweep.hpp>
+#include "contact_loop.hpp"
+#include "line_sweep.hpp"
 
 #include <numeric>
 #include <vector>

@@ -10,11 +10,12 @@
 // Heights count up to half the cell's shorter side a ring; a body farther out feels the far images as from there.
 #pragma once
 
+#include "far_kernels.hpp"
+#include "lattice.hpp"
+
 #include <keeler/box/shearing_box.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/vector.hpp>
-#include <keeler/gravity/far_kernels.hpp>
-#include <keeler/gravity/lattice.hpp>
 #include <keeler/gravity/solver.hpp>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 // the library cannot be trusted to survive damaged structures.
 #pragma once
 
-#include <keeler/io/hdf5.hpp>
+#include "hdf5.hpp"
 
 #include <filesystem>
 

@@ -12,8 +12,9 @@
 // is room, in tiles of their own that everybody looks into: a few fast ones do not make everybody look farther.
 #pragma once
 
+#include "line_sweep.hpp"
+
 #include <keeler/box/shearing_box.hpp>
-#include <keeler/collision/line_sweep.hpp>
 #include <keeler/particles/store.hpp>
 
 #include <algorithm>

@@ -8,8 +8,9 @@
 // What a walk meets is kept small: a cell in 32 bytes, its box and its moments apart.
 #pragma once
 
+#include "kernels.hpp"
+
 #include <keeler/core/vector.hpp>
-#include <keeler/gravity/kernels.hpp>
 
 #include <cstdint>
 #include <span>

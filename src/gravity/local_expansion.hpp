@@ -6,7 +6,7 @@
 // quadrupoles the field and its gradient are kept: what is left out is of fourth order in (sizes / distance).
 #pragma once
 
-#include <keeler/gravity/kernels.hpp>
+#include "kernels.hpp"
 
 namespace keeler {
 
