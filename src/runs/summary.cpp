@@ -2,7 +2,7 @@
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/threads.hpp>
-#include <keeler/io/files.hpp>
+#include <keeler/files/files.hpp>
 
 #include <algorithm>
 

@@ -6,7 +6,7 @@
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/energy.hpp>
 #include <keeler/diagnostics/mean.hpp>
-#include <keeler/io/files.hpp>
+#include <keeler/files/files.hpp>
 #include <keeler/states/initial.hpp>
 
 #include <doctest/doctest.h>
