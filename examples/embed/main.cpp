@@ -26,7 +26,7 @@ int main() {
   double squares = 0.0;
   for (const keeler::Vec3& position : patch.positions)
     squares += position.z() * position.z();
-  std::printf("%zu particles, %.1f collisions of each, %.2f m high\n", patch.size(),
+  std::printf("%zu particles, %.1f collisions of each, scale height %.2f m\n", patch.size(),
               2.0 * static_cast<double>(simulation.state().collisions.fast) / static_cast<double>(patch.size()),
               std::sqrt(squares / static_cast<double>(patch.size())));
 }

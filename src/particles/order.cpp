@@ -6,18 +6,18 @@
 
 namespace keeler {
 
-// A counting sort into bins of ids, as many as particles at most; then each bin by itself. Ids usually follow each
-// other without gaps, so that each has a bin of its own.
+// A counting sort into bins of ids, at most twice as many as particles; then each bin by itself. Ids usually follow
+// each other without gaps, so that each has a bin of its own.
 std::vector<std::uint32_t> order_by_id(std::span<const std::uint64_t> ids) {
   std::vector<std::uint32_t> order(ids.size()), bin_of(ids.size()), starts;
   if (ids.empty())
     return order;
-  const auto [least, most] = std::minmax_element(ids.begin(), ids.end());
-  const std::uint64_t range = *most - *least;
+  const std::uint64_t least = *std::min_element(ids.begin(), ids.end());
+  const std::uint64_t range = *std::max_element(ids.begin(), ids.end()) - least;
   int shift = 0;
   while (range >> shift >= 2 * ids.size())
     ++shift;
-  parallel_for(ids.size(), [&](std::size_t k) { bin_of[k] = static_cast<std::uint32_t>((ids[k] - *least) >> shift); });
+  parallel_for(ids.size(), [&](std::size_t k) { bin_of[k] = static_cast<std::uint32_t>((ids[k] - least) >> shift); });
   const std::size_t bins = static_cast<std::size_t>(range >> shift) + 1;
   counting_sort(bin_of, bins, starts,
                 [&](std::size_t k, std::size_t place) { order[place] = static_cast<std::uint32_t>(k); });

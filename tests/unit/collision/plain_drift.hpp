@@ -4,6 +4,7 @@
 #pragma once
 
 #include <keeler/collision/drift.hpp>
+#include <keeler/collision/finders.hpp>
 
 #include <cmath>
 #include <map>
