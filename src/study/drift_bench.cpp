@@ -2,7 +2,7 @@
 
 #include "bench_states.hpp"
 #include "phase_progress.hpp"
-#include "yardsticks.hpp"
+#include <keeler/study/yardsticks.hpp>
 
 #include <keeler/collision/finders.hpp>
 #include <keeler/core/stopwatch.hpp>

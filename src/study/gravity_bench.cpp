@@ -1,7 +1,7 @@
 #include <keeler/study/gravity_bench.hpp>
 
 #include "gravity_states.hpp"
-#include "yardsticks.hpp"
+#include <keeler/study/yardsticks.hpp>
 
 #include <keeler/cells/order.hpp>
 #include <keeler/core/simd.hpp>

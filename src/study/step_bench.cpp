@@ -1,7 +1,7 @@
 #include <keeler/study/step_bench.hpp>
 
 #include "gravity_states.hpp"
-#include "yardsticks.hpp"
+#include <keeler/study/yardsticks.hpp>
 
 #include <keeler/simulation/simulation.hpp>
 #include <keeler/study/median.hpp>

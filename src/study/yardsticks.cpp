@@ -1,4 +1,4 @@
-#include "yardsticks.hpp"
+#include <keeler/study/yardsticks.hpp>
 
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
