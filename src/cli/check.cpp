@@ -2,7 +2,11 @@
 #include "command.hpp"
 #include "scene_arguments.hpp"
 
+#include <keeler/core/stopwatch.hpp>
+#include <keeler/core/threads.hpp>
 #include <keeler/scene/derived.hpp>
+#include <keeler/scene/estimate.hpp>
+#include <keeler/bench/yardsticks.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -10,6 +14,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace keeler {
 namespace {
@@ -21,8 +26,24 @@ struct CheckOptions {
   bool markdown = false;
 };
 
+// None when only a start file knows the particles.
+std::optional<RunEstimate> estimate(const Scene& scene, const Derived& d) {
+  if (!d.particles_known)
+    return std::nullopt;
+  set_threads(1);
+  return estimate_run(scene, pair_yardstick(cpu_seconds));
+}
+
+nlohmann::ordered_json as_json(const RunEstimate& estimate) {
+  nlohmann::ordered_json json;
+  for (const RunEstimate::Part& part : estimate.parts())
+    json[fmt::format("{}_s", part.name)] = part.seconds;
+  json["dominates"] = estimate.dominating();
+  return json;
+}
+
 // Numbers that only the start file knows are null.
-nlohmann::ordered_json as_json(const Scene& scene, const Derived& d) {
+nlohmann::ordered_json as_json(const Scene& scene, const Derived& d, const std::optional<RunEstimate>& cost) {
   const auto known = [&](double value) -> nlohmann::ordered_json {
     return d.particles_known ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
   };
@@ -38,7 +59,8 @@ nlohmann::ordered_json as_json(const Scene& scene, const Derived& d) {
   json["box_m"] = {known(scene.size_x), known(scene.size_y)};
   json["steps"] = d.steps;
   json["memory_mb"] = known(d.memory_mb);
-  json["estimated_s"] = known(d.estimated_s);
+  json["estimated_s"] = cost ? nlohmann::ordered_json(cost->total()) : nlohmann::ordered_json();
+  json["estimate"] = cost ? as_json(*cost) : nlohmann::ordered_json();
   json["notices"] = scene.notices;
   return json;
 }
@@ -73,7 +95,16 @@ std::vector<std::string> doubts(const Scene& scene, const Derived& d) {
   return found;
 }
 
-void print_text(const Scene& scene, const Derived& d) {
+void print_estimate(const RunEstimate& cost) {
+  std::string parts;
+  for (const RunEstimate::Part& part : cost.parts())
+    if (part.seconds > 0.0)
+      parts += fmt::format("{}{} {}", parts.empty() ? "" : ", ", part.name, duration(part.seconds));
+  fmt::print("time               about {} on one thread (an estimate): {}; {} dominates\n", duration(cost.total()),
+             parts, cost.dominating());
+}
+
+void print_text(const Scene& scene, const Derived& d, const std::optional<RunEstimate>& cost) {
   if (!scene.title.empty())
     fmt::print("{}\n", scene.title);
   if (d.particles_known)
@@ -81,10 +112,10 @@ void print_text(const Scene& scene, const Derived& d) {
   else
     fmt::print("box and particles  from {}\n", *scene.start_from);
   fmt::print("steps              {} of {:.6g} orbits\n", d.steps, scene.time.step);
-  if (d.particles_known) {
+  if (d.particles_known)
     fmt::print("memory             about {:.0f} MB (an estimate)\n", d.memory_mb);
-    fmt::print("time               about {} on one thread (an estimate)\n", duration(d.estimated_s));
-  }
+  if (cost)
+    print_estimate(*cost);
   for (const std::string& notice : scene.notices)
     fmt::print("note: {}\n", notice);
   for (const std::string& doubt : doubts(scene, d))
@@ -102,10 +133,11 @@ ExitCode check(const CheckOptions& options) {
   if (scene.start_from && !std::filesystem::exists(*scene.start_from))
     throw IoError(fmt::format("start.from names '{}', which does not exist", *scene.start_from));
   const Derived derived = derive(scene);
+  const std::optional<RunEstimate> cost = estimate(scene, derived);
   if (options.json)
-    fmt::print("{}\n", as_json(scene, derived).dump(2));
+    fmt::print("{}\n", as_json(scene, derived, cost).dump(2));
   else
-    print_text(scene, derived);
+    print_text(scene, derived, cost);
   return ExitCode::done;
 }
 

@@ -29,7 +29,7 @@ bool may_overlap(const Scene& scene) {
   return !make_finder(scene.collisions.finder)->exact();
 }
 
-const SeriesColumn columns[] = {
+const SeriesColumn all_columns[] = {
     {"time_orbits", "orbits", "time since the run began", [](Sample s) { return s.simulation.orbits(); }},
     {"dispersion_x_m_s", "m/s", "radial velocity dispersion, weighted by mass",
      [](Sample s) { return speed(s, s.means.dispersion.x()); }},
@@ -67,12 +67,12 @@ SeriesSample::SeriesSample(const Scene& of_scene, const Simulation& of_simulatio
                            -0.5 * of_simulation.state().step_length)) {}
 
 std::span<const SeriesColumn> series_columns() {
-  return columns;
+  return all_columns;
 }
 
 std::vector<SeriesColumn> series_columns_of(const Scene& scene) {
   std::vector<SeriesColumn> present;
-  std::copy_if(std::begin(columns), std::end(columns), std::back_inserter(present),
+  std::copy_if(std::begin(all_columns), std::end(all_columns), std::back_inserter(present),
                [&](const SeriesColumn& column) { return !column.in || column.in(scene); });
   return present;
 }

@@ -1,7 +1,5 @@
 #include <keeler/scene/derived.hpp>
 
-#include <keeler/gravity/fft.hpp>
-
 #include <keeler/core/units.hpp>
 #include <keeler/orbit/toomre.hpp>
 #include <keeler/particles/patch.hpp>
@@ -11,17 +9,10 @@
 namespace keeler {
 namespace {
 
-// What a run costs, for the estimates alone. Rough figures for one core of 2023; nothing but the estimate uses them.
+// Peak memory of `keeler run` of examples/a-ring-wakes and examples/equilibrium, measured at N = 10⁵ and 4 × 10⁵.
 namespace cost {
-// Measured on one core with AVX-512: `keeler run` of both examples, and peak memory at N = 10⁵ and 4 × 10⁵.
-constexpr double drift_ns = 150.0;         // per particle and step, uniform patch
-constexpr double clumped_drift_ns = 240.0; // the same among self-gravity wakes
-constexpr double tree_ns = 400.0;          // per particle and kick, 9 boxes, opening angle 0.6
-constexpr double mesh_ns = 130.0;          // per particle and kick
-constexpr double neighbours_ns = 50.0;     // the same, for each mesh spacing that they reach
-constexpr double direct_pair_ns = 1.0;     // per pair and image
-constexpr double program_bytes = 33e6;     // code, libraries, buffers that do not grow with N
-constexpr double file_bytes = 260.0;       // files are built in memory before they are written
+constexpr double program_bytes = 33e6; // code, libraries, buffers that do not grow with N
+constexpr double file_bytes = 260.0;   // files are built in memory before they are written
 constexpr double drift_bytes = 168.0; // lines, cells, lists, stamps, and the scratch of sorting: at most 240 with state
 constexpr double tree_node_bytes = 120; // box, mass, centre, quadrupole, links
 constexpr double nodes_per_particle = 0.5;
@@ -41,30 +32,6 @@ double bytes_per_particle(const Scene& scene) {
       total += cost::nodes_per_particle * cost::tree_node_bytes + 4 * sizeof(double);
   }
   return total;
-}
-
-double gravity_ns_per_kick(const GravitySettings& settings, double count, const SizeLaw& sizes) {
-  const GravitySettings gravity = chosen_for(static_cast<std::size_t>(count), settings);
-  if (gravity.solver == GravitySettings::Solver::fft)
-    return cost::mesh_ns +
-           cost::neighbours_ns * cut_for(gravity.force_error, std::sqrt(sizes.mean_power(6)) / sizes.mean_power(3));
-  if (gravity.solver == GravitySettings::Solver::mesh)
-    return cost::mesh_ns;
-  const double side = 2.0 * gravity.images.rings + 1.0;
-  const double images = side * side;
-  if (gravity.solver == GravitySettings::Solver::direct)
-    return cost::direct_pair_ns * count * images;
-  // interactions per particle grow as ln N / θ² (Barnes & Hut 1986), here from N = 10⁴
-  const double opening = 0.6 / gravity.opening_angle;
-  return cost::tree_ns * opening * opening * std::log(count * images + 2.0) / std::log(9e4);
-}
-
-double estimate_seconds(const Scene& scene, std::int64_t steps) {
-  const double count = static_cast<double>(scene.particles.count);
-  double ns_per_step = scene.gravity ? cost::clumped_drift_ns : cost::drift_ns;
-  if (scene.gravity)
-    ns_per_step += gravity_ns_per_kick(*scene.gravity, count, scene.particles.sizes) / scene.gravity->kick_every;
-  return 1e-9 * ns_per_step * count * static_cast<double>(steps);
 }
 
 } // namespace
@@ -91,28 +58,32 @@ double hill_parameter(double density, double distance) {
   return 0.82 * std::cbrt(density / 900.0) * distance / 1e8;
 }
 
+double crowd_radius(const SizeLaw& sizes) {
+  const double cubes = sizes.mean_power(3);
+  const double alone = sizes.kind == SizeLaw::Kind::file
+                           ? sizes.mean_power(6) / (cubes * cubes * static_cast<double>(sizes.listed.size()))
+                           : 0.0;
+  return cubes * (1.0 - alone) / sizes.mean_power(2);
+}
+
 namespace {
 
 constexpr double own_room = 1.7; // of H² per τ R²
 
-double mass_radius(const SizeLaw& sizes) {
-  return sizes.mean_power(3) / sizes.mean_power(2);
-}
-
 } // namespace
 
 double layer_height(double optical_depth, const SizeLaw& sizes, double velocity_dispersion, double nu) {
-  const double motion = vertical_share * velocity_dispersion * sizes.mean_power(1) / nu, radius = mass_radius(sizes);
+  const double motion = vertical_share * velocity_dispersion * sizes.mean_power(1) / nu, radius = crowd_radius(sizes);
   return std::sqrt(motion * motion + own_room * optical_depth * radius * radius);
 }
 
 double midplane_filling(double optical_depth, const SizeLaw& sizes, double velocity_dispersion, double nu) {
   const double height = layer_height(optical_depth, sizes, velocity_dispersion, nu);
-  return (4.0 / 3.0) * optical_depth * mass_radius(sizes) / (std::sqrt(two_pi) * height);
+  return (4.0 / 3.0) * optical_depth * crowd_radius(sizes) / (std::sqrt(two_pi) * height);
 }
 
 double dispersion_for_filling(double optical_depth, const SizeLaw& sizes, double nu, double filling) {
-  const double radius = mass_radius(sizes);
+  const double radius = crowd_radius(sizes);
   const double height = (4.0 / 3.0) * optical_depth * radius / (std::sqrt(two_pi) * filling);
   const double motion2 = height * height - own_room * optical_depth * radius * radius;
   return motion2 > 0.0 ? nu * std::sqrt(motion2) / (vertical_share * sizes.mean_power(1)) : 0.0;
@@ -136,7 +107,6 @@ Derived derive(const Scene& scene) {
   d.midplane_filling = midplane_filling(scene.bunched_optical_depth(), particles.sizes, particles.velocity_dispersion,
                                         scene.planet.frequencies.nu);
   d.memory_mb = 1e-6 * (cost::program_bytes + bytes_per_particle(scene) * static_cast<double>(particles.count));
-  d.estimated_s = estimate_seconds(scene, d.steps);
   return d;
 }
 

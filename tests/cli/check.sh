@@ -19,10 +19,14 @@ for scene in "$source_dir"/examples/*/scene.toml; do
   prints "$scene" "steps"
   accepts "$scene as JSON" check "$scene" --json
   for key in particle_count optical_depth surface_density lambda_cr_m toomre_q hill_parameter midplane_filling box_m \
-    steps memory_mb estimated_s notices; do
+    steps memory_mb estimated_s estimate start_s drift_s gravity_s output_s notices; do
     prints "$scene as JSON" "\"$key\":"
   done
 done
+accepts "what dominates" check "$good" --set gravity.kick_every=50 --json
+prints "what dominates" '"dominates": "drift"'
+accepts "what dominates, as text" check "$good"
+prints "what dominates, as text" "; gravity dominates"
 accepts "overrides before and after" check --set particles.count=500 "$good" --set 'box.size=[100, 100]'
 prints "overrides before and after" "particles          500"
 accepts "defaults" check --defaults

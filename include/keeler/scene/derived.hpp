@@ -25,12 +25,16 @@ double distance_from_saturn(const PlanetSettings& planet);
 /// (Daisaka, Tanaka & Ida 2001). Aggregates form above about 1.1.
 double hill_parameter(double density, double distance);
 
+/// ⟨r³⟩/⟨r²⟩, m: the radius of most of a layer's area. Of radii listed in a file each counts by the mass of the others:
+/// a single moonlet makes no thick layer.
+double crowd_radius(const SizeLaw& sizes);
+
 /// c_z / c_x of a fresh patch: equilibria without self-gravity have 0.64 to 0.72.
 inline constexpr double vertical_share = 0.65;
 
 /// Scale height √⟨z²⟩ of a layer in m, for a radial velocity dispersion in ⟨r⟩ Ω: H² = (c_z/ν)² + 1.7 τ R², where
-/// c_z = vertical_share c_x, R = ⟨r³⟩/⟨r²⟩. The second term is the room that the particles themselves take: equilibria
-/// of equal spheres without self-gravity have H² − c_z²/ν² = 0.22, 0.89 and 1.66 r² at τ = 0.1, 0.5 and 1.
+/// c_z = vertical_share c_x, R = crowd_radius(). The second term is the room that the particles themselves take:
+/// equilibria of equal spheres without self-gravity have H² − c_z²/ν² = 0.22, 0.89 and 1.66 r² at τ = 0.1, 0.5 and 1.
 double layer_height(double optical_depth, const SizeLaw& sizes, double velocity_dispersion, double nu);
 
 /// Mid-plane filling factor (4/3) τ R / (√(2π) H) of a Gaussian layer of that height.
@@ -53,8 +57,7 @@ struct Derived {
   double hill_parameter = 0.0;
   double midplane_filling = 0.0; ///< at the start, where streamlines are closest
   std::int64_t steps = 0;
-  double memory_mb = 0.0;   ///< estimate of the largest use, 10⁶ bytes
-  double estimated_s = 0.0; ///< estimate of the processor time, s: on one thread the wall time
+  double memory_mb = 0.0; ///< estimate of the largest use, 10⁶ bytes
 };
 
 Derived derive(const Scene& scene);

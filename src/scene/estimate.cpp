@@ -1,0 +1,153 @@
+#include <keeler/scene/estimate.hpp>
+
+#include <keeler/gravity/fft.hpp>
+#include <keeler/scene/derived.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+// Times on the reference machine, one thread, ns. docs/dev/estimate.md says by which command each was measured.
+namespace cost {
+constexpr double start = 7.5e3;    // a particle
+constexpr double advance = 5.6;    // a particle and step
+constexpr double window = 85.0;    // a particle and window: sorting, and listing the pairs of equal spheres
+constexpr double contact = 1250.0; // with all searches; in a patch of 10⁴ particles, whose lines stay in the cache
+constexpr double kick = 20.0;      // a particle and kick
+constexpr double tree = 273.0, tree_opened = 44.5; // a particle and kick: the latter over the opening angle squared
+constexpr double mesh = 147.0, mesh_cut = 52.0; // a particle and kick: the latter for each spacing that the cut spans
+constexpr double direct_pair = 0.25, far_images = 40.0; // a pair and image; a particle and kick
+constexpr double row = 12.0, row_itself = 2e4;          // a particle and row; a row
+constexpr double snapshot = 1550.0, checkpoint = 500.0; // a particle and file
+constexpr double closing = 1000.0;                      // a particle: overlaps, hash
+constexpr double force_check = 1500.0;                  // a particle; they also take half a per cent of the run
+} // namespace cost
+
+constexpr double clumping_orbits = 0.9; // after which wakes stand
+
+// Lines of particles fall out of one cache after another.
+double cache_factor(double count) {
+  return std::pow(count / 1e4, 0.12);
+}
+
+// Wide sizes fill several levels of cells, each of which searches the finer ones. A single moonlet does not.
+double size_spread(const SizeLaw& sizes) {
+  const double mean = sizes.mean_power(1);
+  return sizes.mean_power(2) / (mean * mean);
+}
+
+// Steps for which neighbours are kept: until a particle has changed its velocity 0.3 times, at most 16.
+double window_steps(double contacts_a_step) {
+  return std::clamp(0.3 / std::max(contacts_a_step, 1e-9), 1.0, 16.0);
+}
+
+double drift_ns(const ContactRates& rates, double dilute, double count, const Scene& scene) {
+  const double contacts = rates.all() * scene.time.step; // of a particle in a step; half as many events
+  const double crowd = 1.0 + 0.17 * std::log(std::max(1.0, rates.fast / dilute)); // searches see more neighbours
+  const double spread = size_spread(scene.particles.sizes);
+  return cost::advance + cost::window * spread * spread / window_steps(contacts) +
+         cost::contact * spread * cache_factor(count) * crowd * 0.5 * contacts;
+}
+
+// Of a particle and kick.
+double gravity_ns(const GravitySettings& settings, double count, const SizeLaw& sizes) {
+  const GravitySettings gravity = chosen_for(static_cast<std::size_t>(count), settings);
+  const double side = 2.0 * gravity.images.rings + 1.0;
+  switch (gravity.solver) {
+  case GravitySettings::Solver::direct:
+    return cost::kick + cost::direct_pair * count * side * side + (gravity.images.far ? cost::far_images : 0.0);
+  case GravitySettings::Solver::tree:
+    return cost::kick + cost::tree + cost::tree_opened / (gravity.opening_angle * gravity.opening_angle);
+  case GravitySettings::Solver::mesh:
+    return cost::kick + cost::mesh;
+  default:
+    return cost::kick + cost::mesh +
+           cost::mesh_cut * cut_for(gravity.force_error, std::sqrt(sizes.mean_power(6)) / sizes.mean_power(3));
+  }
+}
+
+// Files of a schedule, beside one at its end and `first` at its beginning.
+double files(std::int64_t every, std::int64_t steps, double first) {
+  return first + 1.0 + (every > 0 ? std::floor(static_cast<double>(steps - 1) / static_cast<double>(every)) : 0.0);
+}
+
+double output_ns(const Scene& scene, double count) {
+  const std::int64_t steps = scene.time.end_step;
+  const double rows = files(scene.output.series_every, steps, 0.0);
+  const double checks = scene.gravity ? cost::force_check : 0.0;
+  return rows * (cost::row * count + cost::row_itself) +
+         count * (cost::snapshot * files(scene.output.snapshot_every, steps, 1.0) +
+                  cost::checkpoint * files(scene.output.checkpoint_every, steps, 0.0) + cost::closing + checks);
+}
+
+// A pair's cross-section is π (r_i + r_j)²: a particle of any size meets its share of the optical depth.
+double met_optical_depth(const Scene& scene) {
+  return 0.5 * scene.optical_depth() * (1.0 + 1.0 / size_spread(scene.particles.sizes));
+}
+
+// Impacts happen at about three times the speed r Ω.
+double typical_restitution(const Scene& scene) {
+  const double speed = crowd_radius(scene.particles.sizes) * scene.planet.orbital_frequency;
+  return scene.collisions.restitution.coefficient(3.0 * speed);
+}
+
+} // namespace
+
+double layer_crowding(double optical_depth) {
+  return std::pow(optical_depth, 1.8);
+}
+
+double wake_crowding(double optical_depth, double hill_parameter) {
+  constexpr double aggregates = 1.1; // hold together whatever is beyond it
+  return std::pow(2.0 * optical_depth, 2.5) * std::exp(12.5 * (std::min(hill_parameter, aggregates) - 0.39));
+}
+
+// Dilute layers collide 19 τ times an orbit. Particles that lose their speed stay together and collide again, the more
+// often the less they keep and the more crowded they are.
+ContactRates contact_rates(double optical_depth, double restitution, double crowding) {
+  const double dilute = 19.0 * optical_depth;
+  return {dilute * (1.0 + 4.5 * std::exp(-7.2 * restitution) * crowding),
+          dilute * 34.0 * std::exp(-13.0 * restitution) * (1.0 + crowding / 7.0)};
+}
+
+SceneContacts scene_contacts(const Scene& scene) {
+  const double met = met_optical_depth(scene), restitution = typical_restitution(scene);
+  const double layer = layer_crowding(scene.optical_depth());
+  const ContactRates smooth = contact_rates(met, restitution, layer);
+  if (!scene.gravity)
+    return {smooth, smooth};
+  const double r_h = hill_parameter(scene.particles.density, distance_from_saturn(scene.planet));
+  return {smooth, contact_rates(met, restitution, layer + wake_crowding(scene.optical_depth(), r_h))};
+}
+
+std::array<RunEstimate::Part, 4> RunEstimate::parts() const {
+  return {{{"start", start}, {"drift", drift}, {"gravity", gravity}, {"output", output}}};
+}
+
+const char* RunEstimate::dominating() const {
+  const auto all = parts();
+  return std::max_element(all.begin(), all.end(), [](const Part& a, const Part& b) { return a.seconds < b.seconds; })
+      ->name;
+}
+
+RunEstimate estimate_run(const Scene& scene, double pair_ns) {
+  const double count = static_cast<double>(scene.particles.count), steps = static_cast<double>(scene.time.end_step);
+  const double smooth = std::min(steps, clumping_orbits / scene.time.step);
+  const SceneContacts contacts = scene_contacts(scene);
+  const double dilute = 19.0 * met_optical_depth(scene);
+  const double scale = 1e-9 * pair_ns / reference_pair_ns;
+  RunEstimate estimate;
+  estimate.start = scale * cost::start * count;
+  estimate.drift = scale * count *
+                   (smooth * drift_ns(contacts.smooth, dilute, count, scene) +
+                    (steps - smooth) * drift_ns(contacts.wakes, dilute, count, scene));
+  if (scene.gravity)
+    estimate.gravity =
+        scale * count * steps / scene.gravity->kick_every * gravity_ns(*scene.gravity, count, scene.particles.sizes);
+  estimate.output = scale * output_ns(scene, count);
+  return estimate;
+}
+
+} // namespace keeler

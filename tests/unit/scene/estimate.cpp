@@ -1,0 +1,104 @@
+#include "scenes.hpp"
+
+#include <keeler/scene/derived.hpp>
+#include <keeler/scene/estimate.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace keeler;
+using namespace keeler::test;
+
+namespace {
+
+Scene with(const std::vector<std::string>& overrides) {
+  return parse_scene(least, "s.toml", overrides);
+}
+
+Scene a_ring(const std::vector<std::string>& overrides = {}) {
+  return load_scene(KEELER_SOURCE_DIR "/examples/a-ring-wakes/scene.toml", overrides);
+}
+
+// Within a factor.
+void check_near(double value, double expected, double factor) {
+  CAPTURE(value);
+  CAPTURE(expected);
+  CHECK(value < expected * factor);
+  CHECK(value > expected / factor);
+}
+
+} // namespace
+
+TEST_CASE("contact rates are those of equilibria without self-gravity") {
+  // collisions of a particle in an orbit, restitution 0.5, by REBOUND 6c44115f; all contacts, slow ones are few
+  const double reference[][2] = {{0.1, 1.92}, {0.5, 9.97}, {1.0, 21.6}};
+  for (const auto& [depth, rate] : reference)
+    check_near(contact_rates(depth, 0.5, layer_crowding(depth)).all(), rate, 1.1);
+}
+
+TEST_CASE("contact rates in wakes are those of the study of solvers") {
+  // docs/theory/gravity.md: 218 to 247 collisions a particle and orbit, over orbits 1 to 4
+  check_near(scene_contacts(a_ring()).wakes.fast, 230.0, 1.25);
+  // far below the Roche density gravity only gathers particles a little
+  const SceneContacts light = scene_contacts(a_ring({"particles.density=20"}));
+  check_near(light.wakes.fast, light.smooth.fast, 1.2);
+}
+
+TEST_CASE("particles that keep less of their speed collide more often, and slowly") {
+  for (const double depth : {0.1, 1.0, 3.0}) {
+    ContactRates elastic = contact_rates(depth, 0.9, layer_crowding(depth));
+    CHECK(elastic.slow < 0.01 * elastic.fast);
+    for (const double restitution : {0.6, 0.3, 0.0}) {
+      const ContactRates lossy = contact_rates(depth, restitution, layer_crowding(depth));
+      CHECK(lossy.fast > elastic.fast);
+      CHECK(lossy.slow > elastic.slow);
+      elastic = lossy;
+    }
+  }
+}
+
+TEST_CASE("the estimate follows what is asked for") {
+  const RunEstimate one = estimate_run(with({}));
+  const RunEstimate longer = estimate_run(with({"time.end=4"}));
+  CHECK(longer.drift == doctest::Approx(2.0 * one.drift));
+  CHECK(longer.start == one.start);
+  CHECK(one.gravity == 0.0);
+  const RunEstimate larger = estimate_run(with({"particles.count=600", "box.size=[200, 50]"})); // the same depth
+  check_near(larger.drift, 2.0 * one.drift, 1.1); // and a little more, as caches are left
+  CHECK(larger.drift > 2.0 * one.drift);
+  const RunEstimate finer = estimate_run(with({"time.step=1e-4"})); // ten times the steps, with as many contacts
+  CHECK(finer.drift > 2.0 * one.drift);
+  CHECK(finer.drift < 10.0 * one.drift);
+  CHECK(estimate_run(with({"output.snapshot_every=0.001"})).output > 100.0 * one.output);
+  CHECK(estimate_run(with({"output.series_every=0.001"})).output > 2.0 * one.output);
+
+  const RunEstimate kicked = estimate_run(a_ring());
+  CHECK(estimate_run(a_ring({"gravity.kick_every=5"})).gravity == doctest::Approx(kicked.gravity / 5.0));
+  CHECK(estimate_run(a_ring({"gravity.opening_angle=0.3"})).gravity > 1.5 * kicked.gravity);
+  const std::vector<std::string> direct = {"gravity={solver=\"direct\"}"};
+  const std::vector<std::string> direct_larger = {"gravity={solver=\"direct\"}", "box.size_in_wavelengths=[8, 4]"};
+  check_near(estimate_run(a_ring(direct_larger)).gravity, 4.0 * estimate_run(a_ring(direct)).gravity, 1.01);
+}
+
+TEST_CASE("a slower machine takes longer in proportion, and the parts make the whole") {
+  const RunEstimate here = estimate_run(a_ring()), there = estimate_run(a_ring(), 2.0 * reference_pair_ns);
+  double sum = 0.0;
+  for (std::size_t k = 0; k < here.parts().size(); ++k) {
+    CHECK(there.parts()[k].seconds == doctest::Approx(2.0 * here.parts()[k].seconds));
+    sum += here.parts()[k].seconds;
+  }
+  CHECK(here.total() == doctest::Approx(sum));
+  CHECK(std::string(here.dominating()) == "gravity");
+  CHECK(std::string(estimate_run(a_ring({"gravity.kick_every=20"})).dominating()) == "drift");
+}
+
+TEST_CASE("a moonlet neither makes its patch collide as one of its optical depth would, nor fills levels of cells") {
+  // 10,000 grains of 1 m and as much area in one sphere of 100 m: grains meet 1.5 times τ = 0.5, not twice
+  SizeLaw moonlet{SizeLaw::Kind::file, 3.0, 1.0, 100.0, {}, std::vector<double>(10000, 1.0)};
+  moonlet.listed.push_back(100.0);
+  Scene scene = with({"particles.count=10001", "box.size=[251, 251]"});
+  const RunEstimate grains = estimate_run(scene);
+  const double rate = scene_contacts(scene).smooth.fast;
+  scene.particles.sizes = moonlet;
+  check_near(scene_contacts(scene).smooth.fast, 1.5 * rate, 1.15);
+  check_near(estimate_run(scene).drift, 2.0 * grains.drift, 1.5);
+}
