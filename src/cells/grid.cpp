@@ -3,6 +3,14 @@
 #include <algorithm>
 
 namespace keeler {
+namespace {
+
+// Of a place in units of cells; the first or the last for what rounding, or an absurd place, puts beyond them.
+std::int64_t cell_number(double place, std::int64_t cells) {
+  return static_cast<std::int64_t>(std::fmax(0.0, std::fmin(std::floor(place), static_cast<double>(cells - 1))));
+}
+
+} // namespace
 
 void PeriodicGrid::build(std::span<const Vec3> points, const ShearingBox& box, double offset, double cell_size) {
   box_ = box;
@@ -22,10 +30,8 @@ void PeriodicGrid::build(std::span<const Vec3> points, const ShearingBox& box, d
     const Image home = box.image_into_cell(points[k].x(), points[k].y(), offset);
     const Vec3 there = points[k] + box.displacement(home, offset);
     unsorted[k] = {there.x(), there.y(), static_cast<std::uint32_t>(k), home};
-    const auto column = std::clamp<std::int64_t>(
-        static_cast<std::int64_t>(std::floor((there.x() + 0.5 * box.size_x) * per_x_)), 0, columns_ - 1);
-    const auto row = std::clamp<std::int64_t>(
-        static_cast<std::int64_t>(std::floor((there.y() + 0.5 * box.size_y) * per_y_)), 0, rows_ - 1);
+    const auto column = cell_number((there.x() + 0.5 * box.size_x) * per_x_, columns_);
+    const auto row = cell_number((there.y() + 0.5 * box.size_y) * per_y_, rows_);
     cell_of[k] = static_cast<std::uint32_t>(column * rows_ + row);
     ++first_[cell_of[k] + 1];
   }

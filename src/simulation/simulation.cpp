@@ -144,10 +144,8 @@ void Simulation::half_kick() {
   const Frequencies& f = scene_.planet.frequencies;
   const Rotation rotation(f, -0.5 * state_.step_length);
   const double half = 0.5 * state_.step_length * scene_.gravity->kick_every;
-  double largest = 0.0;
-  for (const Vec3& a : state_.accelerations)
-    if (!(a.squaredNorm() <= largest)) // what is not a number stays
-      largest = a.squaredNorm();
+  const double largest =
+      largest_of(state_.accelerations.size(), [&](std::size_t k) { return state_.accelerations[k].squaredNorm(); });
   drift_.kicked(half * std::sqrt(largest));
   state_.energy.kick_work += ordered_sum(state_.particles.size(), [&](std::size_t k) {
     state_.particles.prefetch_after(k);
