@@ -3,6 +3,7 @@
 #include "presets.hpp"
 
 #include <keeler/collision/finders.hpp>
+#include <keeler/core/words.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -19,6 +20,13 @@ KeyRange above(double low) {
 KeyRange at_least(double low) {
   return {.low = low};
 }
+
+KeyRange up_to(double high) {
+  return {.low = 0, .high = high, .low_open = true};
+}
+
+// Ranges are wide, but what lies outside is a slip or another field: finer than smoke, larger than a moon.
+constexpr KeyRange radius_range = {.low = 1e-6, .high = 1e6};
 
 std::vector<std::string> finder_names() {
   std::vector<std::string> names;
@@ -43,21 +51,21 @@ std::vector<Key> make_keys() {
        .example = "1.3175e-4",
        .unit = "rad/s",
        .meaning = "orbital frequency Omega",
-       .range = above(0),
+       .range = {.low = 1e-8, .high = 1e-2},
        .alternatives = {"planet.preset"}},
       {.path = "planet.epicyclic_ratio",
        .type = number,
        .fallback = "1.0",
        .unit = "Omega",
        .meaning = "epicyclic frequency kappa",
-       .range = {.low = 0, .high = 2, .low_open = true, .high_open = true},
+       .range = {.low = 0.1, .high = 2, .low_open = true, .high_open = true},
        .only_with = {"planet.orbital_frequency", {}}},
       {.path = "planet.vertical_ratio",
        .type = number,
        .fallback = "1.0",
        .unit = "Omega",
        .meaning = "vertical frequency nu",
-       .range = above(0),
+       .range = {.low = 0.1, .high = 100},
        .only_with = {"planet.orbital_frequency", {}}},
 
       {.path = "box.size",
@@ -65,14 +73,14 @@ std::vector<Key> make_keys() {
        .example = "[245.0, 245.0]",
        .unit = "m",
        .meaning = "radial and azimuthal size of the patch",
-       .range = above(0),
+       .range = up_to(1e7),
        .alternatives = {"box.size_in_wavelengths"}},
       {.path = "box.size_in_wavelengths",
        .type = pair,
        .example = "[4, 4]",
        .unit = "lambda_cr",
        .meaning = "the size in Toomre wavelengths 4 pi^2 G Sigma / kappa^2",
-       .range = above(0),
+       .range = up_to(1e4),
        .alternatives = {"box.size"}},
 
       {.path = "particles.optical_depth",
@@ -80,14 +88,14 @@ std::vector<Key> make_keys() {
        .example = "0.5",
        .unit = "1",
        .meaning = "geometric optical depth, which sets the number of particles",
-       .range = above(0),
+       .range = up_to(100),
        .alternatives = {"particles.surface_density", "particles.count"}},
       {.path = "particles.surface_density",
        .type = number,
        .example = "400.0",
        .unit = "kg/m^2",
        .meaning = "surface density, which sets the number of particles",
-       .range = above(0),
+       .range = up_to(1e6),
        .alternatives = {"particles.optical_depth", "particles.count"}},
       {.path = "particles.count",
        .type = integer,
@@ -101,13 +109,13 @@ std::vector<Key> make_keys() {
        .example = "600.0",
        .unit = "kg/m^3",
        .meaning = "density of the particles' material",
-       .range = above(0)},
+       .range = {.low = 1e-2, .high = 3e4}},
       {.path = "particles.velocity_dispersion",
        .type = number,
        .fallback = "2.0",
        .unit = "mean r Omega",
        .meaning = "radial velocity dispersion at the start",
-       .range = above(0)},
+       .range = up_to(1000)},
       {.path = "particles.seed",
        .type = integer,
        .fallback = "1",
@@ -124,7 +132,7 @@ std::vector<Key> make_keys() {
        .example = "1.0",
        .unit = "m",
        .meaning = "radius of every particle",
-       .range = above(0),
+       .range = radius_range,
        .only_with = {"particles.sizes.law", {"equal"}}},
       {.path = "particles.sizes.exponent",
        .type = number,
@@ -138,14 +146,14 @@ std::vector<Key> make_keys() {
        .example = "0.5",
        .unit = "m",
        .meaning = "smallest radius of the power law",
-       .range = above(0),
+       .range = radius_range,
        .only_with = {"particles.sizes.law", {"power"}}},
       {.path = "particles.sizes.max",
        .type = number,
        .example = "5.0",
        .unit = "m",
        .meaning = "largest radius of the power law",
-       .range = above(0),
+       .range = radius_range,
        .only_with = {"particles.sizes.law", {"power"}}},
       {.path = "particles.sizes.path",
        .type = path,
@@ -169,7 +177,7 @@ std::vector<Key> make_keys() {
        .fallback = "0.0",
        .unit = "mean r",
        .meaning = "inclination common to all particles, which swing up and down together; rising at the start",
-       .range = at_least(0)},
+       .range = {.low = 0, .high = 1000}},
 
       {.path = "collisions.finder",
        .type = choice,
@@ -181,7 +189,7 @@ std::vector<Key> make_keys() {
        .fallback = "1e-2",
        .unit = "(r_i + r_j) Omega / 2",
        .meaning = "contacts slower than this bounce elastically, which ends inelastic collapse",
-       .range = at_least(0)},
+       .range = {.low = 0, .high = 100}},
       {.path = "collisions.restitution.law",
        .type = choice,
        .fallback = "\"bridges\"",
@@ -259,7 +267,7 @@ std::vector<Key> make_keys() {
        .fallback = "1e-3",
        .unit = "orbits",
        .meaning = "length of a step",
-       .range = {.low = 0, .high = 0.1, .low_open = true}},
+       .range = {.low = 1e-9, .high = 0.1}},
       {.path = "time.end",
        .type = number,
        .example = "3.0",
@@ -298,12 +306,13 @@ std::string KeyCondition::words() const {
 
 std::string KeyRange::words() const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  const std::string below = fmt::format("{} {:g}", high_open ? "below" : "at most", high);
+  const std::string below = fmt::format("{} {}", high_open ? "below" : "at most", figures(high));
   if (low == -infinity)
     return high == infinity ? "" : below;
   if (high == infinity)
-    return low_open ? fmt::format("above {:g}", low) : fmt::format("from {:g} up", low);
-  return low_open ? fmt::format("above {:g} and {}", low, below) : fmt::format("from {:g} to {:g}", low, high);
+    return low_open ? fmt::format("above {}", figures(low)) : fmt::format("from {} up", figures(low));
+  return low_open ? fmt::format("above {} and {}", figures(low), below)
+                  : fmt::format("from {} to {}", figures(low), figures(high));
 }
 
 const std::vector<Key>& scene_keys() {
