@@ -2,12 +2,13 @@
 #include "command.hpp"
 #include "scene_arguments.hpp"
 
+#include <keeler/core/words.hpp>
 #include <keeler/scene/derived.hpp>
+#include <keeler/scene/doubts.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -40,37 +41,26 @@ nlohmann::ordered_json as_json(const Scene& scene, const Derived& d) {
   json["memory_mb"] = known(d.memory_mb);
   json["estimated_s"] = known(d.estimated_s);
   json["notices"] = scene.notices;
+  json["doubts"] = doubts(scene);
   return json;
 }
 
 std::string duration(double seconds) {
   if (seconds < 120.0)
-    return fmt::format("{:.2g} s", seconds);
+    return figures(seconds, 2) + " s";
   return seconds < 7200.0 ? fmt::format("{:.0f} min", seconds / 60.0) : fmt::format("{:.1f} h", seconds / 3600.0);
 }
 
 void print_particles(const Scene& scene, const Derived& d) {
-  fmt::print("box                {:.4g} m x {:.4g} m", scene.size_x, scene.size_y);
+  fmt::print("box                {} m x {} m", figures(scene.size_x, 4), figures(scene.size_y, 4));
   fmt::print(" ({:.2f} x {:.2f} lambda_cr)\n", scene.size_x / d.lambda_cr, scene.size_y / d.lambda_cr);
   fmt::print("particles          {}\n", d.particle_count);
-  fmt::print("optical depth      {:.4g}\n", d.optical_depth);
-  fmt::print("surface density    {:.4g} kg/m^2\n", d.surface_density);
-  fmt::print("lambda_cr          {:.4g} m\n", d.lambda_cr);
-  fmt::print("Toomre Q           {:.3g} at the start\n", d.toomre_q);
+  fmt::print("optical depth      {}\n", figures(d.optical_depth, 4));
+  fmt::print("surface density    {} kg/m^2\n", figures(d.surface_density, 4));
+  fmt::print("lambda_cr          {} m\n", figures(d.lambda_cr, 4));
+  fmt::print("Toomre Q           {} at the start\n", figures(d.toomre_q, 3));
   fmt::print("Hill parameter r_h {:.3g} at Saturn\n", d.hill_parameter);
   fmt::print("mid-plane filling  {:.3g} at the start\n", d.midplane_filling);
-}
-
-// What is allowed but seldom meant.
-std::vector<std::string> doubts(const Scene& scene, const Derived& d) {
-  std::vector<std::string> found;
-  if (d.particles_known && scene.gravity && std::min(scene.size_x, scene.size_y) < 3.99 * d.lambda_cr)
-    found.push_back("the box is smaller than 4 lambda_cr: self-gravity wakes will feel its edges");
-  if (d.particles_known && scene.particles.density < 50.0)
-    found.push_back("the density is in kg/m^3: water ice has 917");
-  if (scene.gravity && scene.time.step * scene.gravity->kick_every > 0.02)
-    found.push_back("kicks are more than 0.02 orbits apart: self-gravity is hardly resolved in time");
-  return found;
 }
 
 void print_text(const Scene& scene, const Derived& d) {
@@ -80,14 +70,14 @@ void print_text(const Scene& scene, const Derived& d) {
     print_particles(scene, d);
   else
     fmt::print("box and particles  from {}\n", *scene.start_from);
-  fmt::print("steps              {} of {:.6g} orbits\n", d.steps, scene.time.step);
+  fmt::print("steps              {} of {} orbits\n", d.steps, figures(scene.time.step));
   if (d.particles_known) {
     fmt::print("memory             about {:.0f} MB (an estimate)\n", d.memory_mb);
     fmt::print("time               about {} on one thread (an estimate)\n", duration(d.estimated_s));
   }
   for (const std::string& notice : scene.notices)
     fmt::print("note: {}\n", notice);
-  for (const std::string& doubt : doubts(scene, d))
+  for (const std::string& doubt : doubts(scene))
     fmt::print("note: {}\n", doubt);
 }
 

@@ -25,7 +25,10 @@ KeyRange up_to(double high) {
   return {.low = 0, .high = high, .low_open = true};
 }
 
-// Ranges are wide, but what lies outside is a slip or another field: finer than smoke, larger than a moon.
+// Ranges are wide, so that only slips of units lie outside: orbits of ten minutes to 20 years, patches up to a tenth of
+// a ring's distance from its planet (1e8 m), materials up to the densest metals, radii of a micrometre to 1000 km,
+// motions up to 1000 times the shear across a particle, v_cut up to where a rebound would heat (it is at least v_cut /
+// 1000).
 constexpr KeyRange radius_range = {.low = 1e-6, .high = 1e6};
 
 std::vector<std::string> finder_names() {
