@@ -3,6 +3,16 @@
 #include <cmath>
 
 namespace keeler {
+namespace {
+
+// The box that a place lies in, given in box lengths. Places too far for the number of a box, or that are not numbers,
+// get one that does not bring them into the cell: who asks refuses them.
+std::int32_t nearest_box(double place) {
+  constexpr double farthest = 1 << 30;
+  return static_cast<std::int32_t>(std::fmax(-farthest, std::fmin(farthest, std::floor(place + 0.5))));
+}
+
+} // namespace
 
 double ShearingBox::offset(std::int64_t half_steps, double half_step) const {
   // count × displacement as an unevaluated sum of two doubles; fmod of each part is exact.
@@ -18,8 +28,8 @@ double ShearingBox::offset(std::int64_t half_steps, double half_step) const {
 
 Image ShearingBox::far_image_into_cell(double x, double y, double offset) const {
   Image image;
-  image.nx = -static_cast<std::int32_t>(std::floor(x / size_x + 0.5));
-  image.ny = -static_cast<std::int32_t>(std::floor((y - image.nx * offset) / size_y + 0.5));
+  image.nx = -nearest_box(x / size_x);
+  image.ny = -nearest_box((y - image.nx * offset) / size_y);
   return image;
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 namespace keeler {
-
 void PeriodicGrid::build(std::span<const Vec3> points, const ShearingBox& box, double offset, double cell_size) {
   const double affordable = std::sqrt(box.area() / (2.0 * static_cast<double>(points.size()) + 1.0));
   const auto axis = [size = std::max(cell_size, affordable)](double length) {

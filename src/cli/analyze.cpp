@@ -3,6 +3,7 @@
 #include "common_options.hpp"
 
 #include <keeler/cells/overlap.hpp>
+#include <keeler/core/words.hpp>
 #include <keeler/diagnostics/analysis.hpp>
 #include <keeler/runs/stored_patches.hpp>
 
@@ -52,31 +53,39 @@ nlohmann::ordered_json as_json(const Analysis& a, double overlap) {
   return json;
 }
 
+void print_wakes(const Analysis& a) {
+  const char* const none =
+      a.wake_amplitude > 0.0 ? "no wakes stand out of the noise" : "these particles are too few to resolve lambda_cr";
+  if (a.wake_pitch_degrees)
+    fmt::print("wake pitch           {:.1f} degrees, {}\n", std::abs(*a.wake_pitch_degrees),
+               *a.wake_pitch_degrees < 0.0 ? "leading" : "trailing");
+  else
+    fmt::print("wake pitch           not known because {}\n", none);
+  if (a.wake_spacing_m)
+    fmt::print("wake spacing         {} m radially = {:.2f} lambda_cr\n", figures(*a.wake_spacing_m, 3),
+               *a.wake_spacing_m / a.critical_wavelength_m);
+  else
+    fmt::print("wake spacing         not known because {}\n",
+               a.wake_pitch_degrees ? "no second wake stands out within half a box" : none);
+  fmt::print("wake amplitude       {} in the autocorrelation\n", figures(a.wake_amplitude, 3));
+}
+
 void print_text(const Analysis& a, double overlap) {
   const auto& c = a.dispersion_r_omega;
   const auto& v = a.dispersion_m_s;
-  fmt::print("snapshots            {} up to orbit {:.4g}, {} particles\n", a.snapshots, a.time_orbits,
-             a.particle_count);
-  fmt::print("optical depth        {:.4g}\n", a.optical_depth);
-  fmt::print("surface density      {:.4g} kg/m^2, lambda_cr {:.4g} m\n", a.surface_density_kg_m2,
-             a.critical_wavelength_m);
+  fmt::print("snapshots            {} up to orbit {}, {}\n", a.snapshots, figures(a.time_orbits, 4),
+             counted(a.particle_count, "particle"));
+  fmt::print("optical depth        {}\n", figures(a.optical_depth, 4));
+  fmt::print("surface density      {} kg/m^2, lambda_cr {} m\n", figures(a.surface_density_kg_m2, 4),
+             figures(a.critical_wavelength_m, 4));
   fmt::print("Toomre Q             {:.3g}\n", a.toomre_q);
   fmt::print("velocity dispersion  {:.3g} {:.3g} {:.3g} r Omega = {:.3g} {:.3g} {:.3g} m/s\n", c[0], c[1], c[2], v[0],
              v[1], v[2]);
   fmt::print("scale height         {:.3g} m, filling factor {:.3g} in the mid-plane\n", a.scale_height_m,
              a.filling_factor);
   fmt::print("viscosity            {:.3g} m^2/s translational\n", a.translational_viscosity_m2_s);
-  fmt::print("largest overlap      {:.1e} of a radius sum\n", overlap);
-  if (!a.wake_pitch_degrees) {
-    fmt::print("wakes                none\n");
-    return;
-  }
-  fmt::print("wake pitch           {:.1f} degrees, {}\n", std::abs(*a.wake_pitch_degrees),
-             *a.wake_pitch_degrees < 0.0 ? "leading" : "trailing");
-  if (a.wake_spacing_m)
-    fmt::print("wake spacing         {:.3g} m radially = {:.2f} lambda_cr\n", *a.wake_spacing_m,
-               *a.wake_spacing_m / a.critical_wavelength_m);
-  fmt::print("wake amplitude       {:.3g} in the autocorrelation\n", a.wake_amplitude);
+  fmt::print("largest overlap      {} of a radius sum\n", figures(overlap, 2));
+  print_wakes(a);
 }
 
 ExitCode run(const AnalyzeOptions& options) {

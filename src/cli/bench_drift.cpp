@@ -3,6 +3,7 @@
 
 #include <keeler/bench/drift.hpp>
 #include <keeler/collision/finders.hpp>
+#include <keeler/core/words.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -74,8 +75,9 @@ void print_json(const DriftBenchSettings& s, const std::string& sizes, const Dri
 }
 
 void print_text(const DriftBenchSettings& s, const DriftBench& b) {
-  fmt::print("ns per particle and step            {:.1f} (median of {} times {} steps, {} particles, {} thread{})\n",
-             b.ns_per_particle_step, s.repeats, b.steps, b.count, threads(), threads() == 1 ? "" : "s");
+  fmt::print("ns per particle and step            {:.1f} (median of {} of {}, {}, {})\n", b.ns_per_particle_step,
+             counted(s.repeats, "repeat"), counted(b.steps, "step"), counted(b.count, "particle"),
+             counted(threads(), "thread"));
   fmt::print("  of these                          advance {:.1f}, build {:.1f}, reject {:.1f}, solve {:.1f}, "
              "events {:.1f}\n",
              b.split.advance, b.split.build, b.split.reject, b.split.solve, b.split.events);
@@ -86,20 +88,20 @@ void print_text(const DriftBenchSettings& s, const DriftBench& b) {
   if (threads() > 1)
     fmt::print("over one thread, by turns           {:.2f} times as fast, the events {:.2f}, a pair {:.2f}\n",
                b.speedup.step, b.speedup.events, b.speedup.pair);
-  fmt::print("us per particle and orbit           {:.3g}\n", cost_per_orbit_us(s, b));
+  fmt::print("us per particle and orbit           {}\n", figures(cost_per_orbit_us(s, b), 3));
   if (b.contacts > 0)
     fmt::print("ns per collision                    {:.0f} for all of that time, {:.0f} for the events alone\n",
                b.ns_per_collision, b.ns_events_per_collision);
   if (b.calls_per_particle_step > 0.0)
-    fmt::print("ns per finder call                  {:.1f}, {:.3g} calls per particle at the start of a step\n",
-               b.ns_per_call, b.calls_per_particle_step);
+    fmt::print("ns per finder call                  {:.1f}, {} calls per particle at the start of a step\n",
+               b.ns_per_call, figures(b.calls_per_particle_step, 3));
   else
     fmt::print("ns per finder call                  none: no pair came to the finder\n");
-  fmt::print("pairs per particle and step         {:.3g} tested, {:.3g} handed to the finder\n", b.pairs_per_particle,
-             b.survivors_per_particle);
-  fmt::print("collisions per particle and orbit   {:.3g} faster than v_cut\n", b.collisions_per_particle_orbit);
+  fmt::print("pairs per particle and step         {} tested, {} handed to the finder\n",
+             figures(b.pairs_per_particle, 3), figures(b.survivors_per_particle, 3));
+  fmt::print("collisions per particle and orbit   {} faster than v_cut\n", figures(b.collisions_per_particle_orbit, 3));
   fmt::print("bytes per particle                  {}\n", b.bytes_per_particle);
-  fmt::print("dispersion c_x                      {:.3g} r Omega\n", b.dispersion_r_omega);
+  fmt::print("dispersion c_x                      {} r Omega\n", figures(b.dispersion_r_omega, 3));
 }
 
 ExitCode bench(const DriftOptions& options) {

@@ -2,6 +2,7 @@
 #include "bench.hpp"
 
 #include <keeler/bench/gravity.hpp>
+#include <keeler/core/words.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -41,11 +42,10 @@ void print_json(const GravityOptions& options, const GravityBench& b) {
 }
 
 void print_text(const GravityOptions& options, const GravityBench& b) {
-  fmt::print("{} particles, {}, box {:.4g} m x {:.4g} m, shear offset {:.4g} m, {} thread{}\n", b.count, options.state,
-             b.size_x_m, b.size_y_m, b.offset_m, threads(), threads() == 1 ? "" : "s");
-  fmt::print("errors of {} particles' forces over the rms force, of {} within {:g} m of the edges; medians of {} "
-             "times\n\n",
-             b.sample, b.edge_sample, b.edge_width_m, options.bench.repeats);
+  fmt::print("{}, {}, box {} m x {} m, shear offset {} m, {}\n", counted(b.count, "particle"), options.state,
+             figures(b.size_x_m, 4), figures(b.size_y_m, 4), figures(b.offset_m, 4), counted(threads(), "thread"));
+  fmt::print("errors of {} particles' forces over the rms force, of {} within {:g} m of the edges; medians of {}\n\n",
+             b.sample, b.edge_sample, b.edge_width_m, counted(options.bench.repeats, "repeat"));
   fmt::print("{:<8}{:<22}{:>12}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>10}{:>10}\n", "solver", "settings", "ns/particle",
              "rms", "99.9 %", "x", "y", "z", "edge", "edge pull", "net force");
   for (const GravityBenchRow& row : b.rows) {

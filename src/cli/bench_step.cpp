@@ -2,6 +2,7 @@
 #include "bench.hpp"
 
 #include <keeler/bench/step.hpp>
+#include <keeler/core/words.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -35,15 +36,14 @@ void print_json(const StepOptions& options, const StepBench& b) {
 }
 
 void print_text(const StepOptions& options, const StepBench& b) {
-  fmt::print("ns per particle and step            {:.1f} (median of {} times {} steps of {:g} orbit, {} particles, {} "
-             "thread{})\n",
-             b.ns_per_particle_step, options.bench.repeats, b.steps, b.step_orbits, b.count, threads(),
-             threads() == 1 ? "" : "s");
+  fmt::print("ns per particle and step            {:.1f} (median of {} of {} of {} orbit, {}, {})\n",
+             b.ns_per_particle_step, counted(options.bench.repeats, "repeat"), counted(b.steps, "step"),
+             figures(b.step_orbits), counted(b.count, "particle"), counted(threads(), "thread"));
   fmt::print("  of these                          drift {:.1f}, advance {:.1f}, gravity {:.1f}, kick {:.1f}\n",
              b.split.drift, b.split.advance, b.split.gravity, b.split.kick);
-  fmt::print("gravity                             {}, {}, a kick every {} step{}\n", b.choice.solver, b.choice.text,
-             options.bench.kick_every, options.bench.kick_every == 1 ? "" : "s");
-  fmt::print("collisions per particle and step    {:.3g} faster than v_cut\n", b.collisions_per_particle_step);
+  fmt::print("gravity                             {}, {}, a kick every {}\n", b.choice.solver, b.choice.text,
+             counted(options.bench.kick_every, "step"));
+  fmt::print("collisions per particle and step    {} faster than v_cut\n", figures(b.collisions_per_particle_step, 3));
 }
 
 ExitCode bench(StepOptions& options) {

@@ -2,16 +2,17 @@
 #include "command.hpp"
 #include "scene_arguments.hpp"
 
+#include <keeler/bench/yardsticks.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
+#include <keeler/core/words.hpp>
 #include <keeler/scene/derived.hpp>
+#include <keeler/scene/doubts.hpp>
 #include <keeler/scene/estimate.hpp>
-#include <keeler/bench/yardsticks.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -62,37 +63,26 @@ nlohmann::ordered_json as_json(const Scene& scene, const Derived& d, const std::
   json["estimated_s"] = cost ? nlohmann::ordered_json(cost->total()) : nlohmann::ordered_json();
   json["estimate"] = cost ? as_json(*cost) : nlohmann::ordered_json();
   json["notices"] = scene.notices;
+  json["doubts"] = doubts(scene);
   return json;
 }
 
 std::string duration(double seconds) {
   if (seconds < 120.0)
-    return fmt::format("{:.2g} s", seconds);
+    return figures(seconds, 2) + " s";
   return seconds < 7200.0 ? fmt::format("{:.0f} min", seconds / 60.0) : fmt::format("{:.1f} h", seconds / 3600.0);
 }
 
 void print_particles(const Scene& scene, const Derived& d) {
-  fmt::print("box                {:.4g} m x {:.4g} m", scene.size_x, scene.size_y);
+  fmt::print("box                {} m x {} m", figures(scene.size_x, 4), figures(scene.size_y, 4));
   fmt::print(" ({:.2f} x {:.2f} lambda_cr)\n", scene.size_x / d.lambda_cr, scene.size_y / d.lambda_cr);
   fmt::print("particles          {}\n", d.particle_count);
-  fmt::print("optical depth      {:.4g}\n", d.optical_depth);
-  fmt::print("surface density    {:.4g} kg/m^2\n", d.surface_density);
-  fmt::print("lambda_cr          {:.4g} m\n", d.lambda_cr);
-  fmt::print("Toomre Q           {:.3g} at the start\n", d.toomre_q);
+  fmt::print("optical depth      {}\n", figures(d.optical_depth, 4));
+  fmt::print("surface density    {} kg/m^2\n", figures(d.surface_density, 4));
+  fmt::print("lambda_cr          {} m\n", figures(d.lambda_cr, 4));
+  fmt::print("Toomre Q           {} at the start\n", figures(d.toomre_q, 3));
   fmt::print("Hill parameter r_h {:.3g} at Saturn\n", d.hill_parameter);
   fmt::print("mid-plane filling  {:.3g} at the start\n", d.midplane_filling);
-}
-
-// What is allowed but seldom meant.
-std::vector<std::string> doubts(const Scene& scene, const Derived& d) {
-  std::vector<std::string> found;
-  if (d.particles_known && scene.gravity && std::min(scene.size_x, scene.size_y) < 3.99 * d.lambda_cr)
-    found.push_back("the box is smaller than 4 lambda_cr: self-gravity wakes will feel its edges");
-  if (d.particles_known && scene.particles.density < 50.0)
-    found.push_back("the density is in kg/m^3: water ice has 917");
-  if (scene.gravity && scene.time.step * scene.gravity->kick_every > 0.02)
-    found.push_back("kicks are more than 0.02 orbits apart: self-gravity is hardly resolved in time");
-  return found;
 }
 
 void print_estimate(const RunEstimate& cost) {
@@ -111,14 +101,14 @@ void print_text(const Scene& scene, const Derived& d, const std::optional<RunEst
     print_particles(scene, d);
   else
     fmt::print("box and particles  from {}\n", *scene.start_from);
-  fmt::print("steps              {} of {:.6g} orbits\n", d.steps, scene.time.step);
+  fmt::print("steps              {} of {} orbits\n", d.steps, figures(scene.time.step));
   if (d.particles_known)
     fmt::print("memory             about {:.0f} MB (an estimate)\n", d.memory_mb);
   if (cost)
     print_estimate(*cost);
   for (const std::string& notice : scene.notices)
     fmt::print("note: {}\n", notice);
-  for (const std::string& doubt : doubts(scene, d))
+  for (const std::string& doubt : doubts(scene))
     fmt::print("note: {}\n", doubt);
 }
 

@@ -5,14 +5,14 @@
 #include "scene_arguments.hpp"
 #include "signals.hpp"
 
-#include <keeler/diagnostics/surface.hpp>
+#include <keeler/core/interrupt.hpp>
+#include <keeler/core/words.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/states/clumped.hpp>
 #include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -44,16 +44,24 @@ void require_folder(const std::string& output) {
                               output, folder.string()));
 }
 
-ClumpedState evolve_until_clumped(const Scene& scene) {
-  std::optional<ClumpedState> state;
-  {
-    ProgressLine line;
-    state = clumped_state(
-        scene, [&line](const ClumpingProgress& progress) { line.show(progress); }, requests_from_signals().stop);
+// Signals are heeded at once: there is nothing that could be kept.
+template<class Make> auto unless_stopped(const Make& make) {
+  try {
+    const Interruptible by_signals(requests_from_signals().stop);
+    return make();
+  } catch (const Interrupted&) {
+    throw Error(ExitCode::run_time,
+                "stopped before the state was made (on request), so no state is written; start again, or "
+                "use \"keeler run\", which keeps checkpoints");
   }
+}
+
+ClumpedState evolve_until_clumped(const Scene& scene) {
+  ProgressLine line;
+  std::optional<ClumpedState> state = clumped_state(
+      scene, [&line](const ClumpingProgress& progress) { line.show(progress); }, requests_from_signals().stop);
   if (!state)
-    throw Error(ExitCode::run_time, "stopped before the wakes had settled (on request), so no state is written; "
-                                    "start again, or use \"keeler run\", which keeps checkpoints");
+    throw Interrupted();
   return std::move(*state);
 }
 
@@ -68,13 +76,9 @@ void print_clumping(const Clumping& c) {
       100.0 * s.change, 100.0 * c.criterion.largest_change, 100.0 * s.deviation, 100.0 * c.criterion.largest_deviation);
 }
 
-void print_doubts(const Patch& patch) {
-  constexpr double enough = 4.0; // λ_cr: docs/dev/diagnostics.md
-  const double wavelengths = std::min(patch.box.size_x, patch.box.size_y) / critical_wavelength(patch);
-  if (wavelengths < 0.99 * enough)
-    fmt::print("note: the box spans {:.2g} lambda_cr; below {:g} it holds so few wakes that their settling, pitch and "
-               "spacing mean little\n",
-               wavelengths, enough);
+void print_doubts(const Scene& scene, const Patch& patch) {
+  for (const std::string& doubt : doubts(scene, scale_of(patch)))
+    fmt::print("note: {}\n", doubt);
 }
 
 ExitCode generate(const GenerateOptions& options, const std::vector<std::string>& arguments) {
@@ -85,17 +89,17 @@ ExitCode generate(const GenerateOptions& options, const std::vector<std::string>
   SnapshotMeta meta{scene.resolved, collect_provenance(arguments)};
   Patch patch;
   if (options.clumped) {
-    ClumpedState state = evolve_until_clumped(scene);
+    ClumpedState state = unless_stopped([&] { return evolve_until_clumped(scene); });
     patch = std::move(state.patch);
     meta.clumping = clumping_numbers(state.clumping);
     print_clumping(state.clumping);
-    print_doubts(patch);
   } else {
-    patch = initial_patch(scene);
+    patch = unless_stopped([&] { return initial_patch(scene); });
   }
+  print_doubts(scene, patch);
   write_snapshot(options.output, patch, meta);
-  fmt::print("{} particles in {:.5g} m x {:.5g} m, no overlaps: {}\n", patch.size(), patch.box.size_x, patch.box.size_y,
-             options.output);
+  fmt::print("{} in {} m x {} m, no overlaps: {}\n", counted(patch.size(), "particle"), figures(patch.box.size_x, 5),
+             figures(patch.box.size_y, 5), options.output);
   return ExitCode::done;
 }
 

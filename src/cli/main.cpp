@@ -1,6 +1,8 @@
 // The program: reads the command line, runs one subcommand, and turns every error into one line and an exit code.
 #include "command.hpp"
+#include "messages.hpp"
 
+#include <keeler/core/threads.hpp>
 #include <keeler/core/version.hpp>
 
 #include <fmt/format.h>
@@ -11,15 +13,24 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <system_error>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 using namespace keeler;
 
 namespace {
 
-int fail(ExitCode code, const char* message) {
-  fmt::print(stderr, "keeler: {}\n", message);
+int fail(ExitCode code, const std::string& message) {
+  say(message);
+  return static_cast<int>(code);
+}
+
+// Results that nobody got must not look like success.
+int end_with(ExitCode code) {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    throw IoError(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
   return static_cast<int>(code);
 }
 
@@ -41,16 +52,15 @@ int run(int argc, char** argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& asked) { // --help and --version
-    return program.exit(asked);
+    program.exit(asked);
+    return end_with(ExitCode::done);
   } catch (const CLI::ParseError& error) {
     throw UsageError(fmt::format("{}; \"keeler --help\" lists what can be asked", error.what()));
   }
   if (!action)
     throw UsageError("no command is given; \"keeler --help\" lists the commands");
-  const ExitCode code = action();
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) // a full disk must not look like success
-    throw IoError(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
-  return static_cast<int>(code);
+  set_threads(threads()); // refuses what OMP_NUM_THREADS must not ask for
+  return end_with(action());
 }
 
 // OpenMP reads its wait policy when it is loaded, before main. Threads that spin while they wait make a run ten times
@@ -63,15 +73,29 @@ void let_threads_sleep(char** argv) {
   execv("/proc/self/exe", argv);
 }
 
+// The next file that is opened would take the place of a closed standard stream, and messages would go into it. What
+// stands there instead refuses them.
+void fill_closed_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(stream, F_GETFD) < 0)
+      open("/dev/null", O_RDONLY);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
   let_threads_sleep(argv);
-  std::signal(SIGXFSZ, SIG_IGN); // a file-size limit is then an error of the write
+  fill_closed_streams();
+  for (const int signal : {SIGXFSZ, SIGPIPE}) // a file-size limit and a closed pipe are then errors of the write
+    std::signal(signal, SIG_IGN);
   try {
     return run(argc, argv);
   } catch (const Error& error) {
     return fail(error.code(), error.what());
+  } catch (const std::system_error& error) { // fmt::print throws it
+    return std::ferror(stdout) != 0
+               ? fail(ExitCode::input_output, "cannot write to standard output: " + error.code().message())
+               : fail(ExitCode::run_time, error.what());
   } catch (const std::exception& error) {
     return fail(ExitCode::run_time, error.what());
   }

@@ -1,5 +1,9 @@
 #include "progress_line.hpp"
 
+#include "messages.hpp"
+
+#include <keeler/core/words.hpp>
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -29,7 +33,7 @@ ProgressLine::ProgressLine() : terminal_(isatty(STDERR_FILENO) == 1) {}
 
 ProgressLine::~ProgressLine() {
   if (open_)
-    fmt::print(stderr, "\n");
+    write_message("\n");
 }
 
 bool ProgressLine::due(double elapsed_s, bool last) {
@@ -41,11 +45,10 @@ bool ProgressLine::due(double elapsed_s, bool last) {
 
 void ProgressLine::print(const std::string& bar, const std::string& numbers) {
   if (!terminal_) {
-    fmt::print(stderr, "{}\n", numbers);
+    write_message(numbers + "\n");
     return;
   }
-  fmt::print(stderr, "\r{}{}\033[K", bar, numbers);
-  std::fflush(stderr);
+  write_message("\r" + bar + numbers + "\033[K");
   open_ = true;
 }
 
@@ -53,8 +56,8 @@ void ProgressLine::show(const RunProgress& p) {
   if (!due(p.elapsed_s, p.step == p.end_step))
     return;
   const double done = static_cast<double>(p.step) / static_cast<double>(p.end_step);
-  print(bar_of(done), fmt::format("{:.3f}/{:.3g} orbits  {:3.0f} %  {} left  {:.0f} collisions/s", p.orbits,
-                                  p.end_orbits, 100.0 * done, clock(p.remaining_s), p.collisions_per_second));
+  print(bar_of(done), fmt::format("{:.3f}/{} orbits  {:3.0f} %  {} left  {:.0f} collisions/s", p.orbits,
+                                  figures(p.end_orbits), 100.0 * done, clock(p.remaining_s), p.collisions_per_second));
 }
 
 void ProgressLine::show(const Progress& p) {
@@ -64,9 +67,9 @@ void ProgressLine::show(const Progress& p) {
 
 void ProgressLine::note(const std::string& text) {
   if (open_)
-    fmt::print(stderr, "\n");
+    write_message("\n");
   open_ = false;
-  fmt::print(stderr, "keeler: {}\n", text);
+  say(text);
 }
 
 // No bar and no time left: nobody knows when wakes settle.

@@ -1,31 +1,31 @@
 // keeler run and keeler resume: the main job.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "messages.hpp"
 #include "progress_line.hpp"
 #include "scene_arguments.hpp"
 #include "signals.hpp"
 
+#include <keeler/core/words.hpp>
 #include <keeler/files/files.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <memory>
+#include <optional>
 
 namespace keeler {
 namespace {
 
 struct JobOptions {
   SceneArguments scene;
-  std::string folder, from;
+  std::string folder;
+  std::optional<std::string> from;
   double until = 0.0, wall_time = 0.0;
   bool force = false, json = false;
   ThreadOption threads;
 };
-
-void say(const std::string& line) {
-  fmt::print(stderr, "keeler: {}\n", line);
-}
 
 RunOptions run_options(const JobOptions& job, const std::vector<std::string>& arguments, ProgressLine& line) {
   RunOptions options;
@@ -43,25 +43,29 @@ RunOptions run_options(const JobOptions& job, const std::vector<std::string>& ar
 
 void print_summary(const std::string& folder, const nlohmann::json& s) {
   const auto number = [&](const char* key) { return s[key].get<double>(); };
-  fmt::print("{:.6g} orbits, {} steps, {} particles, {} threads\n", number("time_orbits"), s["steps"].get<long>(),
-             s["particle_count"].get<long>(), s["threads"].get<int>());
-  fmt::print("collisions per particle and orbit   {:.3g} faster than v_cut, {:.3g} slow contacts\n",
-             number("collisions_per_particle_orbit"), number("slow_contacts_per_particle_orbit"));
-  fmt::print("largest overlap                     {:.1e} of a radius sum\n", number("largest_overlap"));
+  const auto count = [&](const char* key, const char* noun) { return counted(s[key].get<std::uint64_t>(), noun); };
+  fmt::print("{} orbits, {}, {}, {}\n", figures(number("time_orbits")), count("steps", "step"),
+             count("particle_count", "particle"), count("threads", "thread"));
+  fmt::print("collisions per particle and orbit   {} faster than v_cut, {} slow contacts\n",
+             figures(number("collisions_per_particle_orbit"), 3),
+             figures(number("slow_contacts_per_particle_orbit"), 3));
+  fmt::print("largest overlap                     {} of a radius sum\n", figures(number("largest_overlap"), 2));
   if (s["finder_gave_up"].get<long>() > 0 || number("largest_overlap") > 1e-8)
-    fmt::print("the collision finder                gave up {} searches, and may have missed contacts\n",
-               s["finder_gave_up"].get<long>());
+    fmt::print("the collision finder                gave up on {}, and may have missed contacts\n",
+               s["finder_gave_up"].get<long>() == 1 ? "1 search"
+                                                    : fmt::format("{} searches", s["finder_gave_up"].get<long>()));
   if (const nlohmann::json& f = s["force_error"]; !f.is_null())
-    fmt::print("error of gravity                    {:.1e} of the rms acceleration, at worst {:.1e} (rms of {} "
-               "particles, {} checks)\n",
-               f["rms"].get<double>(), f["worst_rms"].get<double>(), f["particles"].get<long>(),
-               f["checks"].get<long>());
+    fmt::print("error of gravity                    {:.1e} of the rms acceleration, at worst {:.1e} (rms of {}, {})\n",
+               f["rms"].get<double>(), f["worst_rms"].get<double>(),
+               counted(f["particles"].get<std::uint64_t>(), "particle"),
+               counted(f["checks"].get<std::uint64_t>(), "check"));
   const nlohmann::json& e = s["energy_j"];
   const auto energy = [&](const char* key) { return e[key].get<double>(); };
-  fmt::print("energy budget (J)                   change {:.4g} = kicks {:.4g} + edges {:.4g} - collisions {:.4g}, "
+  const auto joules = [&](const char* key) { return figures(energy(key), 4); };
+  fmt::print("energy budget (J)                   change {} = kicks {} + edges {} - collisions {}, "
              "residual {:.1e}\n",
-             energy("now") - energy("start"), energy("kick_work"), energy("edge_work"), energy("lost_in_collisions"),
-             energy("residual"));
+             figures(energy("now") - energy("start"), 4), joules("kick_work"), joules("edge_work"),
+             joules("lost_in_collisions"), energy("residual"));
   const nlohmann::json& split = s["split"];
   const auto part = [&](const char* key) { return split.value(key, 0.0); };
   fmt::print(
@@ -109,9 +113,7 @@ void add_run(CLI::App& program, Action& action, const std::vector<std::string>& 
   command.callback([job, arguments, &action] {
     action = [job, arguments] {
       job->threads.apply();
-      if (!job->from.empty())
-        job->scene.overrides.push_back("start.from=" + nlohmann::json(job->from).dump()); // quoted, as in TOML
-      const Scene scene = job->scene.load();
+      const Scene scene = job->scene.load(job->from);
       RunResult result;
       {
         ProgressLine line;

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@ struct SceneArguments {
   /// Adds SCENE and --set to a command; returns SCENE, so that the command can make it required.
   CLI::Option* add_to(CLI::App& command);
 
-  Scene load() const { return load_scene(path, overrides); }
+  /// `from`: the snapshot of --from.
+  Scene load(const std::optional<std::string>& from = {}) const { return load_scene(path, overrides, from); }
 };
 
 } // namespace keeler

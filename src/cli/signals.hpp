@@ -1,5 +1,6 @@
-// Signals: INT, TERM, HUP and USR1 ask the run to finish its step, write a checkpoint and stop; a second one ends the
-// program at once. USR2 asks for a snapshot.
+// Signals: INT, TERM, HUP and USR1 ask the run to finish its step, write a checkpoint and stop; when that takes longer
+// than the run's patience, or at a second one, to give the step up. A third one ends the program. USR2 asks for a
+// snapshot.
 #pragma once
 
 #include <keeler/runs/run.hpp>

@@ -1,9 +1,11 @@
 // keeler study: whole experiments, with tables, figures and a report.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "messages.hpp"
 #include "progress_line.hpp"
 #include "signals.hpp"
 
+#include <keeler/core/interrupt.hpp>
 #include <keeler/study/finders/study.hpp>
 #include <keeler/study/gravity/study.hpp>
 
@@ -22,10 +24,14 @@ ExitCode carry_out(Settings& settings, const Study& study, const std::vector<con
     ProgressLine line;
     settings.notice = [&](const std::string& text) { line.note(text); };
     settings.progress = [&](const Progress& progress) { line.show(progress); };
-    finished = study(settings, requests_from_signals().stop);
+    try {
+      const Interruptible measurement(requests_from_signals().give_up); // by a second signal
+      finished = study(settings, requests_from_signals().stop);
+    } catch (const Interrupted&) { // what was measured so far is kept
+    }
   }
   if (!finished) {
-    fmt::print(stderr, "keeler: stopped; the same command goes on from here\n");
+    say("stopped; the same command goes on from here");
     return ExitCode::stopped;
   }
   for (const char* name : results)

@@ -19,6 +19,7 @@
 #include <keeler/collision/finder.hpp>
 #include <keeler/collision/settings.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/interrupt.hpp>
 
 #include <fmt/format.h>
 
@@ -90,12 +91,13 @@ public:
       : step_(step), orbits_(orbits), events_(events) {}
 
   /// Until nothing is pending. Throws InvariantError when a search meets numbers that are not finite or a particle
-  /// collides more than 100,000 times.
+  /// collides more than 100,000 times; and Interrupted.
   void run() {
     for (int stage = 0; stage < stages; ++stage) // of those that come before it is their turn in the loop
       for (std::size_t soon = 0; soon <= events_ahead(stage); ++soon)
         prefetch(soon, stage);
     while (!events_.empty()) {
+      throw_if_interrupted();
       for (int stage = 0; stage < stages; ++stage)
         prefetch(events_ahead(stage), stage);
       const Event event = events_.take_first();

@@ -271,6 +271,8 @@ std::vector<Event> DriftEngine::solve() {
   const std::vector<std::uint64_t>& ids = particles_->ids;
   const auto search_block = [&](std::size_t b) {
     for (const Candidate& c : candidates_[b]) {
+      if (interrupted())
+        return;
       const Vec3 shift = step_at_hand_.box.displacement(c.image, step_at_hand_.offset);
       const Query query{c.low, c.high, shift.x(), shift.y(), step_at_hand_.begin};
       const FinderResult result = finder_->find(query);
@@ -287,6 +289,7 @@ std::vector<Event> DriftEngine::solve() {
       search_block(b);
   else
     for_each_block(search_block);
+  throw_if_interrupted();
   std::vector<Event> all;
   for (const Found& f : found) {
     all.insert(all.end(), f.events.begin(), f.events.end());

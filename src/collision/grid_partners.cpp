@@ -1,5 +1,7 @@
 #include "grid_partners.hpp"
 
+#include "reach.hpp"
+
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
 
@@ -27,8 +29,15 @@ void GridPartners::begin(const Particles& particles, const ShearingBox& box, dou
     largest_radius_ = std::max(largest_radius_, body.radius);
     largest_eccentricity_ = std::max(largest_eccentricity_, e);
   }
+  require_few_images();
   grid_.build(places_, box, offset, 2.0 * largest_radius_ + step_ * largest_eccentricity_);
   test_ = {frequencies_, 0.5 * step_, 0.5 * step_, 1e-13 * (box.size_x + box.size_y)};
+}
+
+void GridPartners::require_few_images() const {
+  const double x = 2.0 * largest_radius_ + step_ * frequencies_.kappa * largest_eccentricity_;
+  const double y = 2.0 * largest_radius_ + 0.5 * step_ * (frequencies_.shear() * x + 6.0 * largest_eccentricity_);
+  require_reach(x, y, box_);
 }
 
 void GridPartners::changed(std::size_t i) {
@@ -36,6 +45,7 @@ void GridPartners::changed(std::size_t i) {
   const Vec3 place = state_at(el, frequencies_, Rotation()).position;
   largest_eccentricity_ = std::max(largest_eccentricity_, el.eccentricity());
   largest_stray_ = std::max(largest_stray_, (place - places_[i]).cwiseAbs().maxCoeff());
+  require_few_images();
 }
 
 } // namespace keeler

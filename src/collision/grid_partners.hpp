@@ -9,6 +9,7 @@
 
 #include <keeler/cells/grid.hpp>
 #include <keeler/collision/straight_line.hpp>
+#include <keeler/core/interrupt.hpp>
 
 #include <vector>
 
@@ -31,13 +32,14 @@ public:
     visit_near(i, start, visit);
   }
 
-  /// Particle i has been hit.
+  /// Particle i has been hit. Throws InvariantError when it, as begin() of any, may go too far in a step (reach.hpp).
   void changed(std::size_t i);
 
 private:
   static constexpr std::size_t block_size = 512; // particles
 
   template<class Visit> void visit_near(std::size_t i, double start, const Visit& visit) const;
+  void require_few_images() const;
 
   Frequencies frequencies_;
   double step_;
@@ -73,7 +75,8 @@ template<class Visit> void GridPartners::visit_near(std::size_t i, double start,
 }
 
 template<class Visit> void GridPartners::visit_block(std::size_t block, const Visit& visit) const {
-  for (std::size_t i = block * block_size; i < std::min(places_.size(), (block + 1) * block_size); ++i)
+  const std::size_t begin = block * block_size, end = std::min(places_.size(), begin + block_size);
+  for (std::size_t i = begin; i < end && !interrupted(); ++i)
     visit_near(i, -0.5 * step_, [&](std::size_t j, const Image& image) {
       if (particles_->ids[i] < particles_->ids[j])
         visit(i, j, image);

@@ -11,6 +11,7 @@
 
 #include "crowd.hpp"
 #include "mirror.hpp"
+#include "reach.hpp"
 
 #include <keeler/collision/straight_line.hpp>
 #include <keeler/core/threads.hpp>
@@ -277,6 +278,8 @@ template<class Visit> void Neighbours::visit_everywhere(std::size_t i, double st
     const double e = body.elements.eccentricity() + other.elements.eccentricity();
     const double x = body.radius + other.radius + step_ * f.kappa * e;
     const double y = body.radius + other.radius + step_ * (f.shear() * (x + e) + 2.0 * e);
+    throw_if_interrupted();
+    require_reach(x, y, box_);
     const std::int32_t far_x = across(x, box_.size_x), far_y = across(y, box_.size_y);
     for (std::int32_t nx = -far_x; nx <= far_x; ++nx)
       for (std::int32_t ny = -far_y - std::abs(nx); ny <= far_y + std::abs(nx); ++ny) {

@@ -1,5 +1,7 @@
 #include <keeler/core/key.hpp>
 
+#include <keeler/core/words.hpp>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -13,12 +15,13 @@ bool KeyRange::contains(double value) const {
 
 std::string KeyRange::words() const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  const std::string below = fmt::format("{} {:g}", high_open ? "below" : "at most", high);
+  const std::string below = fmt::format("{} {}", high_open ? "below" : "at most", figures(high));
   if (low == -infinity)
     return high == infinity ? "" : below;
   if (high == infinity)
-    return low_open ? fmt::format("above {:g}", low) : fmt::format("from {:g} up", low);
-  return low_open ? fmt::format("above {:g} and {}", low, below) : fmt::format("from {:g} to {:g}", low, high);
+    return low_open ? fmt::format("above {}", figures(low)) : fmt::format("from {} up", figures(low));
+  return low_open ? fmt::format("above {} and {}", figures(low), below)
+                  : fmt::format("from {} to {}", figures(low), figures(high));
 }
 
 bool KeyCondition::allows(const std::string& value) const {

@@ -1,10 +1,17 @@
 #include <keeler/core/threads.hpp>
 
+#include <keeler/core/error.hpp>
+
+#include <fmt/format.h>
 #include <omp.h>
 
 namespace keeler {
 
 void set_threads(int count) {
+  if (count > most_threads)
+    throw UsageError(fmt::format("{} threads are asked for (by --threads or OMP_NUM_THREADS), and {} is the most; ask "
+                                 "for no more than there are processors ({})",
+                                 count, most_threads, omp_get_num_procs()));
   omp_set_num_threads(std::max(1, count));
 }
 

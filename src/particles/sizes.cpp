@@ -41,30 +41,32 @@ SizeLaw make_listed(const Parameters& p) {
   return listed_sizes(std::move(radii));
 }
 
+constexpr KeyRange radius_range = {.low = 1e-6, .high = 1e6}; // wide: only slips of units lie outside
+
 Key length_key(const char* name, const char* example, const char* meaning) {
   return {.path = name,
           .type = KeyType::number,
           .example = example,
           .unit = "m",
           .meaning = meaning,
-          .range = KeyRange::above(0),
+          .range = radius_range,
           .effect = KeyEffect::start};
 }
 
 } // namespace
 
 SizeLaw equal_sizes(double radius) {
-  return {radius, radius, [=](int k) { return std::pow(radius, k); }, [=](double, std::size_t) { return radius; }};
+  return {radius, radius, 0, [=](int k) { return std::pow(radius, k); }, [=](double, std::size_t) { return radius; }};
 }
 
 SizeLaw power_sizes(double exponent, double min, double max) {
-  return {min, max, [=](int k) { return power_integral(k - exponent, min, max) / power_integral(-exponent, min, max); },
+  return {min, max, 0, [=](int k) { return power_integral(k - exponent, min, max) / power_integral(-exponent, min, max); },
           [=](double u, std::size_t) { return power_quantile(exponent, min, max, u); }};
 }
 
 SizeLaw listed_sizes(std::vector<double> radii) {
   const auto [smallest, largest] = std::minmax_element(radii.begin(), radii.end());
-  SizeLaw law{*smallest, *largest, {}, {}};
+  SizeLaw law{*smallest, *largest, radii.size(), {}, {}};
   law.mean_power = [radii](int k) {
     double sum = 0.0;
     for (const double radius : radii)
@@ -111,7 +113,7 @@ const std::vector<SizeEntry>& size_laws() {
          .type = KeyType::rows,
          .example = "\"radii.txt\"",
          .meaning = "the radii, drawn in turn",
-         .range = KeyRange::above(0),
+         .range = radius_range,
          .columns = {"radius in m"},
          .effect = KeyEffect::start}},
        make_listed},

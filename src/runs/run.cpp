@@ -4,6 +4,7 @@
 #include "summary.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/interrupt.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/files/files.hpp>
@@ -23,6 +24,7 @@ namespace {
 
 constexpr double first_check = 5e-6;      // s a particle: what a check is taken to cost before there was one
 constexpr double share_of_checks = 0.005; // of the wall time, for the errors of forces; one at the end besides
+constexpr double least_patience = 5.0;    // s, with a stop
 
 std::int64_t whole_kicks(const Scene& scene, double steps) {
   const auto block = static_cast<double>(scene.kick_interval());
@@ -52,12 +54,14 @@ public:
          Recorder& recorder, const Stopwatch& watch, std::int64_t last_checkpoint)
       : scene_(scene), options_(options), requests_(requests), simulation_(simulation), recorder_(recorder),
         watch_(watch), first_step_(simulation.state().step), last_checkpoint_(last_checkpoint),
-        first_collisions_(simulation.state().collisions.fast + simulation.state().collisions.slow) {}
+        first_collisions_(simulation.state().collisions.fast + simulation.state().collisions.slow) {
+    requests_.patience_s = patience();
+  }
 
   RunResult run() {
     const SimulationState& state = simulation_.state();
     while (state.step < scene_.time.end_step && !must_stop()) {
-      simulation_.advance();
+      advance();
       record();
       report();
     }
@@ -75,18 +79,27 @@ public:
     return result;
   }
 
+  /// -1: none yet.
+  std::int64_t last_checkpoint() const { return last_checkpoint_; }
+
 private:
+  void advance() {
+    const Interruptible step(requests_.give_up);
+    simulation_.advance();
+  }
+
   bool due(std::int64_t every) const { return every > 0 && simulation_.state().step % every == 0; }
 
   // Half way through a kick interval the closing half kick is missing: stop and snapshot only at its end.
   bool between_kicks() const { return due(scene_.kick_interval()); }
 
+  double passes_between_stops() const { return static_cast<double>(scene_.kick_interval()); }
+
   bool must_stop() const {
     if (!between_kicks())
       return false;
-    const auto passes = static_cast<double>(scene_.kick_interval()); // until the next chance
     // two passes more for the last checkpoint
-    const double reserve = (passes + 2) * longest_pass_ + recorder_.force_checks().last_s;
+    const double reserve = (passes_between_stops() + 2.0) * longest_pass_ + recorder_.force_checks().last_s;
     return requests_.stop || (options_.wall_time_s && watch_.elapsed() + reserve > *options_.wall_time_s);
   }
 
@@ -122,9 +135,15 @@ private:
     return scene_.gravity && between_kicks() && checks.seconds + next <= share_of_checks * watch_.elapsed();
   }
 
+  // Three times as long as any pass so far is nothing unusual.
+  unsigned patience() const {
+    return static_cast<unsigned>(std::ceil(std::max(least_patience, 3.0 * passes_between_stops() * longest_pass_)));
+  }
+
   void report() {
     const double now = watch_.elapsed();
     longest_pass_ = std::max(longest_pass_, now - last_time_);
+    requests_.patience_s = patience();
     last_time_ = now;
     if (!options_.progress)
       return;
@@ -158,11 +177,28 @@ struct Start {
   std::int64_t checkpoint_step = -1;
 };
 
+// The state is that of an unfinished step: what is on disk is all there is.
+[[noreturn]] void fail_given_up(const RunOptions& options, std::int64_t last_checkpoint, Recorder& recorder) {
+  recorder.log("given up", {{"checkpoint_step", last_checkpoint}});
+  if (last_checkpoint < 0)
+    throw Error(ExitCode::run_time, "a step was given up on request before there was a checkpoint; start again, with "
+                                    "output.checkpoint_every or, where steps do not end, with a shorter time.step");
+  const std::string until = options.until_orbits ? fmt::format(" --until {}", *options.until_orbits) : "";
+  throw Error(ExitCode::stopped, fmt::format("a step was given up on request; the checkpoint of step {} stands, "
+                                             "continue from it with \"keeler resume {}{}\"",
+                                             last_checkpoint, options.folder.string(), until));
+}
+
 RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& requests, const RunFolder& folder,
                    Simulation& simulation, Recorder& recorder, const Start& start) {
   const std::int64_t first_step = simulation.state().step;
   Runner runner(scene, options, requests, simulation, recorder, start.watch, start.checkpoint_step);
-  const RunResult result = runner.run();
+  RunResult result;
+  try {
+    result = runner.run();
+  } catch (const Interrupted&) {
+    fail_given_up(options, runner.last_checkpoint(), recorder);
+  }
   const RunCost cost{first_step, start.watch.elapsed(), cpu_seconds() - start.cpu, recorder.costs(),
                      recorder.force_checks()};
   const nlohmann::ordered_json summary = summarise(simulation, scene, result, cost, recorder.provenance());
@@ -202,18 +238,38 @@ Scene until(Scene scene, const RunOptions& options, std::int64_t step) {
   return scene;
 }
 
+struct Begun {
+  Simulation simulation;
+  PatchScale scale;
+};
+
+// Until there is a run, a stop is heeded at once: there is nothing that could be kept.
+Begun first_simulation(const Scene& scene, const RunRequests& requests) {
+  try {
+    const Interruptible start(requests.stop);
+    const Patch patch = initial_patch(scene);
+    return {Simulation(scene, patch), scale_of(patch)};
+  } catch (const Interrupted&) {
+    throw Error(ExitCode::run_time, "stopped before the first step (on request), so nothing is written; start again");
+  }
+}
+
 RunResult begin(const Scene& scene, const RunOptions& options, RunRequests& requests) {
   const Start start;
   const RunFolder folder(options.folder);
   if (!options.force)
     folder.refuse_if_occupied(); // before the work of an initial state
-  Simulation simulation(scene, initial_patch(scene));
+  Begun begun = first_simulation(scene, requests);
+  Simulation& simulation = begun.simulation;
   folder.make();
   const FolderLock lock(folder.path());
   folder.claim(options.force);
-  if (options.notice)
+  if (options.notice) {
     for (const std::string& notice : scene.notices)
       options.notice(notice);
+    for (const std::string& doubt : doubts(scene, begun.scale))
+      options.notice("note: " + doubt);
+  }
   Recorder recorder(folder, scene, options.arguments, {}, std::nullopt);
   recorder.log("started", {{"particles", simulation.state().particles.size()}, {"threads", threads()}});
   recorder.snapshot(simulation);

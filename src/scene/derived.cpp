@@ -60,9 +60,8 @@ double hill_parameter(double density, double distance) {
 
 double crowd_radius(const SizeLaw& sizes) {
   const double cubes = sizes.mean_power(3);
-  const double alone = sizes.kind == SizeLaw::Kind::file
-                           ? sizes.mean_power(6) / (cubes * cubes * static_cast<double>(sizes.listed.size()))
-                           : 0.0;
+  const double alone =
+      sizes.listed > 0 ? sizes.mean_power(6) / (cubes * cubes * static_cast<double>(sizes.listed)) : 0.0;
   return cubes * (1.0 - alone) / sizes.mean_power(2);
 }
 

@@ -15,6 +15,14 @@
 namespace keeler {
 namespace {
 
+KeyRange up_to(double high) {
+  return {.low = 0, .high = high, .low_open = true};
+}
+
+// Ranges are wide, so that only slips of units lie outside: orbits of ten minutes to 20 years, patches up to a tenth of
+// a ring's distance from its planet (1e8 m), materials up to the densest metals, motions up to 1000 times the shear
+// across a particle, v_cut up to where a rebound would heat (it is at least v_cut / 1000).
+
 std::vector<std::string> finder_names() {
   std::vector<std::string> names;
   for (const FinderEntry& finder : finder_table())
@@ -68,21 +76,21 @@ std::vector<Key> patch_keys() {
        .example = "1.3175e-4",
        .unit = "rad/s",
        .meaning = "orbital frequency Omega",
-       .range = KeyRange::above(0),
+       .range = {.low = 1e-8, .high = 1e-2},
        .alternatives = {"planet.preset"}},
       {.path = "planet.epicyclic_ratio",
        .type = number,
        .fallback = "1.0",
        .unit = "Omega",
        .meaning = "epicyclic frequency kappa",
-       .range = {.low = 0, .high = 2, .low_open = true, .high_open = true},
+       .range = {.low = 0.1, .high = 2, .low_open = true, .high_open = true},
        .only_with = {"planet.orbital_frequency", {}}},
       {.path = "planet.vertical_ratio",
        .type = number,
        .fallback = "1.0",
        .unit = "Omega",
        .meaning = "vertical frequency nu",
-       .range = KeyRange::above(0),
+       .range = {.low = 0.1, .high = 100},
        .only_with = {"planet.orbital_frequency", {}}},
 
       {.path = "box.size",
@@ -90,7 +98,7 @@ std::vector<Key> patch_keys() {
        .example = "[245.0, 245.0]",
        .unit = "m",
        .meaning = "radial and azimuthal size of the patch",
-       .range = KeyRange::above(0),
+       .range = up_to(1e7),
        .alternatives = {"box.size_in_wavelengths"},
        .effect = start},
       {.path = "box.size_in_wavelengths",
@@ -98,7 +106,7 @@ std::vector<Key> patch_keys() {
        .example = "[4, 4]",
        .unit = "lambda_cr",
        .meaning = "the size in Toomre wavelengths 4 pi^2 G Sigma / kappa^2",
-       .range = KeyRange::above(0),
+       .range = up_to(1e4),
        .alternatives = {"box.size"},
        .effect = start},
 
@@ -107,7 +115,7 @@ std::vector<Key> patch_keys() {
        .example = "0.5",
        .unit = "1",
        .meaning = "geometric optical depth, which sets the number of particles",
-       .range = KeyRange::above(0),
+       .range = up_to(100),
        .alternatives = {"particles.surface_density", "particles.count"},
        .effect = start},
       {.path = "particles.surface_density",
@@ -115,7 +123,7 @@ std::vector<Key> patch_keys() {
        .example = "400.0",
        .unit = "kg/m^2",
        .meaning = "surface density, which sets the number of particles",
-       .range = KeyRange::above(0),
+       .range = up_to(1e6),
        .alternatives = {"particles.optical_depth", "particles.count"},
        .effect = start},
       {.path = "particles.count",
@@ -131,14 +139,14 @@ std::vector<Key> patch_keys() {
        .example = "600.0",
        .unit = "kg/m^3",
        .meaning = "density of the particles' material",
-       .range = KeyRange::above(0),
+       .range = {.low = 1e-2, .high = 3e4},
        .effect = start},
       {.path = "particles.velocity_dispersion",
        .type = number,
        .fallback = "2.0",
        .unit = "mean r Omega",
        .meaning = "radial velocity dispersion at the start",
-       .range = KeyRange::above(0),
+       .range = up_to(1000),
        .effect = start},
       {.path = "particles.seed",
        .type = integer,
@@ -172,7 +180,7 @@ std::vector<Key> streamline_keys() {
        .fallback = "0.0",
        .unit = "mean r",
        .meaning = "inclination common to all particles, which swing up and down together; rising at the start",
-       .range = KeyRange::at_least(0),
+       .range = {.low = 0, .high = 1000},
        .effect = start},
   };
 }
@@ -190,7 +198,7 @@ std::vector<Key> collision_keys() {
        .fallback = "1e-2",
        .unit = "(r_i + r_j) Omega / 2",
        .meaning = "contacts slower than this bounce elastically, which ends inelastic collapse",
-       .range = KeyRange::at_least(0)},
+       .range = {.low = 0, .high = 100}},
   };
 }
 
@@ -209,7 +217,7 @@ std::vector<Key> course_keys() {
        .fallback = "1e-3",
        .unit = "orbits",
        .meaning = "length of a step",
-       .range = {.low = 0, .high = 0.1, .low_open = true}},
+       .range = {.low = 1e-9, .high = 0.1}},
       {.path = "time.end",
        .type = number,
        .example = "3.0",

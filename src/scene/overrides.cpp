@@ -64,25 +64,35 @@ void add_parent_tables(Document& document, const std::string& path, const std::s
       document.push_back({path.substr(0, dot), place, place, Table{}, true});
 }
 
-void apply_override(Document& document, const std::string& text, std::vector<std::string>& notices) {
-  const std::string place = "--set " + text;
-  const std::size_t equals = text.find('=');
-  const std::string path = text.substr(0, equals);
-  if (equals == std::string::npos || !is_dotted_name(path))
-    throw UsageError(place + ": not an override (it needs a key and a value); write --set table.key=value");
+void apply(Document& document, const std::string& path, const Document& entries, const std::string& place,
+           std::vector<std::string>& notices) {
   erase_within(document, path);
   add_parent_tables(document, path, place);
-  for (const Entry& entry : parse_override_value(text.substr(equals + 1), path, place)) {
+  for (const Entry& entry : entries) {
     drop_contradictions(document, entry, notices);
     document.push_back(entry);
   }
 }
 
+void apply_text(Document& document, const std::string& text, std::vector<std::string>& notices) {
+  const std::string place = "--set " + text;
+  const std::size_t equals = text.find('=');
+  const std::string path = text.substr(0, equals);
+  if (equals == std::string::npos || !is_dotted_name(path))
+    throw UsageError(place + ": not an override (it needs a key and a value); write --set table.key=value");
+  apply(document, path, parse_override_value(text.substr(equals + 1), path, place), place, notices);
+}
+
 } // namespace
+
+void apply_start(Document& document, const std::string& snapshot, std::vector<std::string>& notices) {
+  const std::string path = "start.from", place = "--from " + snapshot;
+  apply(document, path, {{path, place, place, snapshot, true}}, place, notices);
+}
 
 void apply_overrides(Document& document, const std::vector<std::string>& overrides, std::vector<std::string>& notices) {
   for (const std::string& text : overrides)
-    apply_override(document, text, notices);
+    apply_text(document, text, notices);
 }
 
 } // namespace keeler

@@ -12,4 +12,7 @@ namespace keeler {
 /// key of another law, the sections that a start file replaces) is dropped, with a notice each.
 void apply_overrides(Document& document, const std::vector<std::string>& overrides, std::vector<std::string>& notices);
 
+/// The same for the snapshot of --from.
+void apply_start(Document& document, const std::string& snapshot, std::vector<std::string>& notices);
+
 } // namespace keeler

@@ -1,7 +1,9 @@
 #include "particles_and_box.hpp"
 
 #include <keeler/core/units.hpp>
+#include <keeler/core/words.hpp>
 #include <keeler/scene/derived.hpp>
+#include <keeler/scene/keys.hpp>
 
 #include <fmt/format.h>
 
@@ -10,6 +12,14 @@
 
 namespace keeler {
 namespace {
+
+// What follows from a key must be possible as well: it has the range of the key that it stands for.
+void require_possible(const std::string& place, const std::string& from, const std::string& path, double value) {
+  const Key& key = *find_key(path);
+  if (!key.range.contains(value))
+    fail_at(place, fmt::format("{} makes {} {}, but it must be {} ({}, in {}); change {}", from, path,
+                               figures(value, 3), allowed_words(key), key.meaning, key.unit, from));
+}
 
 StreamlineSettings read_streamlines(const Settings& settings) {
   if (!settings.has("particles.streamlines"))
@@ -51,6 +61,14 @@ void read_box(Scene& scene, Settings& settings, const Amount& amount) {
       length *= wavelength;
     settings.resolve("box.size", size, wavelengths);
   }
+  for (const double length : size)
+    require_possible(place, key, "box.size", length);
+  constexpr double most_oblong = 1000.0; // gravity sums as many images one by one
+  if (!(std::max(size[0], size[1]) <= most_oblong * std::min(size[0], size[1])))
+    fail_at(place,
+            fmt::format("the box of {} m x {} m is more than {:g} times as long as wide (its images on the short "
+                        "side would be too many); make it less oblong",
+                        figures(size[0], 4), figures(size[1], 4), most_oblong));
   scene.size_x = size[0];
   scene.size_y = size[1];
   const double diameter = 2.0 * scene.particles.sizes.largest;
@@ -75,6 +93,8 @@ void read_count(Scene& scene, Settings& settings, const Amount& amount) {
     fail_at(place, fmt::format("{} with this box makes {:.3g} particles (a run takes 1 to 1e9); change the box or {}",
                                amount.key, count, amount.key));
   particles.count = static_cast<std::size_t>(count);
+  require_possible(place, amount.key, "particles.optical_depth", scene.optical_depth());
+  require_possible(place, amount.key, "particles.surface_density", scene.surface_density());
   if (amount.key != "particles.count")
     settings.resolve("particles.count", static_cast<std::int64_t>(particles.count), amount.key);
 

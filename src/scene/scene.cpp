@@ -135,10 +135,13 @@ double Scene::bunched_optical_depth() const {
   return optical_depth() / (1.0 - particles.streamlines.bunching);
 }
 
-Scene parse_scene(const std::string& text, const std::string& name, const std::vector<std::string>& overrides) {
+Scene parse_scene(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
+                  const std::optional<std::string>& from) {
   Document document = parse_document(text, name);
   std::vector<std::string> notices;
   apply_overrides(document, overrides, notices);
+  if (from)
+    apply_start(document, *from, notices);
   return read_scene(std::move(document), name, Purpose::start, std::move(notices));
 }
 
@@ -146,8 +149,9 @@ Scene parse_stored_scene(const std::string& text, const std::string& name) {
   return read_scene(parse_document(text, name), name, Purpose::go_on, {});
 }
 
-Scene load_scene(const std::string& path, const std::vector<std::string>& overrides) {
-  return parse_scene(read_input(path, path), path, overrides);
+Scene load_scene(const std::string& path, const std::vector<std::string>& overrides,
+                 const std::optional<std::string>& from) {
+  return parse_scene(read_input(path, path), path, overrides, from);
 }
 
 } // namespace keeler

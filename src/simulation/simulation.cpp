@@ -148,10 +148,8 @@ void Simulation::half_kick(std::size_t f) {
   const Frequencies& frequencies = scene_.planet.frequencies;
   const Rotation rotation = boundary().rotation();
   const double half = 0.5 * state_.step_length * static_cast<double>(forces_[f]->kick_every());
-  double largest = 0.0;
-  for (const Vec3& a : force.accelerations)
-    if (!(a.squaredNorm() <= largest)) // what is not a number stays
-      largest = a.squaredNorm();
+  const double largest =
+      largest_of(force.accelerations.size(), [&](std::size_t k) { return force.accelerations[k].squaredNorm(); });
   drift_.kicked(half * std::sqrt(largest));
   force.work += ordered_sum(state_.particles.size(), [&](std::size_t k) {
     state_.particles.prefetch_after(k);

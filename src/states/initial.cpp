@@ -1,8 +1,12 @@
 #include <keeler/states/initial.hpp>
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/units.hpp>
+#include <keeler/core/words.hpp>
+#include <keeler/diagnostics/surface.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/scene/derived.hpp>
+#include <keeler/scene/keys.hpp>
 #include <keeler/states/uniform.hpp>
 
 #include <fmt/format.h>
@@ -26,11 +30,40 @@ void require_same_planet(const Patch& patch, const Scene& scene, const std::stri
                     planet.orbital_frequency, planet.frequencies.kappa, planet.frequencies.nu));
 }
 
+// A start file may hold what no scene may ask for: the ranges of the keys hold for it as well.
+void require_physical(const Patch& patch, const std::string& path) {
+  require_sound(patch);
+  const KeyRange &sizes = find_key("box.size")->range, &radii = find_key("particles.sizes.radius")->range,
+                 &densities = find_key("particles.density")->range;
+  const KeyRange places = {.high = sizes.high};
+  const KeyRange speeds = {.high = 1000.0}; // m/s beyond the shear: a ring's orbits have 10 to 20 km/s
+  if (!sizes.contains(patch.box.size_x) || !sizes.contains(patch.box.size_y))
+    throw InvariantError(fmt::format("the box of '{}' is {} m x {} m (a patch has sizes {}); take another state", path,
+                                     figures(patch.box.size_x, 4), figures(patch.box.size_y, 4), sizes.words()));
+  for (std::size_t k = 0; k < patch.size(); ++k) {
+    const auto require = [&](const KeyRange& range, const char* what, double value) {
+      if (!range.contains(value))
+        throw InvariantError(
+            fmt::format("particle {} of '{}' has {} of {} (possible is {}); correct it or take another "
+                        "state",
+                        patch.ids[k], path, what, figures(value, 3), range.words()));
+    };
+    const double radius = patch.radii[k];
+    const Vec3 shear(0.0, -patch.box.shear * patch.positions[k].x(), 0.0);
+    require(radii, "a radius (m)", radius);
+    require(densities, "a density (kg/m^3, by its mass and radius)",
+            patch.masses[k] / (4.0 / 3.0 * pi * radius * radius * radius));
+    require(places, "a coordinate (m)", patch.positions[k].cwiseAbs().maxCoeff());
+    require(speeds, "a speed (m/s, beyond the shear)", (patch.velocities[k] - shear).norm() * patch.orbital_frequency);
+  }
+}
+
 } // namespace
 
 Patch patch_from_snapshot(const std::string& path, const Scene& scene) {
   Patch patch = read_snapshot(path).patch;
   require_same_planet(patch, scene, path);
+  require_physical(patch, path);
   // Velocities are stored in m/s; the scene's orbital frequency decides what they are in its own time.
   for (Vec3& velocity : patch.velocities)
     velocity *= patch.orbital_frequency / scene.planet.orbital_frequency;
@@ -39,6 +72,10 @@ Patch patch_from_snapshot(const std::string& path, const Scene& scene) {
   patch.box.shear = scene.planet.frequencies.shear();
   patch.time_orbits = 0.0;
   return patch;
+}
+
+PatchScale scale_of(const Patch& patch) {
+  return {patch.size(), patch.box.size_x, patch.box.size_y, critical_wavelength(patch)};
 }
 
 Patch initial_patch(const Scene& scene) {

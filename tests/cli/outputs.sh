@@ -67,6 +67,18 @@ done
 accepts "analyze as text" analyze "$work/run"
 prints "analyze as text" "optical depth        0.5027"
 
+# Texts for people: what is not known is said, counts have their plural, and 1000 is not 1e+03.
+runs 0 generate "$work/scene.toml" -o "$work/one.hdf" --set particles.count=1
+prints "generate" "1 particle in 50 m x 50 m"
+accepts "analyze one particle" analyze "$work/one.hdf"
+prints "analyze one particle" "wake pitch           not known because"
+prints "analyze one particle" "wake spacing         not known because"
+runs 0 run "$work/scene.toml" -o "$work/crowd" --threads 1 --set time.end=0.1 --set particles.density=3e4
+prints "run" "400 particles, 1 thread"
+grep -qE 'orbit +[0-9]{4,} faster than v_cut' "$work/out" || fail "more than 1000 collisions: $(cat "$work/out")"
+grep -qE '[0-9]e\+' "$work/out" && fail "a summary with exponents: $(cat "$work/out")"
+grep -q "^keeler: note: 400 particles are few" "$work/err" || fail "a run does not say that its patch is small"
+
 # A state, and a run from it; the same from the same seed whatever the threads.
 for threads in 1 2; do
   accepts "generate" generate "$work/scene.toml" -o "$work/state-$threads.hdf" --threads $threads
@@ -78,6 +90,8 @@ mkdir "$work/a folder"
 cp "$work/state-1.hdf" "$work/a folder/2024"
 runs 0 run "$work/scene.toml" --from "$work/a folder/2024" -o "$work/from" --set time.end=0.01 --json
 has particle_count 400
+grep -qF -- "keeler: box of the file is dropped: --from $work/a folder/2024 takes its place" "$work/err" ||
+  fail "--from: $(cat "$work/err")"
 (cd "$work/a folder" && "$keeler" run ../scene.toml --from 2024 -o here --set time.end=0.01 >/dev/null 2>&1) ||
   fail "--from with a name that looks like a number"
 [ "$(state_hash "$work/a folder/here")" = "$(state_hash "$work/from")" ] || fail "--from: another state"

@@ -48,7 +48,8 @@ struct ShearingBox {
     return el;
   }
 
-  /// The image whose guiding centre lies in [−L_x/2, L_x/2) × [−L_y/2, L_y/2), at the epoch of the given offset.
+  /// The image whose guiding centre lies in [−L_x/2, L_x/2) × [−L_y/2, L_y/2), at the epoch of the given offset; of a
+  /// place more than 2³⁰ boxes away, or not finite, some image outside.
   Image image_into_cell(double x, double y, double offset) const {
     if (std::fabs(x) < 0.499 * size_x && std::fabs(y) < 0.499 * size_y) // almost always, and surely
       return {};

@@ -61,8 +61,8 @@ public:
   DriftPhase& operator=(DriftPhase&& other) noexcept;
 
   /// Carries out all collisions in [−h/2, h/2) around the epoch of the elements; `offset` is the box's shear offset at
-  /// the epoch. The elements stay at their epoch. Throws InvariantError when elements are not finite or a particle
-  /// collides more than 100,000 times in the step.
+  /// the epoch. The elements stay at their epoch. Throws InvariantError when elements are not finite, when particles go
+  /// too far for the box or one collides more than 100,000 times in the step; Interrupted (interrupt.hpp).
   void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally);
 
   const Finder& finder() const;

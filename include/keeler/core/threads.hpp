@@ -2,21 +2,29 @@
 // and sums are made in an order that depends on the length alone.
 #pragma once
 
+#include <keeler/core/interrupt.hpp>
+
 #include <omp.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
 namespace keeler {
 
-/// How many threads loops use from now on (at least 1). The default is what OpenMP offers.
+/// More threads than any one machine has processors for: they only take memory, until there is none.
+inline constexpr int most_threads = 1024;
+
+/// How many threads loops use from now on (at least 1). The default is what OpenMP offers. Throws UsageError when there
+/// are more than most_threads.
 void set_threads(int count);
 int threads();
 
 /// Calls body(k) once for each k in [0, count), in no promised order; body must write only what belongs to k.
-/// Exceptions must not leave body. What fits in one chunk runs on the calling thread.
+/// Exceptions must not leave body. What fits in one chunk runs on the calling thread. Throws Interrupted after the
+/// chunks at hand when the work is to be given up (interrupt.hpp).
 ///
 /// Each thread begins with a range of its own, the same one in every loop of that length, so that it meets its memory
 /// again; then it helps the others, a chunk at a time.
@@ -26,14 +34,18 @@ template<class Body> void parallel_for(std::size_t count, const Body& body, std:
     std::size_t end = 0;
   };
   const auto work_on = [&](Range& range) {
-    for (std::size_t begin; (begin = range.next.fetch_add(chunk, std::memory_order_relaxed)) < range.end;)
+    for (std::size_t begin;
+         !interrupted() && (begin = range.next.fetch_add(chunk, std::memory_order_relaxed)) < range.end;)
       for (std::size_t k = begin; k < std::min(begin + chunk, range.end); ++k)
         body(k);
   };
   const auto ranges_count = static_cast<std::size_t>(threads());
   if (ranges_count == 1 || count <= chunk) {
-    for (std::size_t k = 0; k < count; ++k)
-      body(k);
+    for (std::size_t begin = 0; begin < count; begin += chunk) {
+      throw_if_interrupted();
+      for (std::size_t k = begin; k < std::min(begin + chunk, count); ++k)
+        body(k);
+    }
     return;
   }
   std::vector<Range> ranges(ranges_count);
@@ -41,9 +53,14 @@ template<class Body> void parallel_for(std::size_t count, const Body& body, std:
     ranges[r].next = count * r / ranges_count;
     ranges[r].end = count * (r + 1) / ranges_count;
   }
+  const std::atomic<bool>& flag = Interruptible::flag();
 #pragma omp parallel
-  for (std::size_t r = 0; r < ranges_count; ++r)
-    work_on(ranges[(static_cast<std::size_t>(omp_get_thread_num()) + r) % ranges_count]);
+  {
+    const Interruptible as_caller(flag);
+    for (std::size_t r = 0; r < ranges_count; ++r)
+      work_on(ranges[(static_cast<std::size_t>(omp_get_thread_num()) + r) % ranges_count]);
+  }
+  throw_if_interrupted();
 }
 
 /// What add(total, k) makes of Total{} over k in [0, count): blocks of fixed length, their totals added in order with
@@ -69,6 +86,18 @@ template<class Total, class Add> Total ordered_total(std::size_t count, const Ad
 /// Sum of term(k) over [0, count), made in the same way.
 template<class Term> double ordered_sum(std::size_t count, const Term& term) {
   return ordered_total<double>(count, [&](double& total, std::size_t k) { total += term(k); });
+}
+
+/// The largest term(k) over [0, count) and 0; not a number when any of them is not.
+template<class Term> double largest_of(std::size_t count, const Term& term) {
+  struct Largest {
+    double value = 0.0;
+    void operator+=(const Largest& other) {
+      if (other.value > value || std::isnan(other.value))
+        value = other.value;
+    }
+  };
+  return ordered_total<Largest>(count, [&](Largest& most, std::size_t k) { most += {term(k)}; }).value;
 }
 
 } // namespace keeler

@@ -56,8 +56,9 @@ struct State {
   Vec3 velocity = Vec3::Zero();
 };
 
-/// Sine and cosine from our own polynomials (arguments up to about 1e5): the same bits on every machine, unlike the C
-/// library's, which picks its code by processor. Error below 1.5 units in the last place of 1.
+/// Sine and cosine from our own polynomials (arguments up to about 1e5). Only sums, products and roundings of doubles,
+/// so the same bits wherever they are compiled without contraction; the C library picks its code by processor. Error
+/// below 1.5 units in the last place of 1.
 void sine_cosine(double angle, double& sine, double& cosine);
 
 /// Position and velocity at the rotation's time.

@@ -18,10 +18,14 @@
 
 namespace keeler {
 
-/// Requests from outside, set by a signal handler or another thread; obeyed at the end of the step.
+/// Requests from outside, set by a signal handler or another thread; obeyed at the end of the step, `give_up` at once.
 struct RunRequests {
-  std::atomic<bool> stop = false;     ///< write a checkpoint and stop
+  std::atomic<bool> stop = false;     ///< write a checkpoint and stop; a start that is still being made is given up
   std::atomic<bool> snapshot = false; ///< write a snapshot and go on
+  std::atomic<bool> give_up = false;  ///< leave the step at hand and all since the last checkpoint, and stop
+  /// How long (s) a stop takes at most when nothing is wrong, by the steps so far, and at least 5: who asked for it may
+  /// then ask to give up. 0 before there is a run.
+  std::atomic<unsigned> patience_s = 0;
 };
 
 /// Where a run stands, after each step.
@@ -51,11 +55,12 @@ struct RunResult {
 };
 
 /// Starts a run. Throws UsageError when the folder holds a run already and force is not given, IoError, InvariantError;
-/// DiskFullError says how to go on.
+/// DiskFullError says how to go on. Error (stopped, or run_time when there is no checkpoint) when it was asked to give up
+/// a step or the start.
 RunResult start_run(const Scene& scene, const RunOptions& options, RunRequests& requests);
 
 /// Continues the run of a folder from its newest whole checkpoint. A run that has reached its end is left as it is,
-/// with a notice. Throws IoError when there is no checkpoint, DiskFullError as above.
+/// with a notice. Throws IoError when there is no checkpoint, and as start_run().
 RunResult resume_run(const RunOptions& options, RunRequests& requests);
 
 /// The state in a checkpoint, and its scene. Throws IoError.

@@ -85,12 +85,15 @@ struct Scene {
   double bunched_optical_depth() const;
 };
 
-/// Reads and checks a scene file; overrides are "a.b=value" with TOML values (bare words are taken as strings).
-/// Throws UsageError "file:line:column: problem; what to do" for the first fault.
-Scene load_scene(const std::string& path, const std::vector<std::string>& overrides = {});
+/// Reads and checks a scene file; overrides are "a.b=value" with TOML values (bare words are taken as strings). `from`
+/// takes the place of start.from, messages call it --from. Throws UsageError "file:line:column: problem; what to do"
+/// for the first fault.
+Scene load_scene(const std::string& path, const std::vector<std::string>& overrides = {},
+                 const std::optional<std::string>& from = {});
 
 /// The same from text; `name` stands for the file in messages.
-Scene parse_scene(const std::string& text, const std::string& name, const std::vector<std::string>& overrides = {});
+Scene parse_scene(const std::string& text, const std::string& name, const std::vector<std::string>& overrides = {},
+                  const std::optional<std::string>& from = {});
 
 /// The scene in a snapshot or checkpoint, for what exists already: the box, the sizes and whatever else only the start
 /// needed are neither read nor checked, so a file of radii or a start file may be gone.

@@ -36,7 +36,8 @@ public:
   /// A run that goes on from a state, to the bit.
   Simulation(const Scene& scene, SimulationState state);
 
-  /// One step. Throws InvariantError; the state is then that of an unfinished step and must not be stored.
+  /// One step. Throws InvariantError, or Interrupted when an Interruptible (interrupt.hpp) asks for it; the state is
+  /// then that of an unfinished step and must not be stored.
   void advance();
 
   const SimulationState& state() const { return state_; }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <keeler/particles/patch.hpp>
+#include <keeler/scene/doubts.hpp>
 #include <keeler/scene/scene.hpp>
 
 #include <string>
@@ -9,11 +10,14 @@
 namespace keeler {
 
 /// A fresh patch on the scene's streamlines, or the snapshot that the scene names. Throws UsageError (too dense) or
-/// IoError (the snapshot).
+/// what patch_from_snapshot() throws.
 Patch initial_patch(const Scene& scene);
 
 /// The patch of a snapshot, made the start of a run of this scene: the scene's frequencies, its own box, time zero.
-/// Throws IoError.
+/// Throws IoError; UsageError when it was made at another place; InvariantError for a particle that no ring has, named.
 Patch patch_from_snapshot(const std::string& path, const Scene& scene);
+
+/// How large a patch is, for the doubts about it.
+PatchScale scale_of(const Patch& patch);
 
 } // namespace keeler

@@ -34,6 +34,17 @@ TEST_CASE("an image moves as a particle of its own: it drifts with the shear of 
   }
 }
 
+TEST_CASE("places too far for the number of a box, or not finite, get an image without undefined arithmetic") {
+  const ShearingBox box{64.0, 32.0, 1.5, 0.0};
+  CHECK(box.image_into_cell(64.0e6, 32.0e6, 0.0) == Image{-1000000, -1000000});
+  for (const double far : {1e12, 1e300, HUGE_VAL, -1e12, -1e300, -HUGE_VAL}) {
+    const Image image = box.image_into_cell(far, far, 7.0);
+    CHECK(-image == Image{-image.nx, -image.ny});
+    CHECK(std::signbit(far) == (image.nx > 0));
+  }
+  CHECK_FALSE(box.image_into_cell(NAN, NAN, 7.0) == Image{});
+}
+
 TEST_CASE("a free particle wraps 10^6 times without loss") {
   // Wraps in y come from the shear, wraps in x are forced by shifting X: e, i must keep every bit, X and Y to rounding.
   const Frequencies f{1.0, 1.0};

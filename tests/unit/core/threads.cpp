@@ -2,7 +2,10 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 using namespace keeler;
 
@@ -37,4 +40,31 @@ TEST_CASE("several sums in one pass are each the sum made alone") {
     CHECK(both.sines == ordered_sum(100003, sine));
     CHECK(both.squares == ordered_sum(100003, square));
   }
+  set_threads(1);
+}
+
+TEST_CASE("the largest of all is that of a plain loop, and what is not a number stays") {
+  for (const std::size_t count : {0, 1, 1023, 1024, 5000}) {
+    std::vector<double> values;
+    for (std::size_t k = 0; k < count; ++k)
+      values.push_back(std::fabs(std::sin(static_cast<double>(3 * k + 1))));
+    const auto term = [&](std::size_t k) { return values[k]; };
+    const double most = count ? *std::max_element(values.begin(), values.end()) : 0.0;
+    for (const int number : {1, 2, 5}) {
+      set_threads(number);
+      CHECK(largest_of(count, term) == most);
+      for (const std::size_t k : {std::size_t{0}, count / 2, count - 1})
+        if (k < count) {
+          const double before = std::exchange(values[k], NAN);
+          CHECK(std::isnan(largest_of(count, term)));
+          values[k] = before;
+        }
+    }
+  }
+  set_threads(1);
+}
+
+TEST_CASE("absurd numbers of threads are refused") {
+  CHECK_THROWS_AS(set_threads(most_threads + 1), UsageError);
+  CHECK(threads() == 1);
 }

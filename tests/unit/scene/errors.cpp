@@ -34,14 +34,14 @@ TEST_CASE("unknown names are told with a suggestion") {
 
 TEST_CASE("wrong types are told with what is needed") {
   CHECK(with("900", "\"900\"") ==
-        "s.toml:7:11: particles.density is a string, but must be a number above 0 (density of the "
+        "s.toml:7:11: particles.density is a string, but must be a number from 0.01 to 30000 (density of the "
         "particles' material, in kg/m^3); write for example density = 600.0");
   CHECK(with("300", "300.0") ==
         "s.toml:6:9: particles.count is a number with a fraction, but must be a whole number from "
-        "1 to 1e+09 (number of particles); write for example count = 10000");
+        "1 to 1e9 (number of particles); write for example count = 10000");
   CHECK(with("[100, 50.0]", "[100]") ==
-        "s.toml:4:8: box.size is a list of 1 number, but must be two numbers above 0 (radial and azimuthal size of the "
-        "patch, in m); write for example size = [245.0, 245.0]");
+        "s.toml:4:8: box.size is a list of 1 number, but must be two numbers above 0 and at most 1e7 (radial and "
+        "azimuthal size of the patch, in m); write for example size = [245.0, 245.0]");
   CHECK(with("{ law = \"equal\", radius = 1.0 }", "1.0") ==
         "s.toml:8:9: particles.sizes is a number with a fraction, but must be a table (it holds several keys); write "
         "[particles.sizes] and its keys below");
@@ -52,12 +52,13 @@ TEST_CASE("wrong types are told with what is needed") {
 
 TEST_CASE("values out of range are told with the range") {
   CHECK(with("radius = 1.0", "radius = -1.0") ==
-        "s.toml:8:35: particles.sizes.radius is -1.0, but must be a number above 0 (radius of every particle, in m); "
-        "write for example radius = 1.0");
-  CHECK(with("radius = 1.0", "radius = nan").find("radius is nan, but must be a number above 0") != std::string::npos);
+        "s.toml:8:35: particles.sizes.radius is -1.0, but must be a number from 1e-6 to 1000000 (radius of every "
+        "particle, in m); write for example radius = 1.0");
+  CHECK(with("radius = 1.0", "radius = nan").find("radius is nan, but must be a number from 1e-6") !=
+        std::string::npos);
   CHECK(with("radius = 1.0", "radius = inf").find("radius is inf, but must be") != std::string::npos);
   CHECK(with("[100, 50.0]", "[100, -50.0]").find("box.size is [100.0, -50.0], but must be") != std::string::npos);
-  CHECK(with("2e-4", "2e-4\nepicyclic_ratio = 2").find("must be a number above 0 and below 2") != std::string::npos);
+  CHECK(with("2e-4", "2e-4\nepicyclic_ratio = 2").find("must be a number above 0.1 and below 2") != std::string::npos);
   CHECK(fault(least + "[gravity]\nsolver = \"trea\"\n") ==
         "s.toml:12:10: gravity.solver is \"trea\", but must be one of \"direct\", \"tree\", \"fft\", "
         "\"mesh\", \"auto\" (how accelerations are computed); did you mean \"tree\"?");
@@ -125,12 +126,25 @@ TEST_CASE("impossible requests are told") {
   CHECK(with("count = 300", "optical_depth = 1e-6").find("makes 0 particles") != std::string::npos);
   CHECK(with("count = 300", "optical_depth = 0.1\nseed = 3").empty());
   CHECK(
-      with("[100, 50.0]\n[particles]\ncount = 300", "[1e9, 1e9]\n[particles]\noptical_depth = 0.1") ==
-      "s.toml:6:17: particles.optical_depth with this box makes 3.18e+16 particles (a run takes 1 to 1e9); change the "
+      with("[100, 50.0]\n[particles]\ncount = 300", "[1e7, 1e7]\n[particles]\noptical_depth = 0.1") ==
+      "s.toml:6:17: particles.optical_depth with this box makes 3.18e+12 particles (a run takes 1 to 1e9); change the "
       "box or particles.optical_depth");
   CHECK(with("law = \"equal\", radius = 1.0", "law = \"power\", exponent = 3, min = 2, max = 1")
             .find("particles.sizes: min = 2 is not below max = 1") != std::string::npos);
+  CHECK(with("[100, 50.0]\n[particles]\ncount = 300", "[2000, 1]\n[particles]\ncount = 300")
+            .find("times as long as wide") != std::string::npos);
   CHECK(with("end = 2", "end = 1e300").find("time.end = 1e+300 is too long") != std::string::npos);
+}
+
+TEST_CASE("what follows from other keys has its range as well") {
+  CHECK(
+      with("size = [100, 50.0]\n[particles]\ncount = 300",
+           "size_in_wavelengths = [9000, 9000]\n[particles]\nsurface_density = 1e5") ==
+      "s.toml:4:23: box.size_in_wavelengths makes box.size 5.93e7, but it must be two numbers above 0 and at most 1e7 "
+      "(radial and azimuthal size of the patch, in m); change box.size_in_wavelengths");
+  CHECK(with("[100, 50.0]\n[particles]\ncount = 300\ndensity = 900\nsizes = { law = \"equal\", radius = 1.0 }",
+             "[1e7, 1e6]\n[particles]\ncount = 4\ndensity = 30000\nsizes = { law = \"equal\", radius = 4e5 }")
+            .find("particles.count makes particles.surface_density 3.22e9") != std::string::npos);
 }
 
 TEST_CASE("a text that is not TOML, and a file that is not there") {

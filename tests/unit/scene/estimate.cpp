@@ -93,12 +93,12 @@ TEST_CASE("a slower machine takes longer in proportion, and the parts make the w
 
 TEST_CASE("a moonlet neither makes its patch collide as one of its optical depth would, nor fills levels of cells") {
   // 10,000 grains of 1 m and as much area in one sphere of 100 m: grains meet 1.5 times τ = 0.5, not twice
-  SizeLaw moonlet{SizeLaw::Kind::file, 3.0, 1.0, 100.0, {}, std::vector<double>(10000, 1.0)};
-  moonlet.listed.push_back(100.0);
+  std::vector<double> radii(10000, 1.0);
+  radii.push_back(100.0);
   Scene scene = with({"particles.count=10001", "box.size=[251, 251]"});
   const RunEstimate grains = estimate_run(scene);
   const double rate = scene_contacts(scene).smooth.fast;
-  scene.particles.sizes = moonlet;
+  scene.particles.sizes = listed_sizes(radii);
   check_near(scene_contacts(scene).smooth.fast, 1.5 * rate, 1.15);
   check_near(estimate_run(scene).drift, 2.0 * grains.drift, 1.5);
 }

@@ -47,13 +47,26 @@ TEST_CASE("an override replaces what the file says against it, with a notice") {
   CHECK(start.notices.size() == 2);
 }
 
+TEST_CASE("--from is called by its own name") {
+  const Scene start = parse_scene(least, "s.toml", {}, "wakes.hdf");
+  CHECK(*start.start_from == (std::filesystem::current_path() / "wakes.hdf").string());
+  CHECK(start.notices ==
+        std::vector<std::string>{"box of the file is dropped: --from wakes.hdf takes its place",
+                                 "particles of the file is dropped: --from wakes.hdf takes its place"});
+  try {
+    parse_scene(least, "s.toml", {}, "");
+    CHECK(false);
+  } catch (const UsageError& error) {
+    CHECK(std::string(error.what()).rfind("--from : start.from is \"\", but must be the path of a file", 0) == 0);
+  }
+}
+
 TEST_CASE("a faulty override is told by its own text") {
   CHECK(fault(least, {"particles.cuont=5"}) ==
         "--set particles.cuont=5: unknown key particles.cuont (no scene has it); did you mean \"count\"?");
-  CHECK(
-      fault(least, {"particles.count=many"}) ==
-      "--set particles.count=many: particles.count is a string, but must be a whole number from 1 to 1e+09 (number of "
-      "particles); write for example count = 10000");
+  CHECK(fault(least, {"particles.count=many"}) ==
+        "--set particles.count=many: particles.count is a string, but must be a whole number from 1 to 1e9 (number of "
+        "particles); write for example count = 10000");
   CHECK(fault(least, {"wibble.wobble=1"}).rfind("--set wibble.wobble=1: unknown table wibble", 0) == 0);
   CHECK(
       fault(least, {"particles.sizes.radius=-1"}).rfind("--set particles.sizes.radius=-1: particles.sizes.radius", 0) ==
