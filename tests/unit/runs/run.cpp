@@ -1,7 +1,7 @@
 #include <keeler/runs/run.hpp>
 
 #include "scenes.hpp"
-#include "unit/io/disk.hpp"
+#include "unit/files/disk.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/io/checkpoint_folder.hpp>
