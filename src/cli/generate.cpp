@@ -44,6 +44,18 @@ void require_folder(const std::string& output) {
                               output, folder.string()));
 }
 
+Patch make_patch(const Scene& scene) {
+  std::optional<Patch> patch;
+  {
+    ProgressLine line;
+    patch = initial_patch(
+        scene, [&line](const StartProgress& progress) { line.show(progress); }, requests_from_signals().stop);
+  }
+  if (!patch)
+    throw Error(ExitCode::run_time, "stopped before the start was made (on request), so no state is written");
+  return std::move(*patch);
+}
+
 ClumpedState evolve_until_clumped(const Scene& scene) {
   std::optional<ClumpedState> state;
   {
@@ -91,8 +103,10 @@ ExitCode generate(const GenerateOptions& options, const std::vector<std::string>
     print_clumping(state.clumping);
     print_doubts(patch);
   } else {
-    patch = initial_patch(scene);
+    patch = make_patch(scene);
   }
+  for (const std::string& notice : scene.notices)
+    fmt::print(stderr, "keeler: {}\n", notice);
   write_snapshot(options.output, patch, meta);
   fmt::print("{} particles in {:.5g} m x {:.5g} m, no overlaps: {}\n", patch.size(), patch.box.size_x, patch.box.size_y,
              options.output);

@@ -36,6 +36,7 @@ RunOptions run_options(const JobOptions& job, const std::vector<std::string>& ar
   if (job.until > 0.0)
     options.until_orbits = job.until;
   options.arguments = arguments;
+  options.start_progress = [&line](const StartProgress& progress) { line.show(progress); };
   options.progress = [&line](const RunProgress& progress) { line.show(progress); };
   options.notice = say;
   return options;
@@ -63,10 +64,10 @@ void print_summary(const std::string& folder, const nlohmann::json& s) {
              energy("now") - energy("start"), energy("kick_work"), energy("edge_work"), energy("lost_in_collisions"),
              energy("residual"));
   const nlohmann::json& split = s["split"];
-  fmt::print("time                                {:.1f} s wall, {:.1f} s processor: drift {:.1f} s, gravity {:.1f} s, "
-             "output {:.1f} s\n",
-             number("wall_s"), number("cpu_s"), split["drift_s"].get<double>(), split["gravity_s"].get<double>(),
-             split["output_s"].get<double>());
+  fmt::print("time                                {:.1f} s wall, {:.1f} s processor: start {:.1f} s, drift {:.1f} s, "
+             "gravity {:.1f} s, output {:.1f} s\n",
+             number("wall_s"), number("cpu_s"), split["start_s"].get<double>(), split["drift_s"].get<double>(),
+             split["gravity_s"].get<double>(), split["output_s"].get<double>());
   const nlohmann::json& cost = s["ns_per_particle_step"];
   fmt::print("ns per particle and step            drift {:.0f}, gravity {:.0f}, output {:.0f}\n",
              cost["drift"].get<double>(), cost["gravity"].get<double>(), cost["output"].get<double>());

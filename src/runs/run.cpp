@@ -134,16 +134,24 @@ private:
 struct Start {
   double cpu = cpu_seconds(), wall = 0.0;
   Stopwatch watch{wall};
+  double made_s = 0.0; // wall time until there was a state to evolve
   std::int64_t checkpoint_step = -1;
 };
+
+Patch make_start(const Scene& scene, const RunOptions& options, const RunRequests& requests) {
+  std::optional<Patch> patch = initial_patch(scene, options.start_progress, requests.stop);
+  if (!patch)
+    throw Error(ExitCode::run_time, "stopped before the start was made (on request), so nothing is written");
+  return std::move(*patch);
+}
 
 RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& requests, const RunFolder& folder,
                    Simulation& simulation, Recorder& recorder, const Start& start) {
   const std::int64_t first_step = simulation.state().step;
   Runner runner(scene, options, requests, simulation, recorder, start.watch, start.checkpoint_step);
   const RunResult result = runner.run();
-  const RunCost cost{first_step, start.watch.elapsed(), cpu_seconds() - start.cpu, recorder.seconds(),
-                     recorder.force_checks()};
+  const RunCost cost{first_step,   start.watch.elapsed(), cpu_seconds() - start.cpu,
+                     start.made_s, recorder.seconds(),    recorder.force_checks()};
   const nlohmann::ordered_json summary = summarise(simulation, scene, result, cost, recorder.provenance());
   write_text(folder.summary(), summary.dump(2) + "\n");
   recorder.log(result.finished ? "finished" : "stopped", {{"step", result.step}, {"state_hash", result.state_hash}});
@@ -187,11 +195,12 @@ StoredRun load_checkpoint(const std::filesystem::path& file) {
 }
 
 RunResult start_run(const Scene& scene, const RunOptions& options, RunRequests& requests) {
-  const Start start;
+  Start start;
   const RunFolder folder(options.folder);
   if (!options.force)
     folder.refuse_if_occupied(); // before the work of an initial state
-  Simulation simulation(scene, initial_patch(scene));
+  Simulation simulation(scene, make_start(scene, options, requests));
+  start.made_s = start.watch.elapsed();
   folder.make();
   const FolderLock lock(folder.path());
   folder.claim(options.force);

@@ -54,7 +54,8 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scen
   json["energy_j"] = energies(simulation, scene);
   json["wall_s"] = cost.wall_s;
   json["cpu_s"] = cost.cpu_s;
-  json["split"] = {{"drift_s", split.drift}, {"gravity_s", split.gravity}, {"output_s", cost.output_s}};
+  json["split"] = {
+      {"start_s", cost.start_s}, {"drift_s", split.drift}, {"gravity_s", split.gravity}, {"output_s", cost.output_s}};
   json["ns_per_particle_step"] = {
       {"drift", split.drift / passes}, {"gravity", split.gravity / passes}, {"output", cost.output_s / passes}};
   json["provenance"] = provenance;

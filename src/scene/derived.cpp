@@ -5,6 +5,7 @@
 #include <keeler/core/units.hpp>
 #include <keeler/particles/patch.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace keeler {
@@ -19,8 +20,13 @@ constexpr double tree_ns = 400.0;          // per particle and kick, 9 boxes, op
 constexpr double mesh_ns = 130.0;          // per particle and kick
 constexpr double neighbours_ns = 50.0;     // the same, for each mesh spacing that they reach
 constexpr double direct_pair_ns = 1.0;     // per pair and image
-constexpr double program_bytes = 33e6;     // code, libraries, buffers that do not grow with N
-constexpr double file_bytes = 260.0;       // files are built in memory before they are written
+// Measured: `keeler run` of fresh patches of 10⁵ to 10⁶ particles, τ 0.5 to 2, sizes 1 : 1 to 1 : 50
+// (docs/dev/starts.md).
+constexpr double start_ns = 4000.0;           // per particle
+constexpr double start_ns_per_depth = 3500.0; // the same, for each unit of optical depth
+constexpr double mixed_sizes = 0.4;           // the share that is added where sizes differ
+constexpr double program_bytes = 33e6;        // code, libraries, buffers that do not grow with N
+constexpr double file_bytes = 260.0;          // files are built in memory before they are written
 constexpr double drift_bytes = 168.0; // lines, cells, lists, stamps, and the scratch of sorting: at most 240 with state
 constexpr double tree_node_bytes = 120; // box, mass, centre, quadrupole, links
 constexpr double nodes_per_particle = 0.5;
@@ -67,6 +73,16 @@ double estimate_seconds(const Scene& scene, std::int64_t steps) {
 }
 
 } // namespace
+
+double start_seconds(const Scene& scene) {
+  if (scene.start_from)
+    return 0.0;
+  const SizeLaw& sizes = scene.particles.sizes;
+  const double variance = sizes.mean_power(2) / std::pow(sizes.mean_power(1), 2) - 1.0; // of the radii, 0.15 for 1 : 4
+  const double mixed = 1.0 + cost::mixed_sizes * std::min(1.0, variance / 0.15);
+  const double ns = mixed * (cost::start_ns + cost::start_ns_per_depth * scene.optical_depth());
+  return 1e-9 * ns * static_cast<double>(scene.particles.count);
+}
 
 double surface_density_per_depth(const SizeLaw& sizes, double density) {
   return (4.0 / 3.0) * density * sizes.mean_power(3) / sizes.mean_power(2);
@@ -119,6 +135,13 @@ double dispersion_for_filling(double optical_depth, const SizeLaw& sizes, double
   return motion2 > 0.0 ? nu * std::sqrt(motion2) / (vertical_share * sizes.mean_power(1)) : 0.0;
 }
 
+// With f = a τ / √(m² + b τ): a² τ² − f² b τ − f² m² = 0.
+double optical_depth_for_filling(const SizeLaw& sizes, double velocity_dispersion, double nu, double filling) {
+  const double radius = mass_radius(sizes), motion = vertical_share * velocity_dispersion * sizes.mean_power(1) / nu;
+  const double a = (4.0 / 3.0) * radius / (std::sqrt(two_pi) * filling), half = 0.5 * own_room * radius * radius;
+  return (half + std::sqrt(half * half + a * a * motion * motion)) / (a * a);
+}
+
 Derived derive(const Scene& scene) {
   Derived d;
   d.steps = scene.time.end_step;
@@ -134,10 +157,11 @@ Derived derive(const Scene& scene) {
       particles.velocity_dispersion * particles.sizes.mean_power(1) * scene.planet.orbital_frequency;
   d.toomre_q = toomre_q(d.surface_density, dispersion, scene.planet);
   d.hill_parameter = hill_parameter(particles.density, distance_from_saturn(scene.planet));
-  d.midplane_filling = midplane_filling(scene.bunched_optical_depth(), particles.sizes, particles.velocity_dispersion,
-                                        scene.planet.frequencies.nu);
+  d.midplane_filling =
+      std::min(largest_filling, midplane_filling(scene.bunched_optical_depth(), particles.sizes,
+                                                 particles.velocity_dispersion, scene.planet.frequencies.nu));
   d.memory_mb = 1e-6 * (cost::program_bytes + bytes_per_particle(scene) * static_cast<double>(particles.count));
-  d.estimated_s = estimate_seconds(scene, d.steps);
+  d.estimated_s = start_seconds(scene) + estimate_seconds(scene, d.steps);
   return d;
 }
 

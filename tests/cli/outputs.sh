@@ -21,7 +21,7 @@ grep -q '"event":"force_error","step":150,"rms":[0-9]' "$work/run/log.jsonl" ||
 has force_error "\{\"rms\":$number,\"worst_rms\":$number,\"checks\":[0-9]+,\"particles\":200\}"
 awk -F'[:,]' '/"worst_rms"/ { seen = 1; if (!($2 > 0 && $2 < 0.02)) exit 1 } END { exit !seen }' "$work/out" ||
   fail "the error of forces: $(grep -A 5 force_error "$work/out")"
-has split "\{\"drift_s\":$number,\"gravity_s\":$number,\"output_s\":$number\}"
+has split "\{\"start_s\":$number,\"drift_s\":$number,\"gravity_s\":$number,\"output_s\":$number\}"
 has finished true
 has state_hash '"[0-9a-f]{32}"'
 has time_orbits '0\.3(0000+[0-9]*)?'

@@ -7,6 +7,7 @@
 
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/simulation.hpp>
+#include <keeler/states/progress.hpp>
 
 #include <atomic>
 #include <filesystem>
@@ -38,6 +39,7 @@ struct RunOptions {
   std::optional<double> until_orbits; ///< another end than the scene's
   std::optional<double> wall_time_s;  ///< stop with a checkpoint before this much wall time has passed
   std::vector<std::string> arguments; ///< the command line, for provenance
+  std::function<void(const StartProgress&)> start_progress;
   std::function<void(const RunProgress&)> progress;
   std::function<void(const std::string&)> notice; ///< a line for the user: rounding, a damaged checkpoint passed over
 };
@@ -48,7 +50,8 @@ struct RunResult {
   std::string state_hash;
 };
 
-/// Starts a run. Throws UsageError when the folder holds a run already and force is not given, IoError, InvariantError.
+/// Starts a run. Throws UsageError when the folder holds a run already and force is not given, IoError, InvariantError,
+/// Error (run_time) when it is stopped before the start was made: then nothing is written.
 RunResult start_run(const Scene& scene, const RunOptions& options, RunRequests& requests);
 
 /// Continues the run of a folder from its newest whole checkpoint. Throws IoError when there is none.

@@ -50,6 +50,17 @@ TEST_CASE("the A-ring example has the numbers that the design gives for it") {
   CHECK(d.estimated_s > 0.0);
 }
 
+TEST_CASE("a start takes time with the number of particles, more where it is dense or sizes differ, none from a file") {
+  const auto start = [](const std::vector<std::string>& overrides) {
+    return start_seconds(load_scene(KEELER_SOURCE_DIR "/examples/a-ring-wakes/scene.toml", overrides));
+  };
+  const double once = start({});
+  CHECK(start({"box.size_in_wavelengths=[8, 8]"}) == doctest::Approx(4.0 * once).epsilon(1e-3));
+  CHECK(start({"particles.optical_depth=1.0", "box.size=[100, 100]"}) >
+        2.2 * start({"particles.optical_depth=0.5", "box.size=[100, 100]"}));
+  CHECK(start({"start.from=none.hdf"}) == 0.0);
+}
+
 TEST_CASE("the equilibrium example has about 1500 particles and no gravity") {
   const Scene scene = load_scene(KEELER_SOURCE_DIR "/examples/equilibrium/scene.toml");
   CHECK(std::fabs(static_cast<double>(scene.particles.count) - 1500) < 20);
@@ -94,6 +105,7 @@ TEST_CASE("the layer's height is that of the reference equilibria, and the filli
   for (const double dispersion : {1.0, 2.0, 7.0}) {
     const double filling = midplane_filling(0.8, equal, dispersion, 1.1);
     CHECK(dispersion_for_filling(0.8, equal, 1.1, filling) == doctest::Approx(dispersion).epsilon(1e-12));
+    CHECK(optical_depth_for_filling(equal, dispersion, 1.1, filling) == doctest::Approx(0.8).epsilon(1e-12));
   }
   CHECK(dispersion_for_filling(0.1, equal, 1.0, 0.4) == 0.0);
 }
