@@ -1,6 +1,7 @@
 // keeler generate: an initial state, as a snapshot in double precision.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "messages.hpp"
 #include "progress_line.hpp"
 #include "scene_arguments.hpp"
 #include "signals.hpp"
@@ -56,6 +57,15 @@ template<class Make> auto unless_stopped(const Make& make) {
   }
 }
 
+Patch make_patch(const Scene& scene) {
+  ProgressLine line;
+  std::optional<Patch> patch = initial_patch(
+      scene, [&line](const StartProgress& progress) { line.show(progress); }, requests_from_signals().stop);
+  if (!patch)
+    throw Interrupted();
+  return std::move(*patch);
+}
+
 ClumpedState evolve_until_clumped(const Scene& scene) {
   ProgressLine line;
   std::optional<ClumpedState> state = clumped_state(
@@ -94,8 +104,10 @@ ExitCode generate(const GenerateOptions& options, const std::vector<std::string>
     meta.clumping = clumping_numbers(state.clumping);
     print_clumping(state.clumping);
   } else {
-    patch = unless_stopped([&] { return initial_patch(scene); });
+    patch = unless_stopped([&] { return make_patch(scene); });
   }
+  for (const std::string& notice : scene.notices)
+    say(notice);
   print_doubts(scene, patch);
   write_snapshot(options.output, patch, meta);
   fmt::print("{} in {} m x {} m, no overlaps: {}\n", counted(patch.size(), "particle"), figures(patch.box.size_x, 5),

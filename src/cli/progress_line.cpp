@@ -52,6 +52,15 @@ void ProgressLine::print(const std::string& bar, const std::string& numbers) {
   open_ = true;
 }
 
+// Most starts are made before anybody looks.
+void ProgressLine::show(const StartProgress& p) {
+  const double patience_s = terminal_ ? 0.5 : log_interval_s;
+  if (p.elapsed_s >= patience_s && due(p.elapsed_s, p.share == 1.0))
+    print(bar_of(p.share), fmt::format("{:3.0f} % of the start  {} left", 100.0 * p.share, clock(p.remaining_s)));
+  if (p.share == 1.0)
+    next_s_ = 0.0; // what follows has a clock of its own
+}
+
 void ProgressLine::show(const RunProgress& p) {
   if (!due(p.elapsed_s, p.step == p.end_step))
     return;

@@ -13,6 +13,7 @@ class ProgressLine {
 public:
   ProgressLine();
   ~ProgressLine();
+  void show(const StartProgress& progress);
   void show(const RunProgress& progress);
   void show(const ClumpingProgress& progress);
   void show(const Progress& progress);

@@ -36,6 +36,7 @@ RunOptions run_options(const JobOptions& job, const std::vector<std::string>& ar
   if (job.until > 0.0)
     options.until_orbits = job.until;
   options.arguments = arguments;
+  options.start_progress = [&line](const StartProgress& progress) { line.show(progress); };
   options.progress = [&line](const RunProgress& progress) { line.show(progress); };
   options.notice = say;
   return options;
@@ -68,9 +69,9 @@ void print_summary(const std::string& folder, const nlohmann::json& s) {
              joules("lost_in_collisions"), energy("residual"));
   const nlohmann::json& split = s["split"];
   const auto part = [&](const char* key) { return split.value(key, 0.0); };
-  fmt::print(
-      "time                                {:.1f} s wall, {:.1f} s processor: drift {:.1f} s, gravity {:.1f} s\n",
-      number("wall_s"), number("cpu_s"), part("drift_s"), part("gravity_s"));
+  fmt::print("time                                {:.1f} s wall, {:.1f} s processor: start {:.1f} s, drift {:.1f} s, "
+             "gravity {:.1f} s\n",
+             number("wall_s"), number("cpu_s"), part("start_s"), part("drift_s"), part("gravity_s"));
   fmt::print("time of output                      series {:.2g} s, snapshots {:.2g} s, checkpoints {:.2g} s, checks of "
              "forces {:.2g} s\n",
              part("series_s"), part("snapshots_s"), part("checkpoints_s"), part("force_checks_s"));

@@ -174,6 +174,7 @@ private:
 struct Start {
   double cpu = cpu_seconds(), wall = 0.0;
   Stopwatch watch{wall};
+  double made_s = 0.0; // wall time until there was a state to evolve
   std::int64_t checkpoint_step = -1;
 };
 
@@ -199,8 +200,8 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
   } catch (const Interrupted&) {
     fail_given_up(options, runner.last_checkpoint(), recorder);
   }
-  const RunCost cost{first_step, start.watch.elapsed(), cpu_seconds() - start.cpu, recorder.costs(),
-                     recorder.force_checks()};
+  const RunCost cost{first_step,   start.watch.elapsed(), cpu_seconds() - start.cpu,
+                     start.made_s, recorder.costs(),      recorder.force_checks()};
   const nlohmann::ordered_json summary = summarise(simulation, scene, result, cost, recorder.provenance());
   write_text(folder.summary(), summary.dump(2) + "\n");
   recorder.log(result.finished ? "finished" : "stopped", {{"step", result.step}, {"state_hash", result.state_hash}});
@@ -244,23 +245,25 @@ struct Begun {
 };
 
 // Until there is a run, a stop is heeded at once: there is nothing that could be kept.
-Begun first_simulation(const Scene& scene, const RunRequests& requests) {
+Begun first_simulation(const Scene& scene, const RunOptions& options, const RunRequests& requests) {
   try {
     const Interruptible start(requests.stop);
-    const Patch patch = initial_patch(scene);
-    return {Simulation(scene, patch), scale_of(patch)};
+    const std::optional<Patch> patch = initial_patch(scene, options.start_progress, requests.stop);
+    if (patch)
+      return {Simulation(scene, *patch), scale_of(*patch)};
   } catch (const Interrupted&) {
-    throw Error(ExitCode::run_time, "stopped before the first step (on request), so nothing is written; start again");
   }
+  throw Error(ExitCode::run_time, "stopped before the first step (on request), so nothing is written; start again");
 }
 
 RunResult begin(const Scene& scene, const RunOptions& options, RunRequests& requests) {
-  const Start start;
+  Start start;
   const RunFolder folder(options.folder);
   if (!options.force)
     folder.refuse_if_occupied(); // before the work of an initial state
-  Begun begun = first_simulation(scene, requests);
+  Begun begun = first_simulation(scene, options, requests);
   Simulation& simulation = begun.simulation;
+  start.made_s = start.watch.elapsed();
   folder.make();
   const FolderLock lock(folder.path());
   folder.claim(options.force);

@@ -71,14 +71,16 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scen
   json["energy_j"] = energies(simulation, scene);
   json["wall_s"] = cost.wall_s;
   json["cpu_s"] = cost.cpu_s;
-  json["split"] = {{"drift_s", split.drift},
+  json["split"] = {{"start_s", cost.start_s},
+                   {"drift_s", split.drift},
                    {"gravity_s", split.force("gravity")},
                    {"series_s", cost.output.series},
                    {"snapshots_s", cost.output.snapshots},
                    {"checkpoints_s", cost.output.checkpoints},
                    {"force_checks_s", cost.force_checks.seconds}};
-  json["ns_per_particle_step"] = {
-      {"drift", split.drift / passes}, {"gravity", split.force("gravity") / passes}, {"series", cost.output.series / passes}};
+  json["ns_per_particle_step"] = {{"drift", split.drift / passes},
+                                  {"gravity", split.force("gravity") / passes},
+                                  {"series", cost.output.series / passes}};
   for (const ForceSettings& force : scene.external_forces)
     json["split"][std::string(force.entry->table) + "_s"] = split.force(force.entry->table);
   json["provenance"] = provenance;

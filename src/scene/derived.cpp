@@ -4,6 +4,7 @@
 #include <keeler/orbit/toomre.hpp>
 #include <keeler/particles/patch.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace keeler {
@@ -88,6 +89,13 @@ double dispersion_for_filling(double optical_depth, const SizeLaw& sizes, double
   return motion2 > 0.0 ? nu * std::sqrt(motion2) / (vertical_share * sizes.mean_power(1)) : 0.0;
 }
 
+// With f = a τ / √(m² + b τ): a² τ² − f² b τ − f² m² = 0.
+double optical_depth_for_filling(const SizeLaw& sizes, double velocity_dispersion, double nu, double filling) {
+  const double radius = crowd_radius(sizes), motion = vertical_share * velocity_dispersion * sizes.mean_power(1) / nu;
+  const double a = (4.0 / 3.0) * radius / (std::sqrt(two_pi) * filling), half = 0.5 * own_room * radius * radius;
+  return (half + std::sqrt(half * half + a * a * motion * motion)) / (a * a);
+}
+
 Derived derive(const Scene& scene) {
   Derived d;
   d.steps = scene.time.end_step;
@@ -103,8 +111,9 @@ Derived derive(const Scene& scene) {
       particles.velocity_dispersion * particles.sizes.mean_power(1) * scene.planet.orbital_frequency;
   d.toomre_q = toomre_q(d.surface_density, dispersion, scene.planet);
   d.hill_parameter = hill_parameter(particles.density, distance_from_saturn(scene.planet));
-  d.midplane_filling = midplane_filling(scene.bunched_optical_depth(), particles.sizes, particles.velocity_dispersion,
-                                        scene.planet.frequencies.nu);
+  d.midplane_filling =
+      std::min(largest_filling, midplane_filling(scene.bunched_optical_depth(), particles.sizes,
+                                                 particles.velocity_dispersion, scene.planet.frequencies.nu));
   d.memory_mb = 1e-6 * (cost::program_bytes + bytes_per_particle(scene) * static_cast<double>(particles.count));
   return d;
 }

@@ -11,8 +11,9 @@ namespace {
 
 // Times on the reference machine, one thread, ns. docs/dev/estimate.md says by which command each was measured.
 namespace cost {
-constexpr double start = 7.5e3;    // a particle
-constexpr double advance = 5.6;    // a particle and step
+constexpr double start = 4.0e3, start_depth = 3.5e3; // a particle; the latter for each unit of optical depth
+constexpr double start_mixed = 0.4;                  // the share that wide sizes add
+constexpr double advance = 5.6;                      // a particle and step
 constexpr double window = 85.0;    // a particle and window: sorting, and listing the pairs of equal spheres
 constexpr double contact = 1250.0; // with all searches; in a patch of 10⁴ particles, whose lines stay in the cache
 constexpr double kick = 20.0;      // a particle and kick
@@ -41,6 +42,11 @@ double size_spread(const SizeLaw& sizes) {
 // Steps for which neighbours are kept: until a particle has changed its velocity 0.3 times, at most 16.
 double window_steps(double contacts_a_step) {
   return std::clamp(0.3 / std::max(contacts_a_step, 1e-9), 1.0, 16.0);
+}
+
+double start_ns(const Scene& scene) {
+  const double mixed = 1.0 + cost::start_mixed * std::min(1.0, (size_spread(scene.particles.sizes) - 1.0) / 0.15);
+  return mixed * (cost::start + cost::start_depth * scene.optical_depth());
 }
 
 double drift_ns(const ContactRates& rates, double dilute, double count, const Scene& scene) {
@@ -140,7 +146,7 @@ RunEstimate estimate_run(const Scene& scene, double pair_ns) {
   const double dilute = 19.0 * met_optical_depth(scene);
   const double scale = 1e-9 * pair_ns / reference_pair_ns;
   RunEstimate estimate;
-  estimate.start = scale * cost::start * count;
+  estimate.start = scale * start_ns(scene) * count;
   estimate.drift = scale * count *
                    (smooth * drift_ns(contacts.smooth, dilute, count, scene) +
                     (steps - smooth) * drift_ns(contacts.wakes, dilute, count, scene));

@@ -97,17 +97,27 @@ void read_count(Scene& scene, Settings& settings, const Amount& amount) {
   require_possible(place, amount.key, "particles.surface_density", scene.surface_density());
   if (amount.key != "particles.count")
     settings.resolve("particles.count", static_cast<std::int64_t>(particles.count), amount.key);
+}
 
-  const double nu = scene.planet.frequencies.nu, depth = scene.bunched_optical_depth();
-  const double filling = midplane_filling(depth, particles.sizes, particles.velocity_dispersion, nu);
-  if (!(filling <= largest_filling)) {
-    const double enough = dispersion_for_filling(depth, particles.sizes, nu, largest_filling);
-    fail_at(place, fmt::format("too dense (the mid-plane would be filled to {:.2f}, and {:.1f} is the most that can be "
+// What a Gaussian layer of the scene's height would be; see largest_filling in scene/derived.hpp.
+void check_filling(Scene& scene, const std::string& place) {
+  const ParticleSettings& particles = scene.particles;
+  const double nu = scene.planet.frequencies.nu, depth = scene.optical_depth(), bunched = scene.bunched_optical_depth();
+  const double filling = midplane_filling(bunched, particles.sizes, particles.velocity_dispersion, nu);
+  if (!(filling <= refused_filling)) {
+    const double hot = dispersion_for_filling(bunched, particles.sizes, nu, refused_filling);
+    const double thin = optical_depth_for_filling(particles.sizes, particles.velocity_dispersion, nu, refused_filling);
+    fail_at(place, fmt::format("too dense (the mid-plane would be filled to {:.2f}, and {:.2f} is the most that can be "
                                "placed without overlap); raise velocity_dispersion to at least {:.2f} or lower the "
-                               "optical depth of {:.3g}{}",
-                               filling, largest_filling, std::ceil(enough * 100.0) / 100.0, scene.optical_depth(),
-                               depth > scene.optical_depth() ? " or the bunching" : ""));
+                               "optical depth from {:.3g} to at most {:.2f}{}",
+                               filling, refused_filling, std::ceil(hot * 100.0) / 100.0, depth,
+                               std::floor(thin * depth / bunched * 100.0) / 100.0,
+                               bunched > depth ? " or lower the bunching" : ""));
   }
+  if (filling > largest_filling)
+    scene.notices.push_back(fmt::format("the start has a flat-topped layer, its mid-plane filled to {:.2f}: a Gaussian "
+                                        "one of this optical depth and height would be filled to {:.2f}",
+                                        largest_filling, filling));
 }
 
 } // namespace
@@ -121,7 +131,9 @@ void read_particles_and_box(Scene& scene, Settings& settings, const std::string&
   particles.streamlines = read_streamlines(settings);
   const Amount amount = read_amount(settings, particles);
   read_box(scene, settings, amount);
+  const std::string place = settings.place(amount.key); // before it is resolved to a count
   read_count(scene, settings, amount);
+  check_filling(scene, place);
 }
 
 } // namespace keeler

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace keeler {
 namespace {
@@ -61,7 +62,10 @@ std::optional<ClumpedState> clumped_state(const Scene& scene,
   require_gravity(scene);
   double seconds = 0.0;
   const Stopwatch watch(seconds);
-  Simulation simulation(scene, initial_patch(scene));
+  std::optional<Patch> start = initial_patch(scene, {}, stop);
+  if (!start)
+    return std::nullopt;
+  Simulation simulation(scene, *std::exchange(start, std::nullopt));
   require_visible_wakes(simulation.patch());
 
   Clumping clumping;

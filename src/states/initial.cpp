@@ -1,5 +1,7 @@
 #include <keeler/states/initial.hpp>
 
+#include "placing.hpp"
+
 #include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/core/words.hpp>
@@ -14,7 +16,6 @@
 #include <cmath>
 
 namespace keeler {
-
 namespace {
 
 // Epicycles of one planet are no epicycles of another: the shear would be wrong everywhere.
@@ -58,6 +59,33 @@ void require_physical(const Patch& patch, const std::string& path) {
   }
 }
 
+// What the radii that were drawn add to the layer's height²: 1.7 τ R², with the R of the crowd.
+double own_room(const UniformRequest& request) {
+  double area = 0.0;
+  for (const double r : request.radii)
+    area += pi * r * r;
+  const double radius = crowd_volume(request.radii) / (4.0 / 3.0 * area);
+  const double height_in_radii = layer_height(area / request.box.area(), equal_sizes(1.0), 0.0, request.frequencies.nu);
+  return std::pow(radius * height_in_radii, 2);
+}
+
+UniformRequest request_of(const Scene& scene) {
+  const double mean_radius = scene.particles.sizes.mean_power(1);
+  UniformRequest request;
+  request.box = {scene.size_x, scene.size_y, scene.planet.frequencies.shear(), 0.0};
+  request.frequencies = scene.planet.frequencies;
+  request.radii = draw_radii(scene.particles.sizes, scene.particles.count, scene.particles.seed);
+  request.density = scene.particles.density;
+  request.dispersion_x = scene.particles.velocity_dispersion * mean_radius;
+  request.dispersion_z = vertical_share * request.dispersion_x;
+  request.own_room = own_room(request);
+  const StreamlineSettings& streamlines = scene.particles.streamlines;
+  request.streamlines = Streamlines::bunched(streamlines.waves, scene.size_x, streamlines.bunching);
+  request.streamlines.inclination = streamlines.inclination * mean_radius;
+  request.seed = scene.particles.seed;
+  return request;
+}
+
 } // namespace
 
 Patch patch_from_snapshot(const std::string& path, const Scene& scene) {
@@ -78,24 +106,19 @@ PatchScale scale_of(const Patch& patch) {
   return {patch.size(), patch.box.size_x, patch.box.size_y, critical_wavelength(patch)};
 }
 
-Patch initial_patch(const Scene& scene) {
+std::optional<Patch> initial_patch(const Scene& scene, const std::function<void(const StartProgress&)>& progress,
+                                   const std::atomic<bool>& stop) {
   if (scene.start_from)
     return patch_from_snapshot(*scene.start_from, scene);
-  const double mean_radius = scene.particles.sizes.mean_power(1);
-  UniformRequest request;
-  request.box = {scene.size_x, scene.size_y, scene.planet.frequencies.shear(), 0.0};
-  request.frequencies = scene.planet.frequencies;
-  request.radii = draw_radii(scene.particles.sizes, scene.particles.count, scene.particles.seed);
-  request.density = scene.particles.density;
-  request.dispersion_x = scene.particles.velocity_dispersion * mean_radius;
-  request.dispersion_z = vertical_share * request.dispersion_x;
-  const StreamlineSettings& streamlines = scene.particles.streamlines;
-  request.streamlines = Streamlines::bunched(streamlines.waves, scene.size_x, streamlines.bunching);
-  request.streamlines.inclination = streamlines.inclination * mean_radius;
-  request.seed = scene.particles.seed;
-  Patch patch = uniform_patch(request);
-  patch.orbital_frequency = scene.planet.orbital_frequency;
+  std::optional<Patch> patch = uniform_patch(request_of(scene), progress, stop);
+  if (patch)
+    patch->orbital_frequency = scene.planet.orbital_frequency;
   return patch;
+}
+
+Patch initial_patch(const Scene& scene) {
+  const std::atomic<bool> never = false;
+  return *initial_patch(scene, {}, never);
 }
 
 } // namespace keeler

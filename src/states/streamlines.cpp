@@ -15,6 +15,10 @@ Elements Streamlines::elements(double guiding_x) const {
   return {guiding_x, 0.0, eccentricity * cosine, eccentricity * sine, 0.0, inclination};
 }
 
+double Streamlines::spacing(double guiding_x) const {
+  return 1.0 + wave_number * elements(guiding_x).e_sin;
+}
+
 double Streamlines::guiding_x(double x) const {
   double low = x - eccentricity, high = x + eccentricity; // x(X) rises, and is nowhere farther from X than e
   for (int halving = 0; halving < 60 && low < high; ++halving) {

@@ -8,6 +8,7 @@
 
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/simulation.hpp>
+#include <keeler/states/progress.hpp>
 
 #include <atomic>
 #include <filesystem>
@@ -43,6 +44,7 @@ struct RunOptions {
   std::optional<double> until_orbits; ///< another end than the scene's
   std::optional<double> wall_time_s;  ///< stop with a checkpoint before this much wall time has passed
   std::vector<std::string> arguments; ///< the command line, for provenance
+  std::function<void(const StartProgress&)> start_progress;
   std::function<void(const RunProgress&)> progress;
   std::function<void(const std::string&)> notice; ///< a line for the user: rounding, a damaged checkpoint passed over
 };
@@ -55,8 +57,8 @@ struct RunResult {
 };
 
 /// Starts a run. Throws UsageError when the folder holds a run already and force is not given, IoError, InvariantError;
-/// DiskFullError says how to go on. Error (stopped, or run_time when there is no checkpoint) when it was asked to give up
-/// a step or the start.
+/// DiskFullError says how to go on. Error (stopped, or run_time when there is no checkpoint) when it was asked to give
+/// up a step, or to stop before the start was made: then nothing is written.
 RunResult start_run(const Scene& scene, const RunOptions& options, RunRequests& requests);
 
 /// Continues the run of a folder from its newest whole checkpoint. A run that has reached its end is left as it is,

@@ -43,8 +43,15 @@ double midplane_filling(double optical_depth, const SizeLaw& sizes, double veloc
 /// The velocity dispersion (⟨r⟩ Ω) at which the mid-plane is filled to `filling`; 0 when it is never that full.
 double dispersion_for_filling(double optical_depth, const SizeLaw& sizes, double nu, double filling);
 
-/// The fullest mid-plane that a start without overlap is made for.
-inline constexpr double largest_filling = 0.4;
+/// The optical depth at which the mid-plane is filled to `filling`.
+double optical_depth_for_filling(const SizeLaw& sizes, double velocity_dispersion, double nu, double filling);
+
+/// The fullest mid-plane of a start. Where midplane_filling() is above it, the layer is given a flatter top instead, of
+/// the same optical depth and height √⟨z²⟩, whose mid-plane is filled to this.
+inline constexpr double largest_filling = 0.55;
+
+/// The largest midplane_filling() that a scene may have: equal spheres jam at random at 0.64 (O'Hern et al. 2003).
+inline constexpr double refused_filling = 0.62;
 
 struct Derived {
   /// False when the particles come from a start file: then only the steps are known, and the other numbers are 0.
@@ -55,7 +62,7 @@ struct Derived {
   double lambda_cr = 0.0;       ///< m
   double toomre_q = 0.0;        ///< at the start
   double hill_parameter = 0.0;
-  double midplane_filling = 0.0; ///< at the start, where streamlines are closest
+  double midplane_filling = 0.0; ///< at the start, where streamlines are closest; at most largest_filling
   std::int64_t steps = 0;
   double memory_mb = 0.0; ///< estimate of the largest use, 10⁶ bytes
 };

@@ -21,6 +21,9 @@ struct Streamlines {
   /// At time zero, on the streamline of guiding centre X, with Y = 0.
   Elements elements(double guiding_x) const;
 
+  /// ∂x/∂X at time zero: how far apart streamlines are, in their mean spacing.
+  double spacing(double guiding_x) const;
+
   /// The X of the streamline that passes a place at time zero.
   double guiding_x(double x) const;
 };

@@ -2,9 +2,13 @@
 #pragma once
 
 #include <keeler/particles/patch.hpp>
+#include <keeler/states/progress.hpp>
 #include <keeler/states/streamlines.hpp>
 
+#include <atomic>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <vector>
 
 namespace keeler {
@@ -16,15 +20,23 @@ struct UniformRequest {
   std::vector<double> radii;  ///< m, one a particle; particle k gets id k
   double density = 900.0;     ///< kg m⁻³
   double dispersion_x = 1.0;  ///< c_x, m rad⁻¹
-  double dispersion_z = 0.65; ///< c_z, m rad⁻¹; the layer's height is c_z/ν
+  double dispersion_z = 0.65; ///< c_z, m rad⁻¹
+  double own_room = 0.0;      ///< m²: the layer's height is √(c_z²/ν² + own_room)
   Streamlines streamlines;    ///< that the mean motion follows; circles unless given
   std::uint64_t seed = 1;
 };
 
-/// Uniform in x and y (in X, where streamlines bunch), Gaussian in z, eccentricity and inclination vectors Gaussian
-/// about those of the streamlines (so that c_y = c_x κ/2). Overlapping particles are pushed apart along their centre
-/// lines until none is left; velocities stay. Same request, same state, for any number of threads. Throws UsageError
-/// when the layer is too dense for that.
+/// Uniform in x and y (in X, where streamlines bunch); in z Gaussian, or flat-topped with the same height where the
+/// mid-plane would be fuller than largest_filling (scene/derived.hpp). Eccentricity vectors are Gaussian about those of
+/// the streamlines, so that c_y = c_x κ/2, and so are vertical velocities; their random parts have no mean by mass, nor
+/// have the heights. Each pair is apart by at least 2 × 10⁻⁵ of the smaller radius. Sizes may differ by 10⁴ and more;
+/// time and memory go with the number of particles. Same request, same state, for any number of threads.
+/// `progress` may be empty. None when `stop` was set. Throws UsageError when there is no room without overlap.
+std::optional<Patch> uniform_patch(const UniformRequest& request,
+                                   const std::function<void(const StartProgress&)>& progress,
+                                   const std::atomic<bool>& stop);
+
+/// The same, not to be stopped.
 Patch uniform_patch(const UniformRequest& request);
 
 } // namespace keeler

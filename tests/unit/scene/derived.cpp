@@ -93,6 +93,7 @@ TEST_CASE("the layer's height is that of the reference equilibria, and the filli
   for (const double dispersion : {1.0, 2.0, 7.0}) {
     const double filling = midplane_filling(0.8, equal, dispersion, 1.1);
     CHECK(dispersion_for_filling(0.8, equal, 1.1, filling) == doctest::Approx(dispersion).epsilon(1e-12));
+    CHECK(optical_depth_for_filling(equal, dispersion, 1.1, filling) == doctest::Approx(0.8).epsilon(1e-12));
   }
   CHECK(dispersion_for_filling(0.1, equal, 1.0, 0.4) == 0.0);
 }

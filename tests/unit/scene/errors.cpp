@@ -114,15 +114,19 @@ TEST_CASE("impossible requests are told") {
   CHECK(with("size = ", "size_in_wavelengths = ") ==
         "s.toml:4:23: box.size_in_wavelengths cannot stand beside particles.count (the wavelength follows from the "
         "surface density, and with a count this follows from the box); give box.size or particles.optical_depth");
-  // H² = (0.65 × 2)² + 1.7 × 1.8 = 4.75, (4/3) 1.8 / (√(2π) H) = 0.439; 0.4 needs H² = 5.73, so c_x = 2.514, rounded up
-  CHECK(with("count = 300", "optical_depth = 1.8") ==
-        "s.toml:6:17: too dense (the mid-plane would be filled to 0.44, and 0.4 is the most that can be placed without "
-        "overlap); raise velocity_dispersion to at least 2.52 or lower the optical depth of 1.8");
-  CHECK(with("count = 300", "optical_depth = 1.8\nvelocity_dispersion = 2.52") == "");
-  // 0.9 bunched by q = 0.5 is 1.8 where streamlines are closest
-  CHECK(with("count = 300", "optical_depth = 0.9\nstreamlines = { waves = 1, bunching = 0.5 }") ==
-        "s.toml:6:17: too dense (the mid-plane would be filled to 0.44, and 0.4 is the most that can be placed without "
-        "overlap); raise velocity_dispersion to at least 2.52 or lower the optical depth of 0.9 or the bunching");
+  // H² = (0.65 × 2)² + 1.7 × 3.6 = 7.81, (4/3) 3.6 / (√(2π) H) = 0.685; 0.62 needs H² = 9.54, so c_x = 2.845, rounded
+  // up, or τ = 3.06: (4/3) 3.06 / (√(2π) √(1.69 + 1.7 × 3.06))
+  CHECK(with("count = 300", "optical_depth = 3.6") ==
+        "s.toml:6:17: too dense (the mid-plane would be filled to 0.69, and 0.62 is the most that can be placed "
+        "without overlap); raise velocity_dispersion to at least 2.85 or lower the optical depth from 3.6 to at most "
+        "3.05");
+  CHECK(with("count = 300", "optical_depth = 3.6\nvelocity_dispersion = 2.85") == "");
+  CHECK(with("count = 300", "optical_depth = 3.05") == "");
+  // 1.8 bunched by q = 0.5 is 3.6 where streamlines are closest
+  CHECK(with("count = 300", "optical_depth = 1.8\nstreamlines = { waves = 1, bunching = 0.5 }") ==
+        "s.toml:6:17: too dense (the mid-plane would be filled to 0.69, and 0.62 is the most that can be placed "
+        "without overlap); raise velocity_dispersion to at least 2.85 or lower the optical depth from 1.8 to at most "
+        "1.52 or lower the bunching");
   CHECK(with("count = 300", "optical_depth = 1e-6").find("makes 0 particles") != std::string::npos);
   CHECK(with("count = 300", "optical_depth = 0.1\nseed = 3").empty());
   CHECK(
@@ -171,8 +175,8 @@ TEST_CASE("every key refuses every wrong type, with one line that names the key"
   };
   for (const Key& key : scene_keys())
     for (const auto& [type, sample] : samples) {
-      const bool is_text = key.type == KeyType::text || key.type == KeyType::path ||
-                           key.type == KeyType::choice || key.type == KeyType::rows;
+      const bool is_text = key.type == KeyType::text || key.type == KeyType::path || key.type == KeyType::choice ||
+                           key.type == KeyType::rows;
       const bool fits = (type == KeyType::text && is_text) ||
                         (type == KeyType::number && key.type == KeyType::number) ||
                         (type == KeyType::integer && (key.type == KeyType::number || key.type == KeyType::integer)) ||

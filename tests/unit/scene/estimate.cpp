@@ -102,3 +102,13 @@ TEST_CASE("a moonlet neither makes its patch collide as one of its optical depth
   check_near(scene_contacts(scene).smooth.fast, 1.5 * rate, 1.15);
   check_near(estimate_run(scene).drift, 2.0 * grains.drift, 1.5);
 }
+
+TEST_CASE("a start takes time with the number of particles, and more where it is dense") {
+  const auto start = [](const std::vector<std::string>& overrides) {
+    return estimate_run(load_scene(KEELER_SOURCE_DIR "/examples/a-ring-wakes/scene.toml", overrides)).start;
+  };
+  const double once = start({});
+  CHECK(start({"box.size_in_wavelengths=[8, 8]"}) == doctest::Approx(4.0 * once).epsilon(1e-3));
+  CHECK(start({"particles.optical_depth=1.0", "box.size=[100, 100]"}) >
+        2.2 * start({"particles.optical_depth=0.5", "box.size=[100, 100]"}));
+}

@@ -1,81 +1,95 @@
 #include <keeler/states/initial.hpp>
 
-#include <keeler/core/error.hpp>
-#include <keeler/io/snapshot.hpp>
+#include <keeler/cells/overlap.hpp>
+#include <keeler/core/units.hpp>
+#include <keeler/diagnostics/dispersion.hpp>
+#include <keeler/diagnostics/surface.hpp>
+#include <keeler/scene/derived.hpp>
 
 #include <doctest/doctest.h>
-
-#include <filesystem>
-#include <functional>
+#include <fmt/format.h>
 
 using namespace keeler;
 
 namespace {
 
-Scene scene(const std::vector<std::string>& overrides = {}, const std::optional<std::string>& from = {}) {
-  return parse_scene(R"(
+Scene scene_of(const std::string& planet, const std::string& particles, double side) {
+  return parse_scene(fmt::format(R"(
 [planet]
-preset = "saturn-a-ring"
+orbital_frequency = 1.95e-4
+{}
 [box]
-size = [50, 40]
+size = [{}, {}]
 [particles]
-count = 34
-density = 600.0
-sizes = { law = "equal", radius = 1.0 }
-[gravity]
+density = 900.0
+{}
+[collisions]
+restitution = {{ law = "constant", value = 0.1 }}
 [time]
 end = 1.0
 )",
-                     "test scene", overrides, from);
+                                 planet, side, 1.1 * side, particles),
+                     "s.toml");
 }
 
-// What a start from the scene's patch says after a change.
-std::string fault(const std::function<void(Patch&)>& change) {
-  const std::string file = (std::filesystem::temp_directory_path() / "keeler-test-start.hdf").string();
-  Patch patch = initial_patch(scene());
-  change(patch);
-  write_snapshot(file, patch, {scene().resolved, {}});
-  std::string message;
-  try {
-    initial_patch(scene({}, file));
-  } catch (const InvariantError& error) {
-    message = error.what();
-  }
-  std::filesystem::remove(file);
-  return message;
-}
+const std::string spheres = "sizes = { law = \"equal\", radius = 1.0 }\n";
 
 } // namespace
 
-TEST_CASE("a start file's particles must be possible; the first that is not is named") {
-  CHECK(fault([](Patch&) {}).empty());
-  const auto says = [](const std::function<void(Patch&)>& change, const std::string& words) {
-    const std::string message = fault(change);
-    CAPTURE(message);
-    CHECK(message.find("particle 7 of '") == 0);
-    CHECK(message.find(words) != std::string::npos);
+TEST_CASE("dense scenes whose equilibria exist start, at the default dispersion") {
+  struct Case {
+    std::string planet, particles;
+    bool flat_topped;
   };
-  says([](Patch& p) { p.positions[7].x() = 1e9; }, "a coordinate (m) of 1e9 (possible is at most 1e7)");
-  says([](Patch& p) { p.positions[7].z() = -1e9; }, "a coordinate (m) of 1e9");
-  says([](Patch& p) { p.masses[7] = 1e18; }, "a density (kg/m^3, by its mass and radius) of 2.39e17");
-  says([](Patch& p) { p.radii[7] = 1e-9; }, "a radius (m) of 1e-9 (possible is from 1e-6 to 1000000)");
-  says([](Patch& p) { p.velocities[7].x() = 2000.0 / p.orbital_frequency; }, "a speed (m/s, beyond the shear) of 2000");
-  CHECK(fault([](Patch& p) { p.positions[7].x() = NAN; }).find("particle 7 has a place") == 0);
-  CHECK(fault([](Patch& p) { p.box.size_y = 1e12; }).find("50 m x 1e12 m") != std::string::npos);
+  for (const Case& c :
+       {Case{"", "optical_depth = 3.0\n", true}, Case{"vertical_ratio = 3.6", "optical_depth = 1.6\n", false},
+        Case{"vertical_ratio = 3.6", "optical_depth = 1.6\nvelocity_dispersion = 1.0\n", false}}) {
+    const Scene scene = scene_of(c.planet, c.particles + spheres, 50.0);
+    CHECK(scene.notices.empty() == !c.flat_topped);
+    const Patch patch = initial_patch(scene);
+    CHECK(largest_overlap(patch).depth == 0.0);
+    CHECK(optical_depth(patch) == doctest::Approx(scene.optical_depth()).epsilon(1e-12));
+    // 5 % for the room that is made and for the draw: 1/√(2N) of 2000 particles and more
+    const double height = layer_height(scene.optical_depth(), scene.particles.sizes,
+                                       scene.particles.velocity_dispersion, scene.planet.frequencies.nu);
+    CHECK(scale_height(patch) == doctest::Approx(height).epsilon(0.08));
+    const double c_x = velocity_dispersion(patch).x(), count = static_cast<double>(patch.size());
+    CHECK(std::fabs(c_x / scene.particles.velocity_dispersion - 1.0) < 3.0 / std::sqrt(2.0 * count));
+  }
 }
 
-TEST_CASE("doubts about a patch have numbers, and a large one none") {
-  const std::vector<std::string> small = doubts(scene());
-  REQUIRE(small.size() == 2);
-  CHECK(small[0].find("34 particles are few: one measurement of their velocity dispersion scatters by 12 %") == 0);
-  CHECK(small[1].find("the box spans 6.1 lambda_cr") == 0);
-  CHECK(doubts(scene(), scale_of(initial_patch(scene()))) == small);
-  const std::vector<std::string> wakes = {"box.size_in_wavelengths=[4,4]", "particles.optical_depth=0.5",
-                                          "particles.velocity_dispersion=3.5"};
-  REQUIRE(doubts(scene(wakes)).size() == 1);
-  CHECK(doubts(scene(wakes)).front() == "the box spans 4 lambda_cr: in wakes, 4 x 4 show 12 % less velocity dispersion "
-                                        "and 18 % less viscosity than 8 x 8");
-  CHECK(doubts(scene({"box.size_in_wavelengths=[8,8]", "particles.optical_depth=0.5",
-                      "particles.velocity_dispersion=3.5"}))
-            .empty());
+TEST_CASE("tau, the moments of the law and the dispersion are those of the scene within three standard errors") {
+  const Scene scene =
+      scene_of("", "optical_depth = 0.8\nsizes = { law = \"power\", exponent = 3.0, min = 0.5, max = 5.0 }", 120.0);
+  const Patch patch = initial_patch(scene);
+  const double count = static_cast<double>(patch.size());
+  double weight = 0.0; // Σ m² / (Σ m)²: one over the number of particles that matter to means by mass
+  double masses = 0.0;
+  for (const double mass : patch.masses) {
+    weight += mass * mass;
+    masses += mass;
+  }
+  weight /= masses * masses;
+  const auto& sizes = scene.particles.sizes;
+  const double mean_area = sizes.mean_power(2);
+  const double area_error = std::sqrt((sizes.mean_power(4) / (mean_area * mean_area) - 1.0) / count);
+  CHECK(std::fabs(optical_depth(patch) / 0.8 - 1.0) < 3.0 * area_error);
+  const double c_x = scene.particles.velocity_dispersion * sizes.mean_power(1);
+  CHECK(std::fabs(velocity_dispersion(patch).x() / c_x - 1.0) < 3.0 * std::sqrt(0.5 * weight));
+  CHECK(largest_overlap(patch).depth == 0.0);
+}
+
+TEST_CASE("a moonlet in a table of radii does not thicken the layer of the grains") {
+  const auto height = [](double moonlet) { // of the grains
+    Scene scene = scene_of("", "count = 4000\n" + spheres, 160.0);
+    std::vector<double> radii(4000, 1.0);
+    radii.back() = moonlet;
+    scene.particles.sizes = listed_sizes(radii);
+    const Patch patch = initial_patch(scene);
+    double squares = 0.0;
+    for (std::size_t k = 0; k < patch.size(); ++k)
+      squares += patch.radii[k] == 1.0 ? patch.positions[k].z() * patch.positions[k].z() : 0.0;
+    return std::sqrt(squares / 4000.0);
+  };
+  CHECK(height(40.0) < 1.3 * height(1.0)); // with 94 % of the mass: ⟨r³⟩/⟨r²⟩ of all would make it 13 m
 }

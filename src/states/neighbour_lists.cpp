@@ -1,0 +1,71 @@
+#include "neighbour_lists.hpp"
+
+#include "size_levels.hpp"
+
+#include <keeler/core/threads.hpp>
+
+#include <algorithm>
+#include <numeric>
+
+namespace keeler {
+namespace {
+
+struct Pair {
+  std::uint32_t larger;
+  Neighbour smaller;
+};
+using Blocks = std::vector<std::vector<Pair>>; // a block of larger partners each
+
+// Each sphere looks for smaller ones: it meets of the order of r² N / area of them, τ N in all, whatever the sizes.
+Blocks find_pairs(const std::vector<Sphere>& spheres, const ShearingBox& box, double offset, double skin,
+                  const std::atomic<bool>& stop) {
+  constexpr std::size_t block = 1024;
+  const std::size_t count = spheres.size();
+  const SizeLevels levels(spheres, box, offset);
+  const auto find_for = [&](std::size_t i, std::vector<Pair>& pairs) {
+    const Sphere& sphere = spheres[i];
+    const auto consider = [&](std::size_t j, const Image& image) {
+      const Sphere& other = spheres[j];
+      if (j == i || other.radius > sphere.radius || (other.radius == sphere.radius && j > i))
+        return;
+      const double range = (sphere.radius + other.radius) * (1.0 + skin);
+      const Vec3 d = sphere.place - other.place - box.displacement(image, offset);
+      if (d.squaredNorm() < range * range)
+        pairs.push_back({static_cast<std::uint32_t>(i), {static_cast<std::uint32_t>(j), image}});
+    };
+    levels.visit_near(sphere.place, sphere.radius, 1.0 + skin, levels.level_of(sphere.radius), consider);
+  };
+  Blocks blocks((count + block - 1) / block);
+  parallel_for(
+      blocks.size(),
+      [&](std::size_t b) {
+        for (std::size_t i = b * block; i < std::min(count, (b + 1) * block) && !stop; ++i)
+          find_for(i, blocks[b]);
+      },
+      1);
+  return blocks;
+}
+
+} // namespace
+
+void NeighbourLists::build(const std::vector<Sphere>& spheres, const ShearingBox& box, double offset, double skin,
+                           const std::atomic<bool>& stop) {
+  Blocks blocks = find_pairs(spheres, box, offset, skin, stop);
+  first_.assign(spheres.size() + 2, 0); // a counting sort: first_[i + 1] is where the next neighbour of i goes
+  for (const std::vector<Pair>& block : blocks)
+    for (const Pair& pair : block) {
+      ++first_[pair.larger + 2];
+      ++first_[pair.smaller.sphere + 2];
+    }
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  entries_.resize(first_.back());
+  for (std::vector<Pair>& block : blocks) {
+    for (const Pair& pair : block) {
+      entries_[first_[pair.larger + 1]++] = pair.smaller;
+      entries_[first_[pair.smaller.sphere + 1]++] = {pair.larger, -pair.smaller.image};
+    }
+    block = {};
+  }
+}
+
+} // namespace keeler

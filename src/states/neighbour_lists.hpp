@@ -1,0 +1,36 @@
+// Which spheres may come to touch before the lists are made again (Verlet 1967). Both partners of a pair have it in
+// their lists, so that each sphere's pushes are added by one thread, in one order.
+#pragma once
+
+#include "sphere.hpp"
+
+#include <keeler/box/shearing_box.hpp>
+
+#include <atomic>
+#include <span>
+#include <vector>
+
+namespace keeler {
+
+struct Neighbour {
+  std::uint32_t sphere;
+  Image image;
+};
+
+class NeighbourLists {
+public:
+  /// All pairs whose distance is below (1 + skin) of the sum of their radii: complete until a sphere has moved by
+  /// `skin` of its radius. Of no use when `stop` was set.
+  void build(const std::vector<Sphere>& spheres, const ShearingBox& box, double offset, double skin,
+             const std::atomic<bool>& stop);
+
+  std::span<const Neighbour> of(std::size_t sphere) const {
+    return {entries_.data() + first_[sphere], entries_.data() + first_[sphere + 1]};
+  }
+
+private:
+  std::vector<std::size_t> first_;
+  std::vector<Neighbour> entries_;
+};
+
+} // namespace keeler

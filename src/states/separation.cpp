@@ -1,0 +1,117 @@
+#include "separation.hpp"
+
+#include "neighbour_lists.hpp"
+
+#include <keeler/core/threads.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+// In the smaller radius of a pair: what it is pushed apart to beyond contact, and what is enough at the end.
+constexpr double clearance = 4e-3, enough = 2e-5;
+constexpr double strength = 0.5; // of a push, of the missing distance
+constexpr double momentum = 0.7; // of a move, kept in the next
+constexpr double first_tether = 0.3, tether_decay = 0.93, last_tether = 1e-4;
+constexpr double skin = 0.3;     // of its radius, that a sphere may move between lists
+constexpr int sweeps_a_list = 8; // at least: a few spheres that would go far wait for the others
+
+class Separation {
+public:
+  Separation(std::vector<Sphere>& spheres, const ShearingBox& box, double offset, const std::atomic<bool>& stop)
+      : spheres_(spheres), box_(box), offset_(offset), stop_(stop), moves_(spheres.size(), Vec3::Zero()),
+        listed_places_(spheres.size()) {}
+
+  bool run(int most_sweeps, const std::function<void(int)>& after_sweep) {
+    int list_age = sweeps_a_list;
+    bool held = true; // by its skin, at least one sphere
+    for (int sweeps = 0; sweeps < most_sweeps && !stop_; after_sweep(++sweeps)) {
+      if (held && list_age >= sweeps_a_list) {
+        make_lists();
+        list_age = 0;
+      }
+      if (!push())
+        return !stop_;
+      held = move();
+      ++list_age;
+      tether_ = tether_ > last_tether ? tether_ * tether_decay : 0.0;
+    }
+    return false;
+  }
+
+private:
+  void make_lists() {
+    lists_.build(spheres_, box_, offset_, skin, stop_);
+    parallel_for(spheres_.size(), [&](std::size_t i) { listed_places_[i] = spheres_[i].place; });
+  }
+
+  // Sets the next move of each sphere; false when nothing overlaps any more.
+  bool push() {
+    std::atomic<bool> overlaps = false;
+    parallel_for(spheres_.size(), [&](std::size_t i) {
+      bool overlapping = false;
+      Vec3 shift = push_on(i, overlapping);
+      shift.z() += tether_ * (spheres_[i].height - spheres_[i].place.z());
+      moves_[i] = momentum * moves_[i] + strength * shift;
+      if (overlapping)
+        overlaps.store(true, std::memory_order_relaxed);
+    });
+    return overlaps;
+  }
+
+  Vec3 push_on(std::size_t i, bool& overlapping) const {
+    Vec3 shift = Vec3::Zero();
+    const Sphere& sphere = spheres_[i];
+    for (const Neighbour& neighbour : lists_.of(i)) {
+      const Sphere& other = spheres_[neighbour.sphere];
+      Vec3 d = sphere.place - other.place;
+      if (neighbour.image != Image{})
+        d -= box_.displacement(neighbour.image, offset_);
+      const double sum = sphere.radius + other.radius, smaller = std::min(sphere.radius, other.radius);
+      const double wanted = sum + clearance * smaller, square = d.squaredNorm();
+      if (square >= wanted * wanted)
+        continue;
+      const double distance = std::sqrt(square), mass = sphere.mass(), its_mass = other.mass();
+      const Vec3 direction = distance > 0.0 ? Vec3(d / distance) : Vec3(0.0, 0.0, i < neighbour.sphere ? -1.0 : 1.0);
+      shift += direction * ((wanted - distance) * its_mass / (mass + its_mass));
+      overlapping = overlapping || distance < sum + enough * smaller;
+    }
+    return shift;
+  }
+
+  // Nobody leaves its skin, so that the lists stay complete; true when a sphere would have.
+  bool move() {
+    std::atomic<bool> held = false;
+    parallel_for(spheres_.size(), [&](std::size_t i) {
+      Sphere& sphere = spheres_[i];
+      const Vec3 moved = sphere.place + moves_[i] - listed_places_[i];
+      const double square = moved.squaredNorm(), allowed = 0.999 * skin * sphere.radius;
+      if (square <= allowed * allowed) {
+        sphere.place += moves_[i];
+      } else {
+        sphere.place = listed_places_[i] + moved * (allowed / std::sqrt(square));
+        held.store(true, std::memory_order_relaxed);
+      }
+    });
+    return held;
+  }
+
+  std::vector<Sphere>& spheres_;
+  const ShearingBox& box_;
+  double offset_;
+  const std::atomic<bool>& stop_;
+  std::vector<Vec3> moves_, listed_places_;
+  NeighbourLists lists_;
+  double tether_ = first_tether;
+};
+
+} // namespace
+
+bool separate(std::vector<Sphere>& spheres, const ShearingBox& box, double offset, int most_sweeps,
+              const std::function<void(int)>& after_sweep, const std::atomic<bool>& stop) {
+  return Separation(spheres, box, offset, stop).run(most_sweeps, after_sweep);
+}
+
+} // namespace keeler

@@ -1,0 +1,25 @@
+// Overlapping spheres moved apart: descent of the overlap energy (O'Hern, Silbert, Liu & Nagel 2003) with momentum
+// (Polyak 1964), over neighbour lists (Verlet 1967) that hold partners of every size.
+//
+// Each overlapping pair is pushed apart along its centre line, the lighter sphere by more. A tether pulls each sphere
+// back to the height that was drawn for it, and fades: the spheres make room sideways before the layer thickens.
+#pragma once
+
+#include "sphere.hpp"
+
+#include <keeler/box/shearing_box.hpp>
+
+#include <atomic>
+#include <functional>
+#include <vector>
+
+namespace keeler {
+
+/// Moves the spheres until each pair is farther apart than contact by at least 2 × 10⁻⁵ of the smaller radius, in about
+/// a hundred sweeps over all of them. Spheres that are neighbours in space should be neighbours in memory. Calls
+/// after_sweep(number of sweeps so far). False when overlaps are left, after so many sweeps or because `stop` was set.
+/// The bits do not depend on the number of threads.
+bool separate(std::vector<Sphere>& spheres, const ShearingBox& box, double offset, int most_sweeps,
+              const std::function<void(int)>& after_sweep, const std::atomic<bool>& stop);
+
+} // namespace keeler

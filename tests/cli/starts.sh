@@ -1,0 +1,62 @@
+#!/bin/bash
+# starts.sh KEELER SOURCE_DIR: fresh states: the same for any number of threads, flat-topped where a Gaussian layer would
+# be too dense, refused with the nearest scene that can be had, and stopped at once without leaving anything.
+# shellcheck source=tests/cli/helpers.sh
+source "$(dirname "$0")/helpers.sh"
+cat >"$work/scene.toml" <<END
+[planet]
+orbital_frequency = 1.95e-4
+[box]
+size = [60, 60]
+[particles]
+optical_depth = 0.8
+density = 900.0
+sizes = { law = "power", exponent = 3.0, min = 0.2, max = 4.0 }
+[time]
+end = 0.002
+END
+
+for threads in 1 3; do
+  accepts "$threads threads" generate "$work/scene.toml" -o "$work/$threads.hdf" --threads $threads
+done
+for dataset in Coordinates Velocities Masses ParticleIDs; do
+  same_bytes "1 and 3 threads" "$work/1.hdf" "$work/3.hdf" "/PartType1/$dataset"
+done
+runs 0 analyze "$work/1.hdf"
+prints "overlap" "largest overlap      0.0e+00"
+
+sed -e 's/^sizes = .*/sizes = { law = "equal", radius = 1.0 }/' -e 's/_depth = .*/_depth = 3.0/' "$work/scene.toml" \
+  >"$work/dense.toml"
+notice="the start has a flat-topped layer, its mid-plane filled to 0.55"
+runs 0 check "$work/dense.toml"
+prints "check" "$notice"
+prints "check" "mid-plane filling  0.55"
+runs 0 generate "$work/dense.toml" -o "$work/dense.hdf"
+one_line "generate" "$notice"
+runs 0 run "$work/dense.toml" -o "$work/run"
+grep -qF "$notice" "$work/err" || fail "run: no notice: $(cat "$work/err")"
+prints "split" "processor: start "
+refuses "too dense" "raise velocity_dispersion to at least 3.44 or lower the optical depth from 4 to at most 3.05" \
+  generate "$work/dense.toml" --set particles.optical_depth=4.0 -o "$work/none.hdf"
+
+# A stop, in a start that takes ten seconds and more. The program is ready for signals when it catches TERM (bit 14).
+catches_signals() { ((0x$(sed -n 's/^SigCgt:[[:space:]]*//p' "/proc/$1/status" 2>/dev/null || echo 0) & 0x4000)); }
+stops() {
+  local name=$1 signal=$2 process code=0
+  shift 2
+  "$keeler" "$@" --set particles.optical_depth=0.5 --set 'box.size=[1500,1500]' >"$work/out" 2>"$work/err" &
+  process=$!
+  until catches_signals $process || ! kill -0 $process 2>/dev/null; do sleep 0.01; done
+  sleep 0.5
+  kill "-$signal" $process
+  wait $process || code=$?
+  [ "$code" -eq 1 ] || fail "$name, $signal: exit $code instead of 1"
+  one_line "$name, $signal" "stopped before the start was made"
+  [ -e "$work/stopped" ] && fail "$name, $signal: left something behind"
+}
+for signal in INT TERM; do
+  stops generate $signal generate "$work/scene.toml" -o "$work/stopped"
+  stops run $signal run "$work/scene.toml" -o "$work/stopped"
+done
+
+report

@@ -1,0 +1,81 @@
+#include <keeler/states/initial.hpp>
+
+#include <keeler/core/error.hpp>
+#include <keeler/io/snapshot.hpp>
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <functional>
+
+using namespace keeler;
+
+namespace {
+
+Scene scene(const std::vector<std::string>& overrides = {}, const std::optional<std::string>& from = {}) {
+  return parse_scene(R"(
+[planet]
+preset = "saturn-a-ring"
+[box]
+size = [50, 40]
+[particles]
+count = 34
+density = 600.0
+sizes = { law = "equal", radius = 1.0 }
+[gravity]
+[time]
+end = 1.0
+)",
+                     "test scene", overrides, from);
+}
+
+// What a start from the scene's patch says after a change.
+std::string fault(const std::function<void(Patch&)>& change) {
+  const std::string file = (std::filesystem::temp_directory_path() / "keeler-test-start.hdf").string();
+  Patch patch = initial_patch(scene());
+  change(patch);
+  write_snapshot(file, patch, {scene().resolved, {}});
+  std::string message;
+  try {
+    initial_patch(scene({}, file));
+  } catch (const InvariantError& error) {
+    message = error.what();
+  }
+  std::filesystem::remove(file);
+  return message;
+}
+
+} // namespace
+
+TEST_CASE("a start file's particles must be possible; the first that is not is named") {
+  CHECK(fault([](Patch&) {}).empty());
+  const auto says = [](const std::function<void(Patch&)>& change, const std::string& words) {
+    const std::string message = fault(change);
+    CAPTURE(message);
+    CHECK(message.find("particle 7 of '") == 0);
+    CHECK(message.find(words) != std::string::npos);
+  };
+  says([](Patch& p) { p.positions[7].x() = 1e9; }, "a coordinate (m) of 1e9 (possible is at most 1e7)");
+  says([](Patch& p) { p.positions[7].z() = -1e9; }, "a coordinate (m) of 1e9");
+  says([](Patch& p) { p.masses[7] = 1e18; }, "a density (kg/m^3, by its mass and radius) of 2.39e17");
+  says([](Patch& p) { p.radii[7] = 1e-9; }, "a radius (m) of 1e-9 (possible is from 1e-6 to 1000000)");
+  says([](Patch& p) { p.velocities[7].x() = 2000.0 / p.orbital_frequency; }, "a speed (m/s, beyond the shear) of 2000");
+  CHECK(fault([](Patch& p) { p.positions[7].x() = NAN; }).find("particle 7 has a place") == 0);
+  CHECK(fault([](Patch& p) { p.box.size_y = 1e12; }).find("50 m x 1e12 m") != std::string::npos);
+}
+
+TEST_CASE("doubts about a patch have numbers, and a large one none") {
+  const std::vector<std::string> small = doubts(scene());
+  REQUIRE(small.size() == 2);
+  CHECK(small[0].find("34 particles are few: one measurement of their velocity dispersion scatters by 12 %") == 0);
+  CHECK(small[1].find("the box spans 6.1 lambda_cr") == 0);
+  CHECK(doubts(scene(), scale_of(initial_patch(scene()))) == small);
+  const std::vector<std::string> wakes = {"box.size_in_wavelengths=[4,4]", "particles.optical_depth=0.5",
+                                          "particles.velocity_dispersion=3.5"};
+  REQUIRE(doubts(scene(wakes)).size() == 1);
+  CHECK(doubts(scene(wakes)).front() == "the box spans 4 lambda_cr: in wakes, 4 x 4 show 12 % less velocity dispersion "
+                                        "and 18 % less viscosity than 8 x 8");
+  CHECK(doubts(scene({"box.size_in_wavelengths=[8,8]", "particles.optical_depth=0.5",
+                      "particles.velocity_dispersion=3.5"}))
+            .empty());
+}
