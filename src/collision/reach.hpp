@@ -11,7 +11,7 @@
 
 namespace keeler {
 
-inline constexpr double most_boxes_a_step = 100.0;
+inline constexpr double most_boxes_a_step = 300.0;
 
 /// Throws InvariantError when what meets within a step may come from farther than that. Both in m.
 inline void require_reach(double reach_x, double reach_y, const ShearingBox& box) {
