@@ -60,7 +60,8 @@ SizeLaw equal_sizes(double radius) {
 }
 
 SizeLaw power_sizes(double exponent, double min, double max) {
-  return {min, max, 0, [=](int k) { return power_integral(k - exponent, min, max) / power_integral(-exponent, min, max); },
+  return {min, max, 0,
+          [=](int k) { return power_integral(k - exponent, min, max) / power_integral(-exponent, min, max); },
           [=](double u, std::size_t) { return power_quantile(exponent, min, max, u); }};
 }
 

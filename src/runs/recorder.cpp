@@ -71,7 +71,8 @@ void Recorder::check_forces(const Simulation& simulation) {
     const Stopwatch watch(c.last_s);
     std::vector<Vec3> positions;
     std::vector<double> masses;
-    const GravityProblem problem = gravity_problem(simulation.boundary(), scene_.planet.orbital_frequency, positions, masses);
+    const GravityProblem problem =
+        gravity_problem(simulation.boundary(), scene_.planet.orbital_frequency, positions, masses);
     const ForceSample sample = draw_force_sample(problem, checked_particles, 0, 0.0);
     const std::vector<Vec3> exact =
         sampled_accelerations(problem, sample.targets, {.rings = 2}, choose_instruction_set());

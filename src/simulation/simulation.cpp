@@ -175,7 +175,8 @@ double Simulation::energy_residual() const {
 
 double Simulation::energy_residual(double energy_now) const {
   const EnergyBudget& e = state_.energy;
-  return energy_now - e.start - state_.kick_work() - e.wrap_work - state_.collisions.edge_work + state_.collisions.energy_lost;
+  return energy_now - e.start - state_.kick_work() - e.wrap_work - state_.collisions.edge_work +
+         state_.collisions.energy_lost;
 }
 
 } // namespace keeler

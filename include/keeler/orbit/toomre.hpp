@@ -1,5 +1,5 @@
-// How near a disc is to collapse under its own weight (Toomre 1964). G, Σ, κ and velocities in SI, or in any other units
-// that go together.
+// How near a disc is to collapse under its own weight (Toomre 1964). G, Σ, κ and velocities in SI, or in any other
+// units that go together.
 #pragma once
 
 #include <keeler/core/units.hpp>

@@ -12,7 +12,7 @@ namespace keeler {
 /// A distribution of radii (m).
 struct SizeLaw {
   double smallest = 0.0, largest = 0.0;
-  std::size_t listed = 0; ///< radii in a list that is drawn in turn; 0 for a continuous law
+  std::size_t listed = 0;                  ///< radii in a list that is drawn in turn; 0 for a continuous law
   std::function<double(int k)> mean_power; ///< ⟨r^k⟩
   /// Radius of particle k, at the quantile u in (0, 1).
   std::function<double(double u, std::size_t k)> radius;

@@ -181,7 +181,9 @@ TEST_CASE("radii come from a file beside the scene") {
   const std::string here = folder.string();
   CHECK_THROWS_WITH_AS(
       with("bad.txt"),
-      (here + "/bad.txt:2:1: the line is -2, but must be a number from 1e-6 to 1000000 (radius in m); correct this line").c_str(),
+      (here +
+       "/bad.txt:2:1: the line is -2, but must be a number from 1e-6 to 1000000 (radius in m); correct this line")
+          .c_str(),
       UsageError);
   CHECK_THROWS_WITH_AS(with("empty.txt"),
                        (here + "/s.toml:8:32: " + here +
