@@ -7,7 +7,7 @@
 
 namespace keeler {
 
-/// The requests that the handlers set. Installs the handlers at the first call.
+/// The requests that the handlers set. Installs the handlers.
 RunRequests& requests_from_signals();
 
 } // namespace keeler

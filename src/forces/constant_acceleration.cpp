@@ -31,16 +31,16 @@ Key component(const char* name, const char* meaning) {
 } // namespace
 
 ForceEntry constant_acceleration_entry() {
-  return {
-      "constant_acceleration",
-      {component("radial", "acceleration of every particle outward"),
-       component("azimuthal", "acceleration of every particle along the orbit: its orbit grows by 2 a / Omega an s"),
-       component("vertical", "acceleration of every particle upward")},
-      [](const Parameters& p, const ForceContext& context) -> std::unique_ptr<Force> {
-        const double omega = context.orbital_frequency;
-        return std::make_unique<ConstantAcceleration>(
-            Vec3(p.number("radial"), p.number("azimuthal"), p.number("vertical")) / (omega * omega));
-      }};
+  return {"constant_acceleration",
+          {component("radial", "acceleration of every particle outward"),
+           component("azimuthal",
+                     "acceleration of every particle along the orbit, which grows by about 2 a / Omega in m/s"),
+           component("vertical", "acceleration of every particle upward")},
+          [](const Parameters& p, const ForceContext& context) -> std::unique_ptr<Force> {
+            const double omega = context.orbital_frequency;
+            return std::make_unique<ConstantAcceleration>(
+                Vec3(p.number("radial"), p.number("azimuthal"), p.number("vertical")) / (omega * omega));
+          }};
 }
 
 } // namespace keeler

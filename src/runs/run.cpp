@@ -184,10 +184,10 @@ struct Start {
   if (last_checkpoint < 0)
     throw Error(ExitCode::run_time, "a step was given up on request before there was a checkpoint; start again, with "
                                     "output.checkpoint_every or, where steps do not end, with a shorter time.step");
-  const std::string until = options.until_orbits ? fmt::format(" --until {}", *options.until_orbits) : "";
-  throw Error(ExitCode::stopped, fmt::format("a step was given up on request; the checkpoint of step {} stands, "
-                                             "continue from it with \"keeler resume {}{}\"",
-                                             last_checkpoint, options.folder.string(), until));
+  throw Error(
+      ExitCode::stopped,
+      fmt::format("a step was given up on request; the checkpoint of step {} stands, continue from it with \"{}\"",
+                  last_checkpoint, resume_command(options)));
 }
 
 RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& requests, const RunFolder& folder,
@@ -228,6 +228,9 @@ Scene until(Scene scene, const RunOptions& options, std::int64_t step) {
   if (!options.until_orbits)
     return scene;
   const double asked = *options.until_orbits, now = static_cast<double>(step) * scene.time.step;
+  if (!(asked / scene.time.step < 1e15))
+    throw UsageError(fmt::format("--until {:g} is too long (a step of {:g} makes more than 1e15 steps); lower it",
+                                 asked, scene.time.step));
   scene.time.end_step = whole_kicks(scene, asked / scene.time.step);
   const double end = static_cast<double>(scene.time.end_step) * scene.time.step;
   if (scene.time.end_step < step)

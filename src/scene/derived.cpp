@@ -60,9 +60,9 @@ double hill_parameter(double density, double distance) {
 }
 
 double crowd_radius(const SizeLaw& sizes) {
-  const double cubes = sizes.mean_power(3);
-  const double alone =
-      sizes.listed > 0 ? sizes.mean_power(6) / (cubes * cubes * static_cast<double>(sizes.listed)) : 0.0;
+  constexpr double many = 1000.0; // radii: shorter lists are drawn over and over, and no body stands alone
+  const double cubes = sizes.mean_power(3), listed = static_cast<double>(sizes.listed);
+  const double alone = listed >= many ? sizes.mean_power(6) / (cubes * cubes * listed) : 0.0;
   return cubes * (1.0 - alone) / sizes.mean_power(2);
 }
 

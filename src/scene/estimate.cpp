@@ -53,8 +53,8 @@ double drift_ns(const ContactRates& rates, double dilute, double count, const Sc
   const double contacts = rates.all() * scene.time.step; // of a particle in a step; half as many events
   const double crowd = 1.0 + 0.17 * std::log(std::max(1.0, rates.fast / dilute)); // searches see more neighbours
   const double spread = size_spread(scene.particles.sizes);
-  const bool kicked_apart = !scene.gravity && !scene.external_forces.empty(); // with gravity they share its kicks
-  return cost::advance + (kicked_apart ? cost::kick : 0.0) + cost::window * spread * spread / window_steps(contacts) +
+  const double kicks = cost::kick * static_cast<double>(scene.external_forces.size());
+  return cost::advance + kicks + cost::window * spread * spread / window_steps(contacts) +
          cost::contact * spread * cache_factor(count) * crowd * 0.5 * contacts;
 }
 

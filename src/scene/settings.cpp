@@ -26,8 +26,10 @@ void check_row(const Key& key, std::span<const double> row, const std::string& p
   const bool right = row.size() == key.columns.size() && std::all_of(row.begin(), row.end(), [&](double number) {
                        return std::isfinite(number) && key.range.contains(number);
                      });
+  const bool words = std::any_of(row.begin(), row.end(), [](double number) { return std::isnan(number); });
   if (!right)
-    fail_at(place, fmt::format("the line is {}, but must be {}{} ({}); correct this line", fmt::join(row, " "),
+    fail_at(place, fmt::format("the line {}, but must be {}{} ({}); correct this line",
+                               words ? "holds a word that is no number" : fmt::format("is {}", fmt::join(row, " ")),
                                key.columns.size() == 1 ? "a number" : fmt::format("{} numbers", key.columns.size()),
                                key.range.words().empty() ? "" : " " + key.range.words(), fmt::join(key.columns, ", ")));
 }

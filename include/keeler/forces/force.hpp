@@ -35,7 +35,8 @@ public:
   /// Its table in the scene, and its name in checkpoints, in the split of the time and in the energy budget.
   virtual std::string name() const = 0;
 
-  /// Steps from one kick to the next.
+  /// Steps from one kick to the next. Runs stop and write where self-gravity's kicks end, so an external force must kick
+  /// as often or in a divisor of that: 1 unless there is a reason.
   virtual std::int64_t kick_every() const { return 1; }
 
   /// Writes each particle's acceleration (m rad⁻²), in the order of the particles. The bits must depend on the
@@ -43,7 +44,7 @@ public:
   virtual void accelerate(const Boundary& boundary, std::span<Vec3> accelerations) = 0;
 };
 
-/// What a force may need to know when a run begins or goes on.
+/// What a force may need to know when a run begins or goes on. It is gone when the force has been made.
 struct ForceContext {
   std::span<const double> masses; ///< kg, in the order of the particles
   ShearingBox box;

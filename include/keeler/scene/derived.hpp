@@ -25,8 +25,8 @@ double distance_from_saturn(const PlanetSettings& planet);
 /// (Daisaka, Tanaka & Ida 2001). Aggregates form above about 1.1.
 double hill_parameter(double density, double distance);
 
-/// ⟨r³⟩/⟨r²⟩, m: the radius of most of a layer's area. Of radii listed in a file each counts by the mass of the others:
-/// a single moonlet makes no thick layer.
+/// ⟨r³⟩/⟨r²⟩, m: the radius of most of a layer's area. A body that holds much of a list's mass by itself counts by the
+/// mass of the others: a single moonlet makes no thick layer.
 double crowd_radius(const SizeLaw& sizes);
 
 /// c_z / c_x of a fresh patch: equilibria without self-gravity have 0.64 to 0.72.

@@ -147,7 +147,7 @@ TEST_CASE("a particle that meets nobody stays on its epicycle, to the bit") {
 TEST_CASE("the same as looking at every pair and image after every event") {
   int collisions = 0;
   for (const double step : {two_pi * 1e-3, two_pi * 1e-2, two_pi * 3e-2})
-    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    for (std::uint64_t seed = 11; seed <= 16; ++seed) {
       UniformRequest request;
       request.radii.assign(50, 1.0);
       request.box = {20.0, 16.0, f.shear(), 0.41 * 16.0 * static_cast<double>(seed % 3)};
