@@ -25,7 +25,7 @@ Key component(const char* name, const char* meaning) {
           .fallback = "0.0",
           .unit = "m/s^2",
           .meaning = meaning,
-          .range = {.low = -1.0, .high = 1.0}};
+          .range = {.low = -1e-5, .high = 1e-5}};
 }
 
 } // namespace
