@@ -106,7 +106,8 @@ Vec3 Placing::draw_place(RandomStream random, double radius, const SizeLevels& l
     const double height = std::sqrt(motion * motion + request_.own_room * crowding);
     const double filling = crowding * crowd_volume_ / request_.box.area() / (std::sqrt(two_pi) * height);
     const LayerProfile profile = LayerProfile::of_height(height, filling, largest_filling);
-    const double stretch = 1.0 + tries / tries_a_height;
+    const int heights = tries / tries_a_height; // drawn so far
+    const double stretch = 1.0 + heights;
     const Vec3 place(guiding_x - streamline.e_cos,
                      (random.uniform() - 0.5) * request_.box.size_y + 2.0 / f.kappa * streamline.e_sin,
                      stretch * (profile.slab * flat + profile.sigma * normal));
