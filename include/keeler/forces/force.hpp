@@ -35,8 +35,8 @@ public:
   /// Its table in the scene, and its name in checkpoints, in the split of the time and in the energy budget.
   virtual std::string name() const = 0;
 
-  /// Steps from one kick to the next. Runs stop and write where self-gravity's kicks end, so an external force must kick
-  /// as often or in a divisor of that: 1 unless there is a reason.
+  /// Steps from one kick to the next. Runs stop and write where self-gravity's kicks end, so an external force must
+  /// kick as often or in a divisor of that: 1 unless there is a reason.
   virtual std::int64_t kick_every() const { return 1; }
 
   /// Writes each particle's acceleration (m rad⁻²), in the order of the particles. The bits must depend on the
