@@ -33,11 +33,11 @@ public:
 
   int collide() {
     int count = 0;
-    for (Contact last{-step_, 0, 0, {}};; ++count) {
+    for (Contact last{-step_, 0, 0, {}};;) {
       const Contact next = first_after(last);
       if (next.time >= 0.5 * step_)
         return count;
-      bounce(next);
+      count += bounce(next);
       last = next;
     }
   }
@@ -80,7 +80,8 @@ private:
     return first;
   }
 
-  void bounce(const Contact& c) {
+  // False when the lines approach but the particles, with the velocities of their epicycles, do not.
+  bool bounce(const Contact& c) {
     const Rotation rotation(f, c.time);
     const Vec3 normal = relative(c.i, c.j, c.image, c.time).position.normalized();
     const Vec3 slide(0.0, c.image.nx * box_.shear * box_.size_x, 0.0);
@@ -91,13 +92,14 @@ private:
     const double speed = -(states[1].velocity - slide - states[0].velocity).dot(normal);
     const Rebound after = rebound(half_elastic(), speed, bodies_[c.i].radius, bodies_[c.j].radius, omega);
     if (speed <= -after.speed)
-      return;
+      return false;
     states[0].velocity -= 0.5 * (speed + after.speed) * normal;
     states[1].velocity += 0.5 * (speed + after.speed) * normal;
     for (const std::size_t k : {c.i, c.j}) {
       bodies_[k].elements = elements_from(states[k == c.j], f, rotation);
       legs_[k] = {states[k == c.j].position, states[k == c.j].velocity, c.time};
     }
+    return true;
   }
 
   std::vector<Body>& bodies_;
@@ -147,7 +149,7 @@ TEST_CASE("a particle that meets nobody stays on its epicycle, to the bit") {
 TEST_CASE("the same as looking at every pair and image after every event") {
   int collisions = 0;
   for (const double step : {two_pi * 1e-3, two_pi * 1e-2, two_pi * 3e-2})
-    for (std::uint64_t seed = 11; seed <= 16; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
       UniformRequest request;
       request.radii.assign(50, 1.0);
       request.box = {20.0, 16.0, f.shear(), 0.41 * 16.0 * static_cast<double>(seed % 3)};
