@@ -21,9 +21,11 @@ int rings_for(int rings, double along, double across) {
   return rings * std::max(1, static_cast<int>(std::ceil(along / across / 1.3)));
 }
 
-// The field changes over the distance of the far images: heights small against it need few powers.
-int height_degree(double relative_height) {
-  return relative_height < 0.05 ? 2 : relative_height < 0.2 ? 4 : 8;
+// The field changes over the distance of the far images: heights small against it need few powers. With one ring the
+// error in the plane is 1e-6 and more; with two or more it is so small that the one in height must be less as well.
+int height_degree(int rings, double relative_height) {
+  const double of_one_ring = rings == 1 ? relative_height : 4.0 * relative_height;
+  return of_one_ring < 0.05 ? 2 : of_one_ring < 0.2 ? 4 : 8;
 }
 
 PolynomialShape shape_for(int height_degree) {
@@ -169,7 +171,7 @@ FarImages::FarImages(const ShearingBox& box, double offset, int rings, double he
   const double highest = 0.5 * rings * std::min(box.size_x, box.size_y);
   ceiling_ = std::min(height, highest);
   scale_ = {box.size_x, box.size_y, std::max(2.0 * ceiling_, 0.01 * highest)};
-  shape_ = shape_for(height_degree(0.5 * scale_.z() / highest));
+  shape_ = shape_for(height_degree(rings, 0.5 * scale_.z() / highest));
   const int heights = shape_.height_degree + 2; // even, like the nodes along x
   const FarPotential potential(box, offset, rings);
   const Eigen::MatrixXd in_plane = to_chebyshev(degree, nodes), upward = to_chebyshev(shape_.height_degree, heights);
