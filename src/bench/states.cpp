@@ -38,9 +38,9 @@ Recipe recipe_for(BenchSizes sizes) {
 
 // c_x of the start, in ⟨r⟩ Ω; more than near the equilibrium's where particles of that dispersion could not be placed.
 // Equilibria of equal spheres at ε = 0.5 have 2.82, 2.18 and 1.62 at τ = 0.1, 0.5 and 1.
-double first_dispersion(const Recipe& recipe, double optical_depth) {
+double first_dispersion(const Recipe& recipe, std::size_t count, double optical_depth) {
   const SizeLaw& sizes = recipe.sizes;
-  const double placed = 1.001 * dispersion_for_filling(optical_depth, sizes, 1.0, largest_filling);
+  const double placed = 1.001 * dispersion_for_filling(optical_depth, crowd_of(sizes, count), 1.0, largest_filling);
   const double mass_radius = sizes.mean_power(3) / sizes.mean_power(2);
   return std::max(3.0 * recipe.heat * mass_radius / sizes.mean_power(1) * std::exp(-0.62 * optical_depth), placed);
 }
@@ -64,7 +64,7 @@ restitution = {{ law = "constant", value = 0.5 }}
 step = {5}
 end = {5}
 )",
-                                 size, count, first_dispersion(recipe, s.optical_depth), recipe.table, s.finder,
+                                 size, count, first_dispersion(recipe, count, s.optical_depth), recipe.table, s.finder,
                                  s.step_orbits),
                      "bench");
 }

@@ -59,20 +59,12 @@ template<class Make> auto unless_stopped(const Make& make) {
 
 Patch make_patch(const Scene& scene) {
   ProgressLine line;
-  std::optional<Patch> patch = initial_patch(
-      scene, [&line](const StartProgress& progress) { line.show(progress); }, requests_from_signals().stop);
-  if (!patch)
-    throw Interrupted();
-  return std::move(*patch);
+  return initial_patch(scene, [&line](const StartProgress& progress) { line.show(progress); });
 }
 
 ClumpedState evolve_until_clumped(const Scene& scene) {
   ProgressLine line;
-  std::optional<ClumpedState> state = clumped_state(
-      scene, [&line](const ClumpingProgress& progress) { line.show(progress); }, requests_from_signals().stop);
-  if (!state)
-    throw Interrupted();
-  return std::move(*state);
+  return clumped_state(scene, [&line](const ClumpingProgress& progress) { line.show(progress); });
 }
 
 void print_clumping(const Clumping& c) {

@@ -251,12 +251,11 @@ struct Begun {
 Begun first_simulation(const Scene& scene, const RunOptions& options, const RunRequests& requests) {
   try {
     const Interruptible start(requests.stop);
-    const std::optional<Patch> patch = initial_patch(scene, options.start_progress, requests.stop);
-    if (patch)
-      return {Simulation(scene, *patch), scale_of(*patch)};
+    const Patch patch = initial_patch(scene, options.start_progress);
+    return {Simulation(scene, patch), scale_of(patch)};
   } catch (const Interrupted&) {
+    throw Error(ExitCode::run_time, "stopped before the first step (on request), so nothing is written; start again");
   }
-  throw Error(ExitCode::run_time, "stopped before the first step (on request), so nothing is written; start again");
 }
 
 RunResult begin(const Scene& scene, const RunOptions& options, RunRequests& requests) {
@@ -264,6 +263,7 @@ RunResult begin(const Scene& scene, const RunOptions& options, RunRequests& requ
   const RunFolder folder(options.folder);
   if (!options.force)
     folder.refuse_if_occupied(); // before the work of an initial state
+  folder.require_writable();
   Begun begun = first_simulation(scene, options, requests);
   Simulation& simulation = begun.simulation;
   start.made_s = start.watch.elapsed();

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <string_view>
+#include <unistd.h>
 
 namespace keeler {
 namespace fs = std::filesystem;
@@ -44,6 +45,16 @@ void RunFolder::refuse_if_occupied() const {
         fmt::format("'{}' is not empty (a run never overwrites another); name another folder, continue that "
                     "run with \"keeler resume\", or add --force to replace it",
                     path_.string()));
+}
+
+void RunFolder::require_writable() const {
+  fs::path nearest = fs::absolute(path_);
+  std::error_code unknown;
+  while (!fs::exists(nearest, unknown) && nearest != nearest.parent_path())
+    nearest = nearest.parent_path();
+  if (!fs::is_directory(nearest, unknown) || access(nearest.c_str(), W_OK) != 0)
+    throw IoError(fmt::format("cannot write to '{}': '{}' is no folder that can be written to; name another",
+                              path_.string(), nearest.string()));
 }
 
 void RunFolder::make() const {

@@ -20,6 +20,9 @@ public:
   /// Throws UsageError when the name is taken by a file, or by a folder that holds anything.
   void refuse_if_occupied() const;
 
+  /// Throws IoError when the folder is not there and could not be made, or cannot be written to.
+  void require_writable() const;
+
   /// Makes the folder if it is not there. Throws IoError when it cannot be made.
   void make() const;
 

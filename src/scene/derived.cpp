@@ -59,11 +59,12 @@ double hill_parameter(double density, double distance) {
   return 0.82 * std::cbrt(density / 900.0) * distance / 1e8;
 }
 
-double crowd_radius(const SizeLaw& sizes) {
-  constexpr double many = 1000.0; // radii: shorter lists are drawn over and over, and no body stands alone
-  const double cubes = sizes.mean_power(3), listed = static_cast<double>(sizes.listed);
-  const double alone = listed >= many ? sizes.mean_power(6) / (cubes * cubes * listed) : 0.0;
-  return cubes * (1.0 - alone) / sizes.mean_power(2);
+Crowd crowd_of(const SizeLaw& sizes, std::size_t count) {
+  const double cubes = sizes.mean_power(3);
+  double alone = 0.0; // Σ m²/(Σ m)²; continuous laws have many large particles
+  if (sizes.listed > 0)
+    alone = std::min(1.0, sizes.mean_power(6) / (cubes * cubes * static_cast<double>(count)));
+  return {sizes.mean_power(1), cubes * (1.0 - alone) / sizes.mean_power(2)};
 }
 
 namespace {
@@ -72,27 +73,27 @@ constexpr double own_room = 1.7; // of H² per τ R²
 
 } // namespace
 
-double layer_height(double optical_depth, const SizeLaw& sizes, double velocity_dispersion, double nu) {
-  const double motion = vertical_share * velocity_dispersion * sizes.mean_power(1) / nu, radius = crowd_radius(sizes);
-  return std::sqrt(motion * motion + own_room * optical_depth * radius * radius);
+double layer_height(double optical_depth, const Crowd& crowd, double velocity_dispersion, double nu) {
+  const double motion = vertical_share * velocity_dispersion * crowd.mean_radius / nu;
+  return std::sqrt(motion * motion + own_room * optical_depth * crowd.radius * crowd.radius);
 }
 
-double midplane_filling(double optical_depth, const SizeLaw& sizes, double velocity_dispersion, double nu) {
-  const double height = layer_height(optical_depth, sizes, velocity_dispersion, nu);
-  return (4.0 / 3.0) * optical_depth * crowd_radius(sizes) / (std::sqrt(two_pi) * height);
+double midplane_filling(double optical_depth, const Crowd& crowd, double velocity_dispersion, double nu) {
+  const double height = layer_height(optical_depth, crowd, velocity_dispersion, nu);
+  return (4.0 / 3.0) * optical_depth * crowd.radius / (std::sqrt(two_pi) * height);
 }
 
-double dispersion_for_filling(double optical_depth, const SizeLaw& sizes, double nu, double filling) {
-  const double radius = crowd_radius(sizes);
-  const double height = (4.0 / 3.0) * optical_depth * radius / (std::sqrt(two_pi) * filling);
-  const double motion2 = height * height - own_room * optical_depth * radius * radius;
-  return motion2 > 0.0 ? nu * std::sqrt(motion2) / (vertical_share * sizes.mean_power(1)) : 0.0;
+double dispersion_for_filling(double optical_depth, const Crowd& crowd, double nu, double filling) {
+  const double height = (4.0 / 3.0) * optical_depth * crowd.radius / (std::sqrt(two_pi) * filling);
+  const double motion2 = height * height - own_room * optical_depth * crowd.radius * crowd.radius;
+  return motion2 > 0.0 ? nu * std::sqrt(motion2) / (vertical_share * crowd.mean_radius) : 0.0;
 }
 
 // With f = a τ / √(m² + b τ): a² τ² − f² b τ − f² m² = 0.
-double optical_depth_for_filling(const SizeLaw& sizes, double velocity_dispersion, double nu, double filling) {
-  const double radius = crowd_radius(sizes), motion = vertical_share * velocity_dispersion * sizes.mean_power(1) / nu;
-  const double a = (4.0 / 3.0) * radius / (std::sqrt(two_pi) * filling), half = 0.5 * own_room * radius * radius;
+double optical_depth_for_filling(const Crowd& crowd, double velocity_dispersion, double nu, double filling) {
+  const double motion = vertical_share * velocity_dispersion * crowd.mean_radius / nu;
+  const double a = (4.0 / 3.0) * crowd.radius / (std::sqrt(two_pi) * filling);
+  const double half = 0.5 * own_room * crowd.radius * crowd.radius;
   return (half + std::sqrt(half * half + a * a * motion * motion)) / (a * a);
 }
 
@@ -112,7 +113,7 @@ Derived derive(const Scene& scene) {
   d.toomre_q = toomre_q(d.surface_density, dispersion, scene.planet);
   d.hill_parameter = hill_parameter(particles.density, distance_from_saturn(scene.planet));
   d.midplane_filling =
-      std::min(largest_filling, midplane_filling(scene.bunched_optical_depth(), particles.sizes,
+      std::min(largest_filling, midplane_filling(scene.bunched_optical_depth(), crowd_of(particles),
                                                  particles.velocity_dispersion, scene.planet.frequencies.nu));
   d.memory_mb = 1e-6 * (cost::program_bytes + bytes_per_particle(scene) * static_cast<double>(particles.count));
   return d;

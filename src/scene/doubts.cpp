@@ -1,6 +1,7 @@
 #include <keeler/scene/doubts.hpp>
 
 #include <keeler/core/words.hpp>
+#include <keeler/scene/derived.hpp>
 
 #include <fmt/format.h>
 

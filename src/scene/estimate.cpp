@@ -96,7 +96,7 @@ double met_optical_depth(const Scene& scene) {
 
 // Impacts happen at about three times the speed r Ω.
 double typical_restitution(const Scene& scene) {
-  const double speed = crowd_radius(scene.particles.sizes) * scene.planet.orbital_frequency;
+  const double speed = crowd_of(scene.particles).radius * scene.planet.orbital_frequency;
   return scene.collisions.restitution({.speed = 3.0 * speed});
 }
 

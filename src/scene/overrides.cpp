@@ -35,7 +35,7 @@ void drop_from_file(Document& document, const std::string& path, const std::stri
   const Entry* entry = find_entry(document, path);
   if (!entry || entry->overridden)
     return;
-  notices.push_back(fmt::format("{} of the file is dropped: {} takes its place", path, place));
+  notices.push_back(fmt::format("{} of the scene is dropped: {} takes its place", path, place));
   erase_within(document, path);
 }
 

@@ -63,7 +63,6 @@ void read_box(Scene& scene, Settings& settings, const Amount& amount) {
   }
   for (const double length : size)
     require_possible(place, key, "box.size", length);
-  constexpr double most_oblong = 1000.0; // gravity sums as many images one by one
   if (!(std::max(size[0], size[1]) <= most_oblong * std::min(size[0], size[1])))
     fail_at(place,
             fmt::format("the box of {} m x {} m is more than {:g} times as long as wide (its images on the short "
@@ -103,10 +102,11 @@ void read_count(Scene& scene, Settings& settings, const Amount& amount) {
 void check_filling(Scene& scene, const std::string& place) {
   const ParticleSettings& particles = scene.particles;
   const double nu = scene.planet.frequencies.nu, depth = scene.optical_depth(), bunched = scene.bunched_optical_depth();
-  const double filling = midplane_filling(bunched, particles.sizes, particles.velocity_dispersion, nu);
+  const Crowd crowd = crowd_of(particles);
+  const double filling = midplane_filling(bunched, crowd, particles.velocity_dispersion, nu);
   if (!(filling <= refused_filling)) {
-    const double hot = dispersion_for_filling(bunched, particles.sizes, nu, refused_filling);
-    const double thin = optical_depth_for_filling(particles.sizes, particles.velocity_dispersion, nu, refused_filling);
+    const double hot = dispersion_for_filling(bunched, crowd, nu, refused_filling);
+    const double thin = optical_depth_for_filling(crowd, particles.velocity_dispersion, nu, refused_filling);
     fail_at(place, fmt::format("too dense (the mid-plane would be filled to {:.2f}, and {:.2f} is the most that can be "
                                "placed without overlap); raise velocity_dispersion to at least {:.2f} or lower the "
                                "optical depth from {:.3g} to at most {:.2f}{}",

@@ -6,7 +6,6 @@
 #include "presets.hpp"
 #include "settings.hpp"
 
-#include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/files/input.hpp>
 #include <keeler/forces/self_gravity.hpp>

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace keeler {
 namespace {
@@ -56,16 +55,11 @@ std::int64_t steps_between_samples(const Scene& scene, const SettleCriterion& cr
 
 } // namespace
 
-std::optional<ClumpedState> clumped_state(const Scene& scene,
-                                          const std::function<void(const ClumpingProgress&)>& progress,
-                                          const std::atomic<bool>& stop) {
+ClumpedState clumped_state(const Scene& scene, const std::function<void(const ClumpingProgress&)>& progress) {
   require_gravity(scene);
   double seconds = 0.0;
   const Stopwatch watch(seconds);
-  std::optional<Patch> start = initial_patch(scene, {}, stop);
-  if (!start)
-    return std::nullopt;
-  Simulation simulation(scene, *std::exchange(start, std::nullopt));
+  Simulation simulation(scene, initial_patch(scene));
   require_visible_wakes(simulation.patch());
 
   Clumping clumping;
@@ -75,7 +69,7 @@ std::optional<ClumpedState> clumped_state(const Scene& scene,
       std::max(1L, std::lround(clumping.criterion.window_orbits / clumping.sample_every_orbits)));
   ClumpingProgress p;
   p.criterion = clumping.criterion;
-  while (!stop) {
+  for (;;) {
     simulation.advance();
     p.orbits = clumping.orbits = simulation.orbits();
     const bool sample = simulation.state().step % every == 0;
@@ -91,11 +85,10 @@ std::optional<ClumpedState> clumped_state(const Scene& scene,
     if (progress)
       progress(p);
     if (p.settled)
-      return ClumpedState{simulation.patch(), clumping};
+      return {simulation.patch(), clumping};
     if (sample && p.orbits >= clumping.criterion.most_orbits)
       fail_unsettled(clumping, simulation.patch());
   }
-  return std::nullopt;
 }
 
 std::map<std::string, std::vector<double>> clumping_numbers(const Clumping& clumping) {

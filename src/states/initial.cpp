@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace keeler {
@@ -41,6 +42,13 @@ void require_physical(const Patch& patch, const std::string& path) {
   if (!sizes.contains(patch.box.size_x) || !sizes.contains(patch.box.size_y))
     throw InvariantError(fmt::format("the box of '{}' is {} m x {} m (a patch has sizes {}); take another state", path,
                                      figures(patch.box.size_x, 4), figures(patch.box.size_y, 4), sizes.words()));
+  const double longer = std::max(patch.box.size_x, patch.box.size_y),
+               shorter = std::min(patch.box.size_x, patch.box.size_y);
+  if (!(longer <= most_oblong * shorter))
+    throw InvariantError(
+        fmt::format("the box of '{}' is {} m x {} m, more than {:g} times as long as wide; take another "
+                    "state",
+                    path, figures(patch.box.size_x, 4), figures(patch.box.size_y, 4), most_oblong));
   for (std::size_t k = 0; k < patch.size(); ++k) {
     const auto require = [&](const KeyRange& range, const char* what, double value) {
       if (!range.contains(value))
@@ -65,7 +73,7 @@ double own_room(const UniformRequest& request) {
   for (const double r : request.radii)
     area += pi * r * r;
   const double radius = crowd_volume(request.radii) / (4.0 / 3.0 * area);
-  const double height_in_radii = layer_height(area / request.box.area(), equal_sizes(1.0), 0.0, request.frequencies.nu);
+  const double height_in_radii = layer_height(area / request.box.area(), {1.0, 1.0}, 0.0, request.frequencies.nu);
   return std::pow(radius * height_in_radii, 2);
 }
 
@@ -106,19 +114,12 @@ PatchScale scale_of(const Patch& patch) {
   return {patch.size(), patch.box.size_x, patch.box.size_y, critical_wavelength(patch)};
 }
 
-std::optional<Patch> initial_patch(const Scene& scene, const std::function<void(const StartProgress&)>& progress,
-                                   const std::atomic<bool>& stop) {
+Patch initial_patch(const Scene& scene, const std::function<void(const StartProgress&)>& progress) {
   if (scene.start_from)
     return patch_from_snapshot(*scene.start_from, scene);
-  std::optional<Patch> patch = uniform_patch(request_of(scene), progress, stop);
-  if (patch)
-    patch->orbital_frequency = scene.planet.orbital_frequency;
+  Patch patch = uniform_patch(request_of(scene), progress);
+  patch.orbital_frequency = scene.planet.orbital_frequency;
   return patch;
-}
-
-Patch initial_patch(const Scene& scene) {
-  const std::atomic<bool> never = false;
-  return *initial_patch(scene, {}, never);
 }
 
 } // namespace keeler

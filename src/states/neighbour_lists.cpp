@@ -17,8 +17,7 @@ struct Pair {
 using Blocks = std::vector<std::vector<Pair>>; // a block of larger partners each
 
 // Each sphere looks for smaller ones: it meets of the order of r² N / area of them, τ N in all, whatever the sizes.
-Blocks find_pairs(const std::vector<Sphere>& spheres, const ShearingBox& box, double offset, double skin,
-                  const std::atomic<bool>& stop) {
+Blocks find_pairs(const std::vector<Sphere>& spheres, const ShearingBox& box, double offset, double skin) {
   constexpr std::size_t block = 1024;
   const std::size_t count = spheres.size();
   const SizeLevels levels(spheres, box, offset);
@@ -39,7 +38,7 @@ Blocks find_pairs(const std::vector<Sphere>& spheres, const ShearingBox& box, do
   parallel_for(
       blocks.size(),
       [&](std::size_t b) {
-        for (std::size_t i = b * block; i < std::min(count, (b + 1) * block) && !stop; ++i)
+        for (std::size_t i = b * block; i < std::min(count, (b + 1) * block); ++i)
           find_for(i, blocks[b]);
       },
       1);
@@ -48,9 +47,8 @@ Blocks find_pairs(const std::vector<Sphere>& spheres, const ShearingBox& box, do
 
 } // namespace
 
-void NeighbourLists::build(const std::vector<Sphere>& spheres, const ShearingBox& box, double offset, double skin,
-                           const std::atomic<bool>& stop) {
-  Blocks blocks = find_pairs(spheres, box, offset, skin, stop);
+void NeighbourLists::build(const std::vector<Sphere>& spheres, const ShearingBox& box, double offset, double skin) {
+  Blocks blocks = find_pairs(spheres, box, offset, skin);
   first_.assign(spheres.size() + 2, 0); // a counting sort: first_[i + 1] is where the next neighbour of i goes
   for (const std::vector<Pair>& block : blocks)
     for (const Pair& pair : block) {

@@ -6,7 +6,6 @@
 
 #include <keeler/box/shearing_box.hpp>
 
-#include <atomic>
 #include <span>
 #include <vector>
 
@@ -20,9 +19,8 @@ struct Neighbour {
 class NeighbourLists {
 public:
   /// All pairs whose distance is below (1 + skin) of the sum of their radii: complete until a sphere has moved by
-  /// `skin` of its radius. Of no use when `stop` was set.
-  void build(const std::vector<Sphere>& spheres, const ShearingBox& box, double offset, double skin,
-             const std::atomic<bool>& stop);
+  /// `skin` of its radius.
+  void build(const std::vector<Sphere>& spheres, const ShearingBox& box, double offset, double skin);
 
   std::span<const Neighbour> of(std::size_t sphere) const {
     return {entries_.data() + first_[sphere], entries_.data() + first_[sphere + 1]};

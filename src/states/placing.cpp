@@ -36,8 +36,8 @@ double crowd_volume(const std::vector<double>& radii) {
   return 4.0 / 3.0 * pi * (cubes - squares_of_cubes / cubes);
 }
 
-Placing::Placing(const UniformRequest& request, const std::atomic<bool>& stop)
-    : request_(request), stop_(stop), crowd_volume_(crowd_volume(request.radii)), order_(request.radii.size()) {
+Placing::Placing(const UniformRequest& request)
+    : request_(request), crowd_volume_(crowd_volume(request.radii)), order_(request.radii.size()) {
   const std::vector<double>& radii = request.radii;
   std::iota(order_.begin(), order_.end(), 0u);
   std::stable_sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) { return radii[a] > radii[b]; });
@@ -49,15 +49,13 @@ Placing::Placing(const UniformRequest& request, const std::atomic<bool>& stop)
   }
 }
 
-bool Placing::run(const std::function<void(double)>& progress) {
+void Placing::run(const std::function<void(double)>& progress) {
   const ShearingBox& box = request_.box;
   double work = 0.0, done = 0.0; // an octave's goes with all that are placed so far
   for (const Octave& octave : octaves_)
     work += static_cast<double>(octave.last);
   for (const Octave& octave : octaves_) {
     draw(octave);
-    if (stop_)
-      return false;
     sort_by_place();
     const double part = static_cast<double>(octave.last) / work;
     int round = 0;
@@ -65,9 +63,7 @@ bool Placing::run(const std::function<void(double)>& progress) {
       const int all = round * sweeps_a_round + sweeps;
       progress(done + part * all / (all + 0.5 * usual_sweeps));
     };
-    while (!separate(spheres_, box, box.first_offset, sweeps_a_round, after_sweep, stop_)) {
-      if (stop_)
-        return false;
+    while (!separate(spheres_, box, box.first_offset, sweeps_a_round, after_sweep)) {
       if (++round == most_rounds)
         fail_too_dense();
       redraw_caught(round);
@@ -76,7 +72,6 @@ bool Placing::run(const std::function<void(double)>& progress) {
     for (Sphere& sphere : spheres_) // nothing pulls it when smaller ones come: they have no room to be pushed to
       sphere.height = sphere.place.z();
   }
-  return true;
 }
 
 bool Placing::is_free(const Vec3& place, double radius, const SizeLevels& larger) const {
@@ -121,10 +116,9 @@ void Placing::draw(const Octave& octave) {
   std::vector<Sphere> drawn(octave.last - octave.first);
   parallel_for(drawn.size(), [&](std::size_t k) {
     const std::uint32_t particle = order_[octave.first + k];
-    if (!stop_)
-      drawn[k] = {
-          draw_place(RandomStream(request_.seed, RandomPurpose::position, particle), request_.radii[particle], larger),
-          request_.radii[particle], 0.0, particle};
+    drawn[k] = {
+        draw_place(RandomStream(request_.seed, RandomPurpose::position, particle), request_.radii[particle], larger),
+        request_.radii[particle], 0.0, particle};
   });
   double moment = 0.0, squares = 0.0; // the least change that leaves no mean height by mass
   for (const Sphere& sphere : drawn) {
@@ -152,7 +146,7 @@ void Placing::redraw_caught(int round) {
       caught = caught || d.norm() < sphere.radius + other.radius;
     });
     const std::uint64_t stream = static_cast<std::uint64_t>(round) << 32 | sphere.particle;
-    places[k] = caught && !stop_
+    places[k] = caught
                     ? draw_place(RandomStream(request_.seed, RandomPurpose::relaxation, stream), sphere.radius, levels)
                     : sphere.place;
   });

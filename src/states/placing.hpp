@@ -19,10 +19,10 @@ double crowd_volume(const std::vector<double>& radii);
 
 class Placing {
 public:
-  Placing(const UniformRequest& request, const std::atomic<bool>& stop);
+  explicit Placing(const UniformRequest& request);
 
-  /// Calls progress(share of the work that is done). False when stopped.
-  bool run(const std::function<void(double)>& progress);
+  /// Calls progress(share of the work that is done). Throws UsageError when there is no room, Interrupted.
+  void run(const std::function<void(double)>& progress);
 
   /// By particle, m.
   std::vector<Vec3> places() const;
@@ -38,7 +38,6 @@ private:
   void sort_by_place();
 
   const UniformRequest& request_;
-  const std::atomic<bool>& stop_;
   double crowd_volume_;
   std::vector<std::uint32_t> order_; // particles, the largest first
   std::vector<Octave> octaves_;

@@ -20,20 +20,20 @@ constexpr int sweeps_a_list = 8; // at least: a few spheres that would go far wa
 
 class Separation {
 public:
-  Separation(std::vector<Sphere>& spheres, const ShearingBox& box, double offset, const std::atomic<bool>& stop)
-      : spheres_(spheres), box_(box), offset_(offset), stop_(stop), moves_(spheres.size(), Vec3::Zero()),
+  Separation(std::vector<Sphere>& spheres, const ShearingBox& box, double offset)
+      : spheres_(spheres), box_(box), offset_(offset), moves_(spheres.size(), Vec3::Zero()),
         listed_places_(spheres.size()) {}
 
   bool run(int most_sweeps, const std::function<void(int)>& after_sweep) {
     int list_age = sweeps_a_list;
     bool held = true; // by its skin, at least one sphere
-    for (int sweeps = 0; sweeps < most_sweeps && !stop_; after_sweep(++sweeps)) {
+    for (int sweeps = 0; sweeps < most_sweeps; after_sweep(++sweeps)) {
       if (held && list_age >= sweeps_a_list) {
         make_lists();
         list_age = 0;
       }
       if (!push())
-        return !stop_;
+        return true;
       held = move();
       ++list_age;
       tether_ = tether_ > last_tether ? tether_ * tether_decay : 0.0;
@@ -43,7 +43,7 @@ public:
 
 private:
   void make_lists() {
-    lists_.build(spheres_, box_, offset_, skin, stop_);
+    lists_.build(spheres_, box_, offset_, skin);
     parallel_for(spheres_.size(), [&](std::size_t i) { listed_places_[i] = spheres_[i].place; });
   }
 
@@ -101,7 +101,6 @@ private:
   std::vector<Sphere>& spheres_;
   const ShearingBox& box_;
   double offset_;
-  const std::atomic<bool>& stop_;
   std::vector<Vec3> moves_, listed_places_;
   NeighbourLists lists_;
   double tether_ = first_tether;
@@ -110,8 +109,8 @@ private:
 } // namespace
 
 bool separate(std::vector<Sphere>& spheres, const ShearingBox& box, double offset, int most_sweeps,
-              const std::function<void(int)>& after_sweep, const std::atomic<bool>& stop) {
-  return Separation(spheres, box, offset, stop).run(most_sweeps, after_sweep);
+              const std::function<void(int)>& after_sweep) {
+  return Separation(spheres, box, offset).run(most_sweeps, after_sweep);
 }
 
 } // namespace keeler

@@ -9,7 +9,6 @@
 
 #include <keeler/box/shearing_box.hpp>
 
-#include <atomic>
 #include <functional>
 #include <vector>
 
@@ -17,9 +16,9 @@ namespace keeler {
 
 /// Moves the spheres until each pair is farther apart than contact by at least 2 × 10⁻⁵ of the smaller radius, in about
 /// a hundred sweeps over all of them. Spheres that are neighbours in space should be neighbours in memory. Calls
-/// after_sweep(number of sweeps so far). False when overlaps are left, after so many sweeps or because `stop` was set.
+/// after_sweep(number of sweeps so far). False when overlaps are left after so many sweeps. Throws Interrupted.
 /// The bits do not depend on the number of threads.
 bool separate(std::vector<Sphere>& spheres, const ShearingBox& box, double offset, int most_sweeps,
-              const std::function<void(int)>& after_sweep, const std::atomic<bool>& stop);
+              const std::function<void(int)>& after_sweep);
 
 } // namespace keeler

@@ -71,9 +71,7 @@ Patch patch_at(const UniformRequest& request, std::vector<Vec3> places) {
 
 } // namespace
 
-std::optional<Patch> uniform_patch(const UniformRequest& request,
-                                   const std::function<void(const StartProgress&)>& progress,
-                                   const std::atomic<bool>& stop) {
+Patch uniform_patch(const UniformRequest& request, const std::function<void(const StartProgress&)>& progress) {
   double seconds = 0.0;
   const Stopwatch watch(seconds);
   const auto show = [&](double share) {
@@ -81,17 +79,11 @@ std::optional<Patch> uniform_patch(const UniformRequest& request,
     if (progress)
       progress({share, elapsed, elapsed * (1.0 - share) / share});
   };
-  Placing placing(request, stop);
-  if (!placing.run(show))
-    return std::nullopt;
+  Placing placing(request);
+  placing.run(show);
   Patch patch = patch_at(request, placing.places());
   show(1.0);
   return patch;
-}
-
-Patch uniform_patch(const UniformRequest& request) {
-  const std::atomic<bool> never = false;
-  return *uniform_patch(request, {}, never);
 }
 
 } // namespace keeler

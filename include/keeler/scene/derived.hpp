@@ -25,26 +25,33 @@ double distance_from_saturn(const PlanetSettings& planet);
 /// (Daisaka, Tanaka & Ida 2001). Aggregates form above about 1.1.
 double hill_parameter(double density, double distance);
 
-/// ⟨r³⟩/⟨r²⟩, m: the radius of most of a layer's area. A body that holds much of a list's mass by itself counts by the
-/// mass of the others: a single moonlet makes no thick layer.
-double crowd_radius(const SizeLaw& sizes);
+/// The particles that a layer is made of. A body of a list that holds much of the mass by itself counts by the mass of
+/// the others: a single moonlet makes no thick layer.
+struct Crowd {
+  double mean_radius = 0.0; ///< ⟨r⟩, m
+  double radius = 0.0;      ///< R, m: ⟨r³⟩/⟨r²⟩, each particle without the share that it has of the mass
+};
+Crowd crowd_of(const SizeLaw& sizes, std::size_t count);
+inline Crowd crowd_of(const ParticleSettings& particles) {
+  return crowd_of(particles.sizes, particles.count);
+}
 
 /// c_z / c_x of a fresh patch: equilibria without self-gravity have 0.64 to 0.72.
 inline constexpr double vertical_share = 0.65;
 
 /// Scale height √⟨z²⟩ of a layer in m, for a radial velocity dispersion in ⟨r⟩ Ω: H² = (c_z/ν)² + 1.7 τ R², where
-/// c_z = vertical_share c_x, R = crowd_radius(). The second term is the room that the particles themselves take:
+/// c_z = vertical_share c_x. The second term is the room that the particles themselves take:
 /// equilibria of equal spheres without self-gravity have H² − c_z²/ν² = 0.22, 0.89 and 1.66 r² at τ = 0.1, 0.5 and 1.
-double layer_height(double optical_depth, const SizeLaw& sizes, double velocity_dispersion, double nu);
+double layer_height(double optical_depth, const Crowd& crowd, double velocity_dispersion, double nu);
 
 /// Mid-plane filling factor (4/3) τ R / (√(2π) H) of a Gaussian layer of that height.
-double midplane_filling(double optical_depth, const SizeLaw& sizes, double velocity_dispersion, double nu);
+double midplane_filling(double optical_depth, const Crowd& crowd, double velocity_dispersion, double nu);
 
 /// The velocity dispersion (⟨r⟩ Ω) at which the mid-plane is filled to `filling`; 0 when it is never that full.
-double dispersion_for_filling(double optical_depth, const SizeLaw& sizes, double nu, double filling);
+double dispersion_for_filling(double optical_depth, const Crowd& crowd, double nu, double filling);
 
 /// The optical depth at which the mid-plane is filled to `filling`.
-double optical_depth_for_filling(const SizeLaw& sizes, double velocity_dispersion, double nu, double filling);
+double optical_depth_for_filling(const Crowd& crowd, double velocity_dispersion, double nu, double filling);
 
 /// The fullest mid-plane of a start. Where midplane_filling() is above it, the layer is given a flatter top instead, of
 /// the same optical depth and height √⟨z²⟩, whose mid-plane is filled to this.

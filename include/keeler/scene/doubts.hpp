@@ -1,7 +1,6 @@
 // What is allowed but seldom meant, and what a patch cannot show: said before a run by `keeler check`, and by the run.
 #pragma once
 
-#include <keeler/scene/derived.hpp>
 #include <keeler/scene/scene.hpp>
 
 #include <string>

@@ -95,8 +95,11 @@ Scene load_scene(const std::string& path, const std::vector<std::string>& overri
 Scene parse_scene(const std::string& text, const std::string& name, const std::vector<std::string>& overrides = {},
                   const std::optional<std::string>& from = {});
 
+/// Longest side over shortest that a box may have: gravity sums as many images one by one.
+inline constexpr double most_oblong = 1000.0;
+
 /// The scene in a snapshot or checkpoint, for what exists already: the box, the sizes and whatever else only the start
-/// needed are neither read nor checked, so a file of radii or a start file may be gone.
+/// needed are not read (their ranges alone are checked), so a file of radii or a start file may be gone.
 Scene parse_stored_scene(const std::string& text, const std::string& name);
 
 /// Every key with default, unit and meaning, as a table (text) or as the manual's Markdown table.

@@ -5,7 +5,6 @@
 #include <keeler/scene/scene.hpp>
 #include <keeler/states/settling.hpp>
 
-#include <atomic>
 #include <functional>
 #include <map>
 #include <optional>
@@ -39,13 +38,10 @@ struct ClumpingProgress {
 };
 
 /// Evolves the scene's initial state, by the scene's step and gravity, until its wakes have settled; the scene's end
-/// time and schedules do not matter. Same scene, same state, for any number of threads. None when `stop` was set: it is
-/// obeyed at the end of a step, and while the start is made. `progress` may be empty. Throws UsageError for a scene
-/// without gravity or whose wakes could not be seen, Error (run_time) when they do not settle, and what initial_patch()
-/// and Simulation throw.
-std::optional<ClumpedState> clumped_state(const Scene& scene,
-                                          const std::function<void(const ClumpingProgress&)>& progress,
-                                          const std::atomic<bool>& stop);
+/// time and schedules do not matter. Same scene, same state, for any number of threads. Throws UsageError for a
+/// scene without gravity or whose wakes could not be seen, Error (run_time) when they do not settle, Interrupted
+/// (interrupt.hpp), and what initial_patch() and Simulation throw.
+ClumpedState clumped_state(const Scene& scene, const std::function<void(const ClumpingProgress&)>& progress = {});
 
 /// The record as numbers by name, for SnapshotMeta::clumping.
 std::map<std::string, std::vector<double>> clumping_numbers(const Clumping& clumping);

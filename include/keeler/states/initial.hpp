@@ -6,21 +6,14 @@
 #include <keeler/scene/scene.hpp>
 #include <keeler/states/progress.hpp>
 
-#include <atomic>
 #include <functional>
-#include <optional>
 #include <string>
 
 namespace keeler {
 
-/// A fresh patch on the scene's streamlines, or the snapshot that the scene names. `progress` may be empty. None when
-/// `stop` was set. Throws UsageError (too dense) or what
-/// patch_from_snapshot() throws.
-std::optional<Patch> initial_patch(const Scene& scene, const std::function<void(const StartProgress&)>& progress,
-                                   const std::atomic<bool>& stop);
-
-/// The same, not to be stopped.
-Patch initial_patch(const Scene& scene);
+/// A fresh patch on the scene's streamlines, or the snapshot that the scene names. Throws UsageError (too dense),
+/// Interrupted (interrupt.hpp), or what patch_from_snapshot() throws.
+Patch initial_patch(const Scene& scene, const std::function<void(const StartProgress&)>& progress = {});
 
 /// The patch of a snapshot, made the start of a run of this scene: the scene's frequencies, its own box, time zero.
 /// Throws IoError; UsageError when it was made at another place; InvariantError for a particle that no ring has, named.

@@ -5,10 +5,8 @@
 #include <keeler/states/progress.hpp>
 #include <keeler/states/streamlines.hpp>
 
-#include <atomic>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <vector>
 
 namespace keeler {
@@ -31,12 +29,7 @@ struct UniformRequest {
 /// the streamlines, so that c_y = c_x κ/2, and so are vertical velocities; their random parts have no mean by mass, nor
 /// have the heights. Each pair is apart by at least 2 × 10⁻⁵ of the smaller radius. Sizes may differ by 10⁴ and more;
 /// time and memory go with the number of particles. Same request, same state, for any number of threads.
-/// `progress` may be empty. None when `stop` was set. Throws UsageError when there is no room without overlap.
-std::optional<Patch> uniform_patch(const UniformRequest& request,
-                                   const std::function<void(const StartProgress&)>& progress,
-                                   const std::atomic<bool>& stop);
-
-/// The same, not to be stopped.
-Patch uniform_patch(const UniformRequest& request);
+/// Throws UsageError when there is no room without overlap, Interrupted (interrupt.hpp).
+Patch uniform_patch(const UniformRequest& request, const std::function<void(const StartProgress&)>& progress = {});
 
 } // namespace keeler

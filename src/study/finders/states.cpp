@@ -62,14 +62,11 @@ struct Made {
   std::string how;
 };
 
-std::optional<Made> evolve(const Scene& scene, double orbits, const std::atomic<bool>& stop) {
+Made evolve(const Scene& scene, double orbits) {
   Simulation simulation(scene, initial_patch(scene));
   const long steps = std::lround(orbits / scene.time.step);
-  for (long k = 0; k < steps; ++k) {
-    if (stop)
-      return std::nullopt;
+  for (long k = 0; k < steps; ++k)
     simulation.advance();
-  }
   const TimeSplit& split = simulation.time_split();
   const double passes = 1e-9 * static_cast<double>(steps * static_cast<long>(scene.particles.count));
   return Made{simulation.patch(),
@@ -78,8 +75,7 @@ std::optional<Made> evolve(const Scene& scene, double orbits, const std::atomic<
                           scene.particles.count, orbits, split.force("gravity") / passes, split.drift / passes)};
 }
 
-std::optional<Made> settle(const Scene& scene, const std::function<void(const std::string&)>& say,
-                           const std::atomic<bool>& stop) {
+Made settle(const Scene& scene, const std::function<void(const std::string&)>& say) {
   double next = 0.0;
   const auto progress = [&](const ClumpingProgress& p) {
     if (p.orbits < next)
@@ -87,23 +83,20 @@ std::optional<Made> settle(const Scene& scene, const std::function<void(const st
     say(fmt::format("clumping: {:.2f} orbits, autocorrelation amplitude {:.3f}", p.orbits, p.amplitude));
     next = p.orbits + 0.5;
   };
-  const std::optional<ClumpedState> state = clumped_state(scene, progress, stop);
-  if (!state)
-    return std::nullopt;
-  const Settling& s = state->clumping.settling;
+  const ClumpedState state = clumped_state(scene, progress);
+  const Settling& s = state.clumping.settling;
   return Made{
-      state->patch,
+      state.patch,
       fmt::format("{} particles, {:.3g} orbits with self-gravity, until the mean autocorrelation amplitude of an "
                   "orbit settled ({:.3g}, {:.0f} % from the orbit before)",
-                  scene.particles.count, state->clumping.orbits, s.amplitude, 100.0 * s.change)};
+                  scene.particles.count, state.clumping.orbits, s.amplitude, 100.0 * s.change)};
 }
 
-std::optional<Made> make(const Scene& scene, bool clumped, const std::function<void(const std::string&)>& say,
-                         const std::atomic<bool>& stop) {
+Made make(const Scene& scene, bool clumped, const std::function<void(const std::string&)>& say) {
   const double wavelength = critical_wavelength(scene.surface_density(), scene.planet);
   if (clumped && scene.size_x >= 4.0 * wavelength)
-    return settle(scene, say, stop);
-  return evolve(scene, clumped ? clumped_orbits : early_orbits, stop);
+    return settle(scene, say);
+  return evolve(scene, clumped ? clumped_orbits : early_orbits);
 }
 
 } // namespace
@@ -116,9 +109,8 @@ Scene StudyState::timed(double step_orbits, const std::string& finder) const {
   return timed_scene;
 }
 
-std::optional<std::vector<StudyState>> study_states(const std::filesystem::path& folder, std::size_t count,
-                                                    const std::function<void(const std::string&)>& say,
-                                                    const std::atomic<bool>& stop) {
+std::vector<StudyState> study_states(const std::filesystem::path& folder, std::size_t count,
+                                     const std::function<void(const std::string&)>& say) {
   std::filesystem::create_directories(folder);
   std::vector<StudyState> states;
   for (const Recipe& recipe : recipes)
@@ -129,11 +121,9 @@ std::optional<std::vector<StudyState>> study_states(const std::filesystem::path&
       const std::filesystem::path file = folder / (state.name + ".hdf"), note = folder / (state.name + ".txt");
       if (!std::filesystem::exists(note) || !std::filesystem::exists(file)) {
         say(fmt::format("making the state {}", state.name));
-        const std::optional<Made> made = make(state.scene, clumped, say, stop);
-        if (!made)
-          return std::nullopt;
-        write_snapshot(file, made->patch, {state.scene.resolved, collect_provenance({}), {}});
-        write_text(note, made->how); // last: a state is complete when it has its note
+        const Made made = make(state.scene, clumped, say);
+        write_snapshot(file, made.patch, {state.scene.resolved, collect_provenance({}), {}});
+        write_text(note, made.how); // last: a state is complete when it has its note
       }
       state.patch = read_snapshot(file).patch;
       state.made = read_text(note);

@@ -5,10 +5,8 @@
 #include <keeler/particles/patch.hpp>
 #include <keeler/scene/scene.hpp>
 
-#include <atomic>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,9 +22,8 @@ struct StudyState {
   Scene timed(double step_orbits, const std::string& finder) const;
 };
 
-/// `count` particles of equal size, half as many with a size distribution. None when stopped.
-std::optional<std::vector<StudyState>> study_states(const std::filesystem::path& folder, std::size_t count,
-                                                    const std::function<void(const std::string&)>& say,
-                                                    const std::atomic<bool>& stop);
+/// `count` particles of equal size, half as many with a size distribution. Throws Interrupted.
+std::vector<StudyState> study_states(const std::filesystem::path& folder, std::size_t count,
+                                     const std::function<void(const std::string&)>& say);
 
 } // namespace keeler

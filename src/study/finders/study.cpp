@@ -215,11 +215,11 @@ bool study_finders(const FinderStudySettings& settings, const std::atomic<bool>&
   const std::map<std::string, std::string> made = study_builder(settings.arguments);
   const Json begun = open_study_folder(settings.folder, options_of(plan), made);
   const FolderLock lock(settings.folder);
-  const std::optional<std::vector<StudyState>> states =
-      study_states(settings.folder / "states", plan.count, settings.notice, stop);
-  if (!states)
-    return false;
-  const std::vector<Job> jobs = Jobs(*states, plan).all();
+  const std::vector<StudyState> states = [&] {
+    const Interruptible by_stop(stop); // a state that is half made is of no use
+    return study_states(settings.folder / "states", plan.count, settings.notice);
+  }();
+  const std::vector<Job> jobs = Jobs(states, plan).all();
   JobList list(settings.folder / "measurements.jsonl");
   const std::size_t left = missing(jobs, list);
   require_same_build(begun, made, jobs, list, settings.folder);
@@ -233,7 +233,7 @@ bool study_finders(const FinderStudySettings& settings, const std::atomic<bool>&
   if (!finished)
     return false;
 
-  FinderStudyData data{settings.folder, *states, plan.steps, 1e-3, plan.repeats, plan.shares, list.results(), made};
+  FinderStudyData data{settings.folder, states, plan.steps, 1e-3, plan.repeats, plan.shares, list.results(), made};
   for (auto& [key, value] : data.made)
     value = begun.value(key, value);
   write_finder_tables(data);

@@ -4,8 +4,6 @@
 
 #include <doctest/doctest.h>
 
-#include <numeric>
-
 using namespace keeler;
 
 TEST_CASE("a parallel loop ends soon after its flag is set, and only within the scope that names the flag") {

@@ -25,7 +25,7 @@ TEST_CASE("overrides take TOML values and bare words") {
 TEST_CASE("an override replaces what the file says against it, with a notice") {
   const Scene depth = parse_scene(least, "s.toml", {"particles.optical_depth=0.2"});
   CHECK(depth.particles.count == 318); // 0.2 × 5000 / π = 318.3
-  CHECK(depth.notices == std::vector<std::string>{"particles.count of the file is dropped: --set "
+  CHECK(depth.notices == std::vector<std::string>{"particles.count of the scene is dropped: --set "
                                                   "particles.optical_depth=0.2 takes its place"});
 
   const std::string frequencies = changed(least, "2e-4", "2e-4\nvertical_ratio = 3.6");
@@ -51,8 +51,8 @@ TEST_CASE("--from is called by its own name") {
   const Scene start = parse_scene(least, "s.toml", {}, "wakes.hdf");
   CHECK(*start.start_from == (std::filesystem::current_path() / "wakes.hdf").string());
   CHECK(start.notices ==
-        std::vector<std::string>{"box of the file is dropped: --from wakes.hdf takes its place",
-                                 "particles of the file is dropped: --from wakes.hdf takes its place"});
+        std::vector<std::string>{"box of the scene is dropped: --from wakes.hdf takes its place",
+                                 "particles of the scene is dropped: --from wakes.hdf takes its place"});
   try {
     parse_scene(least, "s.toml", {}, "");
     CHECK(false);

@@ -62,6 +62,7 @@ TEST_CASE("a start file's particles must be possible; the first that is not is n
   says([](Patch& p) { p.velocities[7].x() = 2000.0 / p.orbital_frequency; }, "a speed (m/s, beyond the shear) of 2000");
   CHECK(fault([](Patch& p) { p.positions[7].x() = NAN; }).find("particle 7 has a place") == 0);
   CHECK(fault([](Patch& p) { p.box.size_y = 1e12; }).find("50 m x 1e12 m") != std::string::npos);
+  CHECK(fault([](Patch& p) { p.box.size_y = 6e4; }).find("more than 1000 times as long as wide") != std::string::npos);
 }
 
 TEST_CASE("doubts about a patch have numbers, and a large one none") {

@@ -188,14 +188,15 @@ TEST_CASE("progress rises to the end, and a stop is obeyed at the next sweep") {
   std::atomic<bool> stop = false;
   std::vector<double> shares;
   const auto note = [&](const StartProgress& p) { shares.push_back(p.share); };
-  CHECK(uniform_patch(request, note, stop).has_value());
+  const Interruptible by_stop(stop);
+  CHECK(uniform_patch(request, note).size() == 1000);
   CHECK(std::is_sorted(shares.begin(), shares.end()));
   CHECK(shares.back() == 1.0);
   int sweeps = 0;
   const auto stop_at_third = [&](const StartProgress&) { stop = ++sweeps == 3; };
-  CHECK(!uniform_patch(request, stop_at_third, stop).has_value());
+  CHECK_THROWS_AS(uniform_patch(request, stop_at_third), Interrupted);
   CHECK(sweeps == 3);
-  CHECK(!uniform_patch(request, {}, stop).has_value()); // before anything was done
+  CHECK_THROWS_AS(uniform_patch(request), Interrupted); // before anything was done
 }
 
 TEST_CASE("a request that no packing can meet is refused in words") {
