@@ -8,7 +8,6 @@
 #include <keeler/core/phase_progress.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
-#include <keeler/core/units.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/simulation/simulation.hpp>
 

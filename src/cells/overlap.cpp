@@ -3,7 +3,6 @@
 #include <keeler/cells/grid.hpp>
 #include <keeler/core/threads.hpp>
 
-#include <algorithm>
 #include <numeric>
 
 namespace keeler {

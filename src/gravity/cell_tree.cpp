@@ -1,5 +1,7 @@
 #include "cell_tree.hpp"
 
+#include <keeler/core/vector.hpp>
+
 #include "single.hpp"
 
 #include <keeler/core/threads.hpp>

@@ -10,8 +10,6 @@
 
 #include "kernels.hpp"
 
-#include <keeler/core/vector.hpp>
-
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
+
 namespace keeler {
 
 JobList::JobList(const std::filesystem::path& file) : file_(file) {

@@ -5,7 +5,6 @@
 #include <keeler/gravity/solver.hpp>
 
 #include <memory>
-#include <span>
 #include <vector>
 
 namespace keeler {

@@ -40,8 +40,8 @@ inline Crowd crowd_of(const ParticleSettings& particles) {
 inline constexpr double vertical_share = 0.65;
 
 /// Scale height √⟨z²⟩ of a layer in m, for a radial velocity dispersion in ⟨r⟩ Ω: H² = (c_z/ν)² + 1.7 τ R², where
-/// c_z = vertical_share c_x. The second term is the room that the particles themselves take:
-/// equilibria of equal spheres without self-gravity have H² − c_z²/ν² = 0.22, 0.89 and 1.66 r² at τ = 0.1, 0.5 and 1.
+/// c_z = vertical_share c_x. The second term is the room that the particles themselves take: equilibria of equal
+/// spheres without self-gravity have H² − c_z²/ν² = 0.22, 0.89 and 1.66 r² at τ = 0.1, 0.5 and 1.
 double layer_height(double optical_depth, const Crowd& crowd, double velocity_dispersion, double nu);
 
 /// Mid-plane filling factor (4/3) τ R / (√(2π) H) of a Gaussian layer of that height.

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <keeler/forces/force.hpp>
-#include <keeler/gravity/solver.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/state.hpp>
 

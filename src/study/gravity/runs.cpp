@@ -2,7 +2,6 @@
 
 #include <keeler/bench/gravity_states.hpp>
 #include <keeler/core/threads.hpp>
-#include <keeler/core/units.hpp>
 #include <keeler/diagnostics/analysis.hpp>
 #include <keeler/diagnostics/mean.hpp>
 #include <keeler/simulation/simulation.hpp>

@@ -2,7 +2,6 @@
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
-#include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/energy.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/simulation/simulation.hpp>

@@ -12,7 +12,6 @@
 #include <string>
 #include <string_view>
 #include <sys/resource.h>
-#include <vector>
 
 namespace keeler::test {
 

@@ -4,7 +4,6 @@
 #include "lattice.hpp"
 
 #include <keeler/core/random.hpp>
-#include <keeler/core/units.hpp>
 #include <keeler/gravity/images.hpp>
 
 #include <doctest/doctest.h>

@@ -4,7 +4,6 @@
 
 #include <keeler/core/error.hpp>
 
-#include <algorithm>
 #include <cmath>
 
 using namespace keeler;

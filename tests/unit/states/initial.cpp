@@ -1,7 +1,6 @@
 #include <keeler/states/initial.hpp>
 
 #include <keeler/cells/overlap.hpp>
-#include <keeler/core/units.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/scene/derived.hpp>
