@@ -18,7 +18,8 @@ constexpr double window = 85.0;    // a particle and window: sorting, and listin
 constexpr double contact = 1250.0; // with all searches; in a patch of 10⁴ particles, whose lines stay in the cache
 constexpr double kick = 20.0;      // a particle and kick
 constexpr double tree = 273.0, tree_opened = 44.5; // a particle and kick: the latter over the opening angle squared
-constexpr double mesh = 147.0, mesh_cut = 52.0; // a particle and kick: the latter for each spacing that the cut spans
+constexpr double mesh = 100.0, mesh_height = 75.0; // a particle and kick: the latter for each spacing of the layer's H
+constexpr double mesh_cut = 52.0;                  // a particle and kick, for each spacing that the cut spans
 constexpr double direct_pair = 0.25, far_images = 40.0; // a pair and image; a particle and kick
 constexpr double row = 12.0, row_itself = 2e4;          // a particle and row; a row
 constexpr double snapshot = 1550.0, checkpoint = 500.0; // a particle and file
@@ -26,7 +27,10 @@ constexpr double closing = 1000.0;                      // a particle: overlaps,
 constexpr double force_check = 1500.0;                  // a particle; they also take half a per cent of the run
 } // namespace cost
 
-constexpr double clumping_orbits = 0.9; // after which wakes stand
+constexpr double clumping_orbits = 0.9;   // after which wakes stand
+constexpr double least_wavelengths = 0.5; // of λ_cr along a side of a box that wakes can grow in: the fastest at Q = 1
+constexpr double aggregates = 1.1;        // the Hill parameter beyond which all hold together
+constexpr double most_fast = 3e4, most_slow = 6e4; // contacts a particle and orbit, as packed as particles get
 
 // Lines of particles fall out of one cache after another.
 double cache_factor(double count) {
@@ -51,26 +55,50 @@ double start_ns(const Scene& scene) {
 
 double drift_ns(const ContactRates& rates, double dilute, double count, const Scene& scene) {
   const double contacts = rates.all() * scene.time.step; // of a particle in a step; half as many events
-  const double crowd = 1.0 + 0.17 * std::log(std::max(1.0, rates.fast / dilute)); // searches see more neighbours
   const double spread = size_spread(scene.particles.sizes);
+  // Searches see more neighbours, or go through more levels; neighbours that stand close are of the finest level.
+  const double search = std::max(spread, 1.0 + 0.17 * std::log(std::max(1.0, rates.fast / dilute)));
   const double kicks = cost::kick * static_cast<double>(scene.external_forces.size());
   return cost::advance + kicks + cost::window * spread * spread / window_steps(contacts) +
-         cost::contact * spread * cache_factor(count) * crowd * 0.5 * contacts;
+         cost::contact * search * cache_factor(count) * 0.5 * contacts;
+}
+
+// Height of the layer at the start in mean distances of particles in the plane. More than one where the layer is dense,
+// or where most particles are small.
+double relative_height(const Scene& scene) {
+  const ParticleSettings& particles = scene.particles;
+  const double distance = std::sqrt(scene.size_x * scene.size_y / static_cast<double>(particles.count));
+  return layer_height(scene.optical_depth(), crowd_of(particles), particles.velocity_dispersion,
+                      scene.planet.frequencies.nu) /
+         distance;
+}
+
+// A cell meets more others in a space than in a plane.
+double tree_ns(const GravitySettings& gravity, double height) {
+  const double depth = 1.0 + 0.85 * std::log((1.0 + height) / 1.75);
+  return std::max(1.0, depth) * (cost::tree + cost::tree_opened / (gravity.opening_angle * gravity.opening_angle));
+}
+
+// The spacing of a mesh follows the distances in the plane: a thick layer has many planes.
+double mesh_ns(const GravitySettings& gravity, double height) {
+  return cost::mesh + cost::mesh_height * height / gravity.mesh_spacing;
 }
 
 // Of a particle and kick.
-double gravity_ns(const GravitySettings& settings, double count, const SizeLaw& sizes) {
-  const GravitySettings gravity = chosen_for(static_cast<std::size_t>(count), settings);
-  const double side = 2.0 * gravity.images.rings + 1.0;
+double gravity_ns(const Scene& scene) {
+  const SizeLaw& sizes = scene.particles.sizes;
+  const double count = static_cast<double>(scene.particles.count);
+  const GravitySettings gravity = chosen_for(scene.particles.count, *scene.gravity);
+  const double side = 2.0 * gravity.images.rings + 1.0, height = relative_height(scene);
   switch (gravity.solver) {
   case GravitySettings::Solver::direct:
     return cost::kick + cost::direct_pair * count * side * side + (gravity.images.far ? cost::far_images : 0.0);
   case GravitySettings::Solver::tree:
-    return cost::kick + cost::tree + cost::tree_opened / (gravity.opening_angle * gravity.opening_angle);
+    return cost::kick + tree_ns(gravity, height);
   case GravitySettings::Solver::mesh:
-    return cost::kick + cost::mesh;
+    return cost::kick + mesh_ns(gravity, height);
   default:
-    return cost::kick + cost::mesh +
+    return cost::kick + mesh_ns(gravity, height) +
            cost::mesh_cut * cut_for(gravity.force_error, std::sqrt(sizes.mean_power(6)) / sizes.mean_power(3));
   }
 }
@@ -100,33 +128,54 @@ double typical_restitution(const Scene& scene) {
   return scene.collisions.restitution({.speed = 3.0 * speed});
 }
 
+double saturating(double rate, double most) {
+  return rate / (1.0 + rate / most);
+}
+
+bool has_room_for_wakes(const Scene& scene) {
+  const double wavelength = critical_wavelength(scene.surface_density(), scene.planet);
+  return std::min(scene.size_x, scene.size_y) > least_wavelengths * wavelength;
+}
+
 } // namespace
 
 double layer_crowding(double optical_depth) {
   return std::pow(optical_depth, 1.8);
 }
 
+// Self-gravity presses a layer together: 4π G ρ/Ω² goes with r_h³.
+double pressed_crowding(double optical_depth, double hill_parameter) {
+  return 247.0 * std::pow(optical_depth, 0.9) * std::pow(std::min(hill_parameter, aggregates), 6);
+}
+
 double wake_crowding(double optical_depth, double hill_parameter) {
-  constexpr double aggregates = 1.1; // hold together whatever is beyond it
-  return std::pow(2.0 * optical_depth, 2.5) * std::exp(12.5 * (std::min(hill_parameter, aggregates) - 0.39));
+  const double depth = 2.0 * optical_depth;
+  return 2.0 * std::pow(depth, 3) / (1.0 + std::pow(depth, 1.5)) *
+         std::exp(12.5 * (std::min(hill_parameter, aggregates) - 0.39));
 }
 
 // Dilute layers collide 19 τ times an orbit. Particles that lose their speed stay together and collide again, the more
-// often the less they keep and the more crowded they are.
-ContactRates contact_rates(double optical_depth, double restitution, double crowding) {
+// often the less they keep and the more crowded they are. Where sizes differ, small ones move too fast for slow
+// contacts.
+ContactRates contact_rates(double optical_depth, double restitution, double crowding, double spread) {
   const double dilute = 19.0 * optical_depth;
-  return {dilute * (1.0 + 4.5 * std::exp(-7.2 * restitution) * crowding),
-          dilute * 34.0 * std::exp(-13.0 * restitution) * (1.0 + crowding / 7.0)};
+  const double fast = dilute * (1.0 + 4.5 * std::exp(-7.2 * restitution) * crowding);
+  const double slow =
+      dilute * 34.0 * std::exp(-13.0 * restitution) * (1.0 / (spread * spread * spread) + crowding / 7.0);
+  return {saturating(fast, most_fast), saturating(slow, most_slow)};
 }
 
 SceneContacts scene_contacts(const Scene& scene) {
-  const double met = met_optical_depth(scene), restitution = typical_restitution(scene);
-  const double layer = layer_crowding(scene.optical_depth());
-  const ContactRates smooth = contact_rates(met, restitution, layer);
+  const double depth = scene.optical_depth(), spread = size_spread(scene.particles.sizes);
+  const auto rates = [&](double crowding) {
+    return contact_rates(met_optical_depth(scene), typical_restitution(scene), layer_crowding(depth) + crowding,
+                         spread);
+  };
   if (!scene.gravity)
-    return {smooth, smooth};
+    return {rates(0.0), rates(0.0)};
   const double r_h = hill_parameter(scene.particles.density, distance_from_saturn(scene.planet));
-  return {smooth, contact_rates(met, restitution, layer + wake_crowding(scene.optical_depth(), r_h))};
+  const double pressed = pressed_crowding(depth, r_h);
+  return {rates(pressed), rates(has_room_for_wakes(scene) ? std::max(pressed, wake_crowding(depth, r_h)) : pressed)};
 }
 
 std::array<RunEstimate::Part, 4> RunEstimate::parts() const {
@@ -151,8 +200,7 @@ RunEstimate estimate_run(const Scene& scene, double pair_ns) {
                    (smooth * drift_ns(contacts.smooth, dilute, count, scene) +
                     (steps - smooth) * drift_ns(contacts.wakes, dilute, count, scene));
   if (scene.gravity)
-    estimate.gravity =
-        scale * count * steps / scene.gravity->kick_every * gravity_ns(*scene.gravity, count, scene.particles.sizes);
+    estimate.gravity = scale * count * steps / scene.gravity->kick_every * gravity_ns(scene);
   estimate.output = scale * output_ns(scene, count);
   return estimate;
 }

@@ -15,15 +15,18 @@ struct ContactRates {
   double all() const { return fast + slow; }
 };
 
-/// How crowded a particle's neighbourhood is: τ^1.8 for a layer without structure, more in self-gravity wakes. In units
-/// of what equal spheres have at τ = 1.
+/// How crowded a particle's neighbourhood is: τ^1.8 for a layer without structure; what self-gravity adds by pressing
+/// the layer together, and what wakes add. In units of what equal spheres have at τ = 1.
 double layer_crowding(double optical_depth);
+double pressed_crowding(double optical_depth, double hill_parameter);
 double wake_crowding(double optical_depth, double hill_parameter);
 
-/// In a patch of equal spheres of that optical depth, for a coefficient of restitution that holds for all impacts.
-ContactRates contact_rates(double optical_depth, double restitution, double crowding);
+/// In a patch of that optical depth, for a coefficient of restitution that holds for all impacts and sizes of that
+/// ⟨r²⟩/⟨r⟩².
+ContactRates contact_rates(double optical_depth, double restitution, double crowding, double spread = 1.0);
 
-/// Contacts of a scene near its equilibrium: before wakes stand, and when they do. Equal without self-gravity.
+/// Contacts of a scene near its equilibrium: before wakes stand, and when they do. Equal without self-gravity, and in a
+/// box that is too small for wakes.
 struct SceneContacts {
   ContactRates smooth, wakes;
 };

@@ -4,6 +4,7 @@
 #include <keeler/scene/estimate.hpp>
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 using namespace keeler;
 using namespace keeler::test;
@@ -41,6 +42,42 @@ TEST_CASE("contact rates in wakes are those of the study of solvers") {
   // far below the Roche density gravity only gathers particles a little
   const SceneContacts light = scene_contacts(a_ring({"particles.density=20"}));
   check_near(light.wakes.fast, light.smooth.fast, 1.2);
+}
+
+TEST_CASE("contact rates in layers that self-gravity presses together are those counted") {
+  // docs/dev/estimate.md: fast and slow together, counted in runs of 500 particles
+  struct Case {
+    const char* density;
+    double optical_depth, restitution, counted;
+  };
+  for (const Case& c : {Case{"900", 0.5, 0.1, 1610.0}, Case{"900", 2.0, 0.1, 11814.0}, Case{"900", 3.0, 0.1, 38446.0},
+                        Case{"300", 1.0, 0.1, 878.0}, Case{"100", 2.0, 0.1, 971.0}, Case{"900", 2.0, 0.5, 765.0}}) {
+    CAPTURE(c.density);
+    CAPTURE(c.optical_depth);
+    const Scene scene = load_scene(KEELER_SOURCE_DIR "/examples/equilibrium/scene.toml",
+                                   {fmt::format("particles.optical_depth={}", c.optical_depth),
+                                    fmt::format("particles.density={}", c.density),
+                                    fmt::format("collisions.restitution={{law=\"constant\",value={}}}", c.restitution),
+                                    "particles.velocity_dispersion=14", "gravity={}"});
+    check_near(scene_contacts(scene).smooth.all(), c.counted, 1.5);
+  }
+}
+
+TEST_CASE("wakes need a box of half their critical wavelength") {
+  const SceneContacts narrow = scene_contacts(a_ring({"box.size_in_wavelengths=[0.4, 4]"}));
+  CHECK(narrow.wakes.fast == narrow.smooth.fast);
+  const SceneContacts wide = scene_contacts(a_ring({"box.size_in_wavelengths=[0.6, 4]"}));
+  CHECK(wide.wakes.fast > 2.0 * wide.smooth.fast);
+}
+
+TEST_CASE("a mesh costs more the thicker a layer is against the distances of its particles") {
+  const auto gravity = [](const std::vector<std::string>& overrides) {
+    const Scene scene = a_ring(overrides);
+    return estimate_run(scene).gravity / static_cast<double>(scene.particles.count);
+  };
+  const std::string fft = "gravity={solver=\"fft\"}";
+  CHECK(gravity({fft, "particles.velocity_dispersion=20"}) > 1.5 * gravity({fft}));
+  CHECK(gravity({fft, "particles.sizes={law=\"power\",exponent=3,min=0.2,max=10}"}) > 1.2 * gravity({fft}));
 }
 
 TEST_CASE("particles that keep less of their speed collide more often, and slowly") {
