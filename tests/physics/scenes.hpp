@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace keeler::test {
 
 /// Ω of the reference runs: r Ω = 0.0195 cm/s for r = 1 m (it matters to the Bridges law alone).
@@ -47,7 +49,7 @@ struct Means {
 
 /// Lets a simulation settle for some orbits and averages over some more.
 inline Means settle_and_average(Simulation& simulation, const Scene& scene, double settle, double average) {
-  const auto steps = [&](double orbits) { return static_cast<long>(orbits / scene.time.step + 0.5); };
+  const auto steps = [&](double orbits) { return std::lround(orbits / scene.time.step); };
   for (long k = 0; k < steps(settle); ++k)
     simulation.advance();
   const CollisionTally before = simulation.state().collisions;
