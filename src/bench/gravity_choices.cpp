@@ -1,5 +1,6 @@
 #include <keeler/bench/gravity_choices.hpp>
 
+#include <keeler/core/words.hpp>
 #include <keeler/gravity/fft.hpp>
 
 #include <fmt/format.h>
@@ -70,6 +71,22 @@ GravityChoice default_gravity_choice(const std::string& solver) {
   if (solver == "mesh")
     return mesh(GravitySettings{}.mesh_spacing);
   throw std::invalid_argument("no gravity solver '" + solver + "'");
+}
+
+GravityChoice choice_of(const GravitySettings& settings, std::size_t count) {
+  using Solver = GravitySettings::Solver;
+  const GravitySettings chosen = chosen_for(count, settings);
+  GravityChoice choice = {"fft", fmt::format("force_error {:.3g}", chosen.force_error), "", 0.0, {}};
+  if (chosen.solver == Solver::tree)
+    choice = tree(chosen.opening_angle);
+  if (chosen.solver == Solver::direct)
+    choice = direct();
+  if (chosen.solver == Solver::mesh)
+    choice = mesh(chosen.mesh_spacing);
+  if ((chosen.solver == Solver::tree || chosen.solver == Solver::direct) && !chosen.images.far)
+    choice.text += fmt::format(", {} of images alone", counted(chosen.images.rings, "ring"));
+  choice.settings = chosen;
+  return choice;
 }
 
 } // namespace keeler

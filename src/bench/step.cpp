@@ -1,76 +1,68 @@
 #include <keeler/bench/step.hpp>
 
 #include <keeler/bench/gravity_states.hpp>
-#include <keeler/bench/median.hpp>
-#include <keeler/bench/yardsticks.hpp>
-#include <keeler/simulation/simulation.hpp>
+#include <keeler/core/error.hpp>
+#include <keeler/diagnostics/dispersion.hpp>
+#include <keeler/io/snapshot.hpp>
+#include <keeler/states/initial.hpp>
 
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-constexpr double untimed_steps = 10.0;                 // in which buffers grow and the first window passes
-constexpr double least_steps = 20.0, most_steps = 100; // in each repeat
-constexpr double enough_passes = 4e6;                  // particles × steps in each repeat
+constexpr double most_steps = 100.0; // in each repeat
+
+BenchState stored_state(const std::string& file) {
+  Snapshot snapshot = read_snapshot(file);
+  BenchState state{parse_stored_scene(snapshot.meta.scene, file), {}};
+  if (!state.scene.gravity)
+    throw UsageError(
+        fmt::format("'{}' is of a scene without self-gravity (its scene has no [gravity]); take a snapshot "
+                    "of a run with gravity, or time the drift alone with \"keeler bench drift\"",
+                    file));
+  state.patch = patch_from_snapshot(std::move(snapshot.patch), file, state.scene);
+  return state;
+}
+
+GravityChoice choice_for(const StepBenchSettings& settings, const BenchState& state) {
+  GravityChoice choice = default_gravity_choice(settings.solver.value_or("tree"));
+  if (settings.from) {
+    GravitySettings gravity = *state.scene.gravity;
+    if (settings.solver) {
+      gravity = {};
+      gravity.solver = choice.settings.solver; // its cut, if any, by the masses that there are
+      gravity.kick_every = state.scene.gravity->kick_every;
+    }
+    choice = choice_of(gravity, state.patch.size());
+  }
+  choice.settings.kick_every = settings.kick_every.value_or(choice.settings.kick_every);
+  return choice;
+}
 
 int whole_intervals(double steps, int kick_every) {
   return static_cast<int>(std::ceil(steps / kick_every)) * kick_every;
-}
-
-// The times of each repeat, ns per particle and step.
-struct Times {
-  std::vector<double> whole, drift, advance, gravity, kick;
-
-  void add(double seconds, const TimeSplit& before, const TimeSplit& after, double passes) {
-    const double ns = 1e9 / passes;
-    const double moved = after.advance - before.advance, kicked = after.kick - before.kick;
-    whole.push_back(ns * seconds);
-    drift.push_back(ns * (after.drift - before.drift - moved));
-    advance.push_back(ns * moved);
-    gravity.push_back(ns * (after.force("gravity") - before.force("gravity") - kicked));
-    kick.push_back(ns * kicked);
-  }
-};
-
-void advance(Simulation& simulation, int steps) {
-  for (int k = 0; k < steps; ++k)
-    simulation.advance();
 }
 
 } // namespace
 
 StepBench bench_step(const StepBenchSettings& settings) {
   PhaseProgress progress(settings.progress);
-  BenchState made = gravity_state(settings.count, GravityState::clumped, progress);
+  BenchState state =
+      settings.from ? stored_state(*settings.from) : gravity_state(settings.count, GravityState::clumped, progress);
   StepBench bench;
-  bench.choice = default_gravity_choice(settings.solver);
-  bench.choice.settings.kick_every = settings.kick_every;
-  made.scene.gravity = bench.choice.settings;
-  bench.count = made.patch.size();
-  bench.step_orbits = made.scene.time.step;
-  const auto count = static_cast<double>(bench.count);
-  bench.steps = whole_intervals(std::clamp(enough_passes / count, least_steps, most_steps), settings.kick_every);
+  bench.choice = choice_for(settings, state);
+  state.scene.gravity = bench.choice.settings;
+  bench.step_orbits = state.scene.time.step;
+  bench.dispersion_r_omega = velocity_in_radii(state.patch, velocity_dispersion(state.patch)).x();
+  const int kick_every = bench.choice.settings.kick_every;
+  const int steps = whole_intervals(steps_worth_timing(state.patch.size(), most_steps), kick_every);
 
-  Simulation simulation(made.scene, made.patch);
-  made.patch = {}; // room: a large state is held once
-  const double passes = count * bench.steps;
-  progress.begin("timing", settings.repeats);
-  advance(simulation, whole_intervals(untimed_steps, settings.kick_every));
-  const std::uint64_t first = simulation.state().collisions.fast;
-  Times times;
-  for (int repeat = 0; repeat < settings.repeats; ++repeat) {
-    const double start = bench_seconds();
-    const TimeSplit before = simulation.time_split();
-    advance(simulation, bench.steps);
-    times.add(bench_seconds() - start, before, simulation.time_split(), passes);
-    progress.add(1.0);
-  }
-  bench.ns_per_particle_step = median(times.whole);
-  bench.split = {median(times.drift), median(times.advance), median(times.gravity), median(times.kick)};
-  bench.collisions_per_particle_step =
-      2.0 * static_cast<double>(simulation.state().collisions.fast - first) / (passes * settings.repeats);
+  Simulation simulation(state.scene, state.patch);
+  state.patch = {}; // room: a large state is held once
+  bench.timed = time_steps(simulation, steps, settings.repeats, kick_every, progress);
   return bench;
 }
 

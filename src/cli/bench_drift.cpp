@@ -1,5 +1,6 @@
 // keeler bench drift: the drift phase.
 #include "bench.hpp"
+#include "bench_counts.hpp"
 
 #include <keeler/bench/drift.hpp>
 #include <keeler/collision/finders.hpp>
@@ -25,7 +26,11 @@ struct DriftOptions {
 };
 
 double cost_per_orbit_us(const DriftBenchSettings& s, const DriftBench& b) {
-  return 1e-3 * b.ns_per_particle_step / s.step_orbits;
+  return 1e-3 * b.timed.ns_per_particle_step / s.step_orbits;
+}
+
+double collisions_per_orbit(const DriftBenchSettings& s, const DriftBench& b) {
+  return 2.0 * b.timed.per_particle_step(b.timed.collisions) / s.step_orbits;
 }
 
 CLI::Validator finder_name() {
@@ -36,33 +41,25 @@ CLI::Validator finder_name() {
 }
 
 void print_json(const DriftBenchSettings& s, const std::string& sizes, const DriftBench& b) {
+  const TimedSteps& t = b.timed;
   nlohmann::ordered_json json;
-  json["ns_per_particle_step"] = b.ns_per_particle_step;
-  json["split"] = {{"advance", b.split.advance},
-                   {"build", b.split.build},
-                   {"reject", b.split.reject},
-                   {"solve", b.split.solve},
-                   {"events", b.split.events}};
+  json["ns_per_particle_step"] = t.ns_per_particle_step;
+  json["split"] = {{"advance", t.split.advance},
+                   {"build", t.drift_split.build},
+                   {"reject", t.drift_split.reject},
+                   {"solve", t.drift_split.solve},
+                   {"events", t.drift_split.events}};
   json["cost_per_orbit_us"] = cost_per_orbit_us(s, b);
-  json["ns_per_collision"] = b.ns_per_collision;
-  json["ns_events_per_collision"] = b.ns_events_per_collision;
+  json["ns_per_collision"] = t.per_contact(t.ns_per_particle_step);
+  json["ns_events_per_collision"] = t.per_contact(t.drift_split.events);
   json["ns_per_call"] = b.ns_per_call;
   json["calls_per_particle_step"] = b.calls_per_particle_step;
-  json["pairs_per_particle"] = b.pairs_per_particle;
-  json["survivors_per_particle"] = b.survivors_per_particle;
-  json["collisions_per_particle_orbit"] = b.collisions_per_particle_orbit;
-  json["contacts"] = b.contacts;
-  json["recontacts"] = b.recontacts;
-  json["windows"] = b.windows;
-  json["conflicts"] = b.conflicts;
-  json["repairs"] = b.repairs;
-  json["widest_list"] = b.widest_list;
-  json["bytes_per_particle"] = b.bytes_per_particle;
-  json["yardsticks"] = {{"line_ns", b.yardsticks.line_ns}, {"pair_ns", b.yardsticks.pair_ns}};
+  json["collisions_per_particle_orbit"] = collisions_per_orbit(s, b);
+  add_drift_counts(json, t);
   if (threads() > 1)
-    json["speedup"] = {{"step", b.speedup.step}, {"events", b.speedup.events}, {"pair", b.speedup.pair}};
+    json["speedup"] = {{"step", t.speedup.step}, {"events", t.speedup.events}, {"pair", t.speedup.pair}};
   json["dispersion_r_omega"] = b.dispersion_r_omega;
-  json["count"] = b.count;
+  json["count"] = t.count;
   json["step_orbits"] = s.step_orbits;
   json["optical_depth"] = s.optical_depth;
   json["sizes"] = sizes;
@@ -70,37 +67,34 @@ void print_json(const DriftBenchSettings& s, const std::string& sizes, const Dri
   json["all_pairs"] = s.all_pairs;
   json["threads"] = threads();
   json["repeats"] = s.repeats;
-  json["steps"] = b.steps;
+  json["steps"] = t.steps;
   fmt::print("{}\n", json.dump(2));
 }
 
 void print_text(const DriftBenchSettings& s, const DriftBench& b) {
-  fmt::print("ns per particle and step            {:.1f} (median of {} of {}, {}, {})\n", b.ns_per_particle_step,
-             counted(s.repeats, "repeat"), counted(b.steps, "step"), counted(b.count, "particle"),
+  const TimedSteps& t = b.timed;
+  fmt::print("ns per particle and step            {:.1f} (median of {} of {}, {}, {})\n", t.ns_per_particle_step,
+             counted(s.repeats, "repeat"), counted(t.steps, "step"), counted(t.count, "particle"),
              counted(threads(), "thread"));
   fmt::print("  of these                          advance {:.1f}, build {:.1f}, reject {:.1f}, solve {:.1f}, "
              "events {:.1f}\n",
-             b.split.advance, b.split.build, b.split.reject, b.split.solve, b.split.events);
-  fmt::print("  over what the machine can do      {:.1f} times {:.2f} ns for a line of memory, {:.1f} times {:.2f} ns "
-             "for a pair's |d|^2 and d.v\n",
-             b.ns_per_particle_step / b.yardsticks.line_ns, b.yardsticks.line_ns,
-             b.ns_per_particle_step / b.yardsticks.pair_ns, b.yardsticks.pair_ns);
+             t.split.advance, t.drift_split.build, t.drift_split.reject, t.drift_split.solve, t.drift_split.events);
+  print_over_yardsticks(t.ns_per_particle_step, t.yardsticks);
   if (threads() > 1)
     fmt::print("over one thread, by turns           {:.2f} times as fast, the events {:.2f}, a pair {:.2f}\n",
-               b.speedup.step, b.speedup.events, b.speedup.pair);
+               t.speedup.step, t.speedup.events, t.speedup.pair);
   fmt::print("us per particle and orbit           {}\n", figures(cost_per_orbit_us(s, b), 3));
-  if (b.contacts > 0)
+  if (t.contacts > 0)
     fmt::print("ns per collision                    {:.0f} for all of that time, {:.0f} for the events alone\n",
-               b.ns_per_collision, b.ns_events_per_collision);
+               t.per_contact(t.ns_per_particle_step), t.per_contact(t.drift_split.events));
   if (b.calls_per_particle_step > 0.0)
     fmt::print("ns per finder call                  {:.1f}, {} calls per particle at the start of a step\n",
                b.ns_per_call, figures(b.calls_per_particle_step, 3));
   else
     fmt::print("ns per finder call                  none: no pair came to the finder\n");
-  fmt::print("pairs per particle and step         {} tested, {} handed to the finder\n",
-             figures(b.pairs_per_particle, 3), figures(b.survivors_per_particle, 3));
-  fmt::print("collisions per particle and orbit   {} faster than v_cut\n", figures(b.collisions_per_particle_orbit, 3));
-  fmt::print("bytes per particle                  {}\n", b.bytes_per_particle);
+  print_pairs(t);
+  fmt::print("collisions per particle and orbit   {} faster than v_cut\n", figures(collisions_per_orbit(s, b), 3));
+  fmt::print("bytes per particle                  {}\n", t.bytes_per_particle);
   fmt::print("dispersion c_x                      {} r Omega\n", figures(b.dispersion_r_omega, 3));
 }
 

@@ -1,5 +1,6 @@
 // keeler bench step: a whole step with self-gravity and collisions.
 #include "bench.hpp"
+#include "bench_counts.hpp"
 
 #include <keeler/bench/step.hpp>
 #include <keeler/core/words.hpp>
@@ -19,31 +20,65 @@ struct StepOptions {
 };
 
 void print_json(const StepOptions& options, const StepBench& b) {
+  const TimedSteps& t = b.timed;
   nlohmann::ordered_json json;
-  json["ns_per_particle_step"] = b.ns_per_particle_step;
+  json["ns_per_particle_step"] = t.ns_per_particle_step;
   json["split"] = {
-      {"drift", b.split.drift}, {"advance", b.split.advance}, {"gravity", b.split.gravity}, {"kick", b.split.kick}};
-  json["collisions_per_particle_step"] = b.collisions_per_particle_step;
+      {"drift", t.split.drift}, {"advance", t.split.advance}, {"gravity", t.split.gravity}, {"kick", t.split.kick}};
+  json["drift_split"] = {{"build", t.drift_split.build},
+                         {"reject", t.drift_split.reject},
+                         {"solve", t.drift_split.solve},
+                         {"events", t.drift_split.events}};
+  json["ns_drift_per_collision"] = t.per_contact(t.split.drift);
+  json["ns_events_per_collision"] = t.per_contact(t.drift_split.events);
+  json["collisions_per_particle_step"] = 2.0 * t.per_particle_step(t.collisions);
+  json["contacts_per_particle_step"] = 2.0 * t.per_particle_step(t.contacts);
+  add_drift_counts(json, t);
+  if (threads() > 1)
+    json["speedup"] = {{"step", t.speedup.step},
+                       {"drift", t.speedup.drift},
+                       {"events", t.speedup.events},
+                       {"gravity", t.speedup.gravity},
+                       {"pair", t.speedup.pair}};
+  json["dispersion_r_omega"] = b.dispersion_r_omega;
   json["solver"] = b.choice.solver;
   json["settings"] = b.choice.text;
-  json["kick_every"] = options.bench.kick_every;
-  json["count"] = b.count;
+  json["kick_every"] = b.choice.settings.kick_every;
+  if (options.bench.from)
+    json["from"] = *options.bench.from;
+  json["count"] = t.count;
   json["step_orbits"] = b.step_orbits;
   json["threads"] = threads();
   json["repeats"] = options.bench.repeats;
-  json["steps"] = b.steps;
+  json["steps"] = t.steps;
   fmt::print("{}\n", json.dump(2));
 }
 
 void print_text(const StepOptions& options, const StepBench& b) {
+  const TimedSteps& t = b.timed;
   fmt::print("ns per particle and step            {:.1f} (median of {} of {} of {} orbit, {}, {})\n",
-             b.ns_per_particle_step, counted(options.bench.repeats, "repeat"), counted(b.steps, "step"),
-             figures(b.step_orbits), counted(b.count, "particle"), counted(threads(), "thread"));
+             t.ns_per_particle_step, counted(options.bench.repeats, "repeat"), counted(t.steps, "step"),
+             figures(b.step_orbits), counted(t.count, "particle"), counted(threads(), "thread"));
   fmt::print("  of these                          drift {:.1f}, advance {:.1f}, gravity {:.1f}, kick {:.1f}\n",
-             b.split.drift, b.split.advance, b.split.gravity, b.split.kick);
+             t.split.drift, t.split.advance, t.split.gravity, t.split.kick);
+  fmt::print("the drift of these                  build {:.1f}, reject {:.1f}, solve {:.1f}, events {:.1f}\n",
+             t.drift_split.build, t.drift_split.reject, t.drift_split.solve, t.drift_split.events);
+  print_over_yardsticks(t.split.drift, t.yardsticks);
+  if (threads() > 1)
+    fmt::print("over one thread, by turns           {:.2f} times as fast, the drift {:.2f}, its events {:.2f}, the "
+               "solves {:.2f}, a pair {:.2f}\n",
+               t.speedup.step, t.speedup.drift, t.speedup.events, t.speedup.gravity, t.speedup.pair);
   fmt::print("gravity                             {}, {}, a kick every {}\n", b.choice.solver, b.choice.text,
-             counted(options.bench.kick_every, "step"));
-  fmt::print("collisions per particle and step    {} faster than v_cut\n", figures(b.collisions_per_particle_step, 3));
+             counted(b.choice.settings.kick_every, "step"));
+  if (t.contacts > 0)
+    fmt::print("ns per collision                    {:.0f} for the drift, {:.0f} for the events alone\n",
+               t.per_contact(t.split.drift), t.per_contact(t.drift_split.events));
+  print_pairs(t);
+  fmt::print("contacts per particle and step      {}\n", figures(2.0 * t.per_particle_step(t.contacts), 3));
+  fmt::print("collisions per particle and step    {} faster than v_cut\n",
+             figures(2.0 * t.per_particle_step(t.collisions), 3));
+  fmt::print("bytes per particle                  {} held by the drift\n", t.bytes_per_particle);
+  fmt::print("dispersion c_x                      {} r Omega\n", figures(b.dispersion_r_omega, 3));
 }
 
 ExitCode bench(StepOptions& options) {
@@ -61,12 +96,17 @@ ExitCode bench(StepOptions& options) {
 void add_bench_step(CLI::App& bench_command, Action& action) {
   const auto options = std::make_shared<StepOptions>();
   CLI::App& step = *bench_command.add_subcommand(
-      "step", "a whole step of 1/1000 orbit, gravity and collisions, in a clumped patch of Saturn's A ring");
+      "step", "a whole step, gravity and collisions, in a clumped patch of Saturn's A ring or in a snapshot");
   StepBenchSettings& s = options->bench;
-  step.add_option("--count", s.count, "particles (default: 100000)")->check(positive_number());
-  step.add_option("--kick-every", s.kick_every, "steps for each kick of gravity (default: 1)")
+  CLI::Option* count =
+      step.add_option("--count", s.count, "particles of the clumped patch (default: 100000)")->check(positive_number());
+  step.add_option("--from", s.from, "time the state of this snapshot as it stands, with the scene that it holds")
+      ->excludes(count);
+  step.add_option("--kick-every", s.kick_every,
+                  "steps for each kick of gravity (default: 1; with --from as in the snapshot's scene)")
       ->check(positive_number());
-  step.add_option("--solver", s.solver, "gravity solver (default: tree)")
+  step.add_option("--solver", s.solver,
+                  "gravity solver with its default settings (default: tree; with --from that of the snapshot's scene)")
       ->check(CLI::IsMember(gravity_solver_names()).description(""));
   add_repeats(step, s.repeats);
   options->threads.add_to(step);

@@ -43,6 +43,17 @@ SizeLaw make_listed(const Parameters& p) {
 
 constexpr KeyRange radius_range = {.low = 1e-6, .high = 1e6}; // wide: only slips of units lie outside
 
+SizeLaw make_table(const Parameters& p) {
+  const NumberRows& table = p.rows("table");
+  if (table.empty())
+    throw UsageError("it has no rows; give at least one radius and its number");
+  for (const std::vector<double>& row : table)
+    if (!radius_range.contains(row[0]))
+      throw UsageError(fmt::format("the radius {} is {} m (it must be {}); correct it", &row - table.data() + 1, row[0],
+                                   radius_range.words()));
+  return tabulated_sizes(table);
+}
+
 Key length_key(const char* name, const char* example, const char* meaning) {
   return {.path = name,
           .type = KeyType::number,
@@ -75,6 +86,30 @@ SizeLaw listed_sizes(std::vector<double> radii) {
     return sum / static_cast<double>(radii.size());
   };
   law.radius = [radii = std::move(radii)](double, std::size_t k) { return radii[k % radii.size()]; };
+  return law;
+}
+
+SizeLaw tabulated_sizes(NumberRows table) {
+  double total = 0.0, smallest = table.front()[0], largest = smallest;
+  for (std::vector<double>& row : table) {
+    smallest = std::min(smallest, row[0]);
+    largest = std::max(largest, row[0]);
+    row[1] = total += row[1]; // up to and with this row
+  }
+  SizeLaw law{smallest, largest, table.size(), {}, {}};
+  law.mean_power = [table, total](int k) {
+    double sum = 0.0, before = 0.0;
+    for (const std::vector<double>& row : table) {
+      sum += (row[1] - before) * std::pow(row[0], k);
+      before = row[1];
+    }
+    return sum / total;
+  };
+  law.radius = [table = std::move(table), total](double u, std::size_t) {
+    const auto row = std::upper_bound(table.begin(), table.end() - 1, u * total,
+                                      [](double number, const std::vector<double>& r) { return number < r[1]; });
+    return (*row)[0];
+  };
   return law;
 }
 
@@ -118,6 +153,15 @@ const std::vector<SizeEntry>& size_laws() {
          .columns = {"radius in m"},
          .effect = KeyEffect::start}},
        make_listed},
+      {"table",
+       {{.path = "table",
+         .type = KeyType::rows,
+         .example = "[[30.0, 1], [1.0, 19999]]",
+         .meaning = "radii, and how many particles have each, in proportion",
+         .range = {.low = 1e-6, .high = 1e9},
+         .columns = {"radius in m", "number of particles"},
+         .effect = KeyEffect::start}},
+       make_table},
   };
   return laws;
 }

@@ -97,7 +97,10 @@ UniformRequest request_of(const Scene& scene) {
 } // namespace
 
 Patch patch_from_snapshot(const std::string& path, const Scene& scene) {
-  Patch patch = read_snapshot(path).patch;
+  return patch_from_snapshot(read_snapshot(path).patch, path, scene);
+}
+
+Patch patch_from_snapshot(Patch patch, const std::string& path, const Scene& scene) {
   require_same_planet(patch, scene, path);
   require_physical(patch, path);
   // Velocities are stored in m/s; the scene's orbital frequency decides what they are in its own time.

@@ -49,10 +49,35 @@ refuses "an unknown solver" "--solver" bench gravity --solver guess
 refuses "an unknown state" "--state" bench gravity --state lumpy
 
 runs 0 bench step --count 100 --repeats 1 --kick-every 3 --json
-has_numbers "bench step" ns_per_particle_step drift advance gravity kick collisions_per_particle_step kick_every count steps
+has_numbers "bench step" ns_per_particle_step drift advance gravity kick build reject solve events ns_drift_per_collision \
+  ns_events_per_collision collisions_per_particle_step contacts_per_particle_step pairs_per_particle survivors_per_particle \
+  contacts windows bytes_per_particle line_ns pair_ns dispersion_r_omega kick_every count steps
+grep -q speedup "$work/out" && fail "bench step: a speedup on one thread in: $(cat "$work/out")"
 [ $(($(sed -nE 's/^  "steps": ([0-9]+)$/\1/p' "$work/out") % 3)) -eq 0 ] || fail "bench step: no whole kick intervals"
-runs 0 bench step --count 100 --repeats 1
-prints "bench step as text" "collisions per particle and step"
 refuses "no interval" "--kick-every" bench step --kick-every 0
+
+small_scene
+runs 0 run "$work/scene.toml" -o "$work/run" --set time.end=0.01 --set gravity.kick_every=5 --set gravity.opening_angle=0.5
+runs 0 bench step --from "$work/run/snap_000001.hdf" --repeats 1
+for words in "collisions per particle and step" "contacts per particle and step" "the drift of these" \
+  "over what the machine can do" "0.002 orbit, 400 particles" "tree, opening_angle 0.5, a kick every 5 steps"; do
+  prints "bench step of a snapshot as text" "$words"
+done
+runs 0 bench step --from "$work/run/snap_000001.hdf" --repeats 1 --kick-every 2 --solver mesh --threads 2
+prints "bench step on two threads" "over one thread, by turns"
+prints "bench step with another solver" "mesh, mesh_spacing 1.6, a kick every 2 steps"
+runs 0 bench step --from "$work/run/snap_000001.hdf" --repeats 1 --threads 2 --json
+sed -n '/"speedup"/,/}/p' "$work/out" >"$work/speedup"
+for key in step drift events gravity pair; do
+  grep -qE "\"$key\": $number,?$" "$work/speedup" || fail "bench step: no speedup.$key in: $(cat "$work/out")"
+done
+grep -qF "\"from\": \"$work/run/snap_000001.hdf\"" "$work/out" || fail "bench step: no file in: $(cat "$work/out")"
+refuses "a number of particles for a snapshot" "--count" bench step --count 100 --from "$work/run/snap_000001.hdf"
+refuses_with 4 "no such snapshot" "absent.hdf" bench step --from "$work/absent.hdf"
+refuses_with 4 "no snapshot" "cannot read '$work/scene.toml' as HDF5" bench step --from "$work/scene.toml"
+refuses_with 4 "a checkpoint" "is not a Keeler snapshot" bench step --from "$(newest_checkpoint "$work/run")"
+sed -i '/^\[gravity\]/,/^solver/d' "$work/scene.toml"
+runs 0 generate "$work/scene.toml" -o "$work/free.hdf"
+refuses "a snapshot without gravity" "has no [gravity]" bench step --from "$work/free.hdf"
 
 report

@@ -3,6 +3,7 @@
 
 #include <keeler/gravity/solver.hpp>
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -25,5 +26,8 @@ std::vector<std::string> gravity_solver_names();
 
 /// The choice of a solver by name, with what a scene that names it gets by default. The name must be in the list.
 GravityChoice default_gravity_choice(const std::string& solver);
+
+/// What these settings are called; `automatic` is what it stands for with so many particles.
+GravityChoice choice_of(const GravitySettings& settings, std::size_t count);
 
 } // namespace keeler

@@ -1,43 +1,35 @@
-// What a whole step costs, gravity and collisions, in the clumped state of gravity_bench.hpp.
+// What a whole step costs, gravity and collisions: in the clumped state of gravity_states.hpp, or in a snapshot.
 #pragma once
 
 #include <keeler/bench/gravity_choices.hpp>
+#include <keeler/bench/timed_steps.hpp>
 #include <keeler/core/progress.hpp>
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace keeler {
 
 struct StepBenchSettings {
-  std::size_t count = 100000; ///< rounded to whole tiles, and up to what two λ_cr by two hold
-  int kick_every = 1;
-  std::string solver = "tree"; ///< with the settings of default_gravity_choice()
+  std::size_t count = 100000;        ///< rounded to whole tiles, and up to what two λ_cr by two hold
+  std::optional<std::string> from;   ///< a snapshot to time as it stands, with the scene in it; `count` is not read
+  std::optional<int> kick_every;     ///< none: 1, or what the snapshot's scene has
+  std::optional<std::string> solver; ///< with its default settings; none: tree, or what the snapshot's scene has
   int repeats = 5;
   std::function<void(const Progress&)> progress; ///< may be empty
 };
 
-/// Wall time of the parts of a step, ns per particle and step; they make up the whole but for what is between them.
-struct StepSplit {
-  double drift = 0.0;   ///< finding and carrying out collisions
-  double advance = 0.0; ///< to the next epoch and back into the cell
-  double gravity = 0.0; ///< solves
-  double kick = 0.0;
-};
-
-/// Times are medians over the repeats: processor time on one thread, wall time on several, the split always wall time.
 struct StepBench {
   GravityChoice choice;
-  std::size_t count = 0; ///< particles there are
-  int steps = 0;         ///< timed in each repeat: whole kick intervals
   double step_orbits = 0.0;
-  double ns_per_particle_step = 0.0;
-  StepSplit split;
-  double collisions_per_particle_step = 0.0; ///< faster than v_cut, over all repeats
+  double dispersion_r_omega = 0.0; ///< c_x of the state that is timed, in ⟨r⟩ Ω
+  TimedSteps timed;                ///< in whole kick intervals
 };
 
-/// Each repeat goes on where the one before it stopped. Throws what Simulation throws.
+/// Throws UsageError for a snapshot whose scene has no gravity, and what read_snapshot(), patch_from_snapshot() and
+/// Simulation throw.
 StepBench bench_step(const StepBenchSettings& settings);
 
 } // namespace keeler

@@ -12,7 +12,7 @@ namespace keeler {
 /// A distribution of radii (m).
 struct SizeLaw {
   double smallest = 0.0, largest = 0.0;
-  std::size_t listed = 0;                  ///< radii in a list that is drawn in turn; 0 for a continuous law
+  std::size_t listed = 0;                  ///< radii in a list or a table; 0 for a continuous law
   std::function<double(int k)> mean_power; ///< ⟨r^k⟩
   /// Radius of particle k, at the quantile u in (0, 1).
   std::function<double(double u, std::size_t k)> radius;
@@ -25,6 +25,10 @@ SizeLaw power_sizes(double exponent, double min, double max);
 
 /// The radii of a list, drawn in turn: particle k has the (k mod length)-th one.
 SizeLaw listed_sizes(std::vector<double> radii);
+
+/// A table of radii, each with the number of particles that have it, above 0, in proportion: of as many particles as
+/// the table has in all, and of nearly as many, each row has its number. At least one row.
+SizeLaw tabulated_sizes(NumberRows table);
 
 /// Radii (m) of particles 0 … count−1: the quantiles of the law at jittered even spacing, in an order shuffled by id,
 /// so that even a small sample has the law's moments. Same seed, same radii.

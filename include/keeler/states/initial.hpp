@@ -18,6 +18,8 @@ Patch initial_patch(const Scene& scene, const std::function<void(const StartProg
 /// The patch of a snapshot, made the start of a run of this scene: the scene's frequencies, its own box, time zero.
 /// Throws IoError; UsageError when it was made at another place; InvariantError for a particle that no ring has, named.
 Patch patch_from_snapshot(const std::string& path, const Scene& scene);
+/// The same of a snapshot that has been read; `path` stands for it in messages.
+Patch patch_from_snapshot(Patch patch, const std::string& path, const Scene& scene);
 
 /// How large a patch is, for the doubts about it.
 PatchScale scale_of(const Patch& patch);

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace keeler;
@@ -33,4 +34,22 @@ TEST_CASE("equal sizes are exactly equal, listed sizes are used in turn") {
     sum += r;
   CHECK(sum == 150.0);
   CHECK(listed.largest == 2.0);
+}
+
+TEST_CASE("of tabulated sizes each has its number, and its share of any other number") {
+  const SizeLaw law = tabulated_sizes({{30.0, 1}, {1.0, 19989}, {2.0, 10}});
+  CHECK(law.smallest == 1.0);
+  CHECK(law.largest == 30.0);
+  CHECK(law.mean_power(2) == doctest::Approx((900.0 + 19989.0 + 40.0) / 20000.0).epsilon(1e-12));
+  const auto number_of = [&](double radius, std::size_t count, std::uint64_t seed) {
+    const std::vector<double> radii = draw_radii(law, count, seed);
+    return std::count(radii.begin(), radii.end(), radius);
+  };
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    for (const std::size_t count : {19998, 20000, 20003})
+      CHECK(number_of(30.0, count, seed) == 1);
+    CHECK(number_of(2.0, 20000, seed) == 10);
+    CHECK(number_of(30.0, 80000, seed) == 4);
+    CHECK(number_of(2.0, 10000, seed) == 5);
+  }
 }

@@ -94,6 +94,7 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
                                           "particles.sizes.law",
                                           "particles.sizes.radius",
                                           "particles.sizes.path",
+                                          "particles.sizes.table",
                                           "collisions.restitution.law",
                                           "collisions.restitution.value",
                                           "collisions.restitution.table",

@@ -162,6 +162,22 @@ TEST_CASE("a stored scene needs no file that only the start needed") {
   CHECK_THROWS_AS(parse_stored_scene("[planet]\n", "s.h5"), UsageError);
 }
 
+TEST_CASE("radii come from a table in the scene") {
+  const auto with = [](const std::string& table) {
+    return parse_scene(
+        changed(least, "{ law = \"equal\", radius = 1.0 }", "{ law = \"table\", table = " + table + " }"), "s.toml");
+  };
+  const Scene scene = with("[[10.0, 1], [1.0, 99]]");
+  CHECK(scene.particles.sizes.radius(0.005, 0) == 10.0);
+  CHECK(scene.particles.sizes.radius(0.015, 0) == 1.0);
+  CHECK(parse_scene(scene.resolved, "s.toml").particles.sizes.mean_power(2) == doctest::Approx(1.99));
+  CHECK_THROWS_WITH_AS(with("[[30.0, 1], [1e7, 99]]"), doctest::Contains("the radius 2 is 10000000 m (it must be from"),
+                       UsageError);
+  CHECK_THROWS_AS(with("[[30.0, 0]]"), UsageError);
+  CHECK_THROWS_AS(with("[[30.0]]"), UsageError);
+  CHECK_THROWS_WITH_AS(with("[]"), doctest::Contains("particles.sizes"), UsageError);
+}
+
 TEST_CASE("radii come from a file beside the scene") {
   const auto folder = std::filesystem::temp_directory_path() / "keeler_test_scene_radii";
   std::filesystem::create_directories(folder);

@@ -1,0 +1,139 @@
+#include <keeler/bench/timed_steps.hpp>
+
+#include <keeler/bench/median.hpp>
+#include <keeler/bench/yardsticks.hpp>
+#include <keeler/core/threads.hpp>
+
+#include <algorithm>
+
+namespace keeler {
+namespace {
+
+constexpr int untimed_steps = 10;
+constexpr double least_steps = 20.0;  // in each repeat: more than a window
+constexpr double enough_passes = 4e6; // particles × steps in each repeat
+
+// All clocks of a run as they stand, s.
+struct Clocks {
+  double whole = bench_seconds(), wall = wall_seconds();
+  double drift, advance, gravity, kick;
+  double build, reject, solve, events;
+
+  explicit Clocks(Simulation& simulation) {
+    const TimeSplit& split = simulation.time_split();
+    const DriftCosts costs = simulation.drift().costs();
+    drift = split.drift - split.advance;
+    advance = split.advance;
+    gravity = -split.kick;
+    for (const auto& [name, seconds] : split.forces)
+      gravity += seconds;
+    kick = split.kick;
+    build = costs.build, reject = costs.reject, solve = costs.solve, events = costs.events;
+  }
+};
+
+using Clock = double Clocks::*;
+
+struct Lap {
+  Clocks before, after;
+
+  double seconds(Clock clock) const { return after.*clock - before.*clock; }
+};
+
+Lap run(Simulation& simulation, int steps) {
+  const Clocks before(simulation);
+  for (int k = 0; k < steps; ++k)
+    simulation.advance();
+  return {before, Clocks(simulation)};
+}
+
+// What several threads gain over one, lap by lap of the same run.
+struct Gains {
+  std::vector<double> step, drift, events, gravity, pair;
+
+  void compare(Simulation& simulation, const Lap& several, double pair_ns, int steps) {
+    const int count = threads();
+    set_threads(1);
+    const Lap one = run(simulation, steps);
+    const auto gain = [&](Clock clock) {
+      return several.seconds(clock) > 0.0 ? one.seconds(clock) / several.seconds(clock) : 1.0;
+    };
+    step.push_back(gain(&Clocks::wall));
+    drift.push_back(gain(&Clocks::drift));
+    events.push_back(gain(&Clocks::events));
+    gravity.push_back(gain(&Clocks::gravity));
+    pair.push_back(pair_yardstick(wall_seconds) / pair_ns);
+    set_threads(count);
+  }
+
+  Speedups medians() const { return {median(step), median(drift), median(events), median(gravity), median(pair)}; }
+};
+
+void take_times(const std::vector<Lap>& laps, TimedSteps& timed) {
+  const auto ns = [&](Clock clock) {
+    std::vector<double> seconds;
+    for (const Lap& lap : laps)
+      seconds.push_back(lap.seconds(clock));
+    return 1e9 * median(seconds) / (static_cast<double>(timed.count) * timed.steps);
+  };
+  timed.ns_per_particle_step = ns(&Clocks::whole);
+  timed.split = {ns(&Clocks::drift), ns(&Clocks::advance), ns(&Clocks::gravity), ns(&Clocks::kick)};
+  timed.drift_split = {ns(&Clocks::build), ns(&Clocks::reject), ns(&Clocks::solve), ns(&Clocks::events)};
+}
+
+// All counts of a run as they stand.
+struct Counts {
+  CollisionTally tally;
+  DriftCosts costs;
+
+  explicit Counts(Simulation& simulation) : tally(simulation.state().collisions), costs(simulation.drift().costs()) {}
+};
+
+void add_counts(const Counts& before, const Counts& after, TimedSteps& timed) {
+  timed.collisions += after.tally.fast - before.tally.fast;
+  timed.contacts += after.tally.fast + after.tally.slow - before.tally.fast - before.tally.slow;
+  timed.recontacts += after.costs.recontacts - before.costs.recontacts;
+  timed.conflicts += after.costs.conflicts - before.costs.conflicts;
+  timed.repairs += after.costs.repairs - before.costs.repairs;
+  timed.windows += after.costs.windows - before.costs.windows;
+  timed.pairs_tested += after.costs.pairs_tested - before.costs.pairs_tested;
+  timed.survivors += after.costs.survivors - before.costs.survivors;
+  timed.widest_list = after.costs.widest_list;
+  timed.bytes_per_particle = after.costs.bytes_per_particle;
+}
+
+} // namespace
+
+double steps_worth_timing(std::size_t count, double most) {
+  return std::clamp(enough_passes / static_cast<double>(count), least_steps, std::max(least_steps, most));
+}
+
+TimedSteps time_steps(Simulation& simulation, int steps, int repeats, int kick_every, PhaseProgress& progress) {
+  TimedSteps timed;
+  timed.count = simulation.state().particles.size();
+  timed.steps = steps;
+  timed.repeats = repeats;
+  progress.begin("timing", repeats);
+  run(simulation, (untimed_steps + kick_every - 1) / kick_every * kick_every);
+  MemoryYardstick memory(timed.count);
+  std::vector<double> line, pair;
+  std::vector<Lap> laps;
+  Gains gains;
+  for (int repeat = 0; repeat < repeats; ++repeat) {
+    line.push_back(memory.measure());
+    pair.push_back(pair_yardstick());
+    const Counts before(simulation);
+    laps.push_back(run(simulation, steps));
+    add_counts(before, Counts(simulation), timed);
+    if (threads() > 1)
+      gains.compare(simulation, laps.back(), pair.back(), steps);
+    progress.add(1.0);
+  }
+  take_times(laps, timed);
+  timed.yardsticks = {median(line), median(pair)};
+  if (threads() > 1)
+    timed.speedup = gains.medians();
+  return timed;
+}
+
+} // namespace keeler
