@@ -8,6 +8,7 @@
 
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/words.hpp>
+#include <keeler/files/files.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/states/clumped.hpp>
 #include <keeler/states/initial.hpp>
@@ -16,8 +17,6 @@
 
 #include <filesystem>
 #include <memory>
-
-#include <unistd.h>
 
 namespace keeler {
 namespace {
@@ -35,14 +34,6 @@ void refuse_if_taken(const GenerateOptions& options) {
   if (std::filesystem::exists(options.output) && !options.force)
     throw UsageError(fmt::format("'{}' exists already (a state is never overwritten); name another file or add --force",
                                  options.output));
-}
-
-// Before minutes are spent on a state that cannot be written.
-void require_folder(const std::string& output) {
-  const std::filesystem::path folder = std::filesystem::absolute(output).parent_path();
-  if (!std::filesystem::is_directory(folder) || access(folder.c_str(), W_OK) != 0)
-    throw IoError(fmt::format("cannot write '{}': '{}' is no folder that can be written to; make it, or name another",
-                              output, folder.string()));
 }
 
 // Signals are heeded at once: there is nothing that could be kept.
@@ -87,7 +78,7 @@ ExitCode generate(const GenerateOptions& options, const std::vector<std::string>
   options.threads.apply();
   const Scene scene = options.scene.load();
   refuse_if_taken(options);
-  require_folder(options.output);
+  require_writable_folder(std::filesystem::absolute(options.output).parent_path(), options.output);
   SnapshotMeta meta{scene.resolved, collect_provenance(arguments)};
   Patch patch;
   if (options.clumped) {

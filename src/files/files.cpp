@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include <fcntl.h>
+#include <unistd.h>
 
 namespace keeler {
 namespace {
@@ -58,6 +59,13 @@ void write_file(const std::filesystem::path& file, std::span<const std::byte> co
 
 void write_text(const std::filesystem::path& file, std::string_view text) {
   write_file(file, std::as_bytes(std::span(text)));
+}
+
+void require_writable_folder(const std::filesystem::path& folder, const std::filesystem::path& output) {
+  std::error_code unknown; // no folder that is known of
+  if (!std::filesystem::is_directory(folder, unknown) || access(folder.c_str(), W_OK) != 0)
+    throw IoError(fmt::format("cannot write '{}': '{}' is no folder that can be written to; make it, or name another",
+                              output.string(), folder.string()));
 }
 
 std::vector<std::byte> read_file(const std::filesystem::path& file) {

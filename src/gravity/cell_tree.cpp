@@ -1,10 +1,9 @@
 #include "cell_tree.hpp"
 
-#include <keeler/core/vector.hpp>
-
 #include "single.hpp"
 
 #include <keeler/core/threads.hpp>
+#include <keeler/core/vector.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -24,8 +24,8 @@ int rings_for(int rings, double along, double across) {
 // The field changes over the distance of the far images: heights small against it need few powers. With one ring the
 // error in the plane is 1e-6 and more; with two or more it is so small that the one in height must be less as well.
 int height_degree(int rings, double relative_height) {
-  const double of_one_ring = rings == 1 ? relative_height : 4.0 * relative_height;
-  return of_one_ring < 0.05 ? 2 : of_one_ring < 0.2 ? 4 : 8;
+  const double height = rings == 1 ? relative_height : 4.0 * relative_height;
+  return height < 0.05 ? 2 : height < 0.2 ? 4 : 8;
 }
 
 PolynomialShape shape_for(int height_degree) {

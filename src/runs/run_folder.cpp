@@ -1,11 +1,11 @@
 #include "run_folder.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/files/files.hpp>
 
 #include <fmt/format.h>
 
 #include <string_view>
-#include <unistd.h>
 
 namespace keeler {
 namespace fs = std::filesystem;
@@ -52,9 +52,7 @@ void RunFolder::require_writable() const {
   std::error_code unknown;
   while (!fs::exists(nearest, unknown) && nearest != nearest.parent_path())
     nearest = nearest.parent_path();
-  if (!fs::is_directory(nearest, unknown) || access(nearest.c_str(), W_OK) != 0)
-    throw IoError(fmt::format("cannot write to '{}': '{}' is no folder that can be written to; name another",
-                              path_.string(), nearest.string()));
+  require_writable_folder(nearest, path_);
 }
 
 void RunFolder::make() const {

@@ -5,6 +5,7 @@
 #include <keeler/core/threads.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace keeler {

@@ -18,6 +18,9 @@ void write_file(const std::filesystem::path& file, std::span<const std::byte> co
 /// The same for text.
 void write_text(const std::filesystem::path& file, std::string_view text);
 
+/// Before work whose result goes to `output`: throws IoError unless this is a folder that can be written to.
+void require_writable_folder(const std::filesystem::path& folder, const std::filesystem::path& output);
+
 /// All bytes of a file. Throws IoError.
 std::vector<std::byte> read_file(const std::filesystem::path& file);
 std::string read_text(const std::filesystem::path& file);

@@ -38,8 +38,8 @@ struct ClumpingProgress {
 };
 
 /// Evolves the scene's initial state, by the scene's step and gravity, until its wakes have settled; the scene's end
-/// time and schedules do not matter. Same scene, same state, for any number of threads. Throws UsageError for a
-/// scene without gravity or whose wakes could not be seen, Error (run_time) when they do not settle, Interrupted
+/// time and schedules do not matter. Same scene, same state, for any number of threads. Throws UsageError for a scene
+/// without gravity or whose wakes could not be seen, Error (run_time) when they do not settle, Interrupted
 /// (interrupt.hpp), and what initial_patch() and Simulation throw.
 ClumpedState clumped_state(const Scene& scene, const std::function<void(const ClumpingProgress&)>& progress = {});
 

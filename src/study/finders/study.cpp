@@ -7,10 +7,13 @@
 
 #include <keeler/bench/median.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/interrupt.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/runs/folder_lock.hpp>
 
 #include <fmt/format.h>
+
+#include <optional>
 
 namespace keeler {
 namespace {
@@ -177,6 +180,17 @@ void announce(const std::vector<Job>& jobs, std::size_t left, const std::functio
                   jobs.size() - left, std::ceil(cost / 60e9)));
 }
 
+// A state that is half made is of no use: its making is interrupted at once.
+std::optional<std::vector<StudyState>> states_unless_stopped(const FinderStudySettings& settings, const Plan& plan,
+                                                             const std::atomic<bool>& stop) {
+  try {
+    const Interruptible by_stop(stop);
+    return study_states(settings.folder / "states", plan.count, settings.notice);
+  } catch (const Interrupted&) {
+    return std::nullopt;
+  }
+}
+
 } // namespace
 
 std::string job_name(const std::string& kind, const std::string& state, double step, const std::string& finder,
@@ -215,11 +229,10 @@ bool study_finders(const FinderStudySettings& settings, const std::atomic<bool>&
   const std::map<std::string, std::string> made = study_builder(settings.arguments);
   const Json begun = open_study_folder(settings.folder, options_of(plan), made);
   const FolderLock lock(settings.folder);
-  const std::vector<StudyState> states = [&] {
-    const Interruptible by_stop(stop); // a state that is half made is of no use
-    return study_states(settings.folder / "states", plan.count, settings.notice);
-  }();
-  const std::vector<Job> jobs = Jobs(states, plan).all();
+  const std::optional<std::vector<StudyState>> states = states_unless_stopped(settings, plan, stop);
+  if (!states)
+    return false;
+  const std::vector<Job> jobs = Jobs(*states, plan).all();
   JobList list(settings.folder / "measurements.jsonl");
   const std::size_t left = missing(jobs, list);
   require_same_build(begun, made, jobs, list, settings.folder);
@@ -233,7 +246,7 @@ bool study_finders(const FinderStudySettings& settings, const std::atomic<bool>&
   if (!finished)
     return false;
 
-  FinderStudyData data{settings.folder, states, plan.steps, 1e-3, plan.repeats, plan.shares, list.results(), made};
+  FinderStudyData data{settings.folder, *states, plan.steps, 1e-3, plan.repeats, plan.shares, list.results(), made};
   for (auto& [key, value] : data.made)
     value = begun.value(key, value);
   write_finder_tables(data);

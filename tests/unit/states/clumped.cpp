@@ -2,6 +2,7 @@
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/interrupt.hpp>
 #include <keeler/core/threads.hpp>
 
 #include <doctest/doctest.h>

@@ -26,8 +26,7 @@ struct FinderStudySettings {
   std::function<void(const Progress&)> progress;
 };
 
-/// Carries out what is missing and writes the report. Returns false, or throws
-/// Interrupted where states are being made, when `stop` was set: the folder can be continued.
+/// Carries out what is missing and writes the report. Returns false when `stop` was set: the folder can be continued.
 /// Throws UsageError when the folder holds a study of other settings, IoError.
 bool study_finders(const FinderStudySettings& settings, const std::atomic<bool>& stop);
 
