@@ -20,8 +20,8 @@ MonotonePair monotone_pair(const Query& q, const Body& low, const Body& high) {
 
 MonotoneStep monotone_step(const DriftStep& step) {
   const Frequencies& f = step.frequencies;
-  return {f.kappa,    f.nu,     f.shear(),
-          step.begin, step.end, std::max(f.kappa, f.nu) * std::max(std::fabs(step.begin), std::fabs(step.end))};
+  const double largest_angle = std::max(f.kappa, f.nu) * std::max(std::fabs(step.begin), std::fabs(step.end));
+  return {f.kappa, f.nu, f.shear(), 2.0 / f.kappa, step.begin, step.end, largest_angle};
 }
 
 FinderExit finder_exit(MonotoneExit exit) {

@@ -23,7 +23,8 @@ struct MonotonePair {
 
 /// A step, and what follows from its frequencies.
 struct MonotoneStep {
-  double kappa, nu, shear, begin, end;
+  double kappa, nu, shear, two_over_kappa;
+  double begin, end;
   double largest_angle; ///< of a rotation within the step, rad: it decides how many terms a sine needs
 };
 

@@ -66,7 +66,7 @@ template<class Terms> inline Moment at(const PairElements& p, const MonotoneStep
   const Reals ic = p.i_cos - (p.i_cos * versine + p.i_sin * sine);
   const Reals drift = step.shear * p.guiding_x;
   Moment m;
-  m.dx = p.guiding_x - ec, m.dy = p.guiding_y - drift * time + (2.0 / step.kappa) * es, m.dz = is;
+  m.dx = p.guiding_x - ec, m.dy = p.guiding_y - drift * time + step.two_over_kappa * es, m.dz = is;
   m.vx = step.kappa * es, m.vy = 2.0 * ec - drift, m.vz = step.nu * ic;
   m.ax = (step.kappa * step.kappa) * ec, m.ay = (-2.0 * step.kappa) * es, m.az = -(step.nu * step.nu) * is;
   m.distance2 = m.dx * m.dx + m.dy * m.dy + m.dz * m.dz;
@@ -75,7 +75,7 @@ template<class Terms> inline Moment at(const PairElements& p, const MonotoneStep
   return m;
 }
 
-// What holds from the start to the end of the step.
+// What holds from the start of the search to its horizon.
 struct Bounds {
   Reals span;
   Reals contact;         // gap_error at contact: |f| no larger is contact
@@ -86,17 +86,17 @@ struct Bounds {
   Reals rise;            // f′ falls no faster backward in time than at this rate
 };
 
-inline Bounds bounds(const PairElements& p, const MonotoneStep& step, const Moment& first, Reals curvature,
-                     Reals third) {
+inline Bounds bounds(const PairElements& p, const MonotoneStep& step, const Moment& first, Reals curvature, Reals third,
+                     Reals horizon) {
   const double k2 = step.kappa * step.kappa, n2 = step.nu * step.nu;
   const double fastest = step.kappa > step.nu ? step.kappa : step.nu;
   const Reals e2 = p.e_cos * p.e_cos + p.e_sin * p.e_sin, i2 = p.i_sin * p.i_sin + p.i_cos * p.i_cos;
   const Reals acceleration = up * square_root((4.0 * k2) * e2 + (n2 * n2) * i2);
-  const Reals scale =
-      square_root(larger(larger(p.guiding_x * p.guiding_x, p.guiding_y * p.guiding_y), larger((4.0 / k2) * e2, i2)));
+  const Reals scale = square_root(larger(larger(p.guiding_x * p.guiding_x, p.guiding_y * p.guiding_y),
+                                         larger((step.two_over_kappa * step.two_over_kappa) * e2, i2)));
   const Reals speed_scale = (step.shear + step.kappa + step.nu) * scale; // |v| is no larger at any time
   Bounds b;
-  b.span = up * (step.end - p.start);
+  b.span = up * (horizon - p.start);
   const Reals speed = up * square_root(first.vx * first.vx + first.vy * first.vy + first.vz * first.vz) +
                       1e-14 * speed_scale + acceleration * b.span;
   const Reals distance = up * square_root(first.distance2) + 1e-14 * scale + speed * b.span;
@@ -130,12 +130,19 @@ inline Masks stays_apart(const Moment& first, const Bounds& b) {
   return ((m > 0.0) & nowhere_zero) | (least_at_ends & ends_apart);
 }
 
-// Where a parabola with the acceleration of the start has its first root, moved by the change of the acceleration.
-inline Reals first_guess(const Moment& first, const Bounds& b, Reals half_curvature, Reals third) {
-  const Reals above = first.gap - 0.5 * b.contact;
-  const Reals root = square_root(larger(first.slope * first.slope - 4.0 * half_curvature * above, Reals{}));
-  const Reals after = 2.0 * above / (root - first.slope);
-  return after + third * (after * after * after) / (6.0 * root);
+// How long after the start a parabola with the acceleration of the start has its first root, moved by the change of the
+// acceleration. Not a number when there is none.
+inline Reals first_guess(const Moment& first, Reals half_curvature, Reals third) {
+  const Reals square = first.slope * first.slope - 4.0 * half_curvature * first.gap;
+  const Reals root = square_root(larger(square, Reals{}));
+  const Reals after = 2.0 * first.gap / (root - first.slope);
+  return after * (1.0 + third * (after * after) / (6.0 * root));
+}
+
+// Bounds are tighter the nearer they need to hold: a little beyond the guess where there is one in the span.
+inline Reals horizon_of(const PairElements& p, const MonotoneStep& step, Reals guess) {
+  const Reals beyond = p.start + 1.25 * guess, end = all(step.end);
+  return ((guess > 0.0) & (beyond < end)) ? beyond : end;
 }
 
 struct Verdicts {
@@ -152,31 +159,35 @@ template<class Terms>
 inline void find_with(const PairElements& p, const MonotoneStep& step, Verdicts& verdicts, Reals& evaluations) {
   const Moment first = at<Terms>(p, step, p.start);
   const Reals half_curvature = first.half_curvature(), third = first.third(step);
-  const Bounds b = bounds(p, step, first, 2.0 * half_curvature, third);
+  const Reals guess = first_guess(first, half_curvature, third), horizon = horizon_of(p, step, guess);
+  const Bounds b = bounds(p, step, first, 2.0 * half_curvature, third, horizon);
+  const Masks to_the_end = horizon == step.end;
   verdicts.open =
       (first.gap - first.gap == 0.0) & (first.slope - first.slope == 0.0) & (b.span > 0.0) & (p.start >= step.begin);
   evaluations = all(1.0);
   verdicts.time = p.start;
-  verdicts.settle((first.gap <= b.contact) & (first.slope < 0.0), MonotoneExit::overlapping);
-  verdicts.settle(recedes(first, b), MonotoneExit::receding);
-  const Masks apart = stays_apart(first, b);
+  const Masks closes = first.slope + b.slope < 0.0;
+  verdicts.settle((first.gap <= 0.5 * b.contact) & closes, MonotoneExit::overlapping);
+  verdicts.settle(to_the_end & recedes(first, b), MonotoneExit::receding);
+  const Masks apart = to_the_end & stays_apart(first, b);
   verdicts.settle(apart & (first.slope >= 0.0), MonotoneExit::receding);
   verdicts.settle(apart, MonotoneExit::missed);
-  verdicts.open = verdicts.open & (first.gap > b.contact) & (first.slope < 0.0);
+  verdicts.open = verdicts.open & (first.gap > 1.5 * b.contact) & closes; // within rounding of either: undecided
   if (!any(verdicts.open))
     return;
 
-  const Reals target = 0.5 * b.contact, end = all(step.end);
-  Reals t = p.start + first_guess(first, b, half_curvature, third);
+  const Reals target = 0.5 * b.contact;
+  Reals t = p.start + guess;
   for (int pass = 0; pass < most_passes; ++pass) {
     verdicts.open = verdicts.open & (t > p.start);
     if (!any(verdicts.open))
       return;
-    t = smaller(t, end);
+    t = smaller(t, horizon);
     evaluations = evaluations + (verdicts.open ? all(1.0) : Reals{});
     const Moment now = at<Terms>(p, step, t);
     const Masks falls = now.slope + b.slope + b.rise * (t - p.start) < 0.0;
-    verdicts.settle((t == end) & (now.gap > b.gap) & falls, MonotoneExit::missed);
+    verdicts.open = verdicts.open & falls;
+    verdicts.settle((t == step.end) & (now.gap > b.gap), MonotoneExit::missed);
 
     // the root, by the tangent and the curvature; how far f is from its target there, and its slope there
     const Reals above = now.gap - target, inverse = 1.0 / now.slope, k = now.half_curvature();
@@ -187,7 +198,7 @@ inline void find_with(const PairElements& p, const MonotoneStep& step, Verdicts&
                       square * (b.third * distance * (1.0 / 6.0) + b.curvature_error);
     const Reals slope = now.slope + 2.0 * k * step_on + square * (0.5 * b.third) + b.curvature_error * distance;
     const Masks falls_until_next = slope + b.slope + b.rise * (next - p.start) < 0.0;
-    const Masks found = (off <= 0.25 * b.contact) & falls_until_next & (next > p.start) & (next < end);
+    const Masks found = (off <= 0.25 * b.contact) & falls_until_next & (next > p.start) & (next < horizon);
     verdicts.time = (verdicts.open & found) ? next : verdicts.time;
     verdicts.settle(found, MonotoneExit::hit);
     t = next;
