@@ -6,16 +6,19 @@
 #include "monotone_newton.hpp"
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 
 namespace keeler {
 namespace {
 
-// The kernels read a body as eight numbers.
+// The kernels read a body as eight numbers, and three of a query.
 static_assert(offsetof(Body, elements) == 0 && offsetof(Body, radius) == 6 * sizeof(double));
+static_assert(offsetof(Query, shift_y) == offsetof(Query, shift_x) + sizeof(double) &&
+              offsetof(Query, start) == offsetof(Query, shift_x) + 2 * sizeof(double));
 
 MonotonePair monotone_pair(const Query& q, const Body& low, const Body& high) {
-  return {q.shift_x, q.shift_y, q.start, &low.elements.guiding_x, &high.elements.guiding_x};
+  return {&low.elements.guiding_x, &high.elements.guiding_x, &q.shift_x};
 }
 
 MonotoneStep monotone_step(const DriftStep& step) {
@@ -24,17 +27,15 @@ MonotoneStep monotone_step(const DriftStep& step) {
   return {f.kappa, f.nu, f.shear(), 2.0 / f.kappa, step.begin, step.end, largest_angle};
 }
 
-FinderExit finder_exit(MonotoneExit exit) {
-  switch (exit) {
-  case MonotoneExit::hit:
-    return FinderExit::hit;
-  case MonotoneExit::overlapping:
-    return FinderExit::overlapping;
-  case MonotoneExit::receding:
-    return FinderExit::receding;
-  default:
-    return FinderExit::missed;
-  }
+// Field by field: a result made elsewhere and copied is slow to read again.
+void write(const MonotoneAnswer& answer, FinderResult& result) {
+  constexpr FinderExit exits[] = {FinderExit::gave_up, FinderExit::hit, FinderExit::overlapping, FinderExit::receding,
+                                  FinderExit::missed}; // in the order of MonotoneExit
+  result.exit = exits[static_cast<std::size_t>(answer.exit)];
+  result.time = result.contact() ? answer.time : 0.0;
+  result.iterations = answer.evaluations - 1;
+  result.evaluations = answer.evaluations;
+  result.halvings = 0;
 }
 
 class CertifiedFinder final : public Finder {
@@ -65,10 +66,13 @@ public:
     const MonotonePair pair = monotone_pair(query, low, high);
     MonotoneAnswer answer;
     one_.find(&pair, monotone_step_, &answer);
-    return result_of(answer, query, low, high);
+    FinderResult result;
+    finish(answer, query, low, high, result);
+    return result;
   }
 
   void find_all(std::span<const Query> queries, std::span<FinderResult> results) const override {
+    assert(results.size() == queries.size());
     if (!served_)
       return Finder::find_all(queries, results);
     Lanes lanes;
@@ -112,23 +116,19 @@ private:
     many_.find(lanes.pairs.data(), monotone_step_, answers.data());
     for (std::size_t k = 0; k < lanes.used; ++k) {
       const Query& q = queries[lanes.places[k]];
-      results[lanes.places[k]] = result_of(answers[k], q, step_->bodies[q.low], step_->bodies[q.high]);
+      finish(answers[k], q, step_->bodies[q.low], step_->bodies[q.high], results[lanes.places[k]]);
     }
     lanes.used = 0;
   }
 
-  FinderResult result_of(const MonotoneAnswer& answer, const Query& query, const Body& low, const Body& high) const {
-    FinderResult result;
-    if (answer.exit == MonotoneExit::undecided) {
-      result = search_.find_between(query, low, high);
+  void finish(const MonotoneAnswer& answer, const Query& query, const Body& low, const Body& high,
+              FinderResult& result) const {
+    if (answer.exit != MonotoneExit::undecided) {
+      write(answer, result);
     } else {
-      result.exit = finder_exit(answer.exit);
-      result.iterations = answer.evaluations - 1;
-      if (result.contact())
-        result.time = answer.time;
+      result = search_.find_between(query, low, high);
+      result.evaluations += answer.evaluations;
     }
-    result.evaluations += answer.evaluations;
-    return result;
   }
 
   const DriftStep* step_ = nullptr;

@@ -15,10 +15,10 @@
 
 namespace keeler {
 
-/// A pair. `low` and `high` point to the eight numbers of each body (particles/store.hpp); the shift is that of `high`.
+/// A pair: the eight numbers of each body (particles/store.hpp), and the shift of `high` in x and y and the start of
+/// the search, as they follow each other in a query. Pointers, since numbers just written are slow to read as vectors.
 struct MonotonePair {
-  double shift_x, shift_y, start;
-  const double *low, *high;
+  const double *low, *high, *query;
 };
 
 /// A step, and what follows from its frequencies.

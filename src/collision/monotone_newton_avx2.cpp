@@ -30,8 +30,8 @@ inline PairElements load(const MonotonePair* pairs) {
   const __m256d radius_sign = _mm256_setr_pd(0.0, 0.0, -0.0, 0.0); // radii are added: the lower one is negated first
   __m256d front[4], back[4];
   for (std::size_t k = 0; k < lanes; ++k) {
-    const __m256d high = _mm256_load_pd(pairs[k].high),
-                  shifted = _mm256_add_pd(high, _mm256_loadu_pd(&pairs[k].shift_x));
+    const __m256d high = _mm256_load_pd(pairs[k].high);
+    const __m256d shifted = _mm256_add_pd(high, _mm256_zextpd128_pd256(_mm_loadu_pd(pairs[k].query)));
     front[k] = _mm256_sub_pd(_mm256_blend_pd(high, shifted, 0x3), _mm256_load_pd(pairs[k].low));
     back[k] =
         _mm256_sub_pd(_mm256_load_pd(pairs[k].high + 4), _mm256_xor_pd(_mm256_load_pd(pairs[k].low + 4), radius_sign));
@@ -39,7 +39,7 @@ inline PairElements load(const MonotonePair* pairs) {
   Reals column[8];
   transpose(front, column);
   transpose(back, column + 4);
-  const Reals start = {pairs[0].start, pairs[1].start, pairs[2].start, pairs[3].start};
+  const Reals start = {pairs[0].query[2], pairs[1].query[2], pairs[2].query[2], pairs[3].query[2]};
   return {column[0], column[1], column[2], column[3], column[4], column[5], column[6], start};
 }
 

@@ -41,10 +41,11 @@ inline PairElements load(const MonotonePair* pairs) {
   __m512d row[8];
   Reals start = {};
   for (std::size_t k = 0; k < lanes; ++k) {
-    const __m512d high = _mm512_load_pd(pairs[k].high), shift = _mm512_maskz_loadu_pd(0x3, &pairs[k].shift_x);
+    const __m512d high = _mm512_load_pd(pairs[k].high);
+    const __m512d shift = _mm512_zextpd128_pd512(_mm_loadu_pd(pairs[k].query));
     const __m512i low = _mm512_xor_si512(_mm512_load_si512(pairs[k].low), radius_sign); // radii are added
     row[k] = _mm512_sub_pd(_mm512_mask_add_pd(high, 0x3, high, shift), _mm512_castsi512_pd(low));
-    start[k] = pairs[k].start;
+    start[k] = pairs[k].query[2];
   }
   transpose(row);
   return {row[0], row[1], row[2], row[3], row[4], row[5], row[6], start};

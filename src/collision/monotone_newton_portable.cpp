@@ -15,15 +15,15 @@ struct PairElements {
 };
 
 inline PairElements load(const MonotonePair* pair) {
-  const double *low = pair->low, *high = pair->high;
-  return {(high[0] + pair->shift_x) - low[0],
-          (high[1] + pair->shift_y) - low[1],
+  const double *low = pair->low, *high = pair->high, *query = pair->query;
+  return {(high[0] + query[0]) - low[0],
+          (high[1] + query[1]) - low[1],
           high[2] - low[2],
           high[3] - low[3],
           high[4] - low[4],
           high[5] - low[5],
           high[6] + low[6],
-          pair->start};
+          query[2]};
 }
 
 inline Reals square_root(Reals a) {
