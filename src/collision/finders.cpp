@@ -1,9 +1,9 @@
 #include <keeler/collision/finders.hpp>
 
+#include <keeler/collision/certified_finder.hpp>
 #include <keeler/collision/motion/cubic.hpp>
 #include <keeler/collision/motion/full.hpp>
 #include <keeler/collision/motion/relative.hpp>
-#include <keeler/collision/search/certified.hpp>
 #include <keeler/collision/search/linear.hpp>
 #include <keeler/collision/search/newton.hpp>
 
@@ -14,6 +14,10 @@ template<class Motion, class Search> std::unique_ptr<Finder> make() {
   return std::make_unique<MotionSearch<Motion, Search>>();
 }
 
+std::unique_ptr<Finder> make_certified() {
+  return make_certified_finder(choose_instruction_set());
+}
+
 using OriginalNewton = NewtonSearch<NewtonForm::original>;
 using Newton = NewtonSearch<NewtonForm::damped>;
 using NewtonAsCoded = NewtonSearch<NewtonForm::as_coded>;
@@ -21,7 +25,7 @@ using Linear = LinearSearch<LinearForm::full>;
 using LinearOnCubic = LinearSearch<LinearForm::cubic>;
 
 constexpr FinderEntry table[] = {
-    {"certified", "relative epicycle, guaranteed first root", make<BoundedMotion, CertifiedSearch>},
+    {"certified", "relative epicycle, guaranteed first root", make_certified},
     {"newton-relative", "relative epicycle, damped Newton", make<RelativeMotion, Newton>},
     {"linear-relative", "relative epicycle, straight-line guesses", make<RelativeMotion, Linear>},
     {"original", "own epicycles, Newton steps of half length", make<FullMotion, OriginalNewton>},

@@ -107,6 +107,13 @@ public:
   /// A contact's time lies in [query.start, end of the step): a root elsewhere is reported as `outside`.
   virtual FinderResult find(const Query& query) const = 0;
 
+  /// The answers of find() to many queries, to the bit, in their order.
+  virtual void find_all(std::span<const Query> queries, std::span<FinderResult> results) const {
+    assert(results.size() == queries.size());
+    for (std::size_t k = 0; k < queries.size(); ++k)
+      results[k] = find(queries[k]);
+  }
+
   /// Whether the finder keeps nothing for each particle, never gives up and never errs. Only such a one may be asked
   /// about orbits that are not those of the step, by several threads.
   virtual bool exact() const { return false; }

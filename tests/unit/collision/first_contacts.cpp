@@ -3,6 +3,7 @@
 #include <keeler/collision/finders.hpp>
 #include <keeler/collision/motion/relative.hpp>
 
+#include "unit/collision/allowance.hpp"
 #include "unit/collision/bernstein_twin.hpp"
 #include "unit/collision/random_pairs.hpp"
 
@@ -17,36 +18,6 @@ using namespace keeler;
 using namespace keeler::test;
 
 namespace {
-
-constexpr Real unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
-
-// What rounding may do to a pair's f = |d|² − R² and to f′ near contact.
-//
-// δ is the finder's own allowance for f as evaluated (gap_error in motion/relative.hpp) at |d| = R, with 2R c for the
-// rounding c of the coordinates of an image, which precedes all motion. The search may let f sink by δ beyond an
-// evaluation that is itself wrong by δ, and by one more δ for every 1024 passes: 2 δ (1 + passes/1024). Time is a
-// double too: f′ times half its spacing.
-struct Allowance {
-  Real gap, closing, image;
-
-  Allowance(const PairCase& c, const BernsteinTwin& twin, Real reach) {
-    const Elements& hi = c.bodies[1].elements;
-    const bool shifted = c.query.shift_x != 0.0 || c.query.shift_y != 0.0;
-    const Real x = hi.guiding_x + c.query.shift_x, y = hi.guiding_y + c.query.shift_y, s = c.frequencies.shear();
-    image = shifted ? unit_roundoff * (std::fabs(x) * (1 + s * c.end) + std::fabs(y)) : 0;
-    const Real image_speed = shifted ? unit_roundoff * s * std::fabs(x) : 0;
-    gap = gap_error(reach, reach, twin) + 2 * reach * image;
-    closing =
-        closing_error(reach, twin.largest_speed(), twin) + 2 * (reach * image_speed + twin.largest_speed() * image);
-  }
-
-  static Real gap_error(Real distance, Real reach, const BernsteinTwin& twin) {
-    return 8 * unit_roundoff * (distance * distance + reach * reach + 4 * distance * twin.scale());
-  }
-  static Real closing_error(Real distance, Real speed, const BernsteinTwin& twin) {
-    return 64 * unit_roundoff * (distance * speed + distance * twin.largest_speed() + speed * twin.scale());
-  }
-};
 
 struct Tally {
   std::uint64_t pairs = 0, hits = 0, overlapping = 0, searched_misses = 0, rejected = 0;
