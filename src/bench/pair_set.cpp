@@ -7,7 +7,10 @@
 namespace keeler {
 namespace {
 
-struct Recorder : DriftWatch {
+struct Recorder : DriftObserver {
+  explicit Recorder(bool every_candidate) : every_candidate_(every_candidate) {}
+  bool wants_every_candidate() const override { return every_candidate_; }
+
   std::vector<Query> queries;
   const DriftStep* step = nullptr;
   bool before_events = true;
@@ -18,6 +21,9 @@ struct Recorder : DriftWatch {
       queries.push_back(query);
   }
   void collided(const CollisionRecord&) override { before_events = false; }
+
+private:
+  bool every_candidate_;
 };
 
 Separation separation(const Pair& pair, const Frequencies& f, double time) {
@@ -41,9 +47,8 @@ PairSet PairSet::of(Particles particles, const ShearingBox& box, double offset, 
                     const Frequencies& frequencies, double step, bool every_candidate) {
   const std::vector<Body> before = particles.bodies;
   DriftPhase drift(settings, frequencies, 1.0, step);
-  Recorder recorder;
-  drift.watch = &recorder;
-  drift.every_candidate = every_candidate;
+  Recorder recorder(every_candidate);
+  drift.observe(&recorder);
   CollisionTally tally;
   drift.collide(particles, box, offset, tally);
   PairSet set(*recorder.step);

@@ -10,7 +10,7 @@ namespace keeler {
 namespace {
 
 constexpr int untimed_steps = 10;
-constexpr double least_steps = 20.0;  // in each repeat: more than a window
+constexpr double least_steps = 20.0;  // in each repeat: more than two windows of the drift
 constexpr double enough_passes = 4e6; // particles × steps in each repeat
 
 // All clocks of a run as they stand, s.
@@ -93,9 +93,11 @@ void add_counts(const Counts& before, const Counts& after, TimedSteps& timed) {
   timed.collisions += after.tally.fast - before.tally.fast;
   timed.contacts += after.tally.fast + after.tally.slow - before.tally.fast - before.tally.slow;
   timed.recontacts += after.costs.recontacts - before.costs.recontacts;
-  timed.conflicts += after.costs.conflicts - before.costs.conflicts;
-  timed.repairs += after.costs.repairs - before.costs.repairs;
-  timed.windows += after.costs.windows - before.costs.windows;
+  timed.lists_made += after.costs.lists_made - before.costs.lists_made;
+  timed.listed_anew += after.costs.listed_anew - before.costs.listed_anew;
+  timed.deferred += after.costs.deferred - before.costs.deferred;
+  timed.in_sequence += after.costs.in_sequence - before.costs.in_sequence;
+  timed.rolled_back += after.costs.rolled_back - before.costs.rolled_back;
   timed.pairs_tested += after.costs.pairs_tested - before.costs.pairs_tested;
   timed.survivors += after.costs.survivors - before.costs.survivors;
   timed.widest_list = after.costs.widest_list;

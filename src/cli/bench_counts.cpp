@@ -11,9 +11,11 @@ void add_drift_counts(nlohmann::ordered_json& json, const TimedSteps& timed) {
   json["survivors_per_particle"] = timed.per_particle_step(timed.survivors);
   json["contacts"] = timed.contacts;
   json["recontacts"] = timed.recontacts;
-  json["windows"] = timed.windows;
-  json["conflicts"] = timed.conflicts;
-  json["repairs"] = timed.repairs;
+  json["lists_made"] = timed.lists_made;
+  json["listed_anew"] = timed.listed_anew;
+  json["deferred"] = timed.deferred;
+  json["in_sequence"] = timed.in_sequence;
+  json["rolled_back"] = timed.rolled_back;
   json["widest_list"] = timed.widest_list;
   json["bytes_per_particle"] = timed.bytes_per_particle;
   json["yardsticks"] = {{"line_ns", timed.yardsticks.line_ns}, {"pair_ns", timed.yardsticks.pair_ns}};

@@ -5,6 +5,7 @@
 
 #include "monotone_newton.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cstddef>
@@ -41,7 +42,8 @@ void write(const MonotoneAnswer& answer, FinderResult& result) {
 class CertifiedFinder final : public Finder {
 public:
   explicit CertifiedFinder(InstructionSet set)
-      : one_(monotone_newton(InstructionSet::portable)), many_(monotone_newton(set)) {}
+      : one_(monotone_newton(InstructionSet::portable)), few_(monotone_newton(std::min(set, InstructionSet::avx2))),
+        many_(monotone_newton(set)) {}
 
   void begin(const DriftStep& step) override {
     step_ = &step;
@@ -110,10 +112,11 @@ private:
   }
 
   void find_in(Lanes& lanes, std::span<const Query> queries, std::span<FinderResult> results) const {
-    for (std::size_t k = lanes.used; k < many_.lanes; ++k)
+    const MonotoneNewton& kernel = lanes.used == 1 ? one_ : lanes.used <= few_.lanes ? few_ : many_; // the same bits
+    for (std::size_t k = lanes.used; k < kernel.lanes; ++k)
       lanes.pairs[k] = lanes.pairs[0];
     std::array<MonotoneAnswer, most_lanes> answers;
-    many_.find(lanes.pairs.data(), monotone_step_, answers.data());
+    kernel.find(lanes.pairs.data(), monotone_step_, answers.data());
     for (std::size_t k = 0; k < lanes.used; ++k) {
       const Query& q = queries[lanes.places[k]];
       finish(answers[k], q, step_->bodies[q.low], step_->bodies[q.high], results[lanes.places[k]]);
@@ -133,8 +136,8 @@ private:
 
   const DriftStep* step_ = nullptr;
   MonotoneStep monotone_step_ = {};
-  bool served_ = false; // by Newton's method: its series and bounds hold in this step
-  MonotoneNewton one_, many_;
+  bool served_ = false;             // by Newton's method: its series and bounds hold in this step
+  MonotoneNewton one_, few_, many_; // for so many pairs
   MotionSearch<BoundedMotion, CertifiedSearch> search_;
 };
 

@@ -6,11 +6,14 @@
 // has
 //   const Body& body(place)      std::uint32_t stamp(place)      double last_change(place)      as they are now
 //   bool is_due(event)           whether it still holds, and is for this loop to carry out
+//   std::span<const std::uint32_t> to_search_again()       who has got back an earlier orbit because of that
 //   void change(place, elements, time)                                     a new orbit from that time on
 //   bool keeps(event)                      after both changes: false has undone it all, for somebody else to carry out
-//   double visit_partners(place, from, visit)     visit(place, image) for all that its orbit may bring into contact
-//                                     until the time returned, when the loop asks again; infinite: in the step
-//   FinderResult find(query)
+//   void visit_partners(place, from, until, visit)         visit(place, image) for all that its orbit may bring into
+//                                     contact between these times, and more
+//   bool may_look_again(place)        whether there are so many around it that it is worth while to look less far
+//   void find_all(queries, results)
+//   void prefetch_partner(place)          it will be asked about soon
 //   void prefetch(place, stage)           a contact is to come: stages 0, 1 and 2, some contacts apart
 //   void happened(const Event&, const Contact&)     right before the changes
 #pragma once
@@ -58,7 +61,9 @@ public:
   }
 
   void change(std::size_t i, double time) { entries_[i] = {time, step_, stamp(i) + 1}; }
-  /// Undoes the last change; `time` is that of the one before.
+  /// The particle has an earlier path again, which began at that time.
+  void renew(std::size_t i, double time) { change(i, time); }
+  /// Undoes the last change, of which nobody knows; `time` is that of the one before.
   void take_back(std::size_t i, double time) { entries_[i] = {time, step_, stamp(i) - 1}; }
 
   void prefetch(std::size_t i) const { __builtin_prefetch(&entries_[i], 1); }
@@ -103,18 +108,35 @@ public:
       const Event event = events_.take_first();
       if (!orbits_.is_due(event))
         continue;
-      if (event.is_look())
-        search(event.low, event.time, nobody);
-      else
+      if (event.is_look()) {
+        look_around(event.low, event.time, nobody);
+        search();
+      } else {
         carry_out(event);
+      }
     }
+  }
+
+  /// Those whose present orbits are earlier ones again.
+  void search_again(std::span<const std::uint32_t> particles) {
+    for (const std::uint32_t i : particles)
+      look_around(i, orbits_.last_change(i), nobody);
+    if (!particles.empty())
+      search();
   }
 
   /// Of one particle in one search so far.
   std::uint64_t most_partners() const { return most_partners_; }
 
 private:
+  static constexpr std::size_t nobody = ~std::size_t{0};
   static constexpr std::uint32_t most_collisions = 100000; // of one particle in one step: an event storm, not physics
+
+  /// Whom particle i may meet, through that image of it.
+  struct Partner {
+    std::uint32_t i, j;
+    Image image;
+  };
 
   // The lower id first; `image` is that of particle j.
   Query query_of(std::size_t i, std::size_t j, const Image& image) const {
@@ -124,10 +146,9 @@ private:
             shift.y(), std::max(orbits_.last_change(i), orbits_.last_change(j))};
   }
 
-  // `image` is that of the partner of particle i.
-  Event event_of(const Query& query, double time, std::size_t i, const Image& image) const {
+  Event event_of(const Query& query, double time, const Partner& p) const {
     const std::vector<std::uint64_t>& ids = step_.particles->ids;
-    return {time,      ids[query.low], ids[query.high],          query.low == i ? image : -image,
+    return {time,      ids[query.low], ids[query.high],          query.low == p.i ? p.image : -p.image,
             query.low, query.high,     orbits_.stamp(query.low), orbits_.stamp(query.high)};
   }
 
@@ -167,7 +188,7 @@ private:
     kick(b.elements, impulse / b.mass, f, rotation);
 
     contact.fast = after.fast;
-    contact.again = event.low_stamp > 0 && event.high_stamp > 0 &&
+    contact.again = orbits_.last_change(event.low) > step_.begin &&
                     orbits_.last_change(event.low) == orbits_.last_change(event.high);
     contact.energy_lost = 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
     contact.edge_work = event.image.nx * step_.box.shear * step_.box.size_x * impulse.y();
@@ -178,8 +199,10 @@ private:
     change(event.high, b.elements, event.time);
     if (!orbits_.keeps(event))
       return;
-    search(event.low, event.time, nobody);
-    search(event.high, event.time, event.low); // the pair itself, in all its images, has been searched
+    look_around(event.low, event.time, nobody);
+    look_around(event.high, event.time, event.low); // the pair itself, in all its images, has been looked at
+    search();
+    search_again(orbits_.to_search_again());
   }
 
   void change(std::uint32_t i, const Elements& elements, double time) {
@@ -194,33 +217,64 @@ private:
     orbits_.change(i, elements, time);
   }
 
-  static constexpr std::size_t nobody = ~std::size_t{0};
-
-  void search(std::uint32_t i, double from, std::size_t except) {
+  // Whom the particle may meet from then on.
+  void look_around(std::uint32_t i, double from, std::size_t except) {
     std::uint64_t partners = 0;
-    const double until = orbits_.visit_partners(i, from, [&](std::size_t j, const Image& image) {
+    const double until = look_until(i, from);
+    orbits_.visit_partners(i, from, until, [&](std::size_t j, const Image& image) {
       ++partners;
       if (j == except)
         return;
-      const Query query = query_of(i, j, image);
-      const FinderResult result = orbits_.find(query);
-      if (result.exit == FinderExit::not_a_number)
-        throw InvariantError(fmt::format("the collision search of particles {} and {} met numbers that are not finite",
-                                         step_.particles->ids[query.low], step_.particles->ids[query.high]));
-      if (result.contact())
-        events_.add(event_of(query, result.time, i, image));
+      partners_.push_back({i, static_cast<std::uint32_t>(j), image});
+      __builtin_prefetch(&step_.particles->bodies[j]);
+      __builtin_prefetch(&step_.particles->ids[j]);
+      orbits_.prefetch_partner(j);
     });
     most_partners_ = std::max(most_partners_, partners);
-    if (until < HUGE_VAL) {
+    if (until < -step_.begin) {
       const std::uint64_t id = step_.particles->ids[i];
       events_.add({until, id, id, {}, i, i, orbits_.stamp(i), orbits_.stamp(i)});
     }
+  }
+
+  // A large body is hit so often that a search to the end of the step would be in vain but for its first part: it looks
+  // as far as it will probably not be hit, and then again.
+  double look_until(std::uint32_t i, double from) const {
+    constexpr double hits_ahead = 2.0, least_share = 1.0 / 256.0; // of the step
+    const double begin = step_.begin, end = -begin;
+    if (orbits_.stamp(i) < 2 || !orbits_.may_look_again(i))
+      return end;
+    const double ahead = hits_ahead * (from - begin) / orbits_.stamp(i);
+    return std::min(end, from + std::max(ahead, least_share * (end - begin)));
+  }
+
+  // Asks about all of them at once.
+  void search() {
+    queries_.clear();
+    for (const Partner& p : partners_)
+      queries_.push_back(query_of(p.i, p.j, p.image));
+    results_.resize(queries_.size());
+    orbits_.find_all(queries_, results_);
+    for (std::size_t k = 0; k < queries_.size(); ++k) {
+      if (results_[k].exit == FinderExit::not_a_number)
+        throw InvariantError(fmt::format("the collision search of particles {} and {} met numbers that are not finite",
+                                         step_.particles->ids[queries_[k].low],
+                                         step_.particles->ids[queries_[k].high]));
+      if (results_[k].contact())
+        events_.add(event_of(queries_[k], results_[k].time, partners_[k]));
+    }
+    partners_.clear();
   }
 
   const StepAtHand& step_;
   Orbits& orbits_;
   EventQueue& events_;
   std::uint64_t most_partners_ = 0;
+
+  // the search at hand
+  std::vector<Partner> partners_;
+  std::vector<Query> queries_; // one for each
+  std::vector<FinderResult> results_;
 };
 
 } // namespace keeler

@@ -28,11 +28,9 @@ DriftPhase::~DriftPhase() = default;
 DriftPhase::DriftPhase(DriftPhase&& other) noexcept = default;
 DriftPhase& DriftPhase::operator=(DriftPhase&& other) noexcept = default;
 
-void DriftPhase::collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally) {
-  engine_->watch = watch;
-  engine_->always_in_strips = always_in_strips;
-  engine_->every_candidate = every_candidate;
-  engine_->collide(particles, box, offset, tally);
+void DriftPhase::collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally,
+                         bool undisturbed) {
+  engine_->collide(particles, box, offset, tally, undisturbed);
 }
 
 const Finder& DriftPhase::finder() const {
@@ -43,20 +41,12 @@ DriftCosts DriftPhase::costs() const {
   return engine_->costs();
 }
 
-void DriftPhase::moved_on() {
-  engine_->neighbours().moved_on();
+void DriftPhase::release() {
+  engine_->release();
 }
 
-void DriftPhase::kicked(double largest) {
-  engine_->neighbours().kicked(largest);
-}
-
-void DriftPhase::forget() {
-  engine_->neighbours().release();
-}
-
-void DriftPhase::use(std::unique_ptr<Finder> finder) {
-  engine_->use(std::move(finder));
+void DriftPhase::observe(DriftObserver* observer) {
+  engine_->observe(observer);
 }
 
 } // namespace keeler

@@ -1,9 +1,10 @@
 // What DriftPhase is made of: everything that is kept from step to step, and how a step goes.
 #pragma once
 
-#include "crowd.hpp"
+#include "contact_loop.hpp"
 #include "grid_partners.hpp"
-#include "strips.hpp"
+#include "neighbours/neighbour_lists.hpp"
+#include "optimistic_loop.hpp"
 
 #include <keeler/collision/drift.hpp>
 
@@ -16,17 +17,15 @@ public:
   DriftEngine(const DriftEngine&) = delete;
   DriftEngine& operator=(const DriftEngine&) = delete;
 
-  void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally);
+  void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally, bool undisturbed);
   DriftCosts costs() const;
 
-  Finder& finder() { return *finder_; }
-  Neighbours& neighbours() { return neighbours_; }
-  void use(std::unique_ptr<Finder> finder) { finder_ = std::move(finder); }
-
-  // of the DriftPhase
-  DriftWatch* watch = nullptr;
-  bool always_in_strips = false;
-  bool every_candidate = false;
+  Finder& finder() const {
+    Finder* const stand_in = observer_ ? observer_->stand_in() : nullptr;
+    return stand_in ? *stand_in : *finder_;
+  }
+  void release() { lists_.release(); }
+  void observe(DriftObserver* observer) { observer_ = observer; }
 
 private:
   struct InPlace;
@@ -36,8 +35,8 @@ private:
     Image image;
   };
 
-  void prepare();
-  bool in_strips(const std::vector<Event>& first);
+  void prepare(bool undisturbed);
+  bool in_domains(const std::vector<Event>& first, CollisionTally& tally);
   void count(const Contact& contact, CollisionTally& tally);
   template<class Body> void for_each_block(const Body& body) const;
   void reject();
@@ -49,20 +48,21 @@ private:
   Frequencies frequencies_;
   double orbital_frequency_, step_;
   std::unique_ptr<Finder> finder_;
+  DriftObserver* observer_ = nullptr;
 
   // the step at hand
+  DriftObserver* watch_ = nullptr; // the observer, when it looks on
   Particles* particles_ = nullptr; // only while it goes on
   StepAtHand step_at_hand_;
   DriftStep finder_step_;
   bool through_grid_ = false;
-  Neighbours neighbours_;
+  NeighbourLists lists_;
   GridPartners grid_;
   std::vector<std::vector<Candidate>> candidates_;
   EventQueue events_;
-  Strips strips_;
+  OptimisticLoop optimistic_;
   StepSoFar so_far_;
-  Crowds crowds_;
-  std::vector<std::uint32_t> touched_; // who has changed in this step
+  std::vector<std::uint32_t> touched_; // who has been hit in the step, once each
   std::uint64_t gave_up_ = 0;
   DriftCosts costs_;
 };

@@ -14,9 +14,10 @@ namespace cost {
 constexpr double start = 4.0e3, start_depth = 3.5e3; // a particle; the latter for each unit of optical depth
 constexpr double start_mixed = 0.4;                  // the share that wide sizes add
 constexpr double advance = 5.6;                      // a particle and step
-constexpr double window = 85.0;    // a particle and window: sorting, and listing the pairs of equal spheres
-constexpr double contact = 1250.0; // with all searches; in a patch of 10⁴ particles, whose lines stay in the cache
-constexpr double kick = 20.0;      // a particle and kick
+constexpr double lists = 11.0;      // a particle and step: lines and neighbour lists of equal spheres that meet rarely
+constexpr double left_list = 230.0; // a particle's contact: new lists, since who is hit leaves its slack
+constexpr double contact = 800.0;   // with all searches; in a patch of 10⁴ particles, whose lines stay in the cache
+constexpr double kick = 20.0;       // a particle and kick
 constexpr double tree = 273.0, tree_opened = 44.5; // a particle and kick: the latter over the opening angle squared
 constexpr double mesh = 100.0, mesh_height = 75.0; // a particle and kick: the latter for each spacing of the layer's H
 constexpr double mesh_cut = 52.0;                  // a particle and kick, for each spacing that the cut spans
@@ -43,11 +44,6 @@ double size_spread(const SizeLaw& sizes) {
   return sizes.mean_power(2) / (mean * mean);
 }
 
-// Steps for which neighbours are kept: until a particle has changed its velocity 0.3 times, at most 16.
-double window_steps(double contacts_a_step) {
-  return std::clamp(0.3 / std::max(contacts_a_step, 1e-9), 1.0, 16.0);
-}
-
 double start_ns(const Scene& scene) {
   const double mixed = 1.0 + cost::start_mixed * std::min(1.0, (size_spread(scene.particles.sizes) - 1.0) / 0.15);
   return mixed * (cost::start + cost::start_depth * scene.optical_depth());
@@ -59,7 +55,7 @@ double drift_ns(const ContactRates& rates, double dilute, double count, const Sc
   // Searches see more neighbours, or go through more levels; neighbours that stand close are of the finest level.
   const double search = std::max(spread, 1.0 + 0.17 * std::log(std::max(1.0, rates.fast / dilute)));
   const double kicks = cost::kick * static_cast<double>(scene.external_forces.size());
-  return cost::advance + kicks + cost::window * spread * spread / window_steps(contacts) +
+  return cost::advance + kicks + (cost::lists + cost::left_list * std::min(contacts, 0.3)) * spread +
          cost::contact * search * cache_factor(count) * 0.5 * contacts;
 }
 

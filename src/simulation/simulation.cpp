@@ -81,9 +81,9 @@ void Simulation::advance() {
       half_kick(f);
   {
     const Stopwatch watch(split_.drift);
-    drift_.collide(state_.particles, state_.box, state_.epoch_offset(), state_.collisions);
+    drift_.collide(state_.particles, state_.box, state_.epoch_offset(), state_.collisions, undisturbed_);
     move_on();
-    drift_.moved_on();
+    undisturbed_ = true;
   }
   for (std::size_t f = 0; f < forces_.size(); ++f)
     if (kick_due(f)) {
@@ -99,7 +99,8 @@ void Simulation::sort_when_due() {
   if (state_.step % interval != 0)
     return;
   const Stopwatch watch(split_.drift);
-  drift_.forget();
+  drift_.release();
+  undisturbed_ = false;
   const std::vector<std::uint32_t> order = order_by_place(state_.particles, state_.box, state_.epoch_offset());
   reorder(state_.particles.bodies, order);
   reorder(state_.particles.ids, order);
@@ -148,9 +149,7 @@ void Simulation::half_kick(std::size_t f) {
   const Frequencies& frequencies = scene_.planet.frequencies;
   const Rotation rotation = boundary().rotation();
   const double half = 0.5 * state_.step_length * static_cast<double>(forces_[f]->kick_every());
-  const double largest =
-      largest_of(force.accelerations.size(), [&](std::size_t k) { return force.accelerations[k].squaredNorm(); });
-  drift_.kicked(half * std::sqrt(largest));
+  undisturbed_ = false;
   force.work += ordered_sum(state_.particles.size(), [&](std::size_t k) {
     state_.particles.prefetch_after(k);
     Body& body = state_.particles.bodies[k];

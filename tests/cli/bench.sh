@@ -51,7 +51,7 @@ refuses "an unknown state" "--state" bench gravity --state lumpy
 runs 0 bench step --count 100 --repeats 1 --kick-every 3 --json
 has_numbers "bench step" ns_per_particle_step drift advance gravity kick build reject solve events ns_drift_per_collision \
   ns_events_per_collision collisions_per_particle_step contacts_per_particle_step pairs_per_particle survivors_per_particle \
-  contacts windows bytes_per_particle line_ns pair_ns dispersion_r_omega kick_every count steps
+  contacts lists_made deferred bytes_per_particle line_ns pair_ns dispersion_r_omega kick_every count steps
 grep -q speedup "$work/out" && fail "bench step: a speedup on one thread in: $(cat "$work/out")"
 [ $(($(sed -nE 's/^  "steps": ([0-9]+)$/\1/p' "$work/out") % 3)) -eq 0 ] || fail "bench step: no whole kick intervals"
 refuses "no interval" "--kick-every" bench step --kick-every 0

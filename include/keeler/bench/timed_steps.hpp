@@ -20,8 +20,8 @@ struct StepSplit {
 
 /// Wall time of the parts of a drift, ns per particle and step; they make up StepSplit::drift in the same way.
 struct DriftSplit {
-  double build = 0.0;  ///< sorting places into cells and listing pairs
-  double reject = 0.0; ///< finding out which pairs cannot touch
+  double build = 0.0;  ///< neighbour lists made or mended, near pairs picked
+  double reject = 0.0; ///< finding out which of these cannot touch in the step
   double solve = 0.0;  ///< searches at the start of steps
   double events = 0.0; ///< carrying out contacts, and all searches that follow
 };
@@ -52,7 +52,7 @@ struct TimedSteps {
   Speedups speedup;
   std::uint64_t collisions = 0; ///< faster than v_cut
   std::uint64_t contacts = 0;   ///< fast and slow
-  std::uint64_t recontacts = 0, conflicts = 0, repairs = 0, windows = 0;
+  std::uint64_t recontacts = 0, lists_made = 0, listed_anew = 0, deferred = 0, in_sequence = 0, rolled_back = 0;
   std::uint64_t pairs_tested = 0;     ///< when neighbours were found
   std::uint64_t survivors = 0;        ///< handed to the finder at the start of steps
   std::uint64_t widest_list = 0;      ///< since the simulation was made
@@ -66,10 +66,11 @@ struct TimedSteps {
   double per_contact(double ns) const { return contacts > 0 ? ns / per_particle_step(contacts) : 0.0; }
 };
 
-/// Enough steps for a repeat, more than a window of the neighbour list, and at most `most` beyond that.
+/// Enough steps for a repeat, more than two windows of the drift (neighbour lists may live longer), and at most `most`
+/// beyond that.
 double steps_worth_timing(std::size_t count, double most);
 
-/// A few untimed steps, in which buffers grow and the first window passes, then the repeats; each goes on where the one
+/// A few untimed steps, in which buffers grow and lists are first made, then the repeats; each goes on where the one
 /// before it stopped, or the steps on one thread after it. All steps come in whole kick intervals; `steps` is a
 /// multiple of them.
 TimedSteps time_steps(Simulation& simulation, int steps, int repeats, int kick_every, PhaseProgress& progress);

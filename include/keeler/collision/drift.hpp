@@ -1,8 +1,8 @@
 // The drift phase: between two kicks, particles ride their epicycles and meet as hard spheres, at exact times on the
 // curved paths, in the order of events.hpp.
 //
-// Candidates come from bounds, kept over several steps (neighbours.hpp). A particle that was hit is searched again from
-// its new orbit. The answer is that of the sequential order, for any number of threads.
+// Candidates come from neighbour lists that serve for many steps. A particle that was hit is searched again from its
+// new orbit. The answer is that of the sequential order, for any number of threads: docs/dev/drift.md.
 #pragma once
 
 #include <keeler/box/shearing_box.hpp>
@@ -41,10 +41,20 @@ struct CollisionRecord {
   bool fast;           ///< faster than v_cut
 };
 
-/// Looks on while a drift is carried out; calls come one at a time, in an order that no number of threads changes.
-class DriftWatch {
+/// Looks on while drifts are carried out, and may say how: for measurements and tests. What happens is the same.
+class DriftObserver {
 public:
-  virtual ~DriftWatch() = default;
+  virtual ~DriftObserver() = default;
+
+  /// Hand all that a grid's cells hold to the finder, without rejecting any first.
+  virtual bool wants_every_candidate() const { return false; }
+  /// So many domains for contacts on several threads, wherever that is allowed; 0: as many as pay.
+  virtual std::size_t wants_domains() const { return 0; }
+  /// A finder in place of the settings' one, or null.
+  virtual Finder* stand_in() { return nullptr; }
+  /// Whether the calls below are wanted. They come one at a time, in an order that no number of threads changes.
+  virtual bool looks_on() const { return true; }
+
   virtual void begins(const DriftStep&) {}
   virtual void searched(const Query&, const FinderResult&) {}
   virtual void collided(const CollisionRecord&) {}
@@ -61,30 +71,21 @@ public:
   DriftPhase& operator=(DriftPhase&& other) noexcept;
 
   /// Carries out all collisions in [−h/2, h/2) around the epoch of the elements; `offset` is the box's shear offset at
-  /// the epoch. The elements stay at their epoch. Throws InvariantError when elements are not finite, when particles go
-  /// too far for the box or one collides more than 100,000 times in the step; Interrupted (interrupt.hpp).
-  void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally);
+  /// the epoch. The elements stay at their epoch. `undisturbed` is a promise that spares work: since the last call the
+  /// particles have moved on by one step and been wrapped, and nothing else. Throws InvariantError when elements are
+  /// not finite, when particles go too far for the box or one collides more than 100,000 times in the step; Interrupted
+  /// (interrupt.hpp).
+  void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally,
+               bool undisturbed = false);
 
   const Finder& finder() const;
   DriftCosts costs() const;
 
-  /// Promises that keep neighbours over steps; no result depends on them. The particles of the last collide() have
-  /// moved on by one step and been wrapped, nothing else but kicks happened.
-  void moved_on();
-  /// All particles have been kicked by no more than this (m rad⁻¹).
-  void kicked(double largest);
-  /// Anything else is about to happen to them: a change of their places in the store, say.
-  void forget();
-  /// Puts another finder in place of the settings' one: to measure finders.
-  void use(std::unique_ptr<Finder> finder);
+  /// Gives memory back that the next steps would need: before something large.
+  void release();
 
-  DriftWatch* watch = nullptr; ///< searches then run on one thread
-
-  /// Carry out contacts in strips whenever that is allowed, worth while or not: to test them.
-  bool always_in_strips = false;
-
-  /// Hand all that the grid's cells hold to the finder, without rejecting any first: to measure finders.
-  bool every_candidate = false;
+  /// From now on; null: nobody looks on.
+  void observe(DriftObserver* observer);
 
 private:
   std::unique_ptr<DriftEngine> engine_;

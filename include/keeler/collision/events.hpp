@@ -28,21 +28,25 @@ struct Event {
   }
 };
 
-/// What was known at the start, sorted, and a small heap of what came later. Stale events stay until they
-/// come up: the caller compares stamps.
+/// What was known at the start, sorted, and a small heap of what came later: most are known when a step begins, and
+/// tell which particles to fetch ahead. Stale events stay until they come up, to be deleted then (lazy deletion:
+/// Lubachevsky 1991): the caller compares stamps.
 class EventQueue {
 public:
   bool empty() const { return next_ == order_.size() && later_.empty(); }
-  /// Replaces everything by these events, which must stay where they are.
+  /// Replaces everything by these events.
   void assign(std::span<const Event> events);
   void add(const Event& event);
+  /// Removes the earliest event.
   Event take_first();
 
-  std::size_t bytes() const { return order_.capacity() * sizeof(Turn) + later_.capacity() * sizeof(Event); }
+  std::size_t bytes() const {
+    return (order_.capacity() + later_.capacity()) * sizeof(Turn) + events_.capacity() * sizeof(Event);
+  }
 
   /// One of the events that are likely to come up soon, or null.
   const Event* ahead(std::size_t by) const {
-    return next_ + by < order_.size() ? &first_[order_[next_ + by].number] : nullptr;
+    return next_ + by < order_.size() ? &events_[order_[next_ + by].number] : nullptr;
   }
 
 private:
@@ -50,10 +54,15 @@ private:
     double time;
     std::uint32_t number; // of the event
   };
-  std::span<const Event> first_;
+  bool comes_before(const Turn& a, const Turn& b) const {
+    return a.time != b.time ? a.time < b.time : events_[a.number] < events_[b.number];
+  }
+
+  std::vector<Event> events_; // the first ones, and behind them those that came later
   std::vector<Turn> order_;
   std::size_t next_ = 0;
-  std::vector<Event> later_; // a binary heap, earliest first
+  std::vector<Turn> later_;         // a binary heap, earliest first
+  std::vector<std::uint32_t> free_; // numbers of those that came later and were taken
 };
 
 } // namespace keeler

@@ -38,7 +38,7 @@ struct DriftStep {
   double begin = 0.0, end = 0.0;
   Rotation at_begin, at_end;
   StraightLineTest straight_line;
-  bool tested = false; ///< pairs are asked about only when straight_line has not ruled them out
+  bool tested = false; ///< straight lines have ruled most pairs out already: to test them again does not pay
 
   /// `size` is the largest coordinate that occurs, m: it sets the allowance for rounding.
   DriftStep(const Frequencies& f, double begin_time, double end_time, double size)

@@ -68,6 +68,7 @@ private:
   Scene scene_;
   SimulationState state_;
   DriftPhase drift_;
+  bool undisturbed_ = false;                   // the particles, but for moving on, since the last drift
   std::vector<std::unique_ptr<Force>> forces_; // in the order of state_.forces
   TimeSplit split_;
 };

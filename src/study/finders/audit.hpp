@@ -24,9 +24,11 @@ struct FinderVerdict {
   std::uint64_t hits() const { return counts.of(FinderExit::hit).count + counts.of(FinderExit::overlapping).count; }
 };
 
-class FinderAudit : public DriftWatch {
+class FinderAudit : public DriftObserver {
 public:
   FinderAudit();
+
+  bool wants_every_candidate() const override { return true; }
 
   void begins(const DriftStep& step) override;
   void searched(const Query& query, const FinderResult& result) override;

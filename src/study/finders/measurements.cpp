@@ -57,9 +57,21 @@ double run_seconds(Simulation& simulation, double step) {
   return cpu_seconds() - start;
 }
 
+// Hands everything in the cells to the finder, or to what stands in for it.
+struct EveryCandidate final : DriftObserver {
+  explicit EveryCandidate(std::unique_ptr<Finder> finder = nullptr) : finder_(std::move(finder)) {}
+  bool wants_every_candidate() const override { return true; }
+  Finder* stand_in() override { return finder_.get(); }
+  bool looks_on() const override { return false; }
+
+private:
+  std::unique_ptr<Finder> finder_;
+};
+
 double run_seconds(const StudyState& state, const Scene& scene, bool every_candidate) {
   Simulation simulation(scene, state.patch);
-  simulation.drift().every_candidate = every_candidate;
+  EveryCandidate everything;
+  simulation.drift().observe(every_candidate ? &everything : nullptr);
   return run_seconds(simulation, scene.time.step);
 }
 
@@ -69,8 +81,8 @@ struct UnrejectedMotion : BoundedMotion {
   static bool surely_apart(const Query&, const Body&, const Body&, const DriftStep&) { return false; }
 };
 
-// A finder whose answers are kept in the order of the calls. A watch would see them in another order than a run
-// without one makes them in.
+// A finder whose answers are kept in the order of the calls. An observer would see them in another order than a
+// run without one makes them in.
 class TapeRecorder final : public Finder {
 public:
   TapeRecorder(std::unique_ptr<Finder> finder, std::vector<FinderResult>& answers)
@@ -178,9 +190,8 @@ Json timed_run(const StudyState& state, double step, const std::string& finder) 
 
 Json audited_run(const StudyState& state, double step, const std::string& finder) {
   Simulation simulation(state.timed(step, finder), state.patch);
-  simulation.drift().every_candidate = true;
   FinderAudit audit;
-  simulation.drift().watch = &audit;
+  simulation.drift().observe(&audit);
   for (int k = steps_of(step); k > 0; --k)
     simulation.advance();
   const FinderVerdict verdict = audit.verdict();
@@ -206,17 +217,17 @@ Json finder_share(const StudyState& state, double step, const std::string& finde
   const Scene scene = state.timed(step, finder);
   std::vector<FinderResult> answers;
   {
+    EveryCandidate recording(std::make_unique<TapeRecorder>(make_finder(finder), answers));
     Simulation simulation(scene, state.patch);
-    simulation.drift().every_candidate = true;
-    simulation.drift().use(std::make_unique<TapeRecorder>(make_finder(finder), answers));
+    simulation.drift().observe(&recording);
     run_seconds(simulation, step);
   }
   std::vector<double> with, without;
   for (int repeat = 0; repeat < repeats; ++repeat) {
     with.push_back(run_seconds(state, scene, true));
+    EveryCandidate playing(std::make_unique<Tape>(answers));
     Simulation simulation(scene, state.patch);
-    simulation.drift().every_candidate = true;
-    simulation.drift().use(std::make_unique<Tape>(answers));
+    simulation.drift().observe(&playing);
     without.push_back(run_seconds(simulation, step));
   }
   return {{"cpu_s", median(with)}, {"cpu_s_without_finder", median(without)}};

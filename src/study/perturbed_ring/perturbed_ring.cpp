@@ -61,7 +61,7 @@ void drive(Ring& ring, double epoch, double step) {
 
 // At each collision as it happens, how far a straight line from the start of the step, or from the particle's collision
 // before, would have led beside the orbit. A displacement δx changes X by 4 δx, δz the height by itself.
-class StraightForecast final : public DriftWatch {
+class StraightForecast final : public DriftObserver {
 public:
   double epoch = 0.0; // of the step at hand, rad since the start
   double guiding_x = 0.0, vertical = 0.0;
@@ -105,7 +105,7 @@ public:
     }
     settings.finder = path;
     curved_.emplace(settings, frequencies, orbital_frequency, step);
-    curved_->watch = &forecast;
+    curved_->observe(&forecast);
   }
 
   void collide(Ring& ring, double offset, double epoch) {

@@ -31,11 +31,11 @@ Start make_start(const Scenario& s, std::uint64_t seed) {
 
 std::vector<CollisionRecord> run_drift(const Scenario& s, Start& start, CollisionTally& tally) {
   DriftPhase drift(settings_of(s), {s.kappa, s.nu}, omega, s.step);
-  struct Recorder : DriftWatch {
+  struct Recorder : DriftObserver {
     std::vector<CollisionRecord> records;
     void collided(const CollisionRecord& record) override { records.push_back(record); }
   } recorder;
-  drift.watch = &recorder;
+  drift.observe(&recorder);
   drift.collide(start.particles, start.box, start.offset, tally);
   return recorder.records;
 }
@@ -146,9 +146,10 @@ TEST_CASE("handing every candidate to the finder, or watching, changes no bit") 
   DriftPhase drift(settings_of(s), {s.kappa, s.nu}, omega, s.step);
   drift.collide(plain.particles, plain.box, plain.offset, tally_plain);
   CHECK(tally_plain.fast > 30);
-  drift.every_candidate = true;
-  DriftWatch watch;
-  drift.watch = &watch;
+  struct Everything final : DriftObserver {
+    bool wants_every_candidate() const override { return true; }
+  } everything;
+  drift.observe(&everything);
   drift.collide(all.particles, all.box, all.offset, tally_all);
   CHECK(std::memcmp(plain.particles.bodies.data(), all.particles.bodies.data(), 64 * s.count) == 0);
   CHECK(tally_all.momentum_flux == tally_plain.momentum_flux);

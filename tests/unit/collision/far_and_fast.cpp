@@ -118,7 +118,7 @@ TEST_CASE("long steps in boxes of up to 10^6 radii: no contact comes a step late
           while (hit == 0 && ring.steps < 19)
             hit = twin.advance();
           hits += hit > 0;
-          kept += ring.drift.costs().windows < 12;
+          kept += ring.drift.costs().lists_made < 12;
         }
       }
   CHECK(hits == cases);

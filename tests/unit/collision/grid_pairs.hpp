@@ -28,8 +28,14 @@ inline Patch equilibrium_patch(std::size_t count, std::uint64_t seed) {
 }
 
 /// Asks each finder what the driving one is asked, and compares.
-class AskAll final : public DriftWatch {
+class AskAll final : public DriftObserver {
 public:
+  explicit AskAll(bool every_candidate = false) : every_candidate_(every_candidate) {
+    for (const FinderEntry& entry : finder_table())
+      asked.push_back({entry.name, entry.make(), {}});
+  }
+  bool wants_every_candidate() const override { return every_candidate_; }
+
   struct Asked {
     std::string name;
     std::unique_ptr<Finder> finder;
@@ -39,11 +45,6 @@ public:
   };
   std::vector<Asked> asked;
   bool in_span = true; ///< every contact's time so far
-
-  AskAll() {
-    for (const FinderEntry& entry : finder_table())
-      asked.push_back({entry.name, entry.make(), {}});
-  }
 
   const Asked& of(const std::string& name) const {
     return *std::find_if(asked.begin(), asked.end(), [&](const Asked& a) { return a.name == name; });
@@ -69,6 +70,7 @@ public:
   }
 
 private:
+  bool every_candidate_;
   double end_ = 0.0;
 };
 

@@ -270,7 +270,7 @@ end = 1.0
     const Rotation boundary(f, -0.5 * step);
     test::PlainDrift plain(scene.collisions, f, scene.planet.orbital_frequency, step);
     test::Recorder recorder;
-    simulation.drift().watch = &recorder;
+    simulation.drift().observe(&recorder);
     std::size_t collisions = 0;
     for (int k = 0; k < 90; ++k) {
       const SimulationState& state = simulation.state();

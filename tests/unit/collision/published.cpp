@@ -67,9 +67,8 @@ TEST_CASE("grid pairs of a settled state at a thousandth of an orbit: iterations
   test::Ring ring(test::equilibrium_patch(2000, 3), {}, two_pi * 1e-3);
   for (int k = 0; k < 150; ++k)
     ring.advance();
-  test::AskAll all;
-  ring.drift.watch = &all;
-  ring.drift.every_candidate = true;
+  test::AskAll all(true);
+  ring.observer = &all;
   for (int k = 0; k < 20; ++k)
     ring.advance();
 
@@ -106,7 +105,7 @@ TEST_CASE("grid pairs of a settled state at a thousandth of an orbit: iterations
 }
 
 TEST_CASE("ordinary contacts: every finder within the published tolerance of the certified one") {
-  struct Compare final : DriftWatch {
+  struct Compare final : DriftObserver {
     std::vector<std::unique_ptr<Finder>> finders;
     const DriftStep* step = nullptr;
     int hits = 0;
@@ -145,7 +144,7 @@ TEST_CASE("ordinary contacts: every finder within the published tolerance of the
     }
   } compare;
   test::Ring ring(test::equilibrium_patch(2000, 4), {}, two_pi * 1e-3);
-  ring.drift.watch = &compare;
+  ring.observer = &compare;
   for (int k = 0; k < 60; ++k)
     ring.advance();
   CHECK(compare.hits > 300);

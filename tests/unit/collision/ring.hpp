@@ -13,6 +13,12 @@
 
 namespace keeler::test {
 
+/// Several threads share the contacts, few as they may be.
+struct InDomains final : DriftObserver {
+  bool looks_on() const override { return false; }
+  std::size_t wants_domains() const override { return static_cast<std::size_t>(threads()); }
+};
+
 struct Ring {
   Particles particles;
   ShearingBox box;
@@ -22,6 +28,9 @@ struct Ring {
   CollisionTally tally;
   std::int64_t steps = 0;
   bool keeps_neighbours = false; ///< over several steps, as a run does
+  bool undisturbed = false;      ///< but for moving on, since the last drift
+  DriftObserver* observer = nullptr;
+  InDomains in_domains;
 
   Ring(const Patch& patch, const CollisionSettings& settings, double step_length)
       : particles(particles_from(patch, 0.5 * step_length)), box(patch.box), frequencies(patch.frequencies),
@@ -30,9 +39,15 @@ struct Ring {
   double epoch_offset() const { return box.offset(2 * steps + 1, 0.5 * step); }
 
   void advance() {
-    drift.always_in_strips = threads() > 1;
-    drift.collide(particles, box, epoch_offset(), tally);
+    collide(tally);
     move_on();
+  }
+
+  /// One drift, in domains when there are threads for them, unless somebody observes.
+  void collide(CollisionTally& into) {
+    drift.observe(observer ? observer : &in_domains);
+    drift.collide(particles, box, epoch_offset(), into, undisturbed);
+    undisturbed = false;
   }
 
   void move_on() {
@@ -44,8 +59,7 @@ struct Ring {
       rebase(el);
       el = box.image_of(el, box.image_into_cell(el.guiding_x, el.guiding_y, offset), offset);
     }
-    if (keeps_neighbours)
-      drift.moved_on();
+    undisturbed = keeps_neighbours;
   }
 
   /// Random kicks at the boundary between steps, of no more than `largest` (m rad⁻¹) each.
@@ -56,7 +70,7 @@ struct Ring {
       const Vec3 dv(2.0 * random.uniform() - 1.0, 2.0 * random.uniform() - 1.0, 2.0 * random.uniform() - 1.0);
       kick(particles.bodies[k].elements, largest / std::sqrt(3.0) * dv, frequencies, rotation);
     }
-    drift.kicked(largest);
+    undisturbed = false;
   }
 
   /// At the present boundary between steps.

@@ -10,7 +10,7 @@
 
 namespace keeler::test {
 
-struct Recorder : DriftWatch {
+struct Recorder : DriftObserver {
   std::vector<CollisionRecord> records;
   void collided(const CollisionRecord& record) override { records.push_back(record); }
 };
@@ -75,9 +75,9 @@ public:
     Recorder recorder;
     CollisionTally tally, plain_tally;
     const double energy = total_energy(ring_), scale = energy_scale(ring_);
-    ring_.drift.watch = watched ? &recorder : nullptr;
-    ring_.drift.collide(ring_.particles, ring_.box, ring_.epoch_offset(), tally);
-    ring_.drift.watch = nullptr;
+    ring_.observer = watched ? &recorder : nullptr;
+    ring_.collide(tally);
+    ring_.observer = nullptr;
     const auto expected = plain_.collide(copy, ring_.box, ring_.epoch_offset(), plain_tally);
     INFO("step ", ring_.steps, ", ", expected.size(), " collisions");
     if (watched) {

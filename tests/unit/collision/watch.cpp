@@ -29,7 +29,7 @@ Calls watch_from(int first, const Patch& patch, double step) {
   ring.keeps_neighbours = true;
   Calls calls;
   for (int k = 0; k < 6; ++k) {
-    ring.drift.watch = k >= first ? &calls : nullptr;
+    ring.observer = k >= first ? &calls : nullptr;
     ring.advance();
   }
   return calls;

@@ -1,0 +1,255 @@
+#include "line_cells.hpp"
+
+#include <keeler/core/counting_sort.hpp>
+#include <keeler/core/threads.hpp>
+
+#include <array>
+#include <cassert>
+#include <cstdlib>
+#include <numeric>
+
+namespace keeler {
+namespace {
+
+constexpr std::size_t block_size = 4096;   // lines
+constexpr double nearest_share = 0.45;     // of the box: what reaches less far has one image in reach
+constexpr double cells_per_particle = 2.0; // no more,
+constexpr double fewest_cells = 64.0;      // unless these are
+constexpr double full_turn = 4294967296.0; // 2³², the box
+constexpr std::size_t most_in_group = 8;   // lines that look around together,
+constexpr std::int64_t fewest_columns = 8; // for that
+constexpr double longest_group = 4.0;      // in reaches of their level
+constexpr std::uint32_t few_lines = 8;     // of a level: looked at all together
+
+} // namespace
+
+struct LineCells::Measured {
+  std::array<std::uint64_t, most_levels> counts{};
+  std::array<double, most_levels> reach_x{}, reach_y{};
+};
+
+// Those that reach less than 2 of the least, then up to 8, 32, ...: each level that there is costs a look-up.
+int LineCells::level_of(const Line& line) const {
+  const double reach = std::max(reach_x(line), reach_y(line));
+  return reach < 2.0 * least_ ? 0 : (std::min(std::ilogb(reach / least_), 2 * most_levels - 3) + 1) / 2;
+}
+
+std::size_t LineCells::cell_of(const Line& line, const Level& level) const {
+  const auto part = [](std::int32_t value, std::int64_t parts) {
+    return (static_cast<std::int64_t>(value) + (std::int64_t{1} << 31)) * parts >> 32;
+  };
+  return level.first_cell +
+         static_cast<std::size_t>(part(line.x, level.columns) * level.rows + part(line.y, level.rows));
+}
+
+void LineCells::build(std::span<const Line> lines, const ShearingBox& box, double offset, double half, double least) {
+  box_ = box;
+  half_ = half;
+  least_ = least;
+  per_metre_x_ = full_turn / box.size_x;
+  per_metre_y_ = full_turn / box.size_y;
+  frame_ = {static_cast<float>(box.size_x / full_turn), static_cast<float>(box.size_y / full_turn),
+            static_cast<float>(box.shear),
+            static_cast<std::int32_t>(static_cast<std::uint32_t>(std::llrint(offset * per_metre_y_)))};
+  measure(lines);
+  sort(lines, lay_out_cells());
+}
+
+// Which levels there are and how far each reaches.
+void LineCells::measure(std::span<const Line> lines) {
+  const std::size_t count = lines.size();
+  std::vector<Measured> measured((count + block_size - 1) / block_size);
+  parallel_for(
+      measured.size(),
+      [&](std::size_t b) {
+        Measured& m = measured[b];
+        for (std::size_t k = b * block_size; k < std::min(count, (b + 1) * block_size); ++k) {
+          const int level = level_of(lines[k]);
+          ++m.counts[level];
+          m.reach_x[level] = std::max(m.reach_x[level], reach_x(lines[k]));
+          m.reach_y[level] = std::max(m.reach_y[level], reach_y(lines[k]));
+        }
+      },
+      1);
+  levels_.clear();
+  for (int l = 0; l < most_levels; ++l) {
+    Level all;
+    for (const Measured& m : measured) {
+      all.count += m.counts[l];
+      all.reach_x = std::max(all.reach_x, m.reach_x[l]);
+      all.reach_y = std::max(all.reach_y, m.reach_y[l]);
+    }
+    level_index_[l] = static_cast<int>(levels_.size());
+    if (all.count)
+      levels_.push_back(all);
+  }
+}
+
+// Columns as wide as two lines of the level reach together, rows of half of that: ranges end close to what is in reach.
+// Where that makes too many cells, they are larger; where lines are few, longer. Returns how many cells there are.
+std::size_t LineCells::lay_out_cells() {
+  std::size_t cells = 0;
+  double two_farthest[2] = {0.0, 0.0};
+  for (Level& level : levels_) {
+    const double most = std::max(cells_per_particle * static_cast<double>(level.count), fewest_cells);
+    double columns = box_.size_x / (2.0 * level.reach_x), rows = box_.size_y / level.reach_y;
+    columns = std::min(columns, std::max(fewest_cells, columns / std::sqrt(std::max(1.0, columns * rows / most))));
+    level.columns = static_cast<std::int64_t>(std::max(1.0, columns));
+    level.rows = static_cast<std::int64_t>(std::max(1.0, std::min(rows, most / static_cast<double>(level.columns))));
+    level.first_cell = cells;
+    cells += static_cast<std::size_t>(level.columns * level.rows);
+    const double reach = std::max(level.reach_x, level.reach_y);
+    two_farthest[0] = level.count > 1 ? reach : two_farthest[1];
+    two_farthest[1] = reach;
+  }
+  const double sheared = 1.0 + box_.shear * half_;
+  one_image_ = (two_farthest[0] + two_farthest[1]) * sheared < nearest_share * std::min(box_.size_x, box_.size_y);
+  return cells;
+}
+
+bool LineCells::one_image(const Line& line) const {
+  const double own = std::max(reach_x(line), reach_y(line));
+  const double farthest = levels_.empty() ? 0.0 : std::max(levels_.back().reach_x, levels_.back().reach_y);
+  const double sheared = 1.0 + box_.shear * half_;
+  return (own + std::max(own, farthest)) * sheared < nearest_share * std::min(box_.size_x, box_.size_y);
+}
+
+std::uint64_t LineCells::farthest_across() const {
+  double reach = 0.0;
+  for (const Level& level : levels_)
+    reach = std::max(reach, level.reach_x);
+  return static_cast<std::uint64_t>(2.0 * reach * per_metre_x_) + 4;
+}
+
+void LineCells::sort(std::span<const Line> lines, std::size_t cells) {
+  const std::size_t count = lines.size();
+  cells_.resize(count);
+  slots_.resize(count);
+  lines_.resize(count + kernel_padding);
+  parallel_for(
+      count,
+      [&](std::size_t k) {
+        cells_[k] = static_cast<std::uint32_t>(cell_of(lines[k], levels_[level_index_[level_of(lines[k])]]));
+      },
+      block_size);
+  counting_sort(cells_, cells, starts_, [&](std::size_t k, std::size_t slot) {
+    slots_[k] = static_cast<std::uint32_t>(slot);
+    lines_[slot] = lines[k];
+  });
+  for (Level& level : levels_) {
+    level.begin = starts_[level.first_cell];
+    level.end = starts_[level.first_cell + static_cast<std::size_t>(level.columns * level.rows)];
+  }
+  assert((assert_sorted(), true));
+}
+
+#ifndef NDEBUG
+// Each line has one slot, in the range of its cell.
+void LineCells::assert_sorted() const {
+  for (std::size_t k = 0; k < slots_.size(); ++k) {
+    assert(lines_[slots_[k]].place == k); // and so no two have the same
+    assert(starts_[cells_[k]] <= slots_[k] && slots_[k] < starts_[cells_[k] + 1]);
+  }
+}
+#endif
+
+void LineCells::replace(std::size_t place, const Line& line) {
+  auto level = levels_.begin();
+  while (level + 1 != levels_.end() && cells_[place] >= (level + 1)->first_cell)
+    ++level;
+  const auto rows = static_cast<std::size_t>(level->rows);
+  const std::size_t cell = cells_[place] - level->first_cell;
+  const auto from_middle = [](std::int32_t value, std::size_t number, std::int64_t cells) {
+    const double size = full_turn / static_cast<double>(cells);
+    return static_cast<double>(value) + 0.5 * full_turn - (static_cast<double>(number) + 0.5) * size;
+  };
+  const auto beyond = [](double off, std::int64_t cells) {
+    const double nearest = off - full_turn * std::rint(off / full_turn);
+    return std::max(0.0, std::fabs(nearest) - 0.5 * full_turn / static_cast<double>(cells));
+  };
+  const double off_x = from_middle(line.x, cell / rows, level->columns);
+  const double outward = -std::rint(off_x / full_turn);
+  const double off_y = from_middle(line.y, cell % rows, level->rows) - outward * frame_.offset_y;
+  level->stray_x = std::max(level->stray_x, beyond(off_x, level->columns) / per_metre_x_);
+  level->stray_y = std::max(level->stray_y, beyond(off_y, level->rows) / per_metre_y_);
+  level->reach_x = std::max(level->reach_x, reach_x(line));
+  level->reach_y = std::max(level->reach_y, reach_y(line));
+  lines_[slots_[place]] = line;
+  lines_[slots_[place]].place = static_cast<std::uint32_t>(place);
+}
+
+LineCells::Window LineCells::window(const Line& line, const LineSpan& span) const {
+  const double begin = std::max<double>(span.begin, -half_), end = std::min<double>(span.end, half_);
+  const double middle = 0.5 * (begin + end), half = 0.5 * (end - begin); // its size has room for what is beyond
+  const auto on = [&](float speed, double per_metre) { return static_cast<std::int64_t>(middle * speed * per_metre); };
+  return {across(line) + on(line.u, per_metre_x_), along(line) + static_cast<std::uint32_t>(on(line.v, per_metre_y_)),
+          line.size + half * std::fabs(line.u), line.size + half * std::fabs(line.v), reach_x(line)};
+}
+
+// Lines that follow each other and stand close together look around together: up to this slot. Not where that might be
+// all around a narrow box.
+std::size_t LineCells::group_end(std::size_t first, std::size_t end, const Level& level) const {
+  if (level.columns < fewest_columns)
+    return first + 1;
+  const auto near_x = static_cast<std::int64_t>(2.0 * level.reach_x * per_metre_x_);
+  const auto near_y = static_cast<std::int64_t>(longest_group * level.reach_y * per_metre_y_);
+  std::size_t last = first + 1;
+  const auto stands_near = [&](const Line& line) {
+    return std::abs(std::int64_t{line.x} - lines_[first].x) < near_x &&
+           std::abs(std::int64_t{line.y} - lines_[first].y) < near_y;
+  };
+  while (last < end && last - first < most_in_group && stands_near(lines_[last]))
+    ++last;
+  return last;
+}
+
+// Of a group.
+LineCells::Window LineCells::window(std::size_t first, std::size_t last) const {
+  const Line& line = lines_[first];
+  std::int64_t left = line.x, right = left, back = line.y, front = back;
+  double reach[2] = {reach_x(line), reach_y(line)};
+  for (std::size_t k = first + 1; k < last; ++k) {
+    const Line& other = lines_[k];
+    left = std::min<std::int64_t>(left, other.x);
+    right = std::max<std::int64_t>(right, other.x);
+    back = std::min<std::int64_t>(back, other.y);
+    front = std::max<std::int64_t>(front, other.y);
+    reach[0] = std::max(reach[0], reach_x(other));
+    reach[1] = std::max(reach[1], reach_y(other));
+  }
+  constexpr std::int64_t half_turn = std::int64_t{1} << 31;
+  const double half_x = 0.5 * static_cast<double>(right - left) + 1.0,
+               half_y = 0.5 * static_cast<double>(front - back) + 1.0;
+  return {(left + right) / 2 + half_turn, static_cast<std::uint32_t>((back + front) / 2 + half_turn),
+          reach[0] + half_x / per_metre_x_, reach[1] + half_y / per_metre_y_, reach[0]};
+}
+
+std::size_t LineCells::near(const Line& line, const LineSpan& span, std::vector<std::uint32_t>& buffer,
+                            std::uint64_t& tested) const {
+  std::size_t count = 0;
+  const Window from = window(line, span);
+  const auto take = [&](std::uint32_t begin, std::uint32_t end) {
+    const std::size_t room = count + (end - begin) + kernel_padding;
+    if (buffer.size() < room)
+      buffer.resize(2 * room);
+    std::iota(buffer.data() + count, buffer.data() + count + (end - begin), begin);
+    count += end - begin;
+  };
+  for (const Level& level : levels_)
+    if (level.end - level.begin <= few_lines) // to find those in reach would take longer
+      take(level.begin, level.end);
+    else
+      ranges_in(level, from, 0, take);
+  if (count == 0)
+    return 0;
+  std::fill_n(buffer.begin() + static_cast<std::ptrdiff_t>(count), kernel_padding, buffer[count - 1]);
+  tested += count;
+  return kernels_.sweep(line, lines_.data(), frame_, span, buffer.data(), count, buffer.data());
+}
+
+std::size_t LineCells::bytes() const {
+  return (starts_.capacity() + cells_.capacity() + slots_.capacity()) * sizeof(std::uint32_t) +
+         lines_.capacity() * sizeof(Line);
+}
+
+} // namespace keeler

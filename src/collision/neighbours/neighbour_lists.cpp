@@ -1,0 +1,614 @@
+#include "neighbour_lists.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/threads.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace keeler {
+namespace {
+
+constexpr double slack_share = 0.4;        // of the mean radius
+constexpr double single = 4e-6;            // of a path: what single precision may do to a line
+constexpr double full_turn = 4294967296.0; // 2³², the box
+
+// A place as fractions of the box, in the cell: x first, so that the image is the one that x says.
+struct Fractions {
+  std::int32_t x, y;
+  bool is_image; // of what stands outside of the cell
+};
+Fractions fractions(double x, double y, const ShearingBox& box, double offset) {
+  const std::int64_t across = std::llrint(x * (full_turn / box.size_x));
+  const std::int64_t boxes = (across + (std::int64_t{1} << 31)) >> 32;
+  const std::int64_t along = std::llrint((y + static_cast<double>(boxes) * offset) * (full_turn / box.size_y));
+  return {static_cast<std::int32_t>(static_cast<std::uint32_t>(across)),
+          static_cast<std::int32_t>(static_cast<std::uint32_t>(along)),
+          boxes != 0 || along >= std::int64_t{1} << 31 || along < -(std::int64_t{1} << 31)};
+}
+
+// The nearest whole number, without a call.
+double nearest(double value) {
+  constexpr double whole_numbers = 6755399441055744.0; // 1.5 · 2⁵²: doubles above it are whole numbers
+  return (value + whole_numbers) - whole_numbers;
+}
+
+// The rounding of places, m.
+double grain(const ShearingBox& box) {
+  return 4.0 / full_turn * (box.size_x + box.size_y);
+}
+
+bool is_finite(const Elements& el) {
+  return std::isfinite(el.guiding_x + el.guiding_y + el.e_cos + el.e_sin + el.i_sin + el.i_cos);
+}
+
+// Bound on the acceleration at all times.
+double largest_acceleration(const Elements& el, const Frequencies& f) {
+  return 2.0 * f.kappa * (std::fabs(el.e_cos) + std::fabs(el.e_sin)) +
+         f.nu * f.nu * (std::fabs(el.i_sin) + std::fabs(el.i_cos));
+}
+
+template<class T> std::size_t bytes_of(const std::vector<T>& values) {
+  return values.capacity() * sizeof(T);
+}
+
+} // namespace
+
+Image NeighbourLists::nearest_image(const Body& a, const Body& b) const {
+  const Elements el = b.elements - a.elements;
+  const double x = el.guiding_x - el.e_cos, y = el.guiding_y + (2.0 / frequencies_.kappa) * el.e_sin;
+  if (std::fabs(x) < 0.5 * box_.size_x && std::fabs(y) < 0.5 * box_.size_y)
+    return {};
+  return box_.image_into_cell(x, y, offset_);
+}
+
+bool NeighbourLists::begin(const Particles& particles, const ShearingBox& box, double offset, bool undisturbed) {
+  ++age_;
+  const bool lived = std::exchange(made_, false); // until nothing can throw any more
+  const bool serve = lived && serves(particles, box, offset);
+  if (!undisturbed)
+    last_run_ = std::exchange(run_, -1) + 1;
+  ++run_;
+  ++window_age_;
+  particles_ = &particles;
+  box_ = box;
+  offset_ = offset;
+  reaches_far_ = false;
+  const double half = 0.5 * step_;
+  test_ = {frequencies_, half, half, 1e-13 * (box.size_x + box.size_y)};
+  bool serves_on = false;
+  if (serve) {
+    look_to_window();
+    serves_on = undisturbed && window_age_ < window_ ? mend(leaving_) : begin_window();
+  }
+  made_ = serves_on || build(lived);
+  leaving_.clear();
+  assert((assert_sound(), true));
+  return made_;
+}
+
+// Whether the lists of before are of these particles, as far as can be told without a look at them.
+bool NeighbourLists::serves(const Particles& particles, const ShearingBox& box, double offset) const {
+  if (age_ >= life_ || particles.size() != ranges_.size() || box.size_x != box_.size_x || box.size_y != box_.size_y ||
+      box.shear != box_.shear)
+    return false;
+  const double moved = (offset - offset_ - box.shear * box.size_x * step_) / box.size_y;
+  return std::fabs(moved - std::rint(moved)) < 1e-9;
+}
+
+// By what the last life cost a step: on in the same direction as long as that helps.
+void NeighbourLists::choose_life(bool lived) {
+  constexpr double longest = 1.0; // rad: bounds and rounding are good for that long
+  constexpr int most = 64;
+  if (lived && age_ > 0) {
+    const double cost = cost_ / age_;
+    if (last_cost_ > 0.0 && cost > last_cost_)
+      change_of_life_ = change_of_life_ > 1.0 ? 0.8 : 1.25;
+    last_cost_ = cost;
+    const int next = static_cast<int>(std::lround(change_of_life_ * std::min(age_, life_)));
+    life_ = std::max(1, change_of_life_ > 1.0 ? std::max(next, age_ + 1) : next);
+  }
+  life_ = std::clamp(static_cast<int>(longest / step_), 1, std::min(most, life_));
+}
+
+bool NeighbourLists::build(bool lived) {
+  choose_life(lived);
+  const auto make = [&] {
+    age_ = 0;
+    make_references();
+    cells_.build(std::span(lines_).first(particles_->size()), box_, instant(-since_middle()).offset, half_life(),
+                 least_radius_ + slack_);
+  };
+  make();
+  if (!cells_.one_image() && life_ > 1) { // one step may be short enough
+    life_ = 1;
+    make();
+  }
+  ++built;
+  if (!cells_.one_image())
+    return false;
+  find_pairs();
+  return begin_window();
+}
+
+// All lines, who leaves, and what is near. False: see mend().
+bool NeighbourLists::begin_window() {
+  constexpr double longest = 0.2; // rad: paths are still nearly straight
+  constexpr int most = 8;
+  constexpr double most_touched = 0.1; // of all particles: their whole lists are gone through in each later step
+  const double hit_steps = static_cast<double>(touched_.size()) + 1e-3,
+               particle_steps = static_cast<double>(ranges_.size()) * std::max(1, window_age_);
+  const int to_disturbance = last_run_ > run_ ? last_run_ - run_ : most;
+  const int longest_steps = std::clamp(static_cast<int>(longest / step_), 1, most);
+  const int calm = static_cast<int>(std::min<double>(most, most_touched * particle_steps / hit_steps));
+  set_window(std::clamp(std::min({longest_steps, to_disturbance, life_ - age_, calm}), 1, most));
+  std::vector<std::uint32_t> leavers;
+  follow(leavers);
+  if (!mend(leavers))
+    return false;
+  touched_.clear();
+  leaving_.clear();
+  is_touched_.assign(ranges_.size(), 0);
+  is_leaving_.assign(ranges_.size(), 0);
+  pick_near();
+  return true;
+}
+
+// The way from this epoch to the middle of the window.
+void NeighbourLists::look_to_window() {
+  at_window_ = instant(-since_window());
+  to_window_ = Rotation(frequencies_, at_window_.after);
+}
+
+void NeighbourLists::set_window(int length) {
+  window_ = length;
+  window_age_ = 0;
+  look_to_window();
+  const Rotation& r = to_window_;
+  follow_ = {.kappa = frequencies_.kappa,
+             .nu = frequencies_.nu,
+             .shear = box_.shear,
+             .after = r.after,
+             .cos_e = r.cos_e,
+             .sin_e = r.sin_e,
+             .cos_i = r.cos_i,
+             .sin_i = r.sin_i,
+             .size_x = box_.size_x,
+             .per_metre_x = full_turn / box_.size_x,
+             .per_metre_y = full_turn / box_.size_y,
+             .offset = at_window_.offset * (full_turn / box_.size_y),
+             .since = since_middle() + r.after,
+             .half = half_window(),
+             .allowance = grain(box_)};
+  frame_ = {static_cast<float>(box_.size_x / full_turn), static_cast<float>(box_.size_y / full_turn),
+            static_cast<float>(box_.shear), fractions(0.0, at_window_.offset, box_, 0.0).y};
+}
+
+NeighbourLists::Instant NeighbourLists::instant(double after) const {
+  return {after, std::fmod(offset_ + box_.shear * box_.size_x * after, box_.size_y)};
+}
+
+// The straight line that touches the path at a time after this epoch, as it stands at an instant. `size` is the
+// radius and what curvature and the margin add in `half` before and after the touch.
+Line NeighbourLists::line_of(const Body& body, const Rotation& tangent, double margin, double half,
+                             const Instant& at) const {
+  const State s = state_at(body.elements, frequencies_, tangent);
+  const Vec3 p = s.position + (at.after - tangent.after) * s.velocity;
+  const double curved = 0.5 * half * half * largest_acceleration(body.elements, frequencies_);
+  const auto [x, y, is_image] = fractions(p.x(), p.y(), box_, at.offset);
+  return {x,
+          y,
+          static_cast<float>(p.z()),
+          static_cast<float>(s.velocity.x()),
+          static_cast<float>(s.velocity.y() + box_.shear * p.x()),
+          static_cast<float>(s.velocity.z()),
+          static_cast<float>(body.radius + margin + curved),
+          is_image};
+}
+
+// What single precision may do to a line in so much time before and after its instant.
+float NeighbourLists::rounding_of(const Line& line, double half) const {
+  const double path = half * (std::fabs(line.u) + std::fabs(line.v) + std::fabs(line.w));
+  return static_cast<float>(single * (line.size + path + std::fabs(line.z)) + grain(box_));
+}
+
+// All references, into the window's lines, which are not made yet.
+void NeighbourLists::make_references() {
+  const std::size_t count = particles_->size();
+  lines_.resize(count + kernel_padding);
+  references_.resize(count + kernel_padding);
+  struct Radii {
+    double sum = 0.0, least = HUGE_VAL;
+    std::size_t broken = ~std::size_t{0};
+    void operator+=(const Radii& other) {
+      sum += other.sum;
+      least = std::min(least, other.least);
+      broken = std::min(broken, other.broken);
+    }
+  };
+  if (mean_radius_ == 0.0) { // the first time
+    const double sum = ordered_sum(count, [&](std::size_t k) { return particles_->bodies[k].radius; });
+    mean_radius_ = sum / static_cast<double>(std::max<std::size_t>(1, count));
+    least_radius_ = mean_radius_;
+  }
+  slack_ = slack_share * mean_radius_;
+  const Instant at = instant(-since_middle());
+  const Rotation middle(frequencies_, at.after);
+  const Radii radii = ordered_total<Radii>(count, [&](Radii& all, std::size_t k) {
+    particles_->prefetch_after(k);
+    const Body& body = particles_->bodies[k];
+    if (!is_finite(body.elements))
+      all.broken = std::min(all.broken, k);
+    all.sum += body.radius;
+    all.least = std::min(all.least, body.radius);
+    Line& line = lines_[k] = line_of(body, middle, slack_, half_life(), at);
+    line.place = static_cast<std::uint32_t>(k);
+    references_[k] = line;
+    line.size += rounding_of(line, half_life());
+  });
+  if (radii.broken < count)
+    throw InvariantError(fmt::format("particle {} has elements that are not finite", particles_->ids[radii.broken]));
+  mean_radius_ = radii.sum / static_cast<double>(std::max<std::size_t>(1, count));
+  least_radius_ = count ? radii.least : 0.0;
+}
+
+// A run of slots for a thread, whose pairs it finds and whose entries it writes.
+struct NeighbourLists::Parts {
+  explicit Parts(std::size_t blocks, std::size_t slots)
+      : count(std::max<std::size_t>(1, std::min(blocks, static_cast<std::size_t>(threads())))), blocks_(blocks),
+        slots_(slots), crossing(count) {}
+  std::size_t first_block(std::size_t part) const { return blocks_ * part / count; }
+  std::size_t first_slot(std::size_t part) const { return std::min(slots_, first_block(part) * block_size); }
+
+  std::size_t count;
+
+private:
+  std::size_t blocks_, slots_;
+
+public:
+  std::vector<std::vector<LinePair>> crossing; // pairs whose second slot is another part's
+  std::vector<std::uint32_t> entries;          // of each slot
+};
+
+// Each thread finds the pairs of its part and counts the entries of its slots; pairs that cross parts are few, and
+// counted afterwards.
+void NeighbourLists::find_pairs() {
+  const std::size_t count = cells_.size(), blocks_count = (count + block_size - 1) / block_size;
+  Parts parts(blocks_count, count);
+  parts.entries.assign(count, 0);
+  pairs_.resize(blocks_count);
+  std::vector<std::uint64_t> tests(parts.count);
+  const LineSpan span = wider(-half_life(), half_life(), half_life());
+  parallel_for(
+      parts.count,
+      [&](std::size_t p) {
+        const std::size_t begin = parts.first_slot(p), end = parts.first_slot(p + 1);
+        std::vector<LinePair> buffer;
+        for (std::size_t b = parts.first_block(p); b < parts.first_block(p + 1) && !interrupted(); ++b) {
+          Pairs& pairs = pairs_[b];
+          pairs.clear();
+          const std::size_t first = b * block_size, last = std::min(count, first + block_size);
+          tests[p] += cells_.sweep_pairs(first, last, span, buffer, [&](std::uint32_t i, std::uint32_t j) {
+            pairs.push_back({i, j});
+            ++parts.entries[i];
+            if (j - begin < end - begin)
+              ++parts.entries[j];
+            else
+              parts.crossing[p].push_back({i, j});
+          });
+        }
+      },
+      1);
+  for (const std::vector<LinePair>& crossing : parts.crossing)
+    for (const LinePair& pair : crossing)
+      ++parts.entries[pair.second];
+  const std::uint64_t tested_now = std::accumulate(tests.begin(), tests.end(), std::uint64_t{0});
+  tested += tested_now;
+  cost_ = 60.0 * static_cast<double>(count) + 1.3 * static_cast<double>(tested_now);
+  lay_out(parts);
+  fill(parts);
+}
+
+// Lists follow each other in the order of slots, each with some room for more.
+void NeighbourLists::lay_out(const Parts& parts) {
+  const std::size_t count = cells_.size();
+  ranges_.resize(count);
+  std::uint64_t begin = 0, entries = 0;
+  for (std::size_t slot = 0; slot < count; ++slot) {
+    const std::uint32_t own = parts.entries[slot], room = own + own / 4 + 2;
+    ranges_[cells_.place(slot)] = {static_cast<std::uint32_t>(begin), 0, room};
+    begin += room;
+    entries += own;
+  }
+  if (begin > std::uint64_t{1} << 31)
+    throw InvariantError(
+        fmt::format("neighbour lists of {} entries are too long; take a shorter step or fewer particles", begin));
+  listed += entries / 2;
+  cost_ += 6.0 * static_cast<double>(entries);
+  entries_made_ = begin;
+  entries_.assign(begin + kernel_padding, 0);
+  anew_.clear();
+  is_anew_.assign(count, 0);
+  is_touched_.resize(count); // for whoever is listed anew before the first window
+  times_anew_ = 0;
+}
+
+// The entries of all lists; the pairs turn from slots into places.
+void NeighbourLists::fill(const Parts& parts) {
+  const auto put = [&](std::uint32_t place, std::uint32_t entry) {
+    Range& range = ranges_[place];
+    entries_[range.begin + range.count++] = entry;
+  };
+  parallel_for(
+      parts.count,
+      [&](std::size_t p) {
+        const std::size_t begin = parts.first_slot(p), end = parts.first_slot(p + 1);
+        for (std::size_t b = parts.first_block(p); b < parts.first_block(p + 1); ++b) {
+          for (LinePair& pair : pairs_[b]) {
+            const LinePair places{cells_.place(pair.first), cells_.place(pair.second)};
+            put(places.first, places.second);
+            if (pair.second - begin < end - begin)
+              put(places.second, places.first);
+            pair = places;
+          }
+          pairs_[b].resize(pairs_[b].size() + kernel_padding);
+        }
+      },
+      1);
+  for (const std::vector<LinePair>& crossing : parts.crossing)
+    for (const LinePair& pair : crossing)
+      put(cells_.place(pair.second), cells_.place(pair.first));
+}
+
+// The lines of the window, and who may leave its slack in it.
+void NeighbourLists::follow(std::vector<std::uint32_t>& leavers) {
+  constexpr std::size_t chunk = 4096;
+  const std::size_t count = particles_->size();
+  std::vector<std::vector<std::uint32_t>> found((count + chunk - 1) / chunk);
+  parallel_for(
+      found.size(),
+      [&](std::size_t b) {
+        std::uint32_t buffer[chunk];
+        const std::size_t begin = b * chunk, end = std::min(count, begin + chunk);
+        const double* const rows = &particles_->bodies[0].elements.guiding_x;
+        const std::size_t leaving =
+            kernels_.follow(rows, references_.data(), follow_, begin, end, lines_.data(), buffer);
+        found[b].assign(buffer, buffer + leaving);
+      },
+      1);
+  for (const std::vector<std::uint32_t>& some : found)
+    leavers.insert(leavers.end(), some.begin(), some.end());
+}
+
+// The pairs that may touch in the window.
+void NeighbourLists::pick_near() {
+  const std::size_t anew_blocks = (anew_.size() + few - 1) / few;
+  near_.resize(pairs_.size() + anew_blocks);
+  const LineSpan span = wider(-half_window(), half_window(), half_window());
+  std::vector<std::uint64_t> gone_through(near_.size());
+  parallel_for(
+      near_.size(),
+      [&](std::size_t b) {
+        Pairs own;
+        if (b >= pairs_.size()) {
+          const std::size_t begin = (b - pairs_.size()) * few;
+          for (std::size_t k = begin; k < std::min(anew_.size(), begin + few); ++k)
+            for (const std::uint32_t j : list(anew_[k]))
+              if (!is_anew_[j] || anew_[k] < j)
+                own.push_back({anew_[k], j});
+          own.resize(own.size() + kernel_padding);
+        }
+        const Pairs& pairs = b < pairs_.size() ? pairs_[b] : own;
+        const std::size_t count = pairs.size() - kernel_padding;
+        Pairs kept(count);
+        auto end = kept.begin() + static_cast<std::ptrdiff_t>(
+                                      kernels_.filter(lines_.data(), frame_, span, pairs.data(), count, kept.data()));
+        if (b < pairs_.size())
+          end = std::remove_if(kept.begin(), end,
+                               [&](const LinePair& pair) { return is_anew_[pair.first] || is_anew_[pair.second]; });
+        near_[b].assign(kept.begin(), end);
+        near_[b].resize(near_[b].size() + kernel_padding);
+        gone_through[b] = count;
+      },
+      1);
+  cost_ += 2.0 * static_cast<double>(std::accumulate(gone_through.begin(), gone_through.end(), std::uint64_t{0}));
+}
+
+// New references and lists for these. False when it is cheaper to make all anew, or when one of them goes too far.
+bool NeighbourLists::mend(const std::vector<std::uint32_t>& leavers) {
+  constexpr std::size_t cost = 6; // of listing one anew, in those of one when all are
+  if (age_ > 0 &&
+      ((times_anew_ + leavers.size()) * cost > ranges_.size() || entries_.size() > 2 * entries_made_ + 4096))
+    return false;
+  cost_ += 800.0 * static_cast<double>(leavers.size());
+  const Rotation to_middle = to_middle_of_rest();
+  for (const std::uint32_t i : leavers)
+    if (!refer_anew(i, to_middle))
+      return false;
+  struct Found {
+    std::vector<std::uint32_t> entries, counts;
+    std::uint64_t tested = 0;
+  };
+  constexpr std::size_t chunk = 64;
+  std::vector<Found> found((leavers.size() + chunk - 1) / chunk);
+  const LineSpan rest = wider(since_middle() - 0.5 * step_, half_life(), half_life());
+  parallel_for(
+      found.size(),
+      [&](std::size_t c) {
+        std::vector<std::uint32_t> buffer;
+        for (std::size_t k = c * chunk; k < std::min(leavers.size(), (c + 1) * chunk); ++k) {
+          const std::size_t near = cells_.near(cells_.line(leavers[k]), rest, buffer, found[c].tested);
+          for (std::size_t n = 0; n < near; ++n)
+            found[c].entries.push_back(cells_.place(buffer[n]));
+          found[c].counts.push_back(static_cast<std::uint32_t>(near));
+        }
+      },
+      1);
+  std::size_t next = 0;
+  for (const Found& some : found) {
+    tested += some.tested;
+    std::span<const std::uint32_t> entries = some.entries;
+    for (const std::uint32_t count : some.counts) {
+      replace_list(leavers[next++], entries.first(count));
+      entries = entries.subspan(count);
+    }
+  }
+  return true;
+}
+
+// A new reference: the line of its present path about the middle of what is left. False: nearest images will not do.
+bool NeighbourLists::refer_anew(std::size_t i, const Rotation& to_middle) {
+  const Body& body = particles_->bodies[i];
+  if (!is_finite(body.elements))
+    throw InvariantError(fmt::format("particle {} has elements that are not finite", particles_->ids[i]));
+  ++times_anew_;
+  ++listed_anew;
+  mark(anew_, is_anew_, i);
+  mark(touched_, is_touched_, i);
+  Line line = line_of(body, to_middle, slack_, 0.5 * (life_ - age_) * step_, instant(-since_middle()));
+  references_[i] = line;
+  line.size += rounding_of(line, half_life());
+  cells_.replace(i, line);
+  return cells_.one_image(line);
+}
+
+void NeighbourLists::mark(std::vector<std::uint32_t>& which, std::vector<std::uint8_t>& marks, std::size_t i) {
+  assert(i < marks.size());
+  if (!marks[i])
+    which.push_back(static_cast<std::uint32_t>(i));
+  marks[i] = 1;
+}
+
+bool NeighbourLists::changed(std::size_t i, double time) {
+  const Body& body = particles_->bodies[i];
+  Line& line = lines_[i];
+  line = line_of(body, to_window_, 0.0, half_window(), at_window_);
+  line.size += rounding_of(line, half_window());
+  // how far from the reference in the middle of the window, and how fast it goes: a line in between
+  const FollowFrame& f = follow_;
+  const Line& r = references_[i];
+  double dx = line.x - (r.x + r.u * f.since * f.per_metre_x);
+  const double outward = nearest(dx * (1.0 / full_turn));
+  dx -= outward * full_turn;
+  const double along = r.v - f.shear * r.x * (f.size_x / full_turn);
+  double dy = line.y + outward * f.offset - (r.y + along * f.since * f.per_metre_y);
+  dy -= full_turn * nearest(dy * (1.0 / full_turn));
+  const Vec3 off(dx * frame_.metres_x, dy * frame_.metres_y, line.z - (r.z + r.w * f.since));
+  const Vec3 beyond(line.u - r.u, line.v - r.v - f.shear * (off.x() + f.since * r.u), line.w - r.w);
+  const double limit = r.size - line.size - rounding_of(line, half_window());
+  const auto within = [&](double when) { return limit >= 0.0 && (off + when * beyond).squaredNorm() <= limit * limit; };
+  const double now = since_window();
+  is_leaving_[i] = !within(half_window());
+  return within(now + time) && (!is_leaving_[i] || within(now + 0.5 * step_));
+}
+
+void NeighbourLists::list_anew(std::size_t i) {
+  is_leaving_[i] = 0;
+  if (!refer_anew(i, to_middle_of_rest())) {
+    reaches_far_ = true;
+    made_ = false; // for the next step
+    return;
+  }
+  std::vector<std::uint32_t> buffer;
+  const LineSpan rest = wider(since_middle() - 0.5 * step_, half_life(), half_life());
+  const std::size_t near = cells_.near(cells_.line(i), rest, buffer, tested);
+  for (std::size_t n = 0; n < near; ++n)
+    buffer[n] = cells_.place(buffer[n]);
+  replace_list(static_cast<std::uint32_t>(i), std::span(buffer).first(near));
+}
+
+void NeighbourLists::touched(std::span<const std::uint32_t> particles) {
+  std::uint64_t entries = 0;
+  for (const std::uint32_t i : particles) {
+    mark(touched_, is_touched_, i);
+    if (is_leaving_[i])
+      leaving_.push_back(i);
+    is_leaving_[i] = 0;
+    entries += ranges_[i].count;
+  }
+  cost_ += 5.0 * static_cast<double>(entries);
+  assert((assert_sound(), true));
+}
+
+void NeighbourLists::replace_list(std::uint32_t i, std::span<const std::uint32_t> found) {
+  for (const std::uint32_t j : list(i))
+    erase(j, i);
+  ranges_[i].count = 0;
+  if (ranges_[i].room < found.size())
+    grow(ranges_[i], static_cast<std::uint32_t>(found.size()));
+  Range& range = ranges_[i];
+  for (const std::uint32_t j : found)
+    if (j != i) {
+      entries_[range.begin + range.count++] = j;
+      append(j, i);
+    }
+}
+
+void NeighbourLists::erase(std::uint32_t of, std::uint32_t entry) {
+  Range& range = ranges_[of];
+  std::uint32_t* const entries = entries_.data() + range.begin;
+  std::uint32_t* const at = std::find(entries, entries + range.count, entry);
+  assert(at < entries + range.count); // entries are mutual
+  *at = entries[--range.count];
+}
+
+void NeighbourLists::append(std::uint32_t to, std::uint32_t entry) {
+  Range& range = ranges_[to];
+  if (range.count == range.room)
+    grow(range, range.count + 1);
+  entries_[range.begin + range.count++] = entry;
+}
+
+// Moves a list to where there is room.
+void NeighbourLists::grow(Range& range, std::uint32_t room) {
+  const std::size_t begin = entries_.size() - kernel_padding;
+  room += room / 4 + 2;
+  entries_.resize(entries_.size() + room, 0);
+  std::copy_n(entries_.begin() + range.begin, range.count, entries_.begin() + static_cast<std::ptrdiff_t>(begin));
+  range.begin = static_cast<std::uint32_t>(begin);
+  range.room = room;
+}
+
+void NeighbourLists::prefetch(std::size_t i, int stage) const {
+  if (stage == 0) {
+    __builtin_prefetch(&lines_[i], 1);
+    __builtin_prefetch(&references_[i]);
+    __builtin_prefetch(&ranges_[i]);
+    return;
+  }
+  const Range& range = ranges_[i];
+  const std::uint32_t* const entries = entries_.data() + range.begin;
+  if (stage == 1) {
+    __builtin_prefetch(entries);
+    __builtin_prefetch(entries + range.count);
+  } else {
+    for (std::uint32_t k = 0; k < std::min(range.count, 32u); ++k)
+      __builtin_prefetch(&lines_[entries[k]]);
+  }
+}
+
+void NeighbourLists::release() {
+  made_ = false;
+  cells_.release();
+  lines_ = {};
+  entries_ = {};
+  pairs_ = {};
+  near_ = {};
+}
+
+std::size_t NeighbourLists::bytes() const {
+  std::size_t total = cells_.bytes() + bytes_of(lines_) + bytes_of(ranges_) + bytes_of(entries_);
+  total +=
+      bytes_of(references_) + bytes_of(touched_) + bytes_of(is_touched_) + bytes_of(is_leaving_) + bytes_of(is_anew_);
+  for (const std::vector<Pairs>* all : {&pairs_, &near_})
+    for (const Pairs& pairs : *all)
+      total += bytes_of(pairs);
+  return total;
+}
+
+} // namespace keeler

@@ -1,0 +1,107 @@
+// The queue of pending contacts against its reference implementation: a plain list of which the least key is taken.
+#include <keeler/collision/events.hpp>
+#include <keeler/core/random.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <vector>
+
+using namespace keeler;
+
+namespace {
+
+struct Draws {
+  RandomStream random;
+  std::uint32_t events = 0;
+
+  explicit Draws(std::uint64_t seed) : random(seed, RandomPurpose::sample, 0) {}
+
+  std::size_t below(std::size_t count) {
+    return static_cast<std::size_t>(random.uniform() * static_cast<double>(count));
+  }
+  std::int32_t step() { return static_cast<std::int32_t>(below(3)) - 1; }
+
+  // Few times, ids and images, so that each decides often. The place tells events apart that have the same key.
+  Event event(std::size_t times) {
+    Event event;
+    event.time = static_cast<double>(below(times)) - 0.5 * static_cast<double>(times);
+    event.low_id = below(4);
+    event.high_id = event.low_id + 1 + below(4);
+    event.image = {step(), step()};
+    event.low = events++;
+    return event;
+  }
+
+  std::vector<Event> some(std::size_t count, std::size_t times) {
+    std::vector<Event> all(count);
+    for (Event& one : all)
+      one = event(times);
+    return all;
+  }
+};
+
+// What the queue must do, slowly.
+struct Pending {
+  std::vector<Event> events;
+
+  auto first_key() const {
+    return std::min_element(events.begin(), events.end(),
+                            [](const Event& a, const Event& b) { return a.key() < b.key(); })
+        ->key();
+  }
+
+  // Whether it was pending, with that key; then it is no more.
+  bool take(const Event& event) {
+    const auto at = std::find_if(events.begin(), events.end(), [&](const Event& e) { return e.low == event.low; });
+    if (at == events.end() || at->key() != event.key())
+      return false;
+    events.erase(at);
+    return true;
+  }
+};
+
+} // namespace
+
+TEST_CASE(
+    "events come in the order of time, ids and image, however many times are equal and whenever they were added") {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    CAPTURE(seed);
+    Draws draws(seed);
+    const std::size_t times = seed % 3 == 0 ? 1 : seed % 3 == 1 ? 5 : 100000;
+    EventQueue queue;
+    for (int again = 0; again < 2; ++again) { // of the second step nothing of the first is left
+      Pending pending{draws.some(draws.below(120), times)};
+      queue.assign(pending.events);
+      for (int act = 0; act < 400; ++act) {
+        REQUIRE(queue.empty() == pending.events.empty());
+        if (queue.empty() || draws.below(5) < 2) {
+          pending.events.push_back(draws.event(times)); // earlier than some that have been taken, too
+          queue.add(pending.events.back());
+          continue;
+        }
+        const auto first = pending.first_key();
+        const Event taken = queue.take_first();
+        REQUIRE((taken.key() == first));
+        REQUIRE(pending.take(taken));
+      }
+    }
+  }
+}
+
+TEST_CASE("of the events known at the start it tells which come up, and of no others") {
+  Draws draws(1);
+  const std::vector<Event> known = draws.some(50, 7);
+  EventQueue queue;
+  queue.assign(known);
+  queue.add(draws.event(7));
+  std::vector<Event> sorted = known;
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t by = 0; by < sorted.size(); ++by)
+    CHECK((queue.ahead(by)->key() == sorted[by].key()));
+  CHECK(queue.ahead(sorted.size()) == nullptr);
+  for (int taken = 0; taken < 51; ++taken)
+    queue.take_first();
+  CHECK(queue.ahead(0) == nullptr);
+  CHECK(queue.empty());
+}

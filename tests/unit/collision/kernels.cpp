@@ -1,0 +1,472 @@
+// The kernels of the neighbour lists, in single precision and in every instruction set: lines that come into contact
+// against double precision, and lines made from orbits against the true paths.
+#include "neighbours/kernels.hpp"
+
+#include "unit/collision/spheres.hpp"
+
+#include <keeler/box/shearing_box.hpp>
+#include <keeler/particles/store.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+using namespace keeler;
+
+namespace {
+
+constexpr double full_turn = 4294967296.0; // 2³², the box
+constexpr double single = 4e-6;            // of a path: what sizes allow for single precision, as those of the lists do
+constexpr std::size_t number = 61;         // lines, no multiple of any vector's length
+constexpr InstructionSet all_sets[] = {InstructionSet::portable, InstructionSet::avx2, InstructionSet::avx512};
+
+std::int32_t wrapped(double fraction) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(std::llround(fraction)));
+}
+
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+// One line, and a row of others: half of them anywhere, half so that they pass the one at about the contact's distance
+// some time in the span, many through an edge of the box. All reach less than 0.45 of the box, as the sweep asks.
+struct Row {
+  test::RandomVectors random;
+  double size_x, size_y, shear, offset, speed, half; // m, m, -, m, m/rad, rad
+  LineFrame frame;
+  Line one;
+  std::vector<double> radii;            // of the others
+  std::vector<Line> others;             // and padding that touches the one: it must not be taken in
+  static constexpr double radius = 1.0; // of the one, and the largest
+
+  explicit Row(std::uint64_t seed) : random(seed) {
+    shear = 1.0 + random.uniform();
+    half = decades(-5.0, 0.5);
+    speed = decades(-3.0, 1.0) / half;
+    const double reach = (2.0 * radius + 4.0 * half * speed) * (1.0 + shear * half) / 0.45;
+    size_x = reach * (1.0 + 1e-3 + decades(-3.0, 4.0));
+    size_y = reach * (1.0 + 1e-3 + decades(-3.0, 4.0));
+    offset = size_y * (random.uniform() - 0.5);
+    frame = {static_cast<float>(size_x / full_turn), static_cast<float>(size_y / full_turn), static_cast<float>(shear),
+             wrapped(offset / size_y * full_turn)};
+    one = line(anywhere(), radius);
+    if (random.uniform() < 0.6) // about an edge
+      one.x = static_cast<std::int32_t>((random.uniform() < 0.5 ? -1.0 : 1.0) *
+                                        (0.5 * full_turn - 1.0 - random.uniform() * radius / size_x * full_turn));
+    for (std::size_t k = 0; k < number; ++k) {
+      radii.push_back(radius * decades(-2.0, 0.0));
+      others.push_back(line(k % 2 ? passing(radii.back()) : anywhere(), radii.back()));
+    }
+    others.resize(number + kernel_padding, one);
+  }
+
+  double decades(double least, double most) { return std::pow(10.0, least + (most - least) * random.uniform()); }
+  std::size_t below(std::size_t count) {
+    return static_cast<std::size_t>(random.uniform() * static_cast<double>(count));
+  }
+
+  // Fields of a line without its size.
+  Line anywhere() {
+    const Vec3 v = speed * random.uniform() * random.direction();
+    return {wrapped(full_turn * (random.uniform() - 0.5)),
+            wrapped(full_turn * (random.uniform() - 0.5)),
+            static_cast<float>(4.0 * radius * (random.uniform() - 0.5)),
+            static_cast<float>(v.x()),
+            static_cast<float>(v.y()),
+            static_cast<float>(v.z()),
+            0.0f,
+            0};
+  }
+
+  // At a distance of about the contact at some time. An image n boxes outward stands behind by n offsets.
+  Line passing(double r) {
+    Line line = anywhere();
+    const double off = (random.uniform() < 0.5 ? -1.0 : 1.0) * decades(-8.0, -1.0),
+                 time = half * (2.2 * random.uniform() - 1.1);
+    const Vec3 near = (radius + r) * (1.0 + off) * random.direction();
+    const Vec3 v(line.u - one.u, line.v - one.v, line.w - one.w);
+    const double x = near.x() - time * v.x(), y = near.y() - time * (v.y() - shear * x), z = near.z() - time * v.z();
+    const double fraction = one.x + x / size_x * full_turn, box = std::floor(fraction / full_turn + 0.5);
+    line.x = wrapped(fraction - box * full_turn);
+    line.y = wrapped(one.y + (y + box * offset) / size_y * full_turn);
+    line.z = static_cast<float>(one.z + z);
+    return line;
+  }
+
+  Line line(const Line& without_size, double r) const {
+    Line line = without_size;
+    const double path = half * (std::fabs(line.u) + std::fabs(line.v) + std::fabs(line.w));
+    const double grain = 4.0 / full_turn * (size_x + size_y);
+    line.size = static_cast<float>(r + single * (r + path + std::fabs(line.z)) + grain);
+    return line;
+  }
+
+  // The smallest distance in the span, of all images beside the box.
+  double nearest(const Line& a, const Line& b) const {
+    double least = HUGE_VAL;
+    for (const int n : {-1, 0, 1}) {
+      const double x = (static_cast<double>(b.x) - a.x) / full_turn * size_x + n * size_x;
+      const double y = std::remainder((static_cast<double>(b.y) - a.y) / full_turn * size_y - n * offset, size_y);
+      const Vec3 d(x, y, static_cast<double>(b.z) - a.z);
+      const Vec3 v(static_cast<double>(b.u) - a.u, static_cast<double>(b.v) - a.v - shear * x,
+                   static_cast<double>(b.w) - a.w);
+      const double time = std::clamp(-d.dot(v) / (v.squaredNorm() + 1e-300), -half, half);
+      least = std::min(least, (d + time * v).norm());
+    }
+    return least;
+  }
+
+  LineSpan span() const { return {static_cast<float>(-half * (1.0 + 1e-6)), static_cast<float>(half * (1.0 + 1e-6))}; }
+
+  std::vector<std::uint32_t> sweep(InstructionSet set, std::size_t begin, std::size_t end) const {
+    std::vector<std::uint32_t> found(end - begin + kernel_padding);
+    std::iota(found.begin(), found.end(), static_cast<std::uint32_t>(begin));
+    found.resize(kernels(set).sweep(one, others.data(), frame, span(), found.data(), end - begin, found.data()));
+    return found;
+  }
+
+  Pairs sweep_group(InstructionSet set, std::size_t first, std::size_t last, std::size_t begin, std::size_t end) const {
+    std::vector<LinePair> found((last - first) * (end - begin));
+    found.resize(kernels(set).sweep_group(others.data(), first, last, frame, span(), begin, end, found.data()));
+    Pairs pairs;
+    for (const LinePair& pair : found)
+      pairs.emplace_back(pair.first, pair.second);
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+  }
+
+  Pairs filter(InstructionSet set, const Pairs& pairs) const {
+    std::vector<LinePair> given, kept(pairs.size());
+    for (const auto& [first, second] : pairs)
+      given.push_back({first, second});
+    given.resize(pairs.size() + kernel_padding, LinePair{number, number}); // which touch, and are none of the pairs
+    kept.resize(kernels(set).filter(others.data(), frame, span(), given.data(), pairs.size(), kept.data()));
+    Pairs found;
+    for (const LinePair& pair : kept)
+      found.emplace_back(pair.first, pair.second);
+    return found;
+  }
+};
+
+} // namespace
+
+TEST_CASE("no line that comes into contact is left out, and few others are kept") {
+  std::size_t contacts = 0, across = 0, kept = 0;
+  for (std::uint64_t seed = 1; seed <= 4000; ++seed) {
+    const Row row(seed);
+    const std::vector<std::uint32_t> found = row.sweep(InstructionSet::portable, 0, number);
+    for (std::uint32_t k = 0; k < number; ++k) {
+      const double distance = row.nearest(row.one, row.others[k]), contact = Row::radius + row.radii[k];
+      const bool listed = std::binary_search(found.begin(), found.end(), k);
+      contacts += distance <= contact;
+      across += distance <= contact && std::fabs(static_cast<double>(row.others[k].x) - row.one.x) > 0.5 * full_turn;
+      kept += listed;
+      if (distance <= contact && !listed) {
+        CAPTURE(seed);
+        CAPTURE(k);
+        CHECK(distance > contact);
+      }
+    }
+  }
+  CHECK(contacts > 100000);
+  CHECK(across > 15000);
+  CHECK(static_cast<double>(kept) < 1.01 * static_cast<double>(contacts));
+}
+
+TEST_CASE("all instruction sets leave out the same lines, of any stretch of a row") {
+  for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+    Row row(seed);
+    const std::size_t begin = row.below(number), some = begin + row.below(number + 1 - begin);
+    const std::size_t end = seed % 3 ? std::min(begin + seed % 20, number) : some;
+    const std::vector<std::uint32_t> expected = row.sweep(InstructionSet::portable, begin, end);
+    for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512})
+      if (supports(set)) {
+        CAPTURE(seed);
+        CAPTURE(instruction_set_name(set));
+        CHECK((row.sweep(set, begin, end) == expected));
+      }
+  }
+}
+
+TEST_CASE("a group of lines finds what each of them finds, and each pair within it once") {
+  std::size_t pairs = 0;
+  for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+    Row row(seed);
+    for (Line& line : row.others)
+      line.size *= 20.0f; // they stand about the one line, and few would touch each other
+    const std::size_t first = row.below(number), last = first + 1 + row.below(std::min<std::size_t>(8, number - first));
+    const bool before = seed % 2 == 0;
+    const std::size_t begin = before ? row.below(first + 1) : first + 1,
+                      end = before ? begin + row.below(first + 1 - begin) : begin + row.below(number + 1 - begin);
+    Pairs expected;
+    for (std::size_t m = first; m < last; ++m) {
+      row.one = row.others[m];
+      for (const std::uint32_t k : row.sweep(InstructionSet::portable, begin, end))
+        if (before || k > m)
+          expected.emplace_back(static_cast<std::uint32_t>(m), k);
+    }
+    pairs += expected.size();
+    for (const InstructionSet set : all_sets)
+      if (supports(set)) {
+        CAPTURE(seed);
+        CAPTURE(instruction_set_name(set));
+        CHECK((row.sweep_group(set, first, last, begin, end) == expected));
+      }
+  }
+  CHECK(pairs > 10000);
+}
+
+TEST_CASE("of a list of pairs those are kept, in their order, of which one line finds the other") {
+  std::size_t contacts = 0, kept = 0, given = 0;
+  for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+    CAPTURE(seed);
+    Row row(seed);
+    row.others[0] = row.one;
+    row.radii[0] = Row::radius;
+    Pairs pairs, expected;
+    for (std::size_t k = row.below(70); k > 0; --k) {
+      const auto a = static_cast<std::uint32_t>(row.below(number)),
+                 b = static_cast<std::uint32_t>(row.below(3) ? 0 : row.below(number));
+      pairs.push_back(k % 2 ? std::pair(a, b) : std::pair(b, a));
+    }
+    for (const auto& [a, b] : pairs) {
+      row.one = row.others[a];
+      if (!row.sweep(InstructionSet::portable, b, b + 1).empty())
+        expected.emplace_back(a, b);
+      else
+        CHECK(row.nearest(row.one, row.others[b]) > row.radii[a] + row.radii[b]);
+      contacts += row.nearest(row.one, row.others[b]) <= row.radii[a] + row.radii[b];
+    }
+    given += pairs.size();
+    kept += expected.size();
+    for (const InstructionSet set : all_sets)
+      if (supports(set)) {
+        CAPTURE(instruction_set_name(set));
+        CHECK((row.filter(set, pairs) == expected));
+      }
+  }
+  CHECK(contacts > 5000);
+  CHECK(given > 2 * kept);
+}
+
+namespace {
+
+// Bodies about whose paths references run that they leave by up to twice the slack; some stand far from theirs. All
+// stand up to some boxes outside the cell.
+struct Followed {
+  test::RandomVectors random;
+  Frequencies f;
+  ShearingBox box;
+  double offset, after, since, half, heat; // m; rad; m
+  FollowFrame frame;
+  std::vector<Body> bodies;
+  std::vector<Line> references;
+  std::vector<double> curvature; // of each in the span, m
+
+  explicit Followed(std::uint64_t seed) : random(seed) {
+    f.kappa = 0.7 + 0.3 * random.uniform();
+    f.nu = 1.0 + 2.0 * random.uniform();
+    half = decades(-4.0, -0.7);
+    after = random.uniform() - 0.5;
+    since = 4.0 * half * (random.uniform() - 0.5);
+    heat = decades(-3.0, 2.0);
+    const double least = 20.0 * (2.0 + heat);
+    box = {least * decades(0.0, 4.0), least * decades(0.0, 4.0), f.shear(), 0.0};
+    offset = box.size_y * (random.uniform() - 0.5);
+    frame = {f.kappa,
+             f.nu,
+             f.shear(),
+             after,
+             middle().cos_e,
+             middle().sin_e,
+             middle().cos_i,
+             middle().sin_i,
+             box.size_x,
+             full_turn / box.size_x,
+             full_turn / box.size_y,
+             offset_at(0.0) * (full_turn / box.size_y),
+             since,
+             half,
+             4.0 / full_turn * (box.size_x + box.size_y)};
+    for (std::size_t k = 0; k < number; ++k)
+      add(k);
+    references.resize(number + kernel_padding);
+  }
+
+  double decades(double least, double most) { return std::pow(10.0, least + (most - least) * random.uniform()); }
+  double centred(double width) { return width * (random.uniform() - 0.5); }
+  Rotation middle() const { return Rotation(f, after); }
+  // So long after the middle. No whole number of boxes along the orbit is taken off.
+  double offset_at(double time) const { return offset + box.shear * box.size_x * (after + time); }
+
+  void add(std::size_t k) {
+    Body body;
+    body.radius = decades(-1.0, 0.0);
+    body.elements = {centred(1.01 * box.size_x),
+                     centred(1.01 * box.size_y),
+                     centred(heat),
+                     centred(heat),
+                     centred(heat),
+                     centred(heat)};
+    if (k % 5 == 0) { // boxes away
+      body.elements.guiding_x += box.size_x * std::rint(centred(6.0));
+      body.elements.guiding_y += box.size_y * std::rint(centred(6.0));
+    }
+    const Elements& el = body.elements;
+    curvature.push_back(0.5 * half * half *
+                        (2.0 * f.kappa * (std::fabs(el.e_cos) + std::fabs(el.e_sin)) +
+                         f.nu * f.nu * (std::fabs(el.i_sin) + std::fabs(el.i_cos))) *
+                        1.5); // at the epoch; it may turn until the middle
+    bodies.push_back(body);
+    references.push_back(reference(body, decades(-1.5, 0.5) + 2.0 * curvature.back(), k % 11 == 0));
+  }
+
+  Line reference(const Body& body, double slack, bool far) {
+    const State s = state_at(body.elements, f, middle());
+    const double off = 2.0 * slack * random.uniform() * random.uniform(), part = random.uniform();
+    Vec3 position = s.position + part * off * random.direction();
+    Vec3 velocity = s.velocity + (1.0 - part) * off / half * random.direction();
+    if (far)
+      position += Vec3(centred(box.size_x), centred(box.size_y), 0.0);
+    position -= since * velocity;
+    const double boxes = std::floor(position.x() / box.size_x + 0.5); // the image into the cell
+    return {wrapped((position.x() / box.size_x - boxes) * full_turn),
+            wrapped((position.y() + boxes * offset_at(-since)) / box.size_y * full_turn),
+            static_cast<float>(position.z()),
+            static_cast<float>(velocity.x()),
+            static_cast<float>(velocity.y() + box.shear * position.x()),
+            static_cast<float>(velocity.z()),
+            static_cast<float>(body.radius + slack),
+            0};
+  }
+
+  // How far the true path gets from a line of this age in the span.
+  double farthest(const Body& body, const Line& line, double age) const {
+    constexpr int times = 16;
+    double most = 0.0;
+    for (int k = -times; k <= times; ++k)
+      most = std::max(most, distance(body, line, age, half * k / times));
+    return most;
+  }
+
+  // So long after the middle, when the line is older by `age`.
+  double distance(const Body& body, const Line& line, double age, double time) const {
+    const Vec3 path = state_at(body.elements, f, Rotation(f, after + time)).position;
+    const double x = line.x / full_turn * box.size_x, y = line.y / full_turn * box.size_y, t = age + time;
+    Vec3 d = path - Vec3(x + t * line.u, y + t * (line.v - box.shear * x), line.z + t * static_cast<double>(line.w));
+    const double boxes = std::rint(d.x() / box.size_x);
+    d.x() -= boxes * box.size_x;
+    d.y() += boxes * offset_at(time);
+    d.y() -= box.size_y * std::rint(d.y() / box.size_y);
+    return d.norm();
+  }
+
+  struct Lines {
+    std::vector<Line> lines;
+    std::vector<std::uint32_t> leavers;
+  };
+  Lines follow(InstructionSet set, std::size_t begin, std::size_t end, float untouched = 0.0f) const {
+    Lines all{std::vector<Line>(number + kernel_padding, Line{0, 0, untouched, 0.0f, 0.0f, 0.0f, 0.0f, 0}),
+              std::vector<std::uint32_t>(end - begin)};
+    all.leavers.resize(kernels(set).follow(&bodies[0].elements.guiding_x, references.data(), frame, begin, end,
+                                           all.lines.data(), all.leavers.data()));
+    return all;
+  }
+};
+
+bool same(const Line& a, const Line& b) {
+  return a.x == b.x && a.y == b.y && a.z == b.z && a.u == b.u && a.v == b.v && a.w == b.w && a.size == b.size;
+}
+
+} // namespace
+
+TEST_CASE("a line holds its true path, and who leaves the reference by more than the slack is listed") {
+  std::size_t leave = 0, listed = 0, stay = 0, outside = 0;
+  for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
+    const Followed followed(seed);
+    const Followed::Lines found = followed.follow(InstructionSet::portable, 0, number);
+    CAPTURE(seed);
+    for (std::uint32_t k = 0; k < number; ++k) {
+      CAPTURE(k);
+      const Body& body = followed.bodies[k];
+      const Line &line = found.lines[k], &reference = followed.references[k];
+      const double room = static_cast<double>(line.size) - body.radius;
+      const double error = followed.farthest(body, line, 0.0);
+      if (!(error <= room))
+        CHECK(error <= room);
+      if (!(room < 1.1 * (followed.curvature[k] + 1e-4 * (line.size + followed.heat)) + 2.0 * followed.frame.allowance))
+        CHECK(room <
+              1.1 * (followed.curvature[k] + 1e-4 * (line.size + followed.heat)) + 2.0 * followed.frame.allowance);
+      const double off = followed.farthest(body, reference, followed.since), slack = reference.size - body.radius;
+      const bool leaves = std::binary_search(found.leavers.begin(), found.leavers.end(), k);
+      const bool well_inside = off + 2.0 * room < 0.9 * slack;
+      if (off > slack && !leaves)
+        CHECK(off <= slack);
+      if (well_inside && leaves)
+        CHECK(off + 2.0 * room >= 0.9 * slack);
+      leave += off > slack;
+      listed += leaves;
+      stay += well_inside;
+      outside += std::fabs(body.elements.guiding_x) > 0.5 * followed.box.size_x;
+    }
+  }
+  MESSAGE(leave << " leave, " << listed << " listed, " << stay << " well inside, " << outside << " from outside");
+  CHECK(leave > 10000);
+  CHECK(stay > 30000);
+  CHECK(outside > 5000);
+}
+
+TEST_CASE(
+    "all instruction sets make the same lines and list the same leavers, of any stretch from a multiple of 8 on") {
+  for (std::uint64_t seed = 1; seed <= 600; ++seed) {
+    Followed followed(seed);
+    const std::size_t begin = 8 * static_cast<std::size_t>(followed.random.uniform() * 8.0);
+    const std::size_t end = begin + static_cast<std::size_t>(followed.random.uniform() * double(number + 1 - begin));
+    const Followed::Lines all = followed.follow(InstructionSet::portable, 0, number);
+    std::vector<std::uint32_t> leavers;
+    std::copy_if(all.leavers.begin(), all.leavers.end(), std::back_inserter(leavers),
+                 [&](std::uint32_t k) { return k >= begin && k < end; });
+    for (const InstructionSet set : all_sets)
+      if (supports(set)) {
+        CAPTURE(seed);
+        CAPTURE(instruction_set_name(set));
+        const Followed::Lines some = followed.follow(set, begin, end, 77.0f);
+        CHECK((some.leavers == leavers));
+        const auto wrong = [&](std::size_t k) {
+          const bool inside = k >= begin && k < end;
+          return inside ? !same(some.lines[k], all.lines[k]) : k < begin && some.lines[k].z != 77.0f;
+        };
+        for (std::size_t k = 0; k < number; ++k)
+          if (wrong(k))
+            CHECK_FALSE(wrong(k));
+      }
+  }
+}
+
+TEST_CASE("whoever is not finite leaves its reference, and nobody beside it") {
+  constexpr double huge = std::numeric_limits<double>::infinity();
+  Followed followed(3);
+  for (std::size_t k = 0; k < number; ++k) // all stay
+    followed.references[k] = followed.reference(followed.bodies[k], 0.0, false);
+  for (std::size_t k = 0; k < number; ++k)
+    followed.references[k].size += 1e6f;
+  for (const double value : {std::numeric_limits<double>::quiet_NaN(), huge, -huge})
+    for (std::uint32_t k = 0; k < number; k += 7)
+      for (std::size_t field = 0; field < 7; ++field) { // the elements and the radius
+        Body& body = followed.bodies[k];
+        const Body before = body;
+        (&body.elements.guiding_x)[field] = value;
+        for (const InstructionSet set : all_sets)
+          if (supports(set) && !(field == 6 && value == -huge)) { // no radius
+            CAPTURE(k);
+            CAPTURE(field);
+            CAPTURE(value);
+            CAPTURE(instruction_set_name(set));
+            CHECK((followed.follow(set, 0, number).leavers == std::vector<std::uint32_t>{k}));
+          }
+        body = before;
+      }
+}

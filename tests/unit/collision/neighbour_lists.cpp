@@ -1,0 +1,504 @@
+// The neighbour lists step by step, against all pairs through all images: particles that drift, are hit, kicked,
+// carried off and change their places in the store. By their exact test the lists must visit the same pairs, each once.
+#include "neighbours/neighbour_lists.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/random.hpp>
+#include <keeler/core/threads.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+using namespace keeler;
+
+namespace {
+
+// A pair that may touch: places, the lower first, and the image of the higher.
+using Pair = std::tuple<std::size_t, std::size_t, std::int32_t, std::int32_t>;
+
+Pair pair_of(std::size_t i, std::size_t j, const Image& image) {
+  const Image of_higher = i < j ? image : -image;
+  return {std::min(i, j), std::max(i, j), of_higher.nx, of_higher.ny};
+}
+
+struct Setting {
+  std::size_t count = 200;
+  double depth = 0.4;        // the optical depth
+  double ratio = 1.0;        // of the largest radius, 1 m, to the smallest
+  double heat = 1.0;         // m
+  double step = 0.02;        // rad
+  double elongation = 1.0;   // of the box, along the orbit
+  double hits = 0.1;         // a particle and a step
+  double speed = 0.0;        // of hits, m/rad, beyond what heat makes them
+  std::size_t kick_each = 0; // so many steps, if any
+  Frequencies frequencies{};
+};
+
+// A patch that drifts as in a run. Spheres may overlap: nobody asks when they touch.
+struct Patch {
+  Setting setting;
+  RandomStream random;
+  Particles particles;
+  ShearingBox box;
+  std::int64_t steps = 0;
+  bool undisturbed = false;
+  NeighbourLists lists;
+  std::vector<std::uint32_t> buffer;
+
+  Patch(const Setting& s, std::uint64_t seed)
+      : setting(s), random(seed, RandomPurpose::position, 0), lists(s.frequencies, s.step) {
+    double area = 0.0;
+    for (std::size_t k = 0; k < s.count; ++k) {
+      const double least = 1.0 / s.ratio;
+      const double radius = std::min(1.0, least * std::pow(random.uniform(), -0.5)); // a cumulative index of 2
+      particles.bodies.push_back({{}, radius, radius * radius * radius});
+      particles.ids.push_back(k);
+      area += 3.141592653589793 * radius * radius;
+    }
+    const double side = std::sqrt(area / s.depth);
+    box = {side / std::sqrt(s.elongation), side * std::sqrt(s.elongation), s.frequencies.shear(), 0.0};
+    box.first_offset = random.uniform() * box.size_y;
+    for (Body& body : particles.bodies)
+      body.elements = {centred(box.size_x),      centred(box.size_y),      random.normal() * s.heat,
+                       random.normal() * s.heat, random.normal() * s.heat, random.normal() * s.heat};
+  }
+
+  double centred(double width) { return width * (random.uniform() - 0.5); }
+  std::size_t below(std::size_t count) {
+    return static_cast<std::size_t>(random.uniform() * static_cast<double>(count));
+  }
+  double offset() const { return box.offset(2 * steps + 1, 0.5 * setting.step); }
+  double half() const { return 0.5 * setting.step; }
+
+  bool begin() { return lists.begin(particles, box, offset(), undisturbed); }
+
+  void move_on() {
+    ++steps;
+    const Rebase rebase(setting.frequencies, setting.step);
+    for (Body& body : particles.bodies) {
+      rebase(body.elements);
+      into_cell(body);
+    }
+    undisturbed = true;
+  }
+  void into_cell(Body& body) const {
+    Elements& el = body.elements;
+    el = box.image_of(el, box.image_into_cell(el.guiding_x, el.guiding_y, offset()), offset());
+  }
+
+  Vec3 random_velocity(double speed) { return speed * Vec3(random.normal(), random.normal(), random.normal()); }
+  // Beyond the shear of its guiding centre, when the step begins.
+  Vec3 state_velocity(std::size_t i) const {
+    const Elements& el = particles.bodies[i].elements;
+    const State s = state_at(el, setting.frequencies, Rotation(setting.frequencies, -half()));
+    return s.velocity + Vec3(0.0, box.shear * s.position.x(), 0.0);
+  }
+  void change_velocity(std::size_t i, double time, const Vec3& dv) {
+    kick(particles.bodies[i].elements, dv, setting.frequencies, Rotation(setting.frequencies, time));
+  }
+
+  // As the drift does, and by how much it is told.
+  void hit(std::size_t i, double time, double speed) {
+    change_velocity(i, time, random_velocity(speed));
+    if (!lists.changed(i, time))
+      lists.list_anew(i);
+  }
+
+  // Calls visit(image) for those of a pair that may touch from then on, by the exact test.
+  template<class Visit>
+  void visit_images(std::size_t i, std::size_t j, double start, int far, const Visit& visit) const {
+    const StraightLineTest test{setting.frequencies, half(), half(), 1e-13 * (box.size_x + box.size_y)};
+    const Body &a = particles.bodies[i], &b = particles.bodies[j];
+    const Image nearest = lists.nearest_image(a, b);
+    for (int nx = -far; nx <= far; ++nx)
+      for (int ny = -far; ny <= far; ++ny) {
+        const Image image{nearest.nx + nx, nearest.ny + ny};
+        const Vec3 shift = box.displacement(image, offset());
+        if (test.may_touch(a, b, shift.x(), shift.y(), start))
+          visit(image);
+      }
+  }
+
+  // Through images beside the nearest, too, where it takes too long now and then only.
+  std::vector<Pair> all_pairs() const {
+    std::vector<Pair> all;
+    const int far = steps % 8 == 0 ? 1 : 0;
+    for (std::size_t i = 0; i < particles.size(); ++i)
+      for (std::size_t j = i + 1; j < particles.size(); ++j)
+        visit_images(i, j, -half(), far, [&](const Image& image) { all.push_back(pair_of(i, j, image)); });
+    return all;
+  }
+  std::vector<Pair> visited(const NeighbourLists& by) const {
+    std::vector<Pair> all;
+    for (std::size_t block = 0; block < by.blocks(); ++block)
+      by.visit_block(block,
+                     [&](std::size_t i, std::size_t j, const Image& image) { all.push_back(pair_of(i, j, image)); });
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+
+  std::vector<Pair> all_partners(std::size_t i, double start, int far = 0) const {
+    std::vector<Pair> all;
+    for (std::size_t j = 0; j < particles.size(); ++j)
+      if (j != i)
+        visit_images(i, j, start, far, [&](const Image& image) { all.push_back(pair_of(i, j, image)); });
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+  std::vector<Pair> visited_partners(std::size_t i, double start) {
+    std::vector<Pair> all;
+    const auto take = [&](std::size_t j, const Image& image) { all.push_back(pair_of(i, j, image)); };
+    if (lists.reaches_far())
+      lists.visit_everywhere(i, start, take);
+    else
+      lists.visit_partners(i, start, half(), buffer, take);
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+};
+
+bool once_each(const std::vector<Pair>& sorted) {
+  return std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
+}
+
+// Each on the list of each on its own, once, and not on its own.
+bool mutual(const NeighbourLists& lists, std::size_t count) {
+  std::vector<std::pair<std::size_t, std::size_t>> forth, back;
+  for (std::size_t i = 0; i < count; ++i)
+    for (const std::uint32_t j : lists.list(i)) {
+      forth.emplace_back(i, j);
+      back.emplace_back(j, i);
+    }
+  std::sort(forth.begin(), forth.end());
+  std::sort(back.begin(), back.end());
+  const auto itself = [](const auto& entry) { return entry.first == entry.second; };
+  return forth == back && std::adjacent_find(forth.begin(), forth.end()) == forth.end() &&
+         std::none_of(forth.begin(), forth.end(), itself);
+}
+
+struct Seen {
+  std::size_t pairs = 0, partners = 0, steps = 0, more = 0;
+};
+
+// What a step begins with, told exactly and not.
+void check_begin(Patch& patch, Seen& seen) {
+  const std::vector<Pair> expected = patch.all_pairs();
+  patch.lists.visit_exactly(true);
+  CHECK((patch.visited(patch.lists) == expected));
+  patch.lists.visit_exactly(false);
+  const std::vector<Pair> more = patch.visited(patch.lists);
+  CHECK(once_each(more));
+  CHECK(std::includes(more.begin(), more.end(), expected.begin(), expected.end()));
+  patch.lists.visit_exactly(true);
+  seen.pairs += expected.size();
+  seen.more += more.size();
+  ++seen.steps;
+}
+
+// Pairs are hit at random times, some particles again and again; whoever is hit, and anybody else, finds its partners.
+void hit_some(Patch& patch, Seen& seen) {
+  const std::size_t count = patch.particles.size();
+  std::vector<double> times(static_cast<std::size_t>(0.5 * patch.setting.hits * static_cast<double>(count)));
+  for (double& time : times)
+    time = patch.centred(patch.setting.step);
+  std::sort(times.begin(), times.end());
+  std::vector<std::uint32_t> touched;
+  for (const double time : times) {
+    const double speed = (patch.below(6) ? 0.3 : 5.0) * (0.1 + patch.setting.heat) + patch.setting.speed;
+    const std::size_t both[] = {patch.below(patch.below(4) ? count : 10), patch.below(count)};
+    for (const std::size_t i : both) {
+      patch.hit(i, time, speed);
+      touched.push_back(static_cast<std::uint32_t>(i));
+    }
+    for (const std::size_t i : {both[0], both[1], patch.below(count)}) {
+      const std::vector<Pair> expected = patch.all_partners(i, time);
+      CAPTURE(i);
+      CAPTURE(time);
+      CHECK((patch.visited_partners(i, time) == expected));
+      seen.partners += expected.size();
+    }
+  }
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+  std::reverse(touched.begin(), touched.end()); // in any order
+  CHECK(mutual(patch.lists, count));
+  patch.lists.touched(touched);
+}
+
+void kick_all(Patch& patch) {
+  for (std::size_t i = 0; i < patch.particles.size(); ++i)
+    patch.change_velocity(i, -patch.half(), patch.random_velocity(0.02 * patch.setting.heat));
+  patch.undisturbed = false;
+}
+
+void drift(Patch& patch, int steps, Seen& seen) {
+  for (int step = 0; step < steps; ++step) {
+    CAPTURE(patch.steps);
+    REQUIRE(patch.begin());
+    check_begin(patch, seen);
+    CHECK(mutual(patch.lists, patch.particles.size()));
+    hit_some(patch, seen);
+    patch.move_on();
+    if (patch.setting.kick_each && patch.steps % static_cast<std::int64_t>(patch.setting.kick_each) == 0)
+      kick_all(patch);
+  }
+}
+
+} // namespace
+
+TEST_CASE("at every step, and after every hit, the lists visit whoever may touch, each pair once") {
+  const Setting settings[] = {
+      {},                                                                                  // dense and warm
+      {.hits = 1.0, .kick_each = 1},                                                       // at rest never
+      {.heat = 0.1, .step = 0.005, .hits = 0.02},                                          // lists live long
+      {.heat = 0.1, .step = 0.005, .hits = 0.05, .kick_each = 5},                          //
+      {.count = 400, .ratio = 10.0, .heat = 0.3, .hits = 0.1, .kick_each = 3},             //
+      {.count = 400, .depth = 0.1, .ratio = 10.0, .heat = 3.0, .step = 0.03, .hits = 0.0}, // nothing but paths
+      {.depth = 1.0, .heat = 0.1, .step = 0.004, .hits = 0.01, .speed = 30.0}, // who is hit leaves its slack in time
+      {.depth = 1.0, .heat = 0.1, .step = 0.02, .hits = 0.02, .speed = 30.0},  // within the step
+      {.depth = 0.2, .heat = 0.5, .step = 0.1, .elongation = 2.0, .frequencies = {0.8, 2.5}},
+      {.count = 300, .depth = 0.5, .heat = 0.05, .step = 0.01, .elongation = 0.3, .hits = 0.3},
+  };
+  Seen seen;
+  std::uint64_t built = 0, anew = 0;
+  for (std::size_t s = 0; s < std::size(settings); ++s)
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+      CAPTURE(s);
+      CAPTURE(seed);
+      Patch patch(settings[s], seed);
+      drift(patch, 48, seen);
+      built += patch.lists.built;
+      anew += patch.lists.listed_anew;
+    }
+  MESSAGE(seen.pairs << " pairs at begins (" << seen.more << " not exactly) and " << seen.partners << " partners in "
+                     << seen.steps << " steps; " << built << " times built, " << anew << " listed anew");
+  CHECK(seen.pairs > 80000);
+  CHECK(seen.partners > 20000);
+  CHECK(built < seen.steps / 3);
+  CHECK(anew > 1200);
+}
+
+namespace {
+
+// What may happen to a patch besides drift, hits and kicks, for each of which nothing need be as it was.
+void change_places(Patch& patch, std::size_t swaps) {
+  for (std::size_t k = 0; k < swaps; ++k) {
+    const std::size_t a = patch.below(patch.particles.size()), b = patch.below(patch.particles.size());
+    std::swap(patch.particles.bodies[a], patch.particles.bodies[b]);
+    std::swap(patch.particles.ids[a], patch.particles.ids[b]);
+  }
+}
+
+void carry_off(Patch& patch, std::size_t number) {
+  for (std::size_t k = 0; k < number; ++k) {
+    Elements& el = patch.particles.bodies[patch.below(patch.particles.size())].elements;
+    el.guiding_x = patch.centred(patch.box.size_x);
+    el.guiding_y = patch.centred(patch.box.size_y);
+  }
+}
+
+void grow(Patch& patch, std::size_t number) {
+  for (std::size_t k = 0; k < number; ++k)
+    patch.particles.bodies[patch.below(patch.particles.size())].radius *= 1.7;
+}
+
+// Some come and some go.
+void replace_some(Patch& patch, std::size_t number) {
+  Particles& particles = patch.particles;
+  for (std::size_t k = 0; k < number; ++k)
+    if (particles.size() > patch.setting.count) {
+      particles.bodies.pop_back();
+      particles.ids.pop_back();
+    } else {
+      particles.bodies.push_back(particles.bodies[patch.below(particles.size())]);
+      particles.bodies.back().elements.guiding_y = patch.centred(patch.box.size_y);
+      particles.ids.push_back(particles.ids.back() + 1);
+    }
+}
+
+} // namespace
+
+TEST_CASE("who is carried off, grows, changes places, comes or goes between steps is found all the same") {
+  Seen seen;
+  std::uint64_t built = 0, anew = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    CAPTURE(seed);
+    Patch patch({.count = 200, .ratio = seed % 2 ? 1.0 : 10.0, .heat = 0.3, .step = 0.01, .hits = 0.05}, seed);
+    for (int change = 0; change < 20; ++change) {
+      CAPTURE(change);
+      drift(patch, 2, seen);
+      const std::size_t number = patch.below(4) ? 1 + patch.below(3) : 300; // a few, or nearly all
+      switch (patch.below(5)) {
+      case 0:
+        change_places(patch, number);
+        break;
+      case 1:
+        carry_off(patch, number);
+        break;
+      case 2:
+        grow(patch, std::min<std::size_t>(number, 3));
+        break;
+      case 3:
+        replace_some(patch, std::min<std::size_t>(number, 9));
+        break;
+      default:
+        patch.steps += static_cast<std::int64_t>(patch.below(3)); // another shear offset
+      }
+      patch.undisturbed = false;
+    }
+    built += patch.lists.built;
+    anew += patch.lists.listed_anew;
+  }
+  MESSAGE(seen.steps << " steps, " << built << " times built, " << anew << " listed anew");
+  CHECK(seen.pairs > 10000);
+  CHECK(built < seen.steps * 3 / 4);
+  CHECK(anew > 200);
+}
+
+TEST_CASE("a hit that changes nothing lists nobody anew, at an edge of the box neither") {
+  Patch patch({.count = 200, .heat = 0.5, .step = 0.01, .hits = 0.0}, 1);
+  Seen seen;
+  for (int step = 0; step < 40; ++step) {
+    drift(patch, 1, seen);
+    REQUIRE(patch.begin());
+    const std::uint64_t before = patch.lists.listed_anew;
+    for (std::size_t i = 0; i < patch.particles.size(); ++i)
+      patch.hit(i, patch.centred(patch.setting.step), 0.0);
+    CHECK(patch.lists.listed_anew == before);
+    std::vector<std::uint32_t> touched(patch.particles.size());
+    std::iota(touched.begin(), touched.end(), 0u);
+    patch.lists.touched(touched);
+    patch.move_on();
+  }
+}
+
+TEST_CASE("when particles go, so does what was known of their next steps") {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    CAPTURE(seed);
+    Patch patch({.count = 200, .heat = 0.01, .step = 0.005, .hits = 0.0}, seed);
+    Seen seen;
+    drift(patch, 9, seen); // windows are several steps long
+    REQUIRE(patch.begin());
+    const std::uint32_t last[] = {199};
+    patch.hit(last[0], 0.0, 50.0); // leaves its slack some steps later
+    patch.lists.touched(last);
+    patch.move_on();
+    patch.particles.bodies.resize(100);
+    patch.particles.ids.resize(100);
+    patch.undisturbed = false;
+    const std::uint64_t before = patch.lists.listed_anew;
+    drift(patch, 3, seen);
+    CHECK(patch.lists.listed_anew == before);
+  }
+}
+
+TEST_CASE("thousands of particles have the same lists and pairs for any number of threads") {
+  const int before = threads();
+  std::size_t pairs = 0;
+  for (const double ratio : {1.0, 10.0}) {
+    const Setting setting{.count = 3500, .ratio = ratio, .heat = 0.5, .hits = 0.02, .kick_each = 3};
+    Patch one(setting, 1), three(setting, 1);
+    for (int step = 0; step < 10; ++step) {
+      CAPTURE(step);
+      set_threads(1);
+      REQUIRE(one.begin());
+      set_threads(3);
+      REQUIRE(three.begin());
+      const std::vector<Pair> found = one.visited(one.lists);
+      CHECK((three.visited(three.lists) == found));
+      pairs += found.size();
+      if (step == 4)
+        CHECK((one.all_pairs() == found));
+      std::size_t different = 0;
+      for (std::size_t i = 0; i < setting.count; ++i)
+        different += !std::is_permutation(one.lists.list(i).begin(), one.lists.list(i).end(),
+                                          three.lists.list(i).begin(), three.lists.list(i).end());
+      CHECK(different == 0);
+      Seen seen;
+      for (Patch* patch : {&one, &three}) {
+        hit_some(*patch, seen);
+        patch->move_on();
+        if (step % 3 == 2)
+          kick_all(*patch);
+      }
+    }
+    CHECK(one.lists.built == three.lists.built);
+    CHECK(one.lists.listed_anew == three.lists.listed_anew);
+  }
+  set_threads(before);
+  CHECK(pairs > 20000);
+}
+
+TEST_CASE("when a hit makes somebody so fast that it may meet others through several images, all are looked through") {
+  Patch patch({.count = 120, .step = 0.05, .hits = 0.1}, 1);
+  Seen seen;
+  drift(patch, 3, seen);
+  REQUIRE(patch.begin());
+  CHECK_FALSE(patch.lists.reaches_far());
+  patch.hit(7, 0.0, 24.0 * patch.box.size_x / patch.setting.step);
+  CHECK(patch.lists.reaches_far());
+  std::size_t partners = 0, through_several = 0;
+  for (const std::size_t i : {std::size_t{7}, std::size_t{3}, std::size_t{100}}) {
+    const std::vector<Pair> expected = patch.all_partners(i, 0.0, 30);
+    CHECK((patch.visited_partners(i, 0.0) == expected));
+    partners += expected.size();
+    for (std::size_t k = 1; k < expected.size(); ++k)
+      through_several += std::get<0>(expected[k]) == std::get<0>(expected[k - 1]) &&
+                         std::get<1>(expected[k]) == std::get<1>(expected[k - 1]);
+  }
+  CHECK(partners > 20);
+  CHECK(through_several > 0);
+  const std::uint32_t touched[] = {7};
+  patch.lists.touched(touched);
+  patch.move_on();
+  CHECK_FALSE(patch.begin()); // nor do the lists serve in the next step
+  patch.change_velocity(7, -patch.half(), -0.9999 * patch.state_velocity(7));
+  patch.undisturbed = false;
+  REQUIRE(patch.begin());
+  check_begin(patch, seen);
+}
+
+TEST_CASE("in a box so large that places are rounded by more than the slack, neighbours are found") {
+  Patch patch({.count = 60, .depth = 2e-16, .hits = 0.2}, 1);
+  for (Body& body : patch.particles.bodies) { // a clump
+    body.elements.guiding_x = patch.centred(20.0);
+    body.elements.guiding_y = patch.centred(20.0);
+  }
+  Seen seen;
+  drift(patch, 20, seen);
+  CHECK(seen.pairs > 200);
+}
+
+TEST_CASE("elements that are not finite are told, when the lists are made and later") {
+  for (const int steps : {0, 1, 3}) {
+    Patch patch({.count = 100}, 1);
+    Seen seen;
+    drift(patch, steps, seen);
+    patch.particles.bodies[40].elements.e_sin = std::numeric_limits<double>::quiet_NaN();
+    patch.undisturbed = false;
+    CHECK_THROWS_AS(patch.begin(), InvariantError);
+  }
+}
+
+TEST_CASE("of nobody, and of one particle, there are no pairs") {
+  for (const std::size_t count : {0, 1}) {
+    Patch patch({.count = 100}, 1);
+    patch.particles.bodies.resize(count);
+    patch.particles.ids.resize(count);
+    for (int step = 0; step < 20; ++step) {
+      REQUIRE(patch.begin());
+      CHECK(patch.visited(patch.lists).empty());
+      for (std::size_t i = 0; i < count; ++i)
+        CHECK(patch.visited_partners(i, 0.0).empty());
+      patch.lists.touched({});
+      patch.move_on();
+    }
+  }
+}
