@@ -1,0 +1,96 @@
+// The optimistic loop against the sequential one, in any number of domains, on one thread and on several: the same
+// bits, and every part of its rule in use.
+#include "unit/collision/ring.hpp"
+#include "unit/collision/twin.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace keeler;
+
+namespace {
+
+struct Domains final : DriftObserver {
+  explicit Domains(std::size_t how_many) : count(how_many) {}
+  bool looks_on() const override { return false; }
+  std::size_t wants_domains() const override { return count; }
+  std::size_t count;
+};
+
+struct End {
+  Particles particles;
+  CollisionTally tally;
+  DriftCosts costs;
+};
+
+End drift(const Patch& patch, const CollisionSettings& settings, double step, int steps, std::size_t domains) {
+  test::Ring ring(patch, settings, step);
+  ring.keeps_neighbours = true;
+  Domains wanted(domains); // of one domain: in sequence
+  ring.observer = &wanted;
+  for (int k = 0; k < steps; ++k) {
+    ring.advance();
+    if (k % 4 == 3)
+      ring.kick_all(0.05);
+  }
+  return {ring.particles, ring.tally, ring.drift.costs()};
+}
+
+} // namespace
+
+TEST_CASE("domains carry out, defer and roll back what the sequence carries out") {
+  const int before = threads();
+  std::uint64_t deferred = 0, in_sequence = 0, rolled_back = 0, contacts = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    test::Scenario s;
+    s.count = 1500;
+    s.filling = seed % 2 ? 0.35 : 0.2;
+    s.smallest = seed % 3 ? 1.0 : 0.3;
+    s.step = two_pi * (seed % 2 ? 1e-2 : 2e-2);
+    const Patch patch = test::make_patch(s, seed);
+    set_threads(1);
+    const End expected = drift(patch, test::settings_of(s), s.step, 10, 1);
+    CHECK(expected.costs.deferred == 0);
+    for (const int several : {1, 3})
+      for (const std::size_t domains : {2, 3, 5, 8, 40}) {
+        CAPTURE(seed);
+        CAPTURE(several);
+        CAPTURE(domains);
+        set_threads(several);
+        const End end = drift(patch, test::settings_of(s), s.step, 10, domains);
+        CHECK(test::same_bits(end.particles, expected.particles));
+        CHECK(test::same_bits(end.tally, expected.tally));
+        CHECK(end.costs.contacts == expected.costs.contacts);
+        contacts += end.costs.contacts;
+        deferred += end.costs.deferred;
+        in_sequence += end.costs.in_sequence;
+        rolled_back += end.costs.rolled_back;
+      }
+  }
+  set_threads(before);
+  MESSAGE(contacts << " contacts; events deferred " << deferred << ", left to the last round " << in_sequence
+                   << "; contacts rolled back " << rolled_back);
+  CHECK(contacts > 20000);
+  CHECK(deferred > 1000);
+  CHECK(in_sequence > 100);
+  CHECK(rolled_back > 100);
+}
+
+TEST_CASE("what domains did is the same for any number of threads") {
+  const int before = threads();
+  test::Scenario s;
+  s.count = 2000;
+  s.filling = 0.3;
+  s.step = two_pi * 1e-2;
+  const Patch patch = test::make_patch(s, 9);
+  set_threads(1);
+  const DriftCosts one = drift(patch, test::settings_of(s), s.step, 8, 4).costs;
+  CHECK(one.deferred > 0);
+  for (const int several : {2, 4}) {
+    set_threads(several);
+    const DriftCosts costs = drift(patch, test::settings_of(s), s.step, 8, 4).costs;
+    CHECK(costs.deferred == one.deferred);
+    CHECK(costs.in_sequence == one.in_sequence);
+    CHECK(costs.rolled_back == one.rolled_back);
+  }
+  set_threads(before);
+}
