@@ -42,7 +42,8 @@ struct Comparison {
     BernsteinTwin twin(c.bodies[0].elements, c.bodies[1].elements, c.query.shift_x, c.query.shift_y, reach,
                        c.frequencies);
     const Allowance allowance(c, twin, reach);
-    const Real bound = 2 * allowance.gap * (1 + std::max(found.iterations, plain.iterations) / 1024);
+    const int thousands = std::max(found.iterations, plain.iterations) / 1024;
+    const Real bound = 2 * allowance.gap * (1 + thousands);
     bool right = true;
     if (found.contact() != plain.contact()) { // none calls what the other may not leave out
       ++other_call;
