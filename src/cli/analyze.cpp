@@ -1,6 +1,7 @@
 // keeler analyze: numbers from a snapshot, or averaged over the last orbit of a run.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "structure_report.hpp"
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/words.hpp>
@@ -50,6 +51,7 @@ nlohmann::ordered_json as_json(const Analysis& a, double overlap) {
   json["wake_pitch_degrees"] = maybe(a.wake_pitch_degrees);
   json["wake_spacing_m"] = maybe(a.wake_spacing_m);
   json["wake_amplitude"] = a.wake_amplitude;
+  add_structure(json, a);
   return json;
 }
 
@@ -86,6 +88,7 @@ void print_text(const Analysis& a, double overlap) {
   fmt::print("viscosity            {:.3g} m^2/s translational\n", a.translational_viscosity_m2_s);
   fmt::print("largest overlap      {} of a radius sum\n", figures(overlap, 2));
   print_wakes(a);
+  print_structure(a);
 }
 
 ExitCode run(const AnalyzeOptions& options) {

@@ -5,7 +5,6 @@
 #include <keeler/diagnostics/energy.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/diagnostics/viscosity.hpp>
-#include <keeler/diagnostics/wakes.hpp>
 
 namespace keeler {
 namespace {
@@ -47,7 +46,8 @@ Analysis analyze(std::span<const Patch> patches) {
       throw UsageError("a snapshot holds no particles, so there is nothing to measure; choose another one");
     add(mean, patch, 1.0 / static_cast<double>(patches.size()));
   }
-  const Wakes wakes = find_wakes(mean_autocorrelation(patches), mean.critical_wavelength_m);
+  mean.wakes = wake_geometry(patches, mean.critical_wavelength_m);
+  const Wakes& wakes = mean.wakes.mean;
   mean.wake_pitch_degrees = wakes.pitch_degrees;
   mean.wake_spacing_m = wakes.spacing;
   mean.wake_amplitude = wakes.amplitude;

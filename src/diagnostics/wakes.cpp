@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace keeler {
 namespace {
 
 constexpr double least_amplitude = 0.02; // relative density waves of 20 %: no published wake is weaker
 constexpr double least_significance = 5.0;
+constexpr double inner_end = 0.5, outer_end = 1.5; // parts of the crest, in λ_cr from zero lag
+constexpr std::size_t least_rows = 3;              // of a part whose direction is fitted
 
 // Mean of ξ over a line of half-length `reach` through (dx, 0), turned by `pitch` (rad) from the y axis.
 double line_mean(const AutocorrelationMap& map, double dx, double pitch, double reach) {
@@ -46,15 +49,21 @@ Ridge find_ridge(const AutocorrelationMap& map, double reach) {
   return {top - 89 + parabola_top(mean(top - 1), mean(top), mean(top + 1)), mean(top) - all};
 }
 
+// A point of the crest, the largest ξ at its Δy.
+struct CrestPoint {
+  double dx, dy, xi;
+  double distance() const { return std::hypot(dx, dy); }
+};
+
 // Follows the crest outward, row by row of Δy, from the direction in which it leaves zero lag to where it drowns in the
-// noise, and fits a line through the origin. A row counts as its ξ times Δy², as in a fit of Δx: the far part of the
-// ridge decides, and not the clumps at its centre, which lean more than the wake does.
-double crest_pitch(const AutocorrelationMap& map, double first_guess, double reach) {
+// noise.
+std::vector<CrestPoint> follow_crest(const AutocorrelationMap& map, double first_guess, double reach) {
   const double step = 0.25 * map.spacing_x;
-  double crest = 0.0, xy = 0.0, yy = 0.0;
   const double lean = -std::tan(first_guess) * map.spacing_y; // of the crest from one row to the next
+  double crest = 0.0;
+  std::vector<CrestPoint> points;
   for (double dy = map.spacing_y; dy <= reach; dy += map.spacing_y) {
-    const double expected = yy > 0.0 ? crest + crest / (dy - map.spacing_y) * map.spacing_y : lean;
+    const double expected = points.empty() ? lean : crest + crest / (dy - map.spacing_y) * map.spacing_y;
     double best = -HUGE_VAL;
     for (int k = -8; k <= 8; ++k)
       if (const double dx = expected + k * step; map.at(dx, dy) > best) {
@@ -63,10 +72,44 @@ double crest_pitch(const AutocorrelationMap& map, double first_guess, double rea
       }
     if (best <= 3.0 * map.noise)
       break;
-    xy += best * crest * dy;
-    yy += best * dy * dy;
+    points.push_back({crest, dy, best});
+  }
+  return points;
+}
+
+// Pitch (rad) of a line through the origin fitted to the crest, which is Δx = −tan(pitch) Δy. A row counts as its ξ
+// times Δy², as in a fit of Δx: the far part of the ridge decides, and not the clumps at its centre, which lean more
+// than the wake does.
+double pitch_through_centre(std::span<const CrestPoint> crest, double first_guess) {
+  double xy = 0.0, yy = 0.0;
+  for (const CrestPoint& p : crest) {
+    xy += p.xi * p.dx * p.dy;
+    yy += p.xi * p.dy * p.dy;
   }
   return yy > 0.0 ? -std::atan(xy / yy) : first_guess;
+}
+
+// Pitch (rad) of a line anywhere: the direction of that part of the crest.
+double pitch_of_part(std::span<const CrestPoint> crest) {
+  double weight = 0.0, x = 0.0, y = 0.0;
+  for (const CrestPoint& p : crest) {
+    weight += p.xi;
+    x += p.xi * p.dx;
+    y += p.xi * p.dy;
+  }
+  double xy = 0.0, yy = 0.0;
+  for (const CrestPoint& p : crest) {
+    xy += p.xi * (p.dx - x / weight) * (p.dy - y / weight);
+    yy += p.xi * (p.dy - y / weight) * (p.dy - y / weight);
+  }
+  return -std::atan(xy / yy);
+}
+
+// The crest up to a distance from zero lag: it rises from row to row.
+std::span<const CrestPoint> within(std::span<const CrestPoint> crest, double distance) {
+  const auto end =
+      std::find_if(crest.begin(), crest.end(), [&](const CrestPoint& p) { return p.distance() > distance; });
+  return crest.first(static_cast<std::size_t>(end - crest.begin()));
 }
 
 // Gaussian smoothing of a profile that is even about its first entry.
@@ -118,8 +161,14 @@ Wakes find_wakes(const AutocorrelationMap& map, double critical_wavelength) {
   wakes.amplitude = ridge.amplitude;
   const double line_noise = map.noise / std::sqrt(wakes.reach / spacing); // ξ is even: half a line is independent
   double pitch = ridge.pitch_degrees * pi / 180.0;
-  if (std::fabs(pitch) < pi / 4.0) // else rows of Δy do not cross the ridge but run along it
-    pitch = crest_pitch(map, pitch, std::min(critical_wavelength, map.half_height()));
+  std::vector<CrestPoint> crest;
+  if (std::fabs(pitch) < pi / 4.0) { // else rows of Δy do not cross the ridge but run along it
+    const double first_guess = pitch;
+    crest = follow_crest(map, first_guess, std::min(outer_end * critical_wavelength, map.half_height()));
+    const double fitted = std::min(critical_wavelength, map.half_height());
+    const auto far = std::find_if(crest.begin(), crest.end(), [&](const CrestPoint& p) { return p.dy > fitted; });
+    pitch = pitch_through_centre({crest.begin(), far}, first_guess);
+  }
   const int count = static_cast<int>(map.half_width() * (2.0 / 3.0) / wakes.profile_spacing) + 1;
   for (int k = 0; k < count; ++k)
     wakes.profile.push_back(line_mean(map, k * wakes.profile_spacing, pitch, wakes.reach));
@@ -127,6 +176,12 @@ Wakes find_wakes(const AutocorrelationMap& map, double critical_wavelength) {
     return wakes;
 
   wakes.pitch_degrees = pitch * 180.0 / pi;
+  const auto inner = within(crest, inner_end * critical_wavelength);
+  if (inner.size() >= least_rows)
+    wakes.inner_pitch_degrees = pitch_through_centre(inner, pitch) * 180.0 / pi;
+  const auto outer = within(crest, outer_end * critical_wavelength).subspan(inner.size());
+  if (outer.size() >= least_rows && outer.back().distance() > critical_wavelength)
+    wakes.outer_pitch_degrees = pitch_of_part(outer) * 180.0 / pi;
   const std::vector<double> smoothed = smooth(wakes.profile, critical_wavelength / 20.0 / wakes.profile_spacing);
   if (const auto entry = first_side_maximum(smoothed, 3.0 * line_noise))
     wakes.spacing = *entry * wakes.profile_spacing;

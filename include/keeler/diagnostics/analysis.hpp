@@ -2,6 +2,7 @@
 // `keeler analyze --json` prints.
 #pragma once
 
+#include <keeler/diagnostics/wake_geometry.hpp>
 #include <keeler/particles/patch.hpp>
 
 #include <array>
@@ -34,6 +35,7 @@ struct Analysis {
   std::optional<double> wake_pitch_degrees; ///< none: no wakes
   std::optional<double> wake_spacing_m;     ///< radial; none: no wakes or no side maximum
   double wake_amplitude = 0.0;
+  WakeGeometry wakes;
 };
 
 /// Throws UsageError when there is no patch, a patch without particles, or patches of different boxes.

@@ -4,6 +4,10 @@
 // one λ_cr; positive when trailing, that is when the outer part of a wake (x > 0) lags behind (y < 0). The crest starts
 // in the direction along which the mean of ξ over a line through zero lag is largest. Spacing: ξ is averaged along that
 // direction into a function of the radial lag Δx (at Δy = 0); the spacing is its first side maximum.
+//
+// The ridge bends, so its pitch is also given for two parts, after Michikoshi, Fujii, Kokubo & Salo (2015, ApJ 812,
+// 151), who fit the inner and the outer part of the autocorrelation separately. The limits are Keeler's own: the inner
+// part ends λ_cr/2 from zero lag and its line goes through zero lag; the outer part goes from there to 3/2 λ_cr.
 #pragma once
 
 #include <keeler/diagnostics/autocorrelation.hpp>
@@ -14,9 +18,11 @@
 namespace keeler {
 
 struct Wakes {
-  std::optional<double> pitch_degrees; ///< in (−90, 90]; none when no direction stands out
-  std::optional<double> spacing;       ///< m; none without wakes or without a side maximum within half a box
-  double amplitude = 0.0;              ///< largest mean of ξ over such a line minus the mean over all directions
+  std::optional<double> pitch_degrees;       ///< in (−90, 90]; none when no direction stands out
+  std::optional<double> inner_pitch_degrees; ///< of the crest within λ_cr/2; none where `pitch_degrees` is none
+  std::optional<double> outer_pitch_degrees; ///< beyond; none when the crest drowns in the noise before λ_cr
+  std::optional<double> spacing;             ///< m; none without wakes or without a side maximum within half a box
+  double amplitude = 0.0;                    ///< largest mean of ξ over such a line minus the mean over all directions
 
   double reach = 0.0;           ///< half the length of the lines averaged over, m
   double profile_spacing = 0.0; ///< m

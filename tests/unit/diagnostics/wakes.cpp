@@ -71,3 +71,31 @@ TEST_CASE("a single wake has a direction but no spacing") {
   CHECK(std::fabs(*wakes.pitch_degrees) < 2.0);
   CHECK(!wakes.spacing);
 }
+
+TEST_CASE("a ridge that bends has an inner and an outer pitch") {
+  // A crest that leans by 30° within 0.4 λ_cr along y and by 10° beyond, 6 m wide.
+  const double lambda = 61.0;
+  AutocorrelationMap map;
+  map.reach = 90;
+  map.rows = 150;
+  map.spacing_x = map.spacing_y = 2.0;
+  map.noise = 1e-3;
+  for (int i = -map.reach; i <= map.reach; ++i)
+    for (int j = -map.rows / 2; j < map.rows / 2; ++j) {
+      const double dy = 2.0 * j, bend = std::clamp(dy, -0.4 * lambda, 0.4 * lambda);
+      const double crest = -bend * std::tan(pi / 6.0) - (dy - bend) * std::tan(pi / 18.0);
+      map.values.push_back(std::exp(-0.5 * std::pow((2.0 * i - crest) / 6.0, 2) - std::fabs(dy) / lambda));
+    }
+  const Wakes wakes = find_wakes(map, lambda);
+  REQUIRE(wakes.inner_pitch_degrees);
+  REQUIRE(wakes.outer_pitch_degrees);
+  CHECK(std::fabs(*wakes.inner_pitch_degrees - 30.0) < 1.5);
+  CHECK(std::fabs(*wakes.outer_pitch_degrees - 10.0) < 1.5);
+  CHECK(*wakes.pitch_degrees < *wakes.inner_pitch_degrees);
+  CHECK(*wakes.pitch_degrees > *wakes.outer_pitch_degrees);
+
+  map.noise = 0.15; // the crest, e^(−Δy/λ_cr), drowns at 0.8 λ_cr
+  const Wakes noisy = find_wakes(map, lambda);
+  CHECK(noisy.inner_pitch_degrees);
+  CHECK(!noisy.outer_pitch_degrees);
+}

@@ -1,0 +1,48 @@
+// The size and the direction of self-gravity wakes from the power spectrum of the surface density,
+//
+//   P(k) = |Σ_j m_j exp(−i k·r_j)|² / (Σ_j m_j)² − Σ m²/(Σ m)²,
+//
+// at the waves k that fit the sheared box: k_y = 2πn_y/L_y, k_x = (2πn_x + k_y d)/L_x. The second term is the power of
+// particles at random (shot noise). All numbers are integrals over the spectrum of a smoothed density, so they hold
+// still where a maximum of the autocorrelation jumps. They depend on the smoothing, which must be quoted with them.
+#pragma once
+
+#include <keeler/particles/patch.hpp>
+
+#include <optional>
+
+namespace keeler {
+
+/// The density is smoothed by a Gaussian of this standard deviation, in λ_cr: power is weighted by exp(−(k λ_cr/8)²).
+/// Clumps and contacts inside a wake fade out, and what is left has the width of a wake or more.
+inline constexpr double wake_smoothing = 1.0 / 8.0;
+
+/// Sums of filtered power over waves, each wave and its opposite counted once. Sums of several snapshots add up.
+struct WakePower {
+  double power = 0.0;             ///< Σ P: the variance of Σ/⟨Σ⟩ in one of the two halves of the plane
+  double k = 0.0, k_radial = 0.0; ///< Σ P |k|, Σ P |k_x|, m⁻¹
+  double k_xx = 0.0, k_xy = 0.0, k_yy = 0.0; ///< Σ P k k / k²
+  double noise_squares = 0.0;                ///< variance of `power` if particles stood at random
+  int snapshots = 0;
+
+  WakePower& operator+=(const WakePower& more);
+};
+
+/// Of one snapshot. `critical_wavelength` (m) sets the smoothing. All is 0, `snapshots` too, when λ_cr is below four
+/// cells of the mesh that the autocorrelation uses.
+WakePower wake_power(const Patch& patch, double critical_wavelength);
+
+/// What the sums say.
+struct WakeWaves {
+  double contrast = 0.0; ///< rms of the filtered Σ/⟨Σ⟩ − 1, noise taken out; 0 below the noise
+
+  // None unless the power stands five times above its noise.
+  std::optional<double> wavelength;        ///< λ_⊥ = 2π Σ P / Σ P |k|, m
+  std::optional<double> radial_wavelength; ///< λ_x = 2π Σ P / Σ P |k_x|, m
+  std::optional<double> angle_degrees;     ///< of the wakes from the y axis, in (−90, 90], positive when trailing
+  double alignment = 0.0;                  ///< 0: no direction; 1: all waves along one line
+};
+
+WakeWaves wake_waves(const WakePower& sums);
+
+} // namespace keeler

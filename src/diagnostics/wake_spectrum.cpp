@@ -1,0 +1,89 @@
+#include <keeler/diagnostics/wake_spectrum.hpp>
+
+#include "density_mesh.hpp"
+
+#include <keeler/core/units.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+constexpr double least_significance = 5.0;
+
+// What a cloud leaves of the amplitude of a wave that turns by `turn` from node to node.
+double cloud_window(double turn) {
+  const double half = 0.5 * turn;
+  const double sinc = half == 0.0 ? 1.0 : std::sin(half) / half;
+  return sinc * sinc;
+}
+
+} // namespace
+
+WakePower& WakePower::operator+=(const WakePower& more) {
+  power += more.power;
+  k += more.k;
+  k_radial += more.k_radial;
+  k_xx += more.k_xx;
+  k_xy += more.k_xy;
+  k_yy += more.k_yy;
+  noise_squares += more.noise_squares;
+  snapshots += more.snapshots;
+  return *this;
+}
+
+WakePower wake_power(const Patch& patch, double critical_wavelength) {
+  const ShearingBox& box = patch.box;
+  const auto [columns, rows] = mesh_size(patch);
+  const double dx = box.size_x / columns, dy = box.size_y / rows;
+  WakePower sums;
+  if (!(critical_wavelength > 4.0 * std::max(dx, dy)))
+    return sums;
+  sums.snapshots = 1;
+  MeshTransform mesh(columns, rows);
+  const SelfPairs self = density_waves(patch, mesh);
+  const double nodes = static_cast<double>(columns) * rows, shot = shot_power(patch);
+  const double length = wake_smoothing * critical_wavelength;
+
+  for (int i = 0; i < columns; ++i)
+    for (int j = 0; j < rows / 2; ++j) {
+      if (j == 0 && (i == 0 || i > columns / 2)) // the mean, and the opposites of waves already counted
+        continue;
+      const double ky = two_pi * j / box.size_y, shear = ky * patch.offset / box.size_x;
+      double kx = two_pi * i / box.size_x + shear;
+      const double period = two_pi / dx;
+      kx -= period * std::round(kx / period); // of all waves that look the same on the mesh, the longest
+      const double k = std::hypot(kx, ky), filter = std::exp(-k * k * length * length);
+      if (filter < 1e-9)
+        continue;
+      const double window = cloud_window(kx * dx) * cloud_window(ky * dy), weight = filter / (window * window);
+      const double noise = self.wave(kx * dx, ky * dy) / nodes;
+      const double power = weight * (std::norm(mesh.waves_of(i)[j]) / (nodes * nodes) - noise);
+      sums.power += power;
+      sums.k += power * k;
+      sums.k_radial += power * std::fabs(kx);
+      sums.k_xx += power * kx * kx / (k * k);
+      sums.k_xy += power * kx * ky / (k * k);
+      sums.k_yy += power * ky * ky / (k * k);
+      sums.noise_squares += filter * filter * shot * shot; // |Σ|² of a random wave is exponential about its mean
+    }
+  return sums;
+}
+
+WakeWaves wake_waves(const WakePower& sums) {
+  WakeWaves waves;
+  if (sums.snapshots == 0 || !(sums.power > 0.0))
+    return waves;
+  waves.contrast = std::sqrt(2.0 * sums.power / sums.snapshots);
+  if (sums.power < least_significance * std::sqrt(sums.noise_squares))
+    return waves;
+  waves.wavelength = two_pi * sums.power / sums.k;
+  waves.radial_wavelength = two_pi * sums.power / sums.k_radial;
+  const double x = sums.k_xx - sums.k_yy, y = 2.0 * sums.k_xy; // the tensor's axis at twice its angle
+  waves.alignment = std::hypot(x, y) / sums.power;
+  waves.angle_degrees = 0.5 * std::atan2(y, x) * 180.0 / pi;
+  return waves;
+}
+
+} // namespace keeler
