@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <string>
 
 namespace keeler {
@@ -35,6 +36,51 @@ void print_wakes(const Analysis& a) {
              text(w.outer_pitch_degrees, "degrees"));
 }
 
+nlohmann::ordered_json json_of(const SizeClass& c) {
+  return {{"smallest_m", c.smallest},
+          {"largest_m", c.largest},
+          {"count", c.count},
+          {"mass_share", c.mass_share},
+          {"dispersion_m_s", std::array{c.dispersion.x(), c.dispersion.y(), c.dispersion.z()}},
+          {"scale_height_m", c.scale_height}};
+}
+
+void add_local(nlohmann::ordered_json& json, const Analysis& a) {
+  const LocalAnalysis& l = a.local;
+  json["local_radius_m"] = l.radius_m;
+  json["local_dispersion_m_s"] = l.dispersion_m_s;
+  json["local_toomre_q"] = l.toomre_q;
+  json["local_share"] = l.share;
+  json["crowding_radius_m"] = l.crowding_radius_m;
+  json["crowding_optical_depth"] = l.optical_depth;
+  json["crowding_filling_factor"] = l.filling_factor;
+  json["thin_area_share"] = l.thin_area_share;
+  json["thin_cell_m"] = l.thin_cell_m;
+  json["velocity_axis_ratios"] = std::array{a.ellipsoid.second_ratio, a.ellipsoid.vertical_ratio};
+  json["vertex_deviation_degrees"] = a.ellipsoid.vertex_deviation_degrees;
+  json["size_classes"] = nlohmann::ordered_json::array();
+  for (const SizeClass& c : a.size_classes)
+    json["size_classes"].push_back(json_of(c));
+}
+
+void print_local(const Analysis& a) {
+  const LocalAnalysis& l = a.local;
+  const auto& c = l.dispersion_m_s;
+  fmt::print("local dispersion     {:.3g} {:.3g} {:.3g} m/s within {} m, Toomre Q {:.3g}\n", c[0], c[1], c[2],
+             figures(l.radius_m, 3), l.toomre_q);
+  fmt::print("the mean particle    sees optical depth {:.3g}, filling factor {:.3g} within {} m\n", l.optical_depth,
+             l.filling_factor, figures(l.crowding_radius_m, 3));
+  fmt::print("thin area            {:.3g} of the cells of {} m have an optical depth below 0.1\n", l.thin_area_share,
+             figures(l.thin_cell_m, 3));
+  fmt::print("velocity ellipsoid   axes 1 : {:.3g} : {:.3g}, vertex deviation {:.3g} degrees\n",
+             a.ellipsoid.second_ratio, a.ellipsoid.vertical_ratio, a.ellipsoid.vertex_deviation_degrees);
+  for (const SizeClass& s : a.size_classes)
+    if (s.count > 0)
+      fmt::print("r {:>5} to {:<5} m     {}, dispersion {:.3g} {:.3g} {:.3g} m/s, scale height {:.3g} m\n",
+                 figures(s.smallest, 3), figures(s.largest, 3), counted(s.count, "particle"), s.dispersion.x(),
+                 s.dispersion.y(), s.dispersion.z(), s.scale_height);
+}
+
 } // namespace
 
 void add_structure(nlohmann::ordered_json& json, const Analysis& a) {
@@ -44,10 +90,12 @@ void add_structure(nlohmann::ordered_json& json, const Analysis& a) {
   put(json, "wake_inner_pitch", "degrees", a.wakes.inner_pitch_degrees);
   put(json, "wake_outer_pitch", "degrees", a.wakes.outer_pitch_degrees);
   json["wake_contrast"] = a.wakes.contrast;
+  add_local(json, a);
 }
 
 void print_structure(const Analysis& a) {
   print_wakes(a);
+  print_local(a);
 }
 
 } // namespace keeler

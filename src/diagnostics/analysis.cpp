@@ -3,8 +3,12 @@
 #include <keeler/core/error.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/energy.hpp>
+#include <keeler/diagnostics/local.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/diagnostics/viscosity.hpp>
+#include <keeler/orbit/toomre.hpp>
+
+#include <cmath>
 
 namespace keeler {
 namespace {
@@ -32,6 +36,43 @@ void add(Analysis& sum, const Patch& patch, double share) {
   sum.random_energy_m2_s2 += share * (energy.horizontal + energy.vertical) * omega * omega;
 }
 
+void add(LocalAnalysis& sum, const Patch& patch, double share) {
+  const double radius = local_radius(patch);
+  const LocalMotion motion = local_motion(patch, radius);
+  const Vec3 si = velocity_si(patch, motion.dispersion);
+  const Crowding crowd = crowding(patch, crowding_radius(patch));
+  sum.radius_m += share * radius;
+  for (int axis = 0; axis < 3; ++axis)
+    sum.dispersion_m_s[static_cast<std::size_t>(axis)] += share * si[axis];
+  sum.toomre_q += share * toomre_q(newton_g(patch.orbital_frequency), surface_density(patch), patch.frequencies.kappa,
+                                   motion.dispersion.x());
+  sum.share += share * motion.share;
+  sum.crowding_radius_m += share * crowding_radius(patch);
+  sum.optical_depth += share * crowd.optical_depth;
+  sum.filling_factor += share * crowd.filling;
+  sum.thin_area_share += share * crowd.thin_area;
+  sum.thin_cell_m += share * std::sqrt(crowd.cell_x * crowd.cell_y);
+}
+
+void add(VelocityMoments& sum, const VelocityMoments& moments, double share) {
+  sum.xx += share * moments.xx;
+  sum.xy += share * moments.xy;
+  sum.yy += share * moments.yy;
+  sum.zz += share * moments.zz;
+}
+
+// The snapshots of a run hold the same particles, and so the same classes.
+void add(std::vector<SizeClass>& sum, const Patch& patch, double share) {
+  const std::vector<SizeClass> classes = size_classes(patch);
+  if (sum.empty())
+    for (const SizeClass& c : classes)
+      sum.push_back({c.smallest, c.largest, c.count, c.mass_share, Vec3::Zero(), 0.0});
+  for (std::size_t c = 0; c < std::min(sum.size(), classes.size()); ++c) {
+    sum[c].dispersion += share * velocity_si(patch, classes[c].dispersion);
+    sum[c].scale_height += share * classes[c].scale_height;
+  }
+}
+
 } // namespace
 
 Analysis analyze(std::span<const Patch> patches) {
@@ -41,11 +82,17 @@ Analysis analyze(std::span<const Patch> patches) {
   mean.snapshots = patches.size();
   mean.particle_count = patches.back().size();
   mean.time_orbits = patches.back().time_orbits;
+  VelocityMoments moments;
   for (const Patch& patch : patches) {
     if (patch.size() == 0)
       throw UsageError("a snapshot holds no particles, so there is nothing to measure; choose another one");
-    add(mean, patch, 1.0 / static_cast<double>(patches.size()));
+    const double share = 1.0 / static_cast<double>(patches.size());
+    add(mean, patch, share);
+    add(mean.local, patch, share);
+    add(moments, velocity_moments(patch), share);
+    add(mean.size_classes, patch, share);
   }
+  mean.ellipsoid = velocity_ellipsoid(moments);
   mean.wakes = wake_geometry(patches, mean.critical_wavelength_m);
   const Wakes& wakes = mean.wakes.mean;
   mean.wake_pitch_degrees = wakes.pitch_degrees;

@@ -2,14 +2,30 @@
 // `keeler analyze --json` prints.
 #pragma once
 
+#include <keeler/diagnostics/size_classes.hpp>
+#include <keeler/diagnostics/velocity_ellipsoid.hpp>
 #include <keeler/diagnostics/wake_geometry.hpp>
 #include <keeler/particles/patch.hpp>
 
 #include <array>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace keeler {
+
+/// What particles meet where they are (local.hpp).
+struct LocalAnalysis {
+  double radius_m = 0.0;                  ///< of the neighbourhood whose mean velocity is taken out
+  std::array<double, 3> dispersion_m_s{}; ///< of the random motion in it
+  double toomre_q = 0.0;                  ///< by its x component and the mean surface density of the patch
+  double share = 0.0;                     ///< of the mass: particles with a neighbour
+  double crowding_radius_m = 0.0;         ///< of the disc in which density is counted
+  double optical_depth = 0.0;             ///< that the mean particle sees
+  double filling_factor = 0.0;            ///< at z = 0, that the mean particle sees
+  double thin_area_share = 0.0;           ///< of the cells, those with an optical depth below 0.1
+  double thin_cell_m = 0.0;               ///< side of these cells (of a square of the same area)
+};
 
 /// Means over the snapshots; the wakes are those of the mean autocorrelation.
 struct Analysis {
@@ -36,6 +52,10 @@ struct Analysis {
   std::optional<double> wake_spacing_m;     ///< radial; none: no wakes or no side maximum
   double wake_amplitude = 0.0;
   WakeGeometry wakes;
+
+  LocalAnalysis local;
+  VelocityEllipsoid ellipsoid;         ///< of the mean moments
+  std::vector<SizeClass> size_classes; ///< none when all radii are equal; dispersions in m/s
 };
 
 /// Throws UsageError when there is no patch, a patch without particles, or patches of different boxes.

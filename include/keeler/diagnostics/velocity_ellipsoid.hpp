@@ -1,0 +1,25 @@
+// The shape of the distribution of random velocities: the covariance tensor of the peculiar velocities, its principal
+// axes in the ring plane, and how far the longer one points away from the radius (vertex deviation).
+#pragma once
+
+#include <keeler/particles/patch.hpp>
+
+namespace keeler {
+
+/// Mass-weighted second moments about the mean velocity, m² rad⁻². Moments of several snapshots add up as means.
+struct VelocityMoments {
+  double xx = 0.0, xy = 0.0, yy = 0.0, zz = 0.0;
+};
+
+VelocityMoments velocity_moments(const Patch& patch);
+
+struct VelocityEllipsoid {
+  double second_ratio = 0.0;             ///< shorter over longer principal axis in the plane; 0 without motion
+  double vertical_ratio = 0.0;           ///< c_z over the longer one
+  double vertex_deviation_degrees = 0.0; ///< from x to the longer axis, in (−90, 90], positive towards +y
+};
+
+/// A circle in the plane has a ratio of 1 and no meaningful deviation.
+VelocityEllipsoid velocity_ellipsoid(const VelocityMoments& moments);
+
+} // namespace keeler
