@@ -8,6 +8,7 @@
 #include <keeler/diagnostics/viscosity.hpp>
 #include <keeler/orbit/toomre.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace keeler {

@@ -50,15 +50,18 @@ SizeClass size_class(const Patch& patch, double smallest, double largest, bool l
 } // namespace
 
 std::vector<SizeClass> size_classes(const Patch& patch, int classes) {
-  const auto [smallest, largest] = std::minmax_element(patch.radii.begin(), patch.radii.end());
-  if (patch.radii.empty() || *smallest == *largest)
+  if (patch.radii.empty())
+    return {};
+  const double smallest = *std::min_element(patch.radii.begin(), patch.radii.end());
+  const double largest = *std::max_element(patch.radii.begin(), patch.radii.end());
+  if (smallest == largest)
     return {};
   const Vec3 mean = mean_velocity(patch);
-  const double step = std::log(*largest / *smallest) / classes;
+  const double step = std::log(largest / smallest) / classes;
   std::vector<SizeClass> result;
   for (int c = 0; c < classes; ++c) { // neighbours share their limit to the bit
     const auto limit = [&](int edge) {
-      return edge == 0 ? *smallest : edge == classes ? *largest : *smallest * std::exp(step * edge);
+      return edge == 0 ? smallest : edge == classes ? largest : smallest * std::exp(step * edge);
     };
     result.push_back(size_class(patch, limit(c), limit(c + 1), c + 1 == classes, mean));
   }
