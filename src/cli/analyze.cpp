@@ -1,6 +1,7 @@
 // keeler analyze: numbers from a snapshot, or averaged over the last orbit of a run.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "sight_options.hpp"
 #include "structure_report.hpp"
 
 #include <keeler/cells/overlap.hpp>
@@ -23,6 +24,7 @@ constexpr double averaged_orbits = 1.0;
 struct AnalyzeOptions {
   std::string path;
   bool json = false;
+  SightOptions sights;
   ThreadOption threads;
 };
 
@@ -98,10 +100,19 @@ ExitCode run(const AnalyzeOptions& options) {
   for (const Patch& patch : stored.patches)
     overlap = std::max(overlap, largest_overlap(patch).depth);
   const Analysis analysis = analyze(stored.patches);
-  if (options.json)
-    fmt::print("{}\n", as_json(analysis, overlap).dump(2));
-  else
+  std::optional<Sights> sights;
+  if (options.sights.asked())
+    sights.emplace(options.sights, stored.patches);
+  if (options.json) {
+    nlohmann::ordered_json json = as_json(analysis, overlap);
+    if (sights)
+      json["sights"] = sights->json();
+    fmt::print("{}\n", json.dump(2));
+  } else {
     print_text(analysis, overlap);
+    if (sights)
+      sights->print();
+  }
   return ExitCode::done;
 }
 
@@ -112,6 +123,7 @@ void add_analyze(CLI::App& program, Action& action) {
   CLI::App& command = *program.add_subcommand("analyze", "measure a snapshot, or the last orbit of a run");
   command.add_option("FILE|DIR", options->path, "a snapshot, or the folder of a run")->required()->type_name("");
   command.add_flag("--json", options->json, "print the numbers as JSON");
+  options->sights.add_to(command);
   options->threads.add_to(command);
   command.callback([options, &action] { action = [options] { return run(*options); }; });
 }

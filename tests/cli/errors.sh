@@ -92,6 +92,11 @@ for command in info analyze render; do
   refuses_with 4 "$command, not HDF5" "good.toml" $command "$work/good.toml"
   refuses "$command of nothing" "required" $command
 done
+refuses "an elevation of 0" "'0' is not an elevation from 0.1 to 90" analyze "$work/taken" --elevation 0
+refuses "an elevation in words" "'steep' is not an elevation" analyze "$work/taken" --elevation 10,steep
+refuses "an azimuth alone" "--elevation" analyze "$work/taken" --azimuth 10
+refuses "no rays" "'0' is not a number of rays" analyze "$work/taken" --elevation 10 --rays 0
+refuses "a footprint of 0" "--footprint" analyze "$work/taken" --elevation 10 --footprint 0
 mkdir "$work/empty"
 for command in analyze render; do
   refuses_with 4 "$command, no snapshot" "no snapshot" $command "$work/empty"

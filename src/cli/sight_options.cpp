@@ -1,0 +1,129 @@
+#include "sight_options.hpp"
+
+#include "common_options.hpp"
+
+#include <keeler/core/units.hpp>
+#include <keeler/core/words.hpp>
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdlib>
+
+namespace keeler {
+namespace {
+
+constexpr double degree = pi / 180.0;
+constexpr double least_elevation = 0.1; // degrees: rays then cross 600 m of ring for each metre of its thickness
+constexpr int default_azimuths = 18;    // every 10°; half a turn more sees the same ring from below
+constexpr double most_rays = 1e9;
+
+// A number within limits, both included; `what` names it in the refusal.
+CLI::Validator number_between(double low, double high, const std::string& what) {
+  const auto refusal = [=](const std::string& text) {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    return *end == '\0' && end != text.c_str() && value >= low && value <= high
+               ? std::string()
+               : fmt::format("'{}' is not {} from {} to {}", text, what, figures(low), figures(high));
+  };
+  return CLI::Validator(refusal, "");
+}
+
+nlohmann::ordered_json maybe(const std::optional<double>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+std::string known(const std::optional<double>& value, int digits) {
+  return value ? figures(*value, digits) : "unknown";
+}
+
+} // namespace
+
+void SightOptions::add_to(CLI::App& command) {
+  CLI::Option* const elevation =
+      command
+          .add_option("--elevation", elevations,
+                      "cast rays at these angles above the ring plane (degrees, a list with commas)")
+          ->delimiter(',')
+          ->allow_extra_args(false)
+          ->check(number_between(least_elevation, 90.0, "an elevation"));
+  command
+      .add_option("--azimuth", azimuths,
+                  "angles from the radius to the orbital motion (degrees, a list with commas; default: every 10)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(number_between(-360.0, 360.0, "an azimuth"))
+      ->needs(elevation);
+  command.add_option("--rays", rays, "rays for each line of sight and snapshot (default: 1000000)")
+      ->check(number_between(1.0, most_rays, "a number of rays"))
+      ->needs(elevation);
+  command.add_option("--footprint", footprint, "side of the areas whose flicker is measured, in m (default: 10)")
+      ->check(positive_number())
+      ->needs(elevation);
+}
+
+Sights::Sights(const SightOptions& options, std::span<const Patch> patches)
+    : rays_(patches.front().box, options.rays, options.footprint) {
+  std::vector<double> azimuths = options.azimuths;
+  if (azimuths.empty())
+    for (int k = 0; k < default_azimuths; ++k)
+      azimuths.push_back(180.0 / default_azimuths * k);
+  for (const double elevation : options.elevations) {
+    Elevation sights{elevation, azimuths, {}};
+    for (const double azimuth : azimuths)
+      sights.looks.push_back(occultation(patches, rays_, {elevation * degree, azimuth * degree}));
+    elevations_.push_back(std::move(sights));
+  }
+}
+
+nlohmann::ordered_json Sights::json() const {
+  nlohmann::ordered_json json;
+  json["rays"] = rays_.size();
+  json["footprint_m"] = std::array{rays_.footprint_x(), rays_.footprint_y()};
+  json["footprints"] = rays_.footprints();
+  json["elevations"] = nlohmann::ordered_json::array();
+  for (const Elevation& e : elevations_) {
+    nlohmann::ordered_json looks = nlohmann::ordered_json::array();
+    for (std::size_t k = 0; k < e.looks.size(); ++k) {
+      const Occultation& o = e.looks[k];
+      looks.push_back({{"azimuth_degrees", e.azimuths[k]},
+                       {"transmission", *o.transmission.value},
+                       {"transmission_error", o.ray_error},
+                       {"transmission_scatter", maybe(o.transmission.scatter)},
+                       {"normal_optical_depth", maybe(o.normal_optical_depth)},
+                       {"normal_optical_depth_error", maybe(o.normal_optical_depth_error)},
+                       {"flicker_variance", o.flicker.variance},
+                       {"flicker_skewness", maybe(o.flicker.skewness)},
+                       {"flicker_kurtosis", maybe(o.flicker.kurtosis)}});
+    }
+    const auto asymmetry = azimuthal_asymmetry(e.looks);
+    json["elevations"].push_back(
+        {{"elevation_degrees", e.degrees},
+         {"azimuthal_asymmetry", asymmetry ? nlohmann::ordered_json(asymmetry->amplitude) : nullptr},
+         {"brightest_azimuth_degrees",
+          asymmetry ? nlohmann::ordered_json(asymmetry->brightest_azimuth / degree) : nullptr},
+         {"azimuths", looks}});
+  }
+  return json;
+}
+
+void Sights::print() const {
+  fmt::print("lines of sight       {} rays, footprints of {} x {} m\n", rays_.size(), figures(rays_.footprint_x(), 3),
+             figures(rays_.footprint_y(), 3));
+  for (const Elevation& e : elevations_) {
+    for (std::size_t k = 0; k < e.looks.size(); ++k) {
+      const Occultation& o = e.looks[k];
+      fmt::print("  B {:<5} phi {:<5} T {:.4f} +- {:.4f}, normal optical depth {}; flicker: variance {}, skewness {}, "
+                 "kurtosis {}\n",
+                 figures(e.degrees, 3), figures(e.azimuths[k], 3), *o.transmission.value, o.ray_error,
+                 known(o.normal_optical_depth, 4), figures(o.flicker.variance, 3), known(o.flicker.skewness, 3),
+                 known(o.flicker.kurtosis, 3));
+    }
+    if (const auto asymmetry = azimuthal_asymmetry(e.looks))
+      fmt::print("  B {:<5} azimuthal asymmetry {:.3g}, brightest at {} degrees\n", figures(e.degrees, 3),
+                 asymmetry->amplitude, figures(asymmetry->brightest_azimuth / degree, 4));
+  }
+}
+
+} // namespace keeler
