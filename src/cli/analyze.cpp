@@ -24,6 +24,7 @@ constexpr double averaged_orbits = 1.0;
 struct AnalyzeOptions {
   std::string path;
   bool json = false;
+  AnalysisSettings settings;
   SightOptions sights;
   ThreadOption threads;
 };
@@ -99,7 +100,7 @@ ExitCode run(const AnalyzeOptions& options) {
   double overlap = 0.0;
   for (const Patch& patch : stored.patches)
     overlap = std::max(overlap, largest_overlap(patch).depth);
-  const Analysis analysis = analyze(stored.patches);
+  const Analysis analysis = analyze(stored.patches, options.settings);
   std::optional<Sights> sights;
   if (options.sights.asked())
     sights.emplace(options.sights, stored.patches);
@@ -123,6 +124,10 @@ void add_analyze(CLI::App& program, Action& action) {
   CLI::App& command = *program.add_subcommand("analyze", "measure a snapshot, or the last orbit of a run");
   command.add_option("FILE|DIR", options->path, "a snapshot, or the folder of a run")->required()->type_name("");
   command.add_flag("--json", options->json, "print the numbers as JSON");
+  command
+      .add_option("--cluster-gap", options->settings.cluster_gap,
+                  "largest gap between touching spheres, over the sum of their radii (default: 0.01)")
+      ->check(positive_number());
   options->sights.add_to(command);
   options->threads.add_to(command);
   command.callback([options, &action] { action = [options] { return run(*options); }; });

@@ -81,6 +81,32 @@ void print_local(const Analysis& a) {
                  s.dispersion.y(), s.dispersion.z(), s.scale_height);
 }
 
+nlohmann::ordered_json json_of(const ClusterAnalysis& c) {
+  nlohmann::ordered_json json;
+  json["gap"] = c.gap;
+  json["count"] = c.count;
+  json["mass_share"] = c.mass_share;
+  json["largest_mass_share"] = c.largest_mass_share;
+  json["largest_half_axes_m"] = c.largest_half_axes ? nlohmann::ordered_json(*c.largest_half_axes) : nullptr;
+  json["spin_omega"] = maybe(c.spin);
+  json["spectrum"] = nlohmann::ordered_json::array();
+  for (const ClusterAnalysis::Class& s : c.spectrum)
+    json["spectrum"].push_back({{"least_members", s.least}, {"count", s.count}, {"mass_share", s.mass_share}});
+  return json;
+}
+
+void print_clusters(const ClusterAnalysis& c) {
+  fmt::print("clusters             {} of touching spheres (gap below {} of the radius sum) with {:.3g} of the mass\n",
+             figures(c.count, 3), figures(c.gap, 3), c.mass_share);
+  if (c.largest_mass_share > 0.0)
+    fmt::print("heaviest cluster     {:.3g} of the mass, {}\n", c.largest_mass_share,
+               c.largest_half_axes ? fmt::format("half axes {:.3g} {:.3g} {:.3g} m", (*c.largest_half_axes)[0],
+                                                 (*c.largest_half_axes)[1], (*c.largest_half_axes)[2])
+                                   : "without end in the periodic box");
+  if (c.spin)
+    fmt::print("spin of clusters     {:.3g} Omega\n", *c.spin);
+}
+
 } // namespace
 
 void add_structure(nlohmann::ordered_json& json, const Analysis& a) {
@@ -91,11 +117,13 @@ void add_structure(nlohmann::ordered_json& json, const Analysis& a) {
   put(json, "wake_outer_pitch", "degrees", a.wakes.outer_pitch_degrees);
   json["wake_contrast"] = a.wakes.contrast;
   add_local(json, a);
+  json["clusters"] = json_of(a.clusters);
 }
 
 void print_structure(const Analysis& a) {
   print_wakes(a);
   print_local(a);
+  print_clusters(a.clusters);
 }
 
 } // namespace keeler

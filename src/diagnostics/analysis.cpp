@@ -76,7 +76,7 @@ void add(std::vector<SizeClass>& sum, const Patch& patch, double share) {
 
 } // namespace
 
-Analysis analyze(std::span<const Patch> patches) {
+Analysis analyze(std::span<const Patch> patches, const AnalysisSettings& settings) {
   if (patches.empty())
     throw UsageError("there is no snapshot to analyze; name a file or a run's folder that holds one");
   Analysis mean;
@@ -93,6 +93,7 @@ Analysis analyze(std::span<const Patch> patches) {
     add(moments, velocity_moments(patch), share);
     add(mean.size_classes, patch, share);
   }
+  mean.clusters = analyze_clusters(patches, settings.cluster_gap);
   mean.ellipsoid = velocity_ellipsoid(moments);
   mean.wakes = wake_geometry(patches, mean.critical_wavelength_m);
   const Wakes& wakes = mean.wakes.mean;

@@ -2,6 +2,7 @@
 // `keeler analyze --json` prints.
 #pragma once
 
+#include <keeler/diagnostics/clusters.hpp>
 #include <keeler/diagnostics/size_classes.hpp>
 #include <keeler/diagnostics/velocity_ellipsoid.hpp>
 #include <keeler/diagnostics/wake_geometry.hpp>
@@ -54,11 +55,17 @@ struct Analysis {
   WakeGeometry wakes;
 
   LocalAnalysis local;
+  ClusterAnalysis clusters;
   VelocityEllipsoid ellipsoid;         ///< of the mean moments
   std::vector<SizeClass> size_classes; ///< none when all radii are equal; dispersions in m/s
 };
 
+/// What can be chosen in an analysis.
+struct AnalysisSettings {
+  double cluster_gap = default_cluster_gap; ///< between touching spheres, over the sum of their radii
+};
+
 /// Throws UsageError when there is no patch, a patch without particles, or patches of different boxes.
-Analysis analyze(std::span<const Patch> patches);
+Analysis analyze(std::span<const Patch> patches, const AnalysisSettings& settings = {});
 
 } // namespace keeler
