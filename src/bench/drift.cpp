@@ -41,7 +41,7 @@ DriftBench bench_drift(const DriftBenchSettings& settings) {
   BenchState made = bench_state(settings, progress);
   DriftBench bench;
   bench.dispersion_r_omega = velocity_in_radii(made.patch, velocity_dispersion(made.patch)).x();
-  const double steps = steps_worth_timing(made.patch.size(), most_orbits / settings.step_orbits);
+  const double steps = steps_worth_timing(made.patch.size(), settings.step_orbits, most_orbits / settings.step_orbits);
 
   Simulation simulation(made.scene, made.patch);
   made.patch = {}; // room: a large state is held once

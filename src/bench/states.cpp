@@ -14,7 +14,6 @@
 namespace keeler {
 namespace {
 
-constexpr double evolving_step = 0.01; // orbits
 constexpr double moonlet_radius = 100.0;
 constexpr double moonlet_orbits = 0.5; // that the particles around a moonlet get to answer it
 
@@ -24,16 +23,22 @@ struct Recipe {
   const char* table;        // of the scene: the same sizes
   std::size_t largest_tile; // particles
   double heat;              // of the start, over equal spheres as large as the mass is
-  double orbits;            // from the start to the equilibrium
+  double orbits;            // from the start to the equilibrium,
+  double step;              // in steps of so many
 };
 
 // In a power law the large ones stir the small ones, which collide rarely: at τ = 0.5 those below 1.5 m get to c_x =
-// 230 m rad⁻¹, those above 12 m to 50–100, within four orbits from half of the heat.
+// 230 m rad⁻¹, those above 12 m to 50–100, within four orbits from half of the heat. Now and then two large ones
+// squeeze a small one out at 10⁴ m rad⁻¹: within a short step that one still meets others through one image.
 Recipe recipe_for(BenchSizes sizes) {
   if (sizes == BenchSizes::power)
-    return {power_sizes(3.0, 1.0, 100.0), "{ law = \"power\", exponent = 3.0, min = 1.0, max = 100.0 }", 25000, 2.0,
-            3.0};
-  return {equal_sizes(1.0), "{ law = \"equal\", radius = 1.0 }", 100000, 1.0, 1.5};
+    return {power_sizes(3.0, 1.0, 100.0),
+            "{ law = \"power\", exponent = 3.0, min = 1.0, max = 100.0 }",
+            25000,
+            2.0,
+            3.0,
+            0.0025};
+  return {equal_sizes(1.0), "{ law = \"equal\", radius = 1.0 }", 100000, 1.0, 1.5, 0.01};
 }
 
 // c_x of the start, in ⟨r⟩ Ω; more than near the equilibrium's where particles of that dispersion could not be placed.
@@ -69,11 +74,11 @@ end = {5}
                      "bench");
 }
 
-Patch evolved(Scene scene, const Patch& start, double orbits, PhaseProgress& progress) {
+Patch evolved(Scene scene, const Patch& start, double orbits, double step, PhaseProgress& progress) {
   scene.collisions.finder = "certified";
-  scene.time.step = evolving_step;
+  scene.time.step = step;
   Simulation simulation(scene, start);
-  const long steps = std::lround(orbits / evolving_step);
+  const long steps = std::lround(orbits / step);
   for (long k = 0; k < steps; ++k) {
     simulation.advance();
     progress.add(static_cast<double>(start.size()));
@@ -161,12 +166,13 @@ BenchState bench_state(const DriftBenchSettings& settings, PhaseProgress& progre
     require_room_for_moonlet(side * state.scene.size_x);
 
   const double particle_orbits = recipe.orbits * tile_count + (moonlet ? moonlet_orbits * count : 0.0);
-  progress.begin("preparing an equilibrium", particle_orbits / evolving_step);
-  state.patch = evolved(state.scene, initial_patch(state.scene), recipe.orbits, progress);
+  progress.begin("preparing an equilibrium", particle_orbits / recipe.step);
+  state.patch = evolved(state.scene, initial_patch(state.scene), recipe.orbits, recipe.step, progress);
   if (side > 1.0)
     state.patch = tiled(state.patch, static_cast<int>(side));
   if (moonlet)
-    state.patch = evolved(state.scene, with_moonlet(state.patch, moonlet_radius), moonlet_orbits, progress);
+    state.patch =
+        evolved(state.scene, with_moonlet(state.patch, moonlet_radius), moonlet_orbits, recipe.step, progress);
   return state;
 }
 

@@ -58,7 +58,7 @@ StepBench bench_step(const StepBenchSettings& settings) {
   bench.step_orbits = state.scene.time.step;
   bench.dispersion_r_omega = velocity_in_radii(state.patch, velocity_dispersion(state.patch)).x();
   const int kick_every = bench.choice.settings.kick_every;
-  const int steps = whole_intervals(steps_worth_timing(state.patch.size(), most_steps), kick_every);
+  const int steps = whole_intervals(steps_worth_timing(state.patch.size(), bench.step_orbits, most_steps), kick_every);
 
   Simulation simulation(state.scene, state.patch);
   state.patch = {}; // room: a large state is held once

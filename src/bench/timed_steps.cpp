@@ -10,8 +10,11 @@ namespace keeler {
 namespace {
 
 constexpr int untimed_steps = 10;
-constexpr double least_steps = 20.0;  // in each repeat: more than two windows of the drift
-constexpr double enough_passes = 4e6; // particles × steps in each repeat
+// In each repeat:
+constexpr double least_steps = 20.0;              // more than two windows of the drift
+constexpr double life_steps = 64.0, life = 0.159; // neighbour lists live so many steps at most, and so many orbits
+constexpr double enough_passes = 4e6;             // particles × steps,
+constexpr double most_passes = 6.4e7;             // and for a life
 
 // All clocks of a run as they stand, s.
 struct Clocks {
@@ -106,8 +109,10 @@ void add_counts(const Counts& before, const Counts& after, TimedSteps& timed) {
 
 } // namespace
 
-double steps_worth_timing(std::size_t count, double most) {
-  return std::clamp(enough_passes / static_cast<double>(count), least_steps, std::max(least_steps, most));
+double steps_worth_timing(std::size_t count, double step, double most) {
+  const double particles = static_cast<double>(std::max<std::size_t>(1, count));
+  const double least = std::max(least_steps, std::min({life_steps, life / step, most_passes / particles}));
+  return std::clamp(enough_passes / particles, least, std::max(least, most));
 }
 
 TimedSteps time_steps(Simulation& simulation, int steps, int repeats, int kick_every, PhaseProgress& progress) {

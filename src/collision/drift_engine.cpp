@@ -41,11 +41,17 @@ struct DriftEngine::InPlace {
     drift.particles_->bodies[i].elements = elements;
     if (drift.through_grid_)
       drift.grid_.changed(i);
-    else if (!drift.lists_.changed(i, time))
-      drift.lists_.list_anew(i);
+    else if (!drift.lists_.reaches_far() && !drift.lists_.changed(i, time))
+      list_anew(i);
     drift.finder().changed(i);
     if (drift.watch_)
       drift.watch_->changed(i);
+  }
+
+  void list_anew(std::uint32_t i) {
+    drift.lists_.list_anew(i);
+    if (drift.lists_.reaches_far())
+      drift.lists_.make_for_step();
   }
 
   // Who watches sees partners in the order of their ids and images.

@@ -66,9 +66,9 @@ struct TimedSteps {
   double per_contact(double ns) const { return contacts > 0 ? ns / per_particle_step(contacts) : 0.0; }
 };
 
-/// Enough steps for a repeat, more than two windows of the drift (neighbour lists may live longer), and at most `most`
-/// beyond that.
-double steps_worth_timing(std::size_t count, double most);
+/// Enough steps for a repeat: as long as neighbour lists live at most, where that does not take too long, and more than
+/// two windows of the drift anyway; at most `most` beyond that. `step` in orbits.
+double steps_worth_timing(std::size_t count, double step, double most);
 
 /// A few untimed steps, in which buffers grow and lists are first made, then the repeats; each goes on where the one
 /// before it stopped, or the steps on one thread after it. All steps come in whole kick intervals; `steps` is a

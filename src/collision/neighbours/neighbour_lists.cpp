@@ -112,29 +112,39 @@ void NeighbourLists::choose_life(bool lived) {
       change_of_life_ = change_of_life_ > 1.0 ? 0.8 : 1.25;
     last_cost_ = cost;
     const int next = static_cast<int>(std::lround(change_of_life_ * std::min(age_, life_)));
-    life_ = std::max(1, change_of_life_ > 1.0 ? std::max(next, age_ + 1) : next);
+    next_life_ = std::max(1, change_of_life_ > 1.0 ? std::max(next, age_ + 1) : next);
   }
-  life_ = std::clamp(static_cast<int>(longest / step_), 1, std::min(most, life_));
+  next_life_ = std::clamp(static_cast<int>(longest / step_), 1, std::min(most, next_life_));
 }
 
 bool NeighbourLists::build(bool lived) {
   choose_life(lived);
-  const auto make = [&] {
-    age_ = 0;
-    make_references();
-    cells_.build(std::span(lines_).first(particles_->size()), box_, instant(-since_middle()).offset, half_life(),
-                 least_radius_ + slack_);
-  };
-  make();
-  if (!cells_.one_image() && life_ > 1) { // one step may be short enough
-    life_ = 1;
-    make();
-  }
+  while (!make_cells(next_life_) && next_life_ > 1)
+    next_life_ /= 2;
+  return fill_lists();
+}
+
+// References for so many steps from now on. Returns whether nearest images will do for these.
+bool NeighbourLists::make_cells(int life) {
+  life_ = life;
+  age_ = 0;
+  make_references();
+  cells_.build(std::span(lines_).first(particles_->size()), box_, instant(-since_middle()).offset, half_life(),
+               least_radius_ + slack_);
+  return cells_.one_image();
+}
+
+bool NeighbourLists::fill_lists() {
   ++built;
   if (!cells_.one_image())
     return false;
   find_pairs();
   return begin_window();
+}
+
+void NeighbourLists::make_for_step() {
+  make_cells(1);
+  reaches_far_ = !fill_lists();
 }
 
 // All lines, who leaves, and what is near. False: see mend().
@@ -404,7 +414,7 @@ void NeighbourLists::list_anew(std::size_t i) {
   is_leaving_[i] = 0;
   if (!refer_anew(i, to_middle_of_rest())) {
     reaches_far_ = true;
-    made_ = false; // for the next step
+    made_ = false; // the next step makes its own, and those of make_for_step() teach it no life
     return;
   }
   std::vector<std::uint32_t> buffer;

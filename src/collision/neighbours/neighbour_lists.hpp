@@ -70,8 +70,11 @@ public:
   /// To be told, in any order, when the step is over: who has been hit.
   void touched(std::span<const std::uint32_t> particles);
 
-  /// Whether somebody has become so fast that nearest images will not do for the rest of the step.
+  /// Whether list_anew() has met somebody so fast that nearest images will not do for the rest of the lists' life.
   bool reaches_far() const { return reaches_far_; }
+  /// Then: makes all lists anew for the rest of the step alone. They know nothing of paths that have ended. Where
+  /// nearest images will not do for that either, reaches_far() holds on, and only visit_everywhere() may be asked.
+  void make_for_step();
 
   /// Where the reference of a particle stands across the box, as a fraction of it (2⁻³²).
   std::uint32_t across(std::size_t i) const {
@@ -131,6 +134,8 @@ private:
   bool serves(const Particles& particles, const ShearingBox& box, double offset) const;
   void choose_life(bool lived);
   bool build(bool lived);
+  bool make_cells(int life);
+  bool fill_lists();
   void make_references();
   void find_pairs();
   void lay_out(const Parts& parts);
@@ -194,7 +199,8 @@ private:
 
   // the lists
   bool made_ = false;
-  int age_ = 0, life_ = 10; // steps
+  int age_ = 0, life_ = 1; // steps
+  int next_life_ = 10;
   double slack_ = 0.0;      // m
   LineCells cells_;
   std::vector<Line> references_; // by place; their size is radius, slack and curvature

@@ -109,6 +109,8 @@ struct Patch {
     change_velocity(i, time, random_velocity(speed));
     if (!lists.changed(i, time))
       lists.list_anew(i);
+    if (lists.reaches_far())
+      lists.make_for_step();
   }
 
   // Calls visit(image) for those of a pair that may touch from then on, by the exact test.
@@ -463,6 +465,30 @@ TEST_CASE("when a hit makes somebody so fast that it may meet others through sev
   patch.undisturbed = false;
   REQUIRE(patch.begin());
   check_begin(patch, seen);
+}
+
+TEST_CASE("when a hit makes somebody too fast for the life of the lists, all are made anew for the step alone") {
+  Patch patch({.count = 400, .step = 0.05, .hits = 0.1}, 1);
+  Seen seen;
+  drift(patch, 3, seen);
+  REQUIRE(patch.begin());
+  const std::uint64_t built = patch.lists.built;
+  patch.hit(7, 0.0, 0.1 * patch.box.size_x / patch.setting.step);
+  CHECK(patch.lists.built == built + 1);
+  REQUIRE_FALSE(patch.lists.reaches_far());
+  std::size_t partners = 0;
+  for (std::size_t i = 0; i < patch.particles.size(); ++i) {
+    const std::vector<Pair> expected = patch.all_partners(i, 0.0, 1);
+    CHECK((patch.visited_partners(i, 0.0) == expected));
+    partners += expected.size();
+  }
+  CHECK(partners > 20);
+  const std::uint32_t touched[] = {7};
+  patch.lists.touched(touched);
+  patch.move_on();
+  REQUIRE(patch.begin()); // with a shorter life
+  CHECK(patch.lists.built == built + 2);
+  drift(patch, 10, seen);
 }
 
 TEST_CASE("in a box so large that places are rounded by more than the slack, neighbours are found") {
