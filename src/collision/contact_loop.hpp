@@ -18,6 +18,8 @@
 //   void happened(const Event&, const Contact&)     right before the changes
 #pragma once
 
+#include "ablation.hpp"
+
 #include <keeler/collision/events.hpp>
 #include <keeler/collision/finder.hpp>
 #include <keeler/collision/settings.hpp>
@@ -157,7 +159,7 @@ private:
 
   void prefetch(std::size_t ahead, int stage) const {
     const Event* soon = events_.ahead(ahead);
-    if (!soon)
+    if (!soon || without(Acceleration::prefetching))
       return;
     for (const std::uint32_t place : {soon->low, soon->high}) {
       if (stage == 0) {
@@ -226,6 +228,8 @@ private:
       if (j == except)
         return;
       partners_.push_back({i, static_cast<std::uint32_t>(j), image});
+      if (without(Acceleration::prefetching))
+        return;
       __builtin_prefetch(&step_.particles->bodies[j]);
       __builtin_prefetch(&step_.particles->ids[j]);
       orbits_.prefetch_partner(j);
@@ -242,7 +246,7 @@ private:
   double look_until(std::uint32_t i, double from) const {
     constexpr double hits_ahead = 2.0, least_share = 1.0 / 256.0; // of the step
     const double begin = step_.begin, end = -begin;
-    if (orbits_.stamp(i) < 2 || !orbits_.may_look_again(i))
+    if (orbits_.stamp(i) < 2 || without(Acceleration::looks) || !orbits_.may_look_again(i))
       return end;
     const double ahead = hits_ahead * (from - begin) / orbits_.stamp(i);
     return std::min(end, from + std::max(ahead, least_share * (end - begin)));

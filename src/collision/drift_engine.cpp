@@ -1,6 +1,11 @@
 #include "drift_engine.hpp"
 
+#include "ablation.hpp"
+
+#include <keeler/collision/certified_finder.hpp>
 #include <keeler/collision/finders.hpp>
+#include <keeler/collision/motion/relative.hpp>
+#include <keeler/collision/search/certified.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
@@ -12,11 +17,22 @@
 #include <tuple>
 
 namespace keeler {
+namespace {
+
+std::unique_ptr<Finder> finder_named(const std::string& name) {
+  if (without(Acceleration::newton))
+    return std::make_unique<MotionSearch<BoundedMotion, CertifiedSearch>>();
+  if (without(Acceleration::lanes))
+    return make_certified_finder(InstructionSet::portable);
+  return make_finder(name);
+}
+
+} // namespace
 
 DriftEngine::DriftEngine(const CollisionSettings& settings, const Frequencies& frequencies, double orbital_frequency,
                          double step)
     : settings_(settings), frequencies_(frequencies), orbital_frequency_(orbital_frequency), step_(step),
-      finder_(make_finder(settings.finder)), finder_step_(frequencies, -0.5 * step, 0.5 * step, 0.0),
+      finder_(finder_named(settings.finder)), finder_step_(frequencies, -0.5 * step, 0.5 * step, 0.0),
       lists_(frequencies, step), grid_(frequencies, step) {
   if (!finder_)
     throw UsageError(fmt::format("unknown collision finder '{}'", settings.finder));
@@ -169,7 +185,7 @@ void DriftEngine::prepare(bool undisturbed) {
     grid_.begin(*particles_, box, step_at_hand_.offset, every_candidate);
   finder_step_ = DriftStep(frequencies_, -0.5 * step_, 0.5 * step_, box.size_x + box.size_y);
   finder_step_.bodies = particles_->bodies;
-  finder_step_.tested = !every_candidate;
+  finder_step_.tested = !every_candidate && !without(Acceleration::rejection);
   finder().begin(finder_step_);
   if (watch_)
     watch_->begins(finder_step_);

@@ -1,5 +1,7 @@
 #include <keeler/collision/events.hpp>
 
+#include "ablation.hpp"
+
 #include <algorithm>
 #include <cassert>
 
@@ -8,12 +10,18 @@ namespace keeler {
 void EventQueue::assign(std::span<const Event> events) {
   events_.assign(events.begin(), events.end());
   order_.clear();
-  for (std::uint32_t k = 0; k < events_.size(); ++k)
-    order_.push_back({events_[k].time, k});
+  if (!without(Acceleration::presorting))
+    for (std::uint32_t k = 0; k < events_.size(); ++k)
+      order_.push_back({events_[k].time, k});
   std::sort(order_.begin(), order_.end(), [&](const Turn& a, const Turn& b) { return comes_before(a, b); });
   next_ = 0;
   later_.clear();
   free_.clear();
+  if (without(Acceleration::presorting)) {
+    events_.clear();
+    for (const Event& event : events)
+      add(event);
+  }
 }
 
 void EventQueue::add(const Event& event) {

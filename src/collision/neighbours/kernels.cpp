@@ -1,5 +1,7 @@
 #include "kernels.hpp"
 
+#include "ablation.hpp"
+
 namespace keeler {
 
 namespace kernels_portable {
@@ -34,6 +36,8 @@ std::size_t sweep_group(const Line* lines, std::size_t first, std::size_t last, 
 #endif
 
 Kernels kernels([[maybe_unused]] InstructionSet set) {
+  if (without(Acceleration::simd))
+    return kernels_portable::table;
 #if defined(__x86_64__)
   if (set == InstructionSet::avx512)
     return {sweep, sweep_group, kernels_avx512::table.filter, kernels_avx512::table.follow};

@@ -1,5 +1,7 @@
 #include "line_cells.hpp"
 
+#include "ablation.hpp"
+
 #include <keeler/core/counting_sort.hpp>
 #include <keeler/core/threads.hpp>
 
@@ -31,7 +33,9 @@ struct LineCells::Measured {
 // Those that reach less than 2 of the least, then up to 8, 32, ...: each level that there is costs a look-up.
 int LineCells::level_of(const Line& line) const {
   const double reach = std::max(reach_x(line), reach_y(line));
-  return reach < 2.0 * least_ ? 0 : (std::min(std::ilogb(reach / least_), 2 * most_levels - 3) + 1) / 2;
+  return reach < 2.0 * least_ || without(Acceleration::levels)
+             ? 0
+             : (std::min(std::ilogb(reach / least_), 2 * most_levels - 3) + 1) / 2;
 }
 
 std::size_t LineCells::cell_of(const Line& line, const Level& level) const {
@@ -189,7 +193,7 @@ LineCells::Window LineCells::window(const Line& line, const LineSpan& span) cons
 // Lines that follow each other and stand close together look around together: up to this slot. Not where that might be
 // all around a narrow box.
 std::size_t LineCells::group_end(std::size_t first, std::size_t end, const Level& level) const {
-  if (level.columns < fewest_columns)
+  if (level.columns < fewest_columns || without(Acceleration::groups))
     return first + 1;
   const auto near_x = static_cast<std::int64_t>(2.0 * level.reach_x * per_metre_x_);
   const auto near_y = static_cast<std::int64_t>(longest_group * level.reach_y * per_metre_y_);

@@ -69,6 +69,7 @@ Image NeighbourLists::nearest_image(const Body& a, const Body& b) const {
 }
 
 bool NeighbourLists::begin(const Particles& particles, const ShearingBox& box, double offset, bool undisturbed) {
+  undisturbed = undisturbed && !without(Acceleration::windows);
   ++age_;
   const bool lived = std::exchange(made_, false); // until nothing can throw any more
   const bool serve = lived && serves(particles, box, offset);
@@ -119,6 +120,8 @@ void NeighbourLists::choose_life(bool lived) {
 
 bool NeighbourLists::build(bool lived) {
   choose_life(lived);
+  if (without(Acceleration::lists))
+    next_life_ = 1;
   while (!make_cells(next_life_) && next_life_ > 1)
     next_life_ /= 2;
   return fill_lists();
@@ -326,7 +329,8 @@ void NeighbourLists::pick_near() {
 bool NeighbourLists::mend(const std::vector<std::uint32_t>& leavers) {
   constexpr std::size_t cost = 6; // of listing one anew, in those of one when all are
   if (age_ > 0 &&
-      ((times_anew_ + leavers.size()) * cost > ranges_.size() || entries_.size() > 2 * entries_made_ + 4096))
+      ((without(Acceleration::mending) && !leavers.empty()) || (times_anew_ + leavers.size()) * cost > ranges_.size() ||
+       entries_.size() > 2 * entries_made_ + 4096))
     return false;
   cost_ += 800.0 * static_cast<double>(leavers.size());
   const Rotation to_middle = to_middle_of_rest();

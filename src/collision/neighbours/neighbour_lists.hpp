@@ -18,6 +18,7 @@
 // The image of a neighbour is the nearest one. A box that is too small for that is a matter for grid_partners.hpp.
 #pragma once
 
+#include "ablation.hpp"
 #include "line_cells.hpp"
 #include "reach.hpp"
 
@@ -25,6 +26,7 @@
 #include <keeler/core/interrupt.hpp>
 #include <keeler/particles/store.hpp>
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -201,7 +203,7 @@ private:
   bool made_ = false;
   int age_ = 0, life_ = 1; // steps
   int next_life_ = 10;
-  double slack_ = 0.0;      // m
+  double slack_ = 0.0; // m
   LineCells cells_;
   std::vector<Line> references_; // by place; their size is radius, slack and curvature
   std::vector<Range> ranges_;
@@ -254,8 +256,10 @@ template<class Visit> void NeighbourLists::visit_pairs(std::span<const LinePair>
   const LineSpan span = in_step(-0.5 * step_, 0.5 * step_);
   const std::size_t count = pairs.size() - kernel_padding;
   for (std::size_t begin = 0; begin < count; begin += chunk) {
-    const std::size_t keeps =
-        kernels_.filter(lines_.data(), frame_, span, pairs.data() + begin, std::min(chunk, count - begin), kept);
+    const std::size_t some = std::min(chunk, count - begin);
+    const std::size_t keeps = without(Acceleration::rejection)
+                                  ? static_cast<std::size_t>(std::copy_n(pairs.data() + begin, some, kept) - kept)
+                                  : kernels_.filter(lines_.data(), frame_, span, pairs.data() + begin, some, kept);
     for (std::size_t k = 0; k < keeps; ++k) {
       const auto [i, j] = kept[k];
       const Image image = nearest_image(i, j);
@@ -271,8 +275,11 @@ void NeighbourLists::visit_partners(std::size_t i, double start, double end, std
   const Range& range = ranges_[i];
   if (buffer.size() < range.count)
     buffer.resize(2 * range.count);
-  const std::size_t count = kernels_.sweep(lines_[i], lines_.data(), frame_, in_step(start, end),
-                                           entries_.data() + range.begin, range.count, buffer.data());
+  const std::uint32_t* const entries = entries_.data() + range.begin;
+  const std::size_t count =
+      without(Acceleration::rejection)
+          ? static_cast<std::size_t>(std::copy_n(entries, range.count, buffer.data()) - buffer.data())
+          : kernels_.sweep(lines_[i], lines_.data(), frame_, in_step(start, end), entries, range.count, buffer.data());
   for (std::size_t k = 0; k < count; ++k) {
     const Image image = nearest_image(i, buffer[k]);
     if (!exactly_ || may_touch(i, buffer[k], image, start))
