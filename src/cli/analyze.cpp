@@ -1,12 +1,14 @@
 // keeler analyze: numbers from a snapshot, or averaged over the last orbit of a run.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "profile_file.hpp"
 #include "sight_options.hpp"
 #include "structure_report.hpp"
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/diagnostics/analysis.hpp>
+#include <keeler/files/files.hpp>
 #include <keeler/runs/stored_patches.hpp>
 
 #include <fmt/format.h>
@@ -14,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 
 namespace keeler {
@@ -25,6 +28,8 @@ struct AnalyzeOptions {
   std::string path;
   bool json = false;
   AnalysisSettings settings;
+  std::string profile;
+  std::size_t profile_bins = default_profile_bins;
   SightOptions sights;
   ThreadOption threads;
 };
@@ -96,6 +101,8 @@ void print_text(const Analysis& a, double overlap) {
 
 ExitCode run(const AnalyzeOptions& options) {
   options.threads.apply();
+  if (!options.profile.empty())
+    require_writable_folder(std::filesystem::absolute(options.profile).parent_path(), options.profile);
   const StoredPatches stored = load_patches(options.path, averaged_orbits);
   double overlap = 0.0;
   for (const Patch& patch : stored.patches)
@@ -104,6 +111,8 @@ ExitCode run(const AnalyzeOptions& options) {
   std::optional<Sights> sights;
   if (options.sights.asked())
     sights.emplace(options.sights, stored.patches);
+  if (!options.profile.empty())
+    write_profiles(options.profile, stored.patches, options.profile_bins);
   if (options.json) {
     nlohmann::ordered_json json = as_json(analysis, overlap);
     if (sights)
@@ -128,6 +137,13 @@ void add_analyze(CLI::App& program, Action& action) {
       .add_option("--cluster-gap", options->settings.cluster_gap,
                   "largest gap between touching spheres, over the sum of their radii (default: 0.01)")
       ->check(positive_number());
+  command.add_option("--modes", options->settings.radial_modes, "radial modes to measure (default: 4)")
+      ->check(number_between(1, 1000, "a number of modes"));
+  CLI::Option* const profile =
+      command.add_option("--profile", options->profile, "write radial profiles of all snapshots to this CSV file");
+  command.add_option("--bins", options->profile_bins, "bins of the profiles along the radius (default: 100)")
+      ->check(number_between(1, 1e6, "a number of bins"))
+      ->needs(profile);
   options->sights.add_to(command);
   options->threads.add_to(command);
   command.callback([options, &action] { action = [options] { return run(*options); }; });

@@ -3,6 +3,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
+#include <keeler/core/words.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -18,6 +19,18 @@ inline CLI::Validator positive_number() {
     const double value = std::strtod(text.c_str(), &end);
     return *end == '\0' && end != text.c_str() && value > 0.0 ? std::string()
                                                               : "'" + text + "' is not a number above 0";
+  };
+  return CLI::Validator(refusal, "");
+}
+
+/// Refuses what is no number within these limits, both included; `what` names it.
+inline CLI::Validator number_between(double low, double high, const std::string& what) {
+  const auto refusal = [=](const std::string& text) {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    return *end == '\0' && end != text.c_str() && value >= low && value <= high
+               ? std::string()
+               : "'" + text + "' is not " + what + " from " + figures(low) + " to " + figures(high);
   };
   return CLI::Validator(refusal, "");
 }

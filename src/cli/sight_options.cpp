@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cstdlib>
 
 namespace keeler {
 namespace {
@@ -17,18 +16,6 @@ constexpr double degree = pi / 180.0;
 constexpr double least_elevation = 0.1; // degrees: rays then cross 600 m of ring for each metre of its thickness
 constexpr int default_azimuths = 18;    // every 10°; half a turn more sees the same ring from below
 constexpr double most_rays = 1e9;
-
-// A number within limits, both included; `what` names it in the refusal.
-CLI::Validator number_between(double low, double high, const std::string& what) {
-  const auto refusal = [=](const std::string& text) {
-    char* end = nullptr;
-    const double value = std::strtod(text.c_str(), &end);
-    return *end == '\0' && end != text.c_str() && value >= low && value <= high
-               ? std::string()
-               : fmt::format("'{}' is not {} from {} to {}", text, what, figures(low), figures(high));
-  };
-  return CLI::Validator(refusal, "");
-}
 
 nlohmann::ordered_json maybe(const std::optional<double>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);

@@ -81,6 +81,25 @@ void print_local(const Analysis& a) {
                  s.dispersion.y(), s.dispersion.z(), s.scale_height);
 }
 
+nlohmann::ordered_json json_of(const RadialModeAnalysis& m) {
+  return {{"n", m.n},
+          {"wavelength_m", m.wavelength},
+          {"density_amplitude", m.density_amplitude},
+          {"density_phase_degrees", m.density_phase_degrees},
+          {"speed_m_s", m.speed},
+          {"growth_rate_omega", m.growth ? nlohmann::ordered_json(m.growth->rate) : nullptr},
+          {"growth_rate_error_omega", m.growth ? maybe(m.growth->error) : nullptr}};
+}
+
+void print_modes(const Analysis& a) {
+  for (const RadialModeAnalysis& m : a.radial_modes) {
+    const std::string error = m.growth && m.growth->error ? fmt::format(" +- {:.2g}", *m.growth->error) : std::string();
+    fmt::print("radial mode {:<8} {} m, density amplitude {:.3g} (random: {:.2g}), speed {:.3g} m/s, growth {}\n", m.n,
+               figures(m.wavelength, 4), m.density_amplitude, a.radial_mode_noise, m.speed,
+               m.growth ? fmt::format("{:.3g}{} Omega", m.growth->rate, error) : "unknown");
+  }
+}
+
 nlohmann::ordered_json json_of(const ClusterAnalysis& c) {
   nlohmann::ordered_json json;
   json["gap"] = c.gap;
@@ -118,12 +137,17 @@ void add_structure(nlohmann::ordered_json& json, const Analysis& a) {
   json["wake_contrast"] = a.wakes.contrast;
   add_local(json, a);
   json["clusters"] = json_of(a.clusters);
+  json["radial_mode_noise"] = a.radial_mode_noise;
+  json["radial_modes"] = nlohmann::ordered_json::array();
+  for (const RadialModeAnalysis& m : a.radial_modes)
+    json["radial_modes"].push_back(json_of(m));
 }
 
 void print_structure(const Analysis& a) {
   print_wakes(a);
   print_local(a);
   print_clusters(a.clusters);
+  print_modes(a);
 }
 
 } // namespace keeler

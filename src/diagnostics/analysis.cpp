@@ -94,6 +94,8 @@ Analysis analyze(std::span<const Patch> patches, const AnalysisSettings& setting
     add(mean.size_classes, patch, share);
   }
   mean.clusters = analyze_clusters(patches, settings.cluster_gap);
+  mean.radial_modes = analyze_radial_modes(patches, settings.radial_modes);
+  mean.radial_mode_noise = radial_mode_noise(patches.back());
   mean.ellipsoid = velocity_ellipsoid(moments);
   mean.wakes = wake_geometry(patches, mean.critical_wavelength_m);
   const Wakes& wakes = mean.wakes.mean;

@@ -64,6 +64,10 @@ for path in "$work/run" "$work/run/snap_000002.hdf"; do
   done
   has optical_depth '0\.5026[0-9]*' # 400 pi / 50^2
 done
+accepts "profiles" analyze "$work/run" --profile "$work/profile.csv" --bins 20
+[ "$(wc -l <"$work/profile.csv")" -eq $((1 + 3 * 20)) ] || fail "other profiles than three of 20 bins"
+awk -F, 'NR > 1 { tau += $5 / 60 } END { exit !(tau > 0.5026 && tau < 0.5027) }' "$work/profile.csv" ||
+  fail "the optical depth of the profiles: $(head -3 "$work/profile.csv")"
 accepts "analyze as text" analyze "$work/run"
 prints "analyze as text" "optical depth        0.5027"
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <keeler/diagnostics/clusters.hpp>
+#include <keeler/diagnostics/radial_modes.hpp>
 #include <keeler/diagnostics/size_classes.hpp>
 #include <keeler/diagnostics/velocity_ellipsoid.hpp>
 #include <keeler/diagnostics/wake_geometry.hpp>
@@ -56,6 +57,8 @@ struct Analysis {
 
   LocalAnalysis local;
   ClusterAnalysis clusters;
+  std::vector<RadialModeAnalysis> radial_modes;
+  double radial_mode_noise = 0.0;      ///< rms density amplitude of a mode if particles stood at random, one snapshot
   VelocityEllipsoid ellipsoid;         ///< of the mean moments
   std::vector<SizeClass> size_classes; ///< none when all radii are equal; dispersions in m/s
 };
@@ -63,6 +66,7 @@ struct Analysis {
 /// What can be chosen in an analysis.
 struct AnalysisSettings {
   double cluster_gap = default_cluster_gap; ///< between touching spheres, over the sum of their radii
+  int radial_modes = 4;                     ///< how many, from the longest on
 };
 
 /// Throws UsageError when there is no patch, a patch without particles, or patches of different boxes.

@@ -1,0 +1,16 @@
+// keeler analyze --profile FILE: the radial profiles of all snapshots as CSV.
+#pragma once
+
+#include <keeler/particles/patch.hpp>
+
+#include <filesystem>
+#include <span>
+
+namespace keeler {
+
+inline constexpr std::size_t default_profile_bins = 100;
+
+/// A line a snapshot and bin. The motion in an empty bin is left empty. Throws IoError.
+void write_profiles(const std::filesystem::path& file, std::span<const Patch> patches, std::size_t bins);
+
+} // namespace keeler
