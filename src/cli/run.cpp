@@ -63,18 +63,18 @@ void print_summary(const std::string& folder, const nlohmann::json& s) {
   const nlohmann::json& e = s["energy_j"];
   const auto energy = [&](const char* key) { return e[key].get<double>(); };
   const auto joules = [&](const char* key) { return figures(energy(key), 4); };
-  fmt::print("energy budget (J)                   change {} = kicks {} + edges {} - collisions {}, "
-             "residual {:.1e}\n",
-             figures(energy("now") - energy("start"), 4), joules("kick_work"), joules("edge_work"),
-             joules("lost_in_collisions"), energy("residual"));
+  fmt::print("energy of random motion (J)         change {} = shear by transport {} + by contacts {} + kicks {} - "
+             "collisions {}, rounding {:.1e}\n",
+             figures(energy("now") - energy("start"), 4), joules("translational_shear_work"),
+             joules("collisional_shear_work"), joules("kick_work"), joules("lost_in_collisions"), energy("residual"));
   const nlohmann::json& split = s["split"];
   const auto part = [&](const char* key) { return split.value(key, 0.0); };
   fmt::print("time                                {:.1f} s wall, {:.1f} s processor: start {:.1f} s, drift {:.1f} s, "
              "gravity {:.1f} s\n",
              number("wall_s"), number("cpu_s"), part("start_s"), part("drift_s"), part("gravity_s"));
-  fmt::print("time of output                      series {:.2g} s, snapshots {:.2g} s, checkpoints {:.2g} s, checks of "
-             "forces {:.2g} s\n",
-             part("series_s"), part("snapshots_s"), part("checkpoints_s"), part("force_checks_s"));
+  fmt::print("time of output                      series {:.2g} s, stresses {:.2g} s, snapshots {:.2g} s, "
+             "checkpoints {:.2g} s, checks of forces {:.2g} s\n",
+             part("series_s"), part("stresses_s"), part("snapshots_s"), part("checkpoints_s"), part("force_checks_s"));
   const nlohmann::json& cost = s["ns_per_particle_step"];
   fmt::print("ns per particle and step            drift {:.0f}, gravity {:.0f}, series {:.1f}\n",
              cost.value("drift", 0.0), cost.value("gravity", 0.0), cost.value("series", 0.0));

@@ -86,10 +86,11 @@ private:
 struct Contact {
   double time = 0.0;
   double normal_speed = 0.0; ///< of the approach, m rad⁻¹
-  double energy_lost = 0.0, edge_work = 0.0;
-  double momentum_flux = 0.0; ///< kg m² rad⁻¹
-  bool fast = false;          ///< faster than v_cut
-  bool again = false;         ///< the last contact of both particles was with each other, in this step
+  double energy_lost = 0.0;
+  double momentum_flux = 0.0;  ///< kg m² rad⁻¹
+  double azimuthal_gain = 0.0; ///< of Σ m c_y², kg m² rad⁻²
+  bool fast = false;           ///< faster than v_cut
+  bool again = false;          ///< the last contact of both particles was with each other, in this step
 };
 
 template<class Orbits> class ContactLoop {
@@ -186,6 +187,8 @@ private:
       return; // an inexact finder may call a pair that moves apart
     const double reduced_mass = a.mass * b.mass / (a.mass + b.mass);
     const Vec3 impulse = reduced_mass * (speed + after.speed) * normal; // on b; a gets the opposite
+    contact.azimuthal_gain = azimuthal_gain(a, -impulse / a.mass, f, rotation);
+    contact.azimuthal_gain += azimuthal_gain(b, impulse / b.mass, f, rotation);
     kick(a.elements, -impulse / a.mass, f, rotation);
     kick(b.elements, impulse / b.mass, f, rotation);
 
@@ -193,7 +196,6 @@ private:
     contact.again = orbits_.last_change(event.low) > step_.begin &&
                     orbits_.last_change(event.low) == orbits_.last_change(event.high);
     contact.energy_lost = 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
-    contact.edge_work = event.image.nx * step_.box.shear * step_.box.size_x * impulse.y();
     contact.momentum_flux = relative.position.x() * impulse.y();
     orbits_.happened(event, contact);
 

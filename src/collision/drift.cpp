@@ -9,15 +9,15 @@ void CollisionTally::list_fields(FieldTable& table) {
   table.scalar("collisions_slow", slow, "1", "contacts slower than v_cut, bounced elastically");
   table.scalar("finder_gave_up", gave_up, "1", "searches abandoned by the finder");
   table.scalar("collision_energy_lost", energy_lost, "kg m^2 rad^-2", "energy dissipated in collisions");
-  table.scalar("collision_edge_work", edge_work, "kg m^2 rad^-2", "energy gained by collisions across sheared edges");
   table.scalar("collision_momentum_flux", momentum_flux, "kg m^2 rad^-1", "sum of (x_j - x_i) p_y gained by j");
+  table.scalar("collision_azimuthal_gain", azimuthal_gain, "kg m^2 rad^-2", "sum of m c_y^2 gained by collisions");
 }
 
 void CollisionTally::add(const Contact& contact) {
   ++(contact.fast ? fast : slow);
   energy_lost += contact.energy_lost;
-  edge_work += contact.edge_work;
   momentum_flux += contact.momentum_flux;
+  azimuthal_gain += contact.azimuthal_gain;
 }
 
 DriftPhase::DriftPhase(const CollisionSettings& settings, const Frequencies& frequencies, double orbital_frequency,

@@ -15,7 +15,6 @@ PatchEnergy patch_energy(const Patch& patch) {
   PatchEnergy mean;
   mean.horizontal = mean_of([&](const Elements& el) { return 0.5 * k2 * el.eccentricity() * el.eccentricity(); });
   mean.vertical = mean_of([&](const Elements& el) { return 0.5 * f.nu * f.nu * el.inclination() * el.inclination(); });
-  mean.guiding = mean_of([&](const Elements& el) { return -0.25 * f.shear() * k2 * el.guiding_x * el.guiding_x; });
   return mean;
 }
 

@@ -8,29 +8,19 @@ namespace keeler {
 namespace {
 
 struct Sums {
-  double mass = 0.0, energy = 0.0, heights = 0.0;
+  double mass = 0.0, energy = 0.0, azimuthal = 0.0, product = 0.0, heights = 0.0;
   Vec3 velocities = Vec3::Zero(), squares = Vec3::Zero();
 
   Sums& operator+=(const Sums& more) {
     mass += more.mass;
     energy += more.energy;
+    azimuthal += more.azimuthal;
+    product += more.product;
     heights += more.heights;
     velocities += more.velocities;
     squares += more.squares;
     return *this;
   }
-};
-
-// The height of a particle, and its velocity beyond the shear at its own place: (2 − S) e cos φ = ½κ² e cos φ along y.
-struct Motion {
-  double height;
-  Vec3 velocity;
-
-  Motion(const Elements& el, const Frequencies& f, const Rotation& r)
-      : height(el.i_sin * r.cos_i + el.i_cos * r.sin_i),
-        velocity(f.kappa * (el.e_sin * r.cos_e + el.e_cos * r.sin_e),
-                 0.5 * f.kappa * f.kappa * (el.e_cos * r.cos_e - el.e_sin * r.sin_e),
-                 f.nu * (el.i_cos * r.cos_i - el.i_sin * r.sin_i)) {}
 };
 
 } // namespace
@@ -41,21 +31,29 @@ ParticleMeans particle_means(const Particles& particles, const Frequencies& freq
   if (particles.size() == 0)
     return {};
   const Rotation rotation(frequencies, after);
-  const Vec3 near = Motion(particles.bodies[0].elements, frequencies, rotation).velocity;
+  const Vec3 near = peculiar_velocity(particles.bodies[0].elements, frequencies, rotation);
   const Sums sums = ordered_total<Sums>(particles.size(), [&](Sums& total, std::size_t k) {
     particles.prefetch_after(k);
     const Body& body = particles.bodies[k];
-    const Motion motion(body.elements, frequencies, rotation);
-    const Vec3 v = motion.velocity - near, momentum = body.mass * v;
+    const Elements& el = body.elements;
+    const Vec3 c = peculiar_velocity(el, frequencies, rotation), v = c - near, momentum = body.mass * v;
+    const double height = el.i_sin * rotation.cos_i + el.i_cos * rotation.sin_i;
     total.mass += body.mass;
-    total.energy += body.mass * energy(body.elements, frequencies);
-    total.heights += body.mass * motion.height * motion.height;
+    total.energy += body.mass * epicyclic_energy(el, frequencies);
+    total.azimuthal += body.mass * c.y() * c.y();
+    total.product += momentum.x() * v.y();
+    total.heights += body.mass * height * height;
     total.velocities += momentum;
     total.squares += momentum.cwiseProduct(v);
   });
   const Vec3 mean = sums.velocities / sums.mass;
   const Vec3 variance = (sums.squares / sums.mass - mean.cwiseProduct(mean)).cwiseMax(0.0); // not below by rounding
-  return {sums.mass, sums.energy, variance.cwiseSqrt(), std::sqrt(sums.heights / sums.mass)};
+  return {sums.mass,
+          sums.energy,
+          sums.azimuthal,
+          variance.cwiseSqrt(),
+          sums.product / sums.mass - mean.x() * mean.y(),
+          std::sqrt(sums.heights / sums.mass)};
 }
 
 } // namespace keeler

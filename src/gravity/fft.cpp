@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <vector>
 
 namespace keeler {
@@ -103,7 +104,10 @@ struct FftSolver::Parts {
       : settings(chosen), kernels(mesh_kernels(set)), split(band_for(chosen.cut)),
         waves(split, chosen.cut / flatness, highest_wave * flatness), near(split, set) {}
 
+  void spread(const GravityProblem& problem, double offset);
   void fill_mesh(const GravityProblem& problem, double offset);
+  double mesh_potential(const GravityProblem& problem, double offset);
+  NearForces::Energy near_energy(const GravityProblem& problem, double offset);
   Vec3 accelerate_tile(const GravityProblem& problem, double offset, std::size_t tile, std::span<Vec3> accelerations);
 
   FftSettings settings;
@@ -118,8 +122,8 @@ struct FftSolver::Parts {
   SelfForce self{};
 };
 
-// Sorts the particles and turns their masses into the potential on the mesh.
-void FftSolver::Parts::fill_mesh(const GravityProblem& problem, double offset) {
+// Sorts the particles and spreads their masses on the mesh.
+void FftSolver::Parts::spread(const GravityProblem& problem, double offset) {
   const std::size_t count = problem.positions.size();
   const Extent z = extent_of(problem.positions);
   const double spacing = affordable_spacing(problem.box, settings.spacing, z, count);
@@ -131,6 +135,12 @@ void FftSolver::Parts::fill_mesh(const GravityProblem& problem, double offset) {
   mesh.spread(places, kernels);
   transform.prepare(shape, offset / problem.box.size_y);
   waves.prepare(shape);
+}
+
+// Turns the particles' masses into the potential on the mesh.
+void FftSolver::Parts::fill_mesh(const GravityProblem& problem, double offset) {
+  spread(problem, offset);
+  const MeshShape& shape = mesh.shape();
   transform.apply(mesh, [&](std::size_t m, const std::complex<float>* from, std::complex<float>* to) {
     waves.apply(shape, transform, m, kernels, from, to);
   });
@@ -162,6 +172,40 @@ Vec3 FftSolver::Parts::accelerate_tile(const GravityProblem& problem, double off
   return sum;
 }
 
+// ½ Σ m_i m_j of the clouds' potential at the other particles, wave by wave, in units of mass: a particle's potential
+// in its own cloud is taken out.
+double FftSolver::Parts::mesh_potential(const GravityProblem& problem, double offset) {
+  spread(problem, offset);
+  const MeshShape& shape = mesh.shape();
+  std::vector<double> sums(transform.waves());
+  transform.visit(mesh, [&](std::size_t m, const std::complex<float>* from, std::complex<float>* to) {
+    waves.apply(shape, transform, m, kernels, from, to);
+    double sum = 0.0;
+    for (std::size_t p = 0; p < shape.planes; ++p)
+      for (std::size_t n = 0; n < shape.columns; ++n) {
+        const std::size_t at = p * transform.row_length() + n;
+        sum += static_cast<double>(from[at].real()) * static_cast<double>(to[at].real()) +
+               static_cast<double>(from[at].imag()) * static_cast<double>(to[at].imag());
+      }
+    sums[m] = m == 0 ? 0.5 * sum : sum; // waves −m count as much
+  });
+  double squares = 0.0;
+  const ParticleRange all = places.range(0, places.count());
+  for (std::size_t k = 0; k < all.count; ++k)
+    squares += static_cast<double>(all.mass[k]) * static_cast<double>(all.mass[k]);
+  return std::accumulate(sums.begin(), sums.end(), 0.0) - 0.5 * squares * split.potential()[0] / radius;
+}
+
+// Of the mesh that mesh_potential() had.
+NearForces::Energy FftSolver::Parts::near_energy(const GravityProblem& problem, double offset) {
+  places.sort(problem, offset, tiling_for(mesh.shape(), problem.positions.size()));
+  return ordered_total<NearForces::Energy>(places.tiling().count(), [&](NearForces::Energy& total, std::size_t tile) {
+    for (std::size_t begin = places.first(tile); begin < places.first(tile + 1); begin += NearTargets::capacity)
+      total += near.energy(places, problem.box, offset, radius, begin,
+                           std::min(NearTargets::capacity, places.first(tile + 1) - begin));
+  });
+}
+
 FftSolver::FftSolver(const FftSettings& settings, InstructionSet set)
     : parts_(std::make_unique<Parts>(settings, set)) {}
 
@@ -187,6 +231,34 @@ void FftSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accele
   for (const Vec3& sum : sums)
     mean += sum / static_cast<double>(count); // masses are in units of their mean
   parallel_for(count, [&](std::size_t k) { accelerations[k] -= mean; });
+}
+
+// The mesh's part of dΦ/dγ is a difference: particles and box are sheared a little to both sides.
+GravityEnergy FftSolver::energy(const GravityProblem& problem) {
+  const std::size_t count = problem.positions.size();
+  if (count == 0)
+    return {};
+  constexpr double strain = 5e-3;
+  double potentials[2] = {};
+  std::vector<Vec3> sheared(count);
+  for (const double sign : {-1.0, 1.0}) {
+    parallel_for(count, [&](std::size_t k) {
+      sheared[k] = problem.positions[k] - Vec3(0.0, sign * strain * problem.positions[k].x(), 0.0);
+    });
+    GravityProblem turned = problem;
+    turned.positions = sheared;
+    const double offset = folded_offset(problem.box, problem.offset + sign * strain * problem.box.size_x);
+    potentials[sign > 0.0] = parts_->mesh_potential(turned, offset);
+  }
+  NearForces::Energy near;
+  if (parts_->settings.short_range) {
+    near = parts_->near_energy(problem, folded_offset(problem.box, problem.offset));
+    const double half = 0.5 / parts_->radius; // pairs count twice
+    near = {half * near.potential, half * near.stress};
+  }
+  const double mass = parts_->places.mass_unit(), unit = problem.newton_g * mass * mass;
+  return {-unit * (0.5 * (potentials[0] + potentials[1]) + near.potential),
+          -unit * (0.5 * (potentials[1] - potentials[0]) / strain + near.stress)};
 }
 
 } // namespace keeler

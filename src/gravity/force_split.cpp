@@ -82,6 +82,16 @@ ForceSplit::ForceSplit(double band) {
   }
 }
 
+std::array<double, ForceSplit::terms + 1> ForceSplit::potential() const {
+  std::array<double, terms + 1> q{1.0};
+  for (std::size_t j = 0; j < terms; ++j) {
+    const double part = inside_[j] / static_cast<double>(2 * j + 2);
+    q[0] += part;
+    q[j + 1] = -part;
+  }
+  return q;
+}
+
 double ForceSplit::transform(double wave_number) const {
   if (wave_number >= last_sample)
     return 0.0;

@@ -27,6 +27,9 @@ public:
   /// p_0 … : inside the cloud it attracts by (Σ p_j u^2j) d at the distance u = |d|.
   const std::array<double, terms>& inside() const { return inside_; }
 
+  /// q_0 … : inside the cloud its potential, without its sign, is Σ q_j u^2j; at u = 1 it is 1.
+  std::array<double, terms + 1> potential() const;
+
 private:
   std::array<double, terms> inside_{};
   std::vector<double> samples_; // of the transform, `fineness` a unit of wave number

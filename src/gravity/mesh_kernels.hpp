@@ -66,6 +66,11 @@ struct MeshKernels {
   /// list with nothing to a multiple of `widest`.
   void (*attract)(NearTargets& targets, std::size_t target_count, NearSources& sources, const float* inside);
 
+  /// Adds Σ m (1/d − Σ_j cloud_j d^2j), five terms, to each target's ax, and Σ m x y (1/d³ − Σ_j inside_j d^2j), with
+  /// (x, y, z) = d, to its ay: potential and shear stress. Else as attract(); the target's own place does not count.
+  void (*energy)(NearTargets& targets, std::size_t target_count, NearSources& sources, const float* inside,
+                 const float* cloud);
+
   /// Adds a range of particles to the mesh, one after the other.
   void (*spread)(const MeshNumbers& mesh, const ParticleRange& range);
 

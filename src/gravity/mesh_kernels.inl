@@ -82,12 +82,18 @@ inline Lanes inverse_cube(const Lanes& value) {
   return guess * square * (6.57925456f - near_one * (11.85124836f - near_one * (8.46472286f - near_one * 2.19273577f)));
 }
 
-void attract(NearTargets& t, std::size_t target_count, NearSources& s, const float* inside) {
+// Fills up the list with nothing; returns its length.
+std::size_t whole_list(NearSources& s) {
   const std::size_t whole = (s.count + 15) / 16 * 16;
   for (std::size_t k = s.count; k < whole; ++k) {
     s.x[k] = s.y[k] = s.z[k] = 1.0f;
     s.mass[k] = 0.0f;
   }
+  return whole;
+}
+
+void attract(NearTargets& t, std::size_t target_count, NearSources& s, const float* inside) {
+  const std::size_t whole = whole_list(s);
   for (std::size_t i = 0; i < target_count; ++i) {
     const float x = t.x[i], y = t.y[i], z = t.z[i];
     Sixteen ax{}, ay{}, az{};
@@ -107,6 +113,29 @@ void attract(NearTargets& t, std::size_t target_count, NearSources& s, const flo
     t.ax[i] += gathered[0];
     t.ay[i] += gathered[1];
     t.az[i] += gathered[2];
+  }
+}
+
+void energy(NearTargets& t, std::size_t target_count, NearSources& s, const float* inside, const float* cloud) {
+  const std::size_t whole = whole_list(s);
+  for (std::size_t i = 0; i < target_count; ++i) {
+    const float x = t.x[i], y = t.y[i], z = t.z[i];
+    Sixteen potential{}, stress{};
+    for (std::size_t k = 0; k < whole; k += 16)
+      for (int p = 0; p < parts; ++p) {
+        const std::size_t at = k + static_cast<std::size_t>(p * KEELER_LANES);
+        const Lanes dx = load(s.x + at) - x, dy = load(s.y + at) - y, dz = load(s.z + at) - z;
+        const Lanes d2 = dx * dx + (dy * dy + (dz * dz + same_near_place_squared)), cube = inverse_cube(d2);
+        const Lanes smooth = (((cloud[4] * d2 + cloud[3]) * d2 + cloud[2]) * d2 + cloud[1]) * d2 + cloud[0];
+        const Lanes pull = cube - (((inside[3] * d2 + inside[2]) * d2 + inside[1]) * d2 + inside[0]);
+        const Lanes mass = d2 < 1.0f ? load(s.mass + at) : Lanes{};
+        const Lanes others = d2 > 2.0f * same_near_place_squared ? mass : Lanes{};
+        potential.part[p] += others * (d2 * cube - smooth);
+        stress.part[p] += others * dx * dy * pull;
+      }
+    const Four gathered = sums(potential, stress, Sixteen{});
+    t.ax[i] += gathered[0];
+    t.ay[i] += gathered[1];
   }
 }
 
@@ -213,6 +242,6 @@ void convolve(const float* from, std::size_t planes, const float* near, std::siz
 } // namespace
 
 extern const MeshKernels mesh;
-const MeshKernels mesh = {gather, attract, spread, pull, convolve};
+const MeshKernels mesh = {gather, attract, energy, spread, pull, convolve};
 
 } // namespace keeler::KEELER_KERNEL_SPACE

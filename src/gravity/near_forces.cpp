@@ -44,10 +44,15 @@ NearGroup around(const ParticleRange& own, float scale, NearTargets& targets) {
 NearForces::NearForces(const ForceSplit& split, InstructionSet set) : kernels_(mesh_kernels(set)) {
   std::transform(split.inside().begin(), split.inside().end(), inside_.begin(),
                  [](double term) { return static_cast<float>(term); });
+  const auto potential = split.potential();
+  std::transform(potential.begin(), potential.end(), potential_.begin(),
+                 [](double term) { return static_cast<float>(term); });
 }
 
-void NearForces::attract(const Places& places, const ShearingBox& box, double offset, double radius, std::size_t begin,
-                         std::size_t count, NearTargets& targets) const {
+// Hands all neighbours of the targets to flush(sources), list by list.
+template<class Flush>
+void NearForces::visit(const Places& places, const ShearingBox& box, double offset, double radius, std::size_t begin,
+                       std::size_t count, NearTargets& targets, const Flush& flush_list) const {
   const ParticleRange own = places.range(begin, count);
   const Bounds x(own.x, count), y(own.y, count);
   NearGroup group = around(own, static_cast<float>(1.0 / radius), targets);
@@ -61,7 +66,7 @@ void NearForces::attract(const Places& places, const ShearingBox& box, double of
                            axis(box.size_y, tiling.rows, tiling.tile_rows())};
   NearSources sources;
   const auto flush = [&] {
-    kernels_.attract(targets, count, sources, inside_.data());
+    flush_list(sources);
     sources.count = 0;
   };
   const auto gather = [&](std::size_t first, std::size_t end) {
@@ -85,6 +90,25 @@ void NearForces::attract(const Places& places, const ShearingBox& box, double of
                        gather(places.first(first), places.first(last + 1));
                      });
   flush();
+}
+
+void NearForces::attract(const Places& places, const ShearingBox& box, double offset, double radius, std::size_t begin,
+                         std::size_t count, NearTargets& targets) const {
+  visit(places, box, offset, radius, begin, count, targets,
+        [&](NearSources& sources) { kernels_.attract(targets, count, sources, inside_.data()); });
+}
+
+NearForces::Energy NearForces::energy(const Places& places, const ShearingBox& box, double offset, double radius,
+                                      std::size_t begin, std::size_t count) const {
+  const ParticleRange own = places.range(begin, count);
+  NearTargets targets;
+  visit(places, box, offset, radius, begin, count, targets,
+        [&](NearSources& sources) { kernels_.energy(targets, count, sources, inside_.data(), potential_.data()); });
+  Energy sum;
+  for (std::size_t i = 0; i < count; ++i)
+    sum += {static_cast<double>(own.mass[i]) * static_cast<double>(targets.ax[i]),
+            static_cast<double>(own.mass[i]) * static_cast<double>(targets.ay[i])};
+  return sum;
 }
 
 } // namespace keeler

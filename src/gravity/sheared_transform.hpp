@@ -47,6 +47,16 @@ public:
   /// Replaces the mesh by the transform back of what change(m, from, to) makes of its waves. Both hold one wave m of
   /// every plane, with n along a row. Unscaled: without a change the mesh returns columns × rows times as large.
   template<class Change> void apply(Mesh& mesh, const Change& change) {
+    visit(mesh, [&](std::size_t m, Complex* spectra, Complex* rows) {
+      change(m, static_cast<const Complex*>(spectra), rows);
+      backward_x(m, rows, spectra);
+    });
+    backward_y(mesh);
+  }
+
+  /// Calls look(m, spectra, scratch) with the waves of the mesh; scratch has room for as many. The mesh is left as it
+  /// is but for its ghosts.
+  template<class Look> void visit(Mesh& mesh, const Look& look) {
     forward_y(mesh);
     parallel_for(
         waves(),
@@ -54,11 +64,9 @@ public:
           Complex* const rows = own_scratch();
           Complex* const spectra = rows + shape_.planes * row_length();
           forward_x(m, rows, spectra);
-          change(m, static_cast<const Complex*>(spectra), rows);
-          backward_x(m, rows, spectra);
+          look(m, spectra, rows);
         },
         1);
-    backward_y(mesh);
   }
 
 private:

@@ -15,6 +15,17 @@ using Solver = GravitySettings::Solver;
 
 constexpr std::size_t few = 64; // particles: direct sums are cheapest
 
+bool pairwise(const GravitySettings& settings) {
+  return settings.solver == Solver::direct || settings.solver == Solver::tree;
+}
+
+std::unique_ptr<FftSolver> make_fft(const GravitySettings& settings, std::span<const double> masses, double area) {
+  const double distance = std::sqrt(area / static_cast<double>(std::max<std::size_t>(masses.size(), 1)));
+  const double cut = settings.mesh_cut > 0.0 ? settings.mesh_cut : cut_for(settings.force_error, mass_spread(masses));
+  return std::make_unique<FftSolver>(FftSettings{settings.mesh_spacing * distance, cut, settings.solver == Solver::fft},
+                                     choose_instruction_set());
+}
+
 } // namespace
 
 GravitySettings chosen_for(std::size_t count, GravitySettings settings) {
@@ -33,10 +44,23 @@ std::unique_ptr<GravitySolver> make_gravity_solver(const GravitySettings& settin
     return std::make_unique<DirectSolver>(chosen.images, set);
   if (chosen.solver == Solver::tree)
     return std::make_unique<TreeSolver>(chosen.opening_angle, chosen.images, set);
-  const double distance = std::sqrt(area / static_cast<double>(std::max<std::size_t>(masses.size(), 1)));
-  const double cut = chosen.mesh_cut > 0.0 ? chosen.mesh_cut : cut_for(chosen.force_error, mass_spread(masses));
-  return std::make_unique<FftSolver>(FftSettings{chosen.mesh_spacing * distance, cut, chosen.solver == Solver::fft},
-                                     set);
+  return make_fft(chosen, masses, area);
+}
+
+bool has_energy_meter(const GravitySettings& settings) {
+  return !pairwise(settings) || settings.images.far;
+}
+
+std::unique_ptr<FftSolver> make_energy_meter(const GravitySettings& settings, std::span<const double> masses,
+                                             double area) {
+  if (!has_energy_meter(settings))
+    return nullptr;
+  GravitySettings chosen = settings;
+  if (pairwise(settings))
+    chosen = {};
+  if (settings.solver != Solver::mesh)
+    chosen.solver = Solver::fft;
+  return make_fft(chosen, masses, area);
 }
 
 } // namespace keeler

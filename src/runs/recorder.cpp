@@ -6,6 +6,7 @@
 #include <keeler/files/files.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/gravity/direct.hpp>
+#include <keeler/gravity/fft.hpp>
 #include <keeler/io/checkpoint.hpp>
 #include <keeler/io/checkpoint_folder.hpp>
 #include <keeler/io/snapshot.hpp>
@@ -60,8 +61,26 @@ void Recorder::checkpoint(const Simulation& simulation) {
 }
 
 void Recorder::sample(const Simulation& simulation) {
+  const std::optional<GravityEnergy> gravity = measure_gravity(simulation);
   const Stopwatch watch(costs_.series);
-  series_.append(simulation.state().step, values_of(columns_, SeriesSample(scene_, simulation)));
+  series_.append(simulation.state().step, values_of(columns_, SeriesSample(scene_, simulation, gravity)));
+}
+
+// In the first row at or after each multiple of its interval: what is due follows from the step alone.
+std::optional<GravityEnergy> Recorder::measure_gravity(const Simulation& simulation) {
+  const std::int64_t step = simulation.state().step, every = scene_.output.stress_every;
+  if (!scene_.gravity || every == 0 || !has_energy_meter(*scene_.gravity))
+    return std::nullopt;
+  if (step > 0 && step / every == (step - scene_.output.series_every) / every)
+    return std::nullopt;
+  const Stopwatch watch(costs_.stresses);
+  std::vector<Vec3> positions;
+  std::vector<double> masses;
+  const GravityProblem problem =
+      gravity_problem(simulation.boundary(), scene_.planet.orbital_frequency, positions, masses);
+  if (!energy_meter_)
+    energy_meter_ = make_energy_meter(*scene_.gravity, masses, problem.box.area());
+  return energy_meter_->energy(problem);
 }
 
 void Recorder::check_forces(const Simulation& simulation) {

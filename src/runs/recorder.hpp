@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <memory>
 #include <optional>
 
 namespace keeler {
@@ -25,7 +26,7 @@ struct OutputCounters {
 
 /// Wall time that output took, s.
 struct OutputCosts {
-  double series = 0.0, snapshots = 0.0, checkpoints = 0.0;
+  double series = 0.0, stresses = 0.0, snapshots = 0.0, checkpoints = 0.0;
 };
 
 /// What became of the checks of forces.
@@ -56,12 +57,15 @@ public:
   const OutputCosts& costs() const { return costs_; }
 
 private:
+  std::optional<GravityEnergy> measure_gravity(const Simulation& simulation);
+
   RunFolder folder_;
   const Scene& scene_;
   Provenance provenance_;
   OutputCounters counters_;
   std::vector<SeriesColumn> columns_;
   Series series_;
+  std::unique_ptr<FftSolver> energy_meter_; // null: not yet, or there is none
   ForceChecks force_checks_;
   OutputCosts costs_;
 };

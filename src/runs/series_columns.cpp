@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 
 namespace keeler {
 namespace {
@@ -19,6 +20,10 @@ double joule(Sample s, double internal) { // from kg m² rad⁻² to J
   return internal * s.scene.planet.orbital_frequency * s.scene.planet.orbital_frequency;
 }
 
+double flux(Sample s, double internal) { // from kg m² rad⁻¹ to kg m² s⁻¹
+  return internal * s.scene.planet.orbital_frequency;
+}
+
 const SimulationState& state(Sample s) {
   return s.simulation.state();
 }
@@ -27,6 +32,12 @@ const SimulationState& state(Sample s) {
 // more than all other columns.
 bool may_overlap(const Scene& scene) {
   return !make_finder(scene.collisions.finder)->exact();
+}
+
+constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
+
+bool measures_gravity(const Scene& scene) {
+  return scene.gravity && scene.output.stress_every > 0 && has_energy_meter(*scene.gravity);
 }
 
 const SeriesColumn all_columns[] = {
@@ -44,16 +55,35 @@ const SeriesColumn all_columns[] = {
      [](Sample s) { return static_cast<double>(state(s).collisions.slow); }},
     {"energy_lost_j", "J", "energy lost in collisions since the run began",
      [](Sample s) { return joule(s, state(s).collisions.energy_lost); }},
-    {"kick_work_j", "J", "energy gained from the kicks of all forces since the run began",
-     [](Sample s) { return joule(s, state(s).kick_work()); }},
-    {"edge_work_j", "J", "energy gained from wraps and collisions across the sheared edges since the run began",
-     [](Sample s) { return joule(s, state(s).energy.wrap_work + state(s).collisions.edge_work); }},
-    {"energy_residual_j", "J", "what the energy Σ m [½v² − S x² + ½ν²z²] has changed beyond the three above: rounding",
-     [](Sample s) { return joule(s, s.simulation.energy_residual(s.means.energy)); }},
-    {"momentum_flux_kg_m2_s", "kg m²/s",
-     "Σ (x_j − x_i) (p_y gained by j) over collisions since the run began; its rate over M S Ω is the collisional "
+    {"kick_work_j", "J", "work of all forces' kicks on the motion beyond the shear since the run began",
+     [](Sample s) { return joule(s, s.balance.kick_work); }},
+    {"random_energy_j", "J", "Σ m (½c² + ½ν²z²), c the velocity beyond the shear",
+     [](Sample s) { return joule(s, s.balance.energy); }},
+    {"energy_residual_j", "J",
+     "what Σ m (½κ²e² + ½ν²i²) has changed beyond all that kicks and collisions are booked with: rounding",
+     [](Sample s) { return joule(s, s.balance.residual); }},
+    {"translational_flux_kg_m2_s", "kg m²/s",
+     "∫ Σ m c_x c_y dt since the run began; its rate over M S is the translational viscosity",
+     [](Sample s) { return flux(s, s.balance.translational_flux); }},
+    {"collisional_flux_kg_m2_s", "kg m²/s",
+     "Σ (x_j − x_i) (p_y gained by j) over collisions since the run began; its rate over M S is the collisional "
      "viscosity",
-     [](Sample s) { return state(s).collisions.momentum_flux * s.scene.planet.orbital_frequency; }},
+     [](Sample s) { return flux(s, s.balance.collisional_flux); }},
+    {"translational_viscosity_m2_s", "m²/s", "⟨c_x c_y⟩/S at this instant, the mean motion taken out",
+     [](Sample s) {
+       return s.means.random_stress / s.scene.planet.frequencies.shear() * s.scene.planet.orbital_frequency;
+     }},
+    {"gravitational_viscosity_m2_s", "m²/s",
+     "gravity's shear stress dΦ/dγ over M S at this instant; nan where it was not measured (`output.stress_every`)",
+     [](Sample s) {
+       return s.gravity ? s.gravity->stress / (s.means.mass * s.scene.planet.frequencies.shear()) *
+                              s.scene.planet.orbital_frequency
+                        : not_measured;
+     },
+     measures_gravity},
+    {"potential_energy_j", "J",
+     "Φ of the patch in its own gravity, images included, from an arbitrary zero; nan where it was not measured",
+     [](Sample s) { return s.gravity ? joule(s, s.gravity->potential) : not_measured; }, measures_gravity},
     {"largest_overlap", "r_i + r_j",
      "largest overlap of any pair; only with a finder other than `certified`, which lets none overlap",
      [](Sample s) { return largest_overlap(s.simulation.patch()).depth; }, may_overlap},
@@ -61,10 +91,10 @@ const SeriesColumn all_columns[] = {
 
 } // namespace
 
-SeriesSample::SeriesSample(const Scene& of_scene, const Simulation& of_simulation)
-    : scene(of_scene), simulation(of_simulation),
-      means(particle_means(of_simulation.state().particles, of_scene.planet.frequencies,
-                           -0.5 * of_simulation.state().step_length)) {}
+SeriesSample::SeriesSample(const Scene& of_scene, const Simulation& of_simulation,
+                           std::optional<GravityEnergy> of_gravity)
+    : scene(of_scene), simulation(of_simulation), means(of_simulation.means()), balance(of_simulation.balance(means)),
+      gravity(of_gravity) {}
 
 std::span<const SeriesColumn> series_columns() {
   return all_columns;

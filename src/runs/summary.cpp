@@ -19,13 +19,16 @@ nlohmann::ordered_json work_of_forces(const SimulationState& state, double joule
 nlohmann::ordered_json energies(const Simulation& simulation, const Scene& scene) {
   const SimulationState& state = simulation.state();
   const double joule = scene.planet.orbital_frequency * scene.planet.orbital_frequency; // per kg m² rad⁻²
-  return {{"start", state.energy.start * joule},
-          {"now", total_energy(state.particles, scene.planet.frequencies) * joule},
-          {"kick_work", state.kick_work() * joule},
-          {"edge_work", (state.energy.wrap_work + state.collisions.edge_work) * joule},
+  const double shear = scene.planet.frequencies.shear();
+  const EnergyBalance b = simulation.balance();
+  return {{"start", b.start * joule},
+          {"now", b.energy * joule},
+          {"translational_shear_work", shear * b.translational_flux * joule},
+          {"collisional_shear_work", shear * b.collisional_flux * joule},
+          {"kick_work", b.kick_work * joule},
           {"kick_work_of", work_of_forces(state, joule)},
-          {"lost_in_collisions", state.collisions.energy_lost * joule},
-          {"residual", simulation.energy_residual() * joule}};
+          {"lost_in_collisions", b.lost * joule},
+          {"residual", b.residual * joule}};
 }
 
 nlohmann::ordered_json force_error(const ForceChecks& checks) {
@@ -75,6 +78,7 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scen
                    {"drift_s", split.drift},
                    {"gravity_s", split.force("gravity")},
                    {"series_s", cost.output.series},
+                   {"stresses_s", cost.output.stresses},
                    {"snapshots_s", cost.output.snapshots},
                    {"checkpoints_s", cost.output.checkpoints},
                    {"force_checks_s", cost.force_checks.seconds}};

@@ -23,6 +23,7 @@ constexpr double mesh = 100.0, mesh_height = 75.0; // a particle and kick: the l
 constexpr double mesh_cut = 52.0;                  // a particle and kick, for each spacing that the cut spans
 constexpr double direct_pair = 0.25, far_images = 40.0; // a pair and image; a particle and kick
 constexpr double row = 12.0, row_itself = 2e4;          // a particle and row; a row
+constexpr double stress = 350.0;                        // a particle and measurement of gravity's energy
 constexpr double snapshot = 1550.0, checkpoint = 500.0; // a particle and file
 constexpr double closing = 1000.0;                      // a particle: overlaps, hash
 constexpr double force_check = 1500.0;                  // a particle; they also take half a per cent of the run
@@ -108,7 +109,8 @@ double output_ns(const Scene& scene, double count) {
   const std::int64_t steps = scene.time.end_step;
   const double rows = files(scene.output.series_every, steps, 0.0);
   const double checks = scene.gravity ? cost::force_check : 0.0;
-  return rows * (cost::row * count + cost::row_itself) +
+  const double stresses = scene.gravity ? cost::stress * files(scene.output.stress_every, steps, 0.0) : 0.0;
+  return rows * (cost::row * count + cost::row_itself) + count * stresses +
          count * (cost::snapshot * files(scene.output.snapshot_every, steps, 1.0) +
                   cost::checkpoint * files(scene.output.checkpoint_every, steps, 0.0) + cost::closing + checks);
 }

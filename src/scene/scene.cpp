@@ -85,6 +85,7 @@ void read_times(Scene& scene, Settings& settings) {
   scene.time.step = settings.number("time.step");
   scene.time.end_step = whole_kicks(scene, settings, "time.end");
   scene.output.series_every = whole_kicks(scene, settings, "output.series_every");
+  scene.output.stress_every = whole_kicks(scene, settings, "output.stress_every");
   scene.output.snapshot_every = whole_kicks(scene, settings, "output.snapshot_every");
   scene.output.checkpoint_every = whole_kicks(scene, settings, "output.checkpoint_every");
   scene.output.checkpoint_every_minutes = settings.number("output.checkpoint_every_minutes");

@@ -17,6 +17,17 @@ namespace {
 constexpr double sorting_interval = 0.1; // orbits
 constexpr double allowed_overlap = 1e-8; // of a radius sum: where the inexact finders call a root; not what they miss
 
+// What a kick of all particles did to the energy.
+struct KickSums {
+  double work = 0.0, azimuthal_gain = 0.0;
+
+  KickSums& operator+=(const KickSums& more) {
+    work += more.work;
+    azimuthal_gain += more.azimuthal_gain;
+    return *this;
+  }
+};
+
 SimulationState first_state(const Scene& scene, const Patch& start) {
   require_sound(start);
   const Overlap overlap = largest_overlap(start);
@@ -43,7 +54,8 @@ SimulationState first_state(const Scene& scene, const Patch& start) {
     Elements& el = body.elements;
     el = state.box.image_of(el, state.box.image_into_cell(el.guiding_x, el.guiding_y, offset), offset);
   }
-  state.energy.start = total_energy(state.particles, scene.planet.frequencies);
+  const ParticleMeans means = particle_means(state.particles, scene.planet.frequencies, -0.5 * state.step_length);
+  state.energy = {means.epicyclic_energy, means.azimuthal};
   return state;
 }
 
@@ -115,18 +127,13 @@ void Simulation::move_on() {
   const Rebase rebase(f, state_.step_length);
   ++state_.step;
   const double offset = state_.epoch_offset();
-  const double gain = -0.25 * f.shear() * f.kappa * f.kappa;
-  state_.energy.wrap_work += ordered_sum(state_.particles.size(), [&](std::size_t k) {
+  parallel_for(state_.particles.size(), [&](std::size_t k) {
     state_.particles.prefetch_after(k);
-    Body& body = state_.particles.bodies[k];
-    Elements& el = body.elements;
+    Elements& el = state_.particles.bodies[k].elements;
     rebase(el);
     const Image image = state_.box.image_into_cell(el.guiding_x, el.guiding_y, offset);
-    if (image == Image{})
-      return 0.0;
-    const double before = el.guiding_x;
-    el = state_.box.image_of(el, image, offset);
-    return body.mass * gain * (el.guiding_x * el.guiding_x - before * before);
+    if (image != Image{})
+      el = state_.box.image_of(el, image, offset);
   });
 }
 
@@ -150,14 +157,16 @@ void Simulation::half_kick(std::size_t f) {
   const Rotation rotation = boundary().rotation();
   const double half = 0.5 * state_.step_length * static_cast<double>(forces_[f]->kick_every());
   undisturbed_ = false;
-  force.work += ordered_sum(state_.particles.size(), [&](std::size_t k) {
+  const KickSums sums = ordered_total<KickSums>(state_.particles.size(), [&](KickSums& total, std::size_t k) {
     state_.particles.prefetch_after(k);
     Body& body = state_.particles.bodies[k];
     const Vec3 dv = half * force.accelerations[k];
-    const Vec3 v = state_at(body.elements, frequencies, rotation).velocity;
+    total.work += body.mass * dv.dot(peculiar_velocity(body.elements, frequencies, rotation) + 0.5 * dv);
+    total.azimuthal_gain += azimuthal_gain(body, dv, frequencies, rotation);
     kick(body.elements, dv, frequencies, rotation);
-    return body.mass * (v.dot(dv) + 0.5 * dv.squaredNorm());
   });
+  force.work += sums.work;
+  force.azimuthal_gain += sums.azimuthal_gain;
 }
 
 Patch Simulation::patch() const {
@@ -168,14 +177,8 @@ Patch Simulation::patch() const {
   return patch;
 }
 
-double Simulation::energy_residual() const {
-  return energy_residual(total_energy(state_.particles, scene_.planet.frequencies));
-}
-
-double Simulation::energy_residual(double energy_now) const {
-  const EnergyBudget& e = state_.energy;
-  return energy_now - e.start - state_.kick_work() - e.wrap_work - state_.collisions.edge_work +
-         state_.collisions.energy_lost;
+ParticleMeans Simulation::means() const {
+  return particle_means(state_.particles, scene_.planet.frequencies, -0.5 * state_.step_length);
 }
 
 } // namespace keeler

@@ -21,16 +21,22 @@ class DriftEngine;
 
 /// What collisions did, summed in the order of the events. Energies in kg m² rad⁻².
 struct CollisionTally {
-  std::uint64_t fast = 0;     ///< collisions faster than v_cut
-  std::uint64_t slow = 0;     ///< contacts slower than v_cut, bounced elastically
-  std::uint64_t gave_up = 0;  ///< searches that a finder abandoned: contacts may have been lost
-  double energy_lost = 0.0;   ///< dissipated
-  double edge_work = 0.0;     ///< energy gained because pairs met across a sheared edge
-  double momentum_flux = 0.0; ///< Σ (x_j − x_i)(p_y gained by j), kg m² rad⁻¹: the collisional viscosity
+  std::uint64_t fast = 0;      ///< collisions faster than v_cut
+  std::uint64_t slow = 0;      ///< contacts slower than v_cut, bounced elastically
+  std::uint64_t gave_up = 0;   ///< searches that a finder abandoned: contacts may have been lost
+  double energy_lost = 0.0;    ///< dissipated
+  double momentum_flux = 0.0;  ///< Σ (x_j − x_i)(p_y gained by j), kg m² rad⁻¹: the collisional viscosity
+  double azimuthal_gain = 0.0; ///< what Σ m c_y² gained: the translational viscosity (docs/dev/diagnostics.md)
 
   void add(const Contact& contact);
   void list_fields(FieldTable& table);
 };
+
+/// What the collisions added to Σ m (½κ²e² + ½ν²i²), kg m² rad⁻².
+inline double epicyclic_gain(const CollisionTally& tally, const Frequencies& f) {
+  const double shear = f.shear();
+  return shear * tally.momentum_flux + shear / (f.kappa * f.kappa) * tally.azimuthal_gain - tally.energy_lost;
+}
 
 /// One collision as it happened.
 struct CollisionRecord {

@@ -10,9 +10,11 @@ namespace keeler {
 /// Weighted by mass. The bits follow from the particles and their order in memory, not from the threads.
 struct ParticleMeans {
   double mass = 0.0;              ///< Σ m, kg
-  double energy = 0.0;            ///< Σ m × epicyclic energy per mass, kg m² rad⁻²: total_energy()
+  double epicyclic_energy = 0.0;  ///< Σ m (½κ²e² + ½ν²i²), kg m² rad⁻²
+  double azimuthal = 0.0;         ///< Σ m c_y², c_y = ẏ + S x, kg m² rad⁻²
   Vec3 dispersion = Vec3::Zero(); ///< velocity_dispersion(), m rad⁻¹
-  double scale_height = 0.0;      ///< scale_height(), m
+  double random_stress = 0.0; ///< ⟨c_x c_y⟩ without the mean motion, m² rad⁻²: S × translational_viscosity()
+  double scale_height = 0.0;  ///< scale_height(), m
 };
 
 /// At `after` (rad) from the epoch of the elements. All are 0 without particles.

@@ -56,4 +56,13 @@ GravitySettings chosen_for(std::size_t count, GravitySettings settings);
 std::unique_ptr<GravitySolver> make_gravity_solver(const GravitySettings& settings, std::span<const double> masses,
                                                    double area);
 
+class FftSolver;
+
+/// What measures the energy and the stress (FftSolver::energy) that belong to the forces of such a solver: of the same
+/// periodic sum for `direct` and `tree`, of the mesh alone for `mesh`; null where only some rings of images act. Throws
+/// as above.
+bool has_energy_meter(const GravitySettings& settings);
+std::unique_ptr<FftSolver> make_energy_meter(const GravitySettings& settings, std::span<const double> masses,
+                                             double area);
+
 } // namespace keeler

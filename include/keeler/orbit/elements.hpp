@@ -91,12 +91,22 @@ inline void kick(Elements& el, const Vec3& dv, const Frequencies& f, const Rotat
   el.i_cos += d_ic * r.cos_i;
 }
 
-/// Epicyclic energy per mass, ½κ²e² + ½ν²i² − (Sκ²/4) X² = ½v² − Sx² + ½ν²z², in m² rad⁻².
-inline double energy(const Elements& el, const Frequencies& f) {
-  const double k2 = f.kappa * f.kappa;
-  return 0.5 * k2 * (el.e_cos * el.e_cos + el.e_sin * el.e_sin) +
-         0.5 * f.nu * f.nu * (el.i_sin * el.i_sin + el.i_cos * el.i_cos) -
-         0.25 * f.shear() * k2 * el.guiding_x * el.guiding_x;
+/// Velocity along y beyond the shear at the particle's own place, ẏ + S x = ½κ² e cos φ, at the rotation's time.
+inline double azimuthal_velocity(const Elements& el, const Frequencies& f, const Rotation& r) {
+  return 0.5 * f.kappa * f.kappa * (el.e_cos * r.cos_e - el.e_sin * r.sin_e);
+}
+
+/// Velocity beyond the shear at the particle's own place, at the rotation's time: the same for all images.
+inline Vec3 peculiar_velocity(const Elements& el, const Frequencies& f, const Rotation& r) {
+  return {f.kappa * (el.e_sin * r.cos_e + el.e_cos * r.sin_e), azimuthal_velocity(el, f, r),
+          f.nu * (el.i_cos * r.cos_i - el.i_sin * r.sin_i)};
+}
+
+/// Energy per mass of a particle's own epicycle, ½κ²e² + ½ν²i², in m² rad⁻²: the same for all images. It is
+/// ½c² + ½ν²z² + (S/κ²) c_y², c the velocity beyond the shear.
+inline double epicyclic_energy(const Elements& el, const Frequencies& f) {
+  return 0.5 * f.kappa * f.kappa * (el.e_cos * el.e_cos + el.e_sin * el.e_sin) +
+         0.5 * f.nu * f.nu * (el.i_sin * el.i_sin + el.i_cos * el.i_cos);
 }
 
 /// A rotation applied over and over. Written as a small change, with the low-order part of the sine added where it

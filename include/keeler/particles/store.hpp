@@ -19,6 +19,11 @@ struct alignas(64) Body {
 };
 static_assert(sizeof(Body) == 64);
 
+/// What a velocity change dv at the rotation's time adds to m c_y², c_y the velocity along y beyond the shear.
+inline double azimuthal_gain(const Body& body, const Vec3& dv, const Frequencies& f, const Rotation& r) {
+  return body.mass * dv.y() * (2.0 * azimuthal_velocity(body.elements, f, r) + dv.y());
+}
+
 struct Particles {
   std::vector<Body> bodies;
   std::vector<std::uint64_t> ids;

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <keeler/diagnostics/particle_means.hpp>
+#include <keeler/gravity/fft.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/simulation.hpp>
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,9 +19,12 @@ struct SeriesSample {
   const Scene& scene;
   const Simulation& simulation;
   ParticleMeans means;
+  EnergyBalance balance;
+  std::optional<GravityEnergy> gravity; ///< none: not measured at this instant
 
   /// Both must outlive it.
-  SeriesSample(const Scene& of_scene, const Simulation& of_simulation);
+  SeriesSample(const Scene& of_scene, const Simulation& of_simulation,
+               std::optional<GravityEnergy> of_gravity = std::nullopt);
 };
 
 struct SeriesColumn {

@@ -48,10 +48,13 @@ public:
   /// The particles at this boundary between steps, as forces see them; not to be kept beyond the next step.
   Boundary boundary() const;
 
-  /// Energy now − start − all that was booked: zero up to rounding. In kg m² rad⁻².
-  double energy_residual() const;
-  /// The same where the energy now, total_energy(), is known already.
-  double energy_residual(double energy_now) const;
+  /// Means over the particles now, at this boundary.
+  ParticleMeans means() const;
+
+  /// Where the energy of the random motions came from and went.
+  EnergyBalance balance() const { return balance(means()); }
+  /// The same where the means are known already.
+  EnergyBalance balance(const ParticleMeans& now) const { return state_.balance(now, scene_.planet.frequencies); }
 
   const TimeSplit& time_split() const { return split_; }
 

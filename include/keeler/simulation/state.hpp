@@ -3,6 +3,7 @@
 
 #include <keeler/box/shearing_box.hpp>
 #include <keeler/collision/drift.hpp>
+#include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/particles/patch.hpp>
 #include <keeler/scene/scene.hpp>
 
@@ -12,17 +13,33 @@
 
 namespace keeler {
 
-/// Where the epicyclic energy of a run went, its collisions and forces apart. kg m² rad⁻².
-struct EnergyBudget {
-  double start = 0.0;     ///< Σ m [½κ²e² + ½ν²i² − (Sκ²/4) X²] when the run began
-  double wrap_work = 0.0; ///< gained when guiding centres were wrapped across the sheared edges
+/// What the budget of a run began with, kg m² rad⁻².
+struct EnergyStart {
+  double epicyclic = 0.0; ///< Σ m (½κ²e² + ½ν²i²)
+  double azimuthal = 0.0; ///< Σ m c_y²
+};
+
+/// Where the energy of the random motions came from and went since the run began: with c the velocity beyond the shear,
+///   energy − start = S (translational_flux + collisional_flux) + kick_work − lost.
+/// The shear does its work by the three stresses; gravity's part comes in by the kicks, and the potential energy of the
+/// patch is its reservoir (diagnostics/gravity_stress.hpp). No term depends on the origin or on which image of a
+/// particle is inside the cell. Energies in kg m² rad⁻², fluxes in kg m² rad⁻¹.
+struct EnergyBalance {
+  double energy = 0.0;             ///< now: Σ m (½c² + ½ν²z²)
+  double start = 0.0;              ///< the same when the run began
+  double translational_flux = 0.0; ///< ∫ Σ m c_x c_y dt
+  double collisional_flux = 0.0;   ///< Σ over collisions (x_j − x_i)(p_y gained by j)
+  double kick_work = 0.0;          ///< Σ m (c·Δv + ½Δv²) over the kicks of all forces
+  double lost = 0.0;               ///< in collisions
+  double residual = 0.0; ///< what Σ m (½κ²e² + ½ν²i²) has changed beyond all that was booked: rounding
 };
 
 /// What a force has left in the state.
 struct ForceState {
   std::string name;
   std::vector<Vec3> accelerations; ///< of its last kick, m rad⁻², in the order of the particles
-  double work = 0.0;               ///< energy gained from its kicks, kg m² rad⁻²
+  double work = 0.0;               ///< of its kicks on the motion beyond the shear, kg m² rad⁻²
+  double azimuthal_gain = 0.0;     ///< what they added to Σ m c_y², kg m² rad⁻²
 };
 
 /// Elements stand at the middle of the step to come: step · h + h/2.
@@ -33,7 +50,7 @@ struct SimulationState {
   std::int64_t step = 0;    ///< steps done
   double step_length = 0.0; ///< h, rad
   CollisionTally collisions;
-  EnergyBudget energy;
+  EnergyStart energy;
 
   SimulationState() = default;
   /// An empty state with a place for each force of the scene: what a checkpoint is read into.
@@ -48,9 +65,9 @@ struct SimulationState {
 
   /// Energy gained from the kicks of all forces, kg m² rad⁻².
   double kick_work() const;
-};
 
-/// Σ m × epicyclic energy per mass; kg m² rad⁻².
-double total_energy(const Particles& particles, const Frequencies& frequencies);
+  /// `means` are those of the particles at this boundary.
+  EnergyBalance balance(const ParticleMeans& means, const Frequencies& frequencies) const;
+};
 
 } // namespace keeler

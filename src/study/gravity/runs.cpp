@@ -99,7 +99,7 @@ Json gravity_run(const RunStart& start, const GravityChoice& choice, double orbi
   Simulation simulation(scene, start.patch);
   advance(simulation, steps_of(forgetting * orbits, scene));
   const CollisionTally before = simulation.state().collisions;
-  const double residual_before = simulation.energy_residual();
+  const double residual_before = simulation.balance().residual;
   const long steps = steps_of(orbits, scene), every = steps_of(1.0 / snapshots_per_orbit, scene);
   std::vector<Patch> patches;
   for (long done = 0; done < steps; done += block) {
@@ -125,7 +125,7 @@ Json gravity_run(const RunStart& start, const GravityChoice& choice, double orbi
           {"wake_amplitude", a.wake_amplitude},
           {"wake_spacing", or_null(spacing)},
           {"wake_pitch_degrees", or_null(a.wake_pitch_degrees)},
-          {"energy_residual", lost > 0.0 ? std::fabs(simulation.energy_residual() - residual_before) / lost : 0.0}};
+          {"energy_residual", lost > 0.0 ? std::fabs(simulation.balance().residual - residual_before) / lost : 0.0}};
 }
 
 double gravity_run_cost(const GravityChoice& choice, double orbits) {

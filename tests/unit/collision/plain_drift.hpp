@@ -107,12 +107,14 @@ private:
       return false;
     const double reduced_mass = a.mass * b.mass / (a.mass + b.mass);
     const Vec3 impulse = reduced_mass * (speed + after.speed) * normal;
+    double gain = azimuthal_gain(a, -impulse / a.mass, f_, rotation);
+    gain += azimuthal_gain(b, impulse / b.mass, f_, rotation);
+    tally.azimuthal_gain += gain;
     kick(a.elements, -impulse / a.mass, f_, rotation);
     kick(b.elements, impulse / b.mass, f_, rotation);
     last_[places.first] = last_[places.second] = time;
     ++(after.fast ? tally.fast : tally.slow);
     tally.energy_lost += 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
-    tally.edge_work += nx * box_.shear * box_.size_x * impulse.y();
     tally.momentum_flux += relative.position.x() * impulse.y();
     records.push_back({time, low_id, high_id, image, speed, after.fast});
     return true;

@@ -96,10 +96,15 @@ TEST_CASE("the energy of the elements is the Jacobi integral") {
   for (const Frequencies& f : all_frequencies) {
     const Elements el = random_elements(random);
     const State s = state_at(el, f, Rotation(f, 1.3));
-    const double x = s.position.x(), z = s.position.z();
-    const double jacobi =
-        0.5 * s.velocity.squaredNorm() - 0.5 * (4 - f.kappa * f.kappa) * x * x + 0.5 * f.nu * f.nu * z * z;
-    CHECK(energy(el, f) == doctest::Approx(jacobi).epsilon(1e-12));
+    const double x = s.position.x(), z = s.position.z(), k2 = f.kappa * f.kappa;
+    const Vec3 c = peculiar_velocity(el, f, Rotation(f, 1.3));
+    CHECK((c - s.velocity - Vec3(0.0, f.shear() * x, 0.0)).norm() < 1e-13 * (c.norm() + std::fabs(x)));
+    const double own = 0.5 * c.squaredNorm() + f.shear() / k2 * c.y() * c.y() + 0.5 * f.nu * f.nu * z * z;
+    CHECK(epicyclic_energy(el, f) == doctest::Approx(own).epsilon(1e-12));
+    // with the guiding centre's share it is the Jacobi energy
+    const double jacobi = 0.5 * s.velocity.squaredNorm() - f.shear() * x * x + 0.5 * f.nu * f.nu * z * z;
+    const double guiding = 0.25 * f.shear() * k2 * el.guiding_x * el.guiding_x;
+    CHECK(epicyclic_energy(el, f) - guiding == doctest::Approx(jacobi).epsilon(1e-12));
   }
 }
 

@@ -3,8 +3,7 @@
 #include "scenes.hpp"
 
 #include <keeler/diagnostics/dispersion.hpp>
-#include <keeler/diagnostics/energy.hpp>
-#include <keeler/diagnostics/mean.hpp>
+#include <keeler/diagnostics/viscosity.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/states/initial.hpp>
 
@@ -54,12 +53,20 @@ TEST_CASE("a row is what the patch says, measured particle by particle") {
   CHECK(state.collisions.fast > 0);
   CHECK(row["collisions"] == static_cast<double>(state.collisions.fast));
   CHECK(row["slow_contacts"] == static_cast<double>(state.collisions.slow));
-  CHECK(row["momentum_flux_kg_m2_s"] == state.collisions.momentum_flux * omega);
-  // what the energy of the patch has become is what was booked: the Cartesian sum, to its rounding
-  const double now = patch_energy(patch).total() * total_mass(patch), scale = std::fabs(now);
-  const double booked = row["kick_work_j"] + row["edge_work_j"] - row["energy_lost_j"] + row["energy_residual_j"];
-  CHECK(std::fabs((now - state.energy.start) * joule - booked) < 1e-12 * scale * joule);
-  CHECK(std::fabs(row["energy_residual_j"]) < 1e-12 * scale * joule);
+  CHECK(row["collisional_flux_kg_m2_s"] == state.collisions.momentum_flux * omega);
+  CHECK(row["translational_viscosity_m2_s"] == doctest::Approx(translational_viscosity(patch) * omega).epsilon(1e-12));
+  // the energy of the random motions is the Cartesian sum, and what it has become is what was booked
+  double now = 0.0;
+  for (std::size_t k = 0; k < patch.size(); ++k) {
+    const double height = patch.frequencies.nu * patch.positions[k].z();
+    now += 0.5 * patch.masses[k] * (peculiar_velocity(patch, k).squaredNorm() + height * height) * joule;
+  }
+  CHECK(row["random_energy_j"] == doctest::Approx(now).epsilon(1e-12));
+  const double work =
+      patch.frequencies.shear() * omega * (row["translational_flux_kg_m2_s"] + row["collisional_flux_kg_m2_s"]);
+  const double booked = row["kick_work_j"] + work - row["energy_lost_j"];
+  CHECK(std::fabs(now - simulation.balance().start * joule - booked) < 1e-10 * now);
+  CHECK(std::fabs(row["energy_residual_j"]) < 1e-12 * now);
   CHECK(row["energy_lost_j"] > 0.0);
 }
 

@@ -86,6 +86,7 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
       {"output.checkpoint_every", {"0.25", output}},
       {"output.checkpoint_every_minutes", {"5.0", output}},
       {"output.series_every", {"0.05", output}},
+      {"output.stress_every", {"0.2", output}},
   };
   const std::set<std::string> needless = {"planet.preset",
                                           "box.size_in_wavelengths",

@@ -84,7 +84,7 @@ TEST_CASE("the work of a force is booked under its name, and the energy budget c
   CHECK(state.forces[0].name == "constant_acceleration");
   CHECK(std::fabs(state.forces[0].work) > 1.0);
   CHECK(state.kick_work() == state.forces[0].work);
-  CHECK(std::fabs(pushed.simulation.energy_residual()) < 1e-12 * std::fabs(state.forces[0].work));
+  CHECK(std::fabs(pushed.simulation.balance().residual) < 1e-12 * std::fabs(state.forces[0].work));
   CHECK(pushed.simulation.time_split().force("constant_acceleration") > 0.0);
   CHECK(pushed.simulation.time_split().force("gravity") == 0.0);
 }
