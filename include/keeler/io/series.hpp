@@ -12,6 +12,22 @@
 
 namespace keeler {
 
+/// A series as it was read: a list of values for each column.
+struct SeriesTable {
+  std::vector<std::string> names; ///< "step" first
+  std::vector<std::vector<double>> columns;
+
+  std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
+  /// Null when there is no such column.
+  const std::vector<double>* find(const std::string& name) const;
+  /// Throws UsageError when there is no such column.
+  const std::vector<double>& of(const std::string& name) const;
+};
+
+/// An incomplete last row is left out: the run may be writing it. Throws IoError when the file cannot be read or holds
+/// something else.
+SeriesTable read_series(const std::filesystem::path& file);
+
 class Series {
 public:
   /// Begins a file anew; the first column, "step", is added to those named. Throws IoError.

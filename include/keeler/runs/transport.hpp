@@ -1,0 +1,50 @@
+// The transport of angular momentum and the balance of energy of a run, from its series: viscosities with errors, and
+// whether collisions lose what the shear's stresses gain.
+#pragma once
+
+#include <keeler/diagnostics/time_series.hpp>
+#include <keeler/io/series.hpp>
+#include <keeler/particles/patch.hpp>
+
+#include <optional>
+
+namespace keeler {
+
+/// Part of a run, in orbits.
+struct OrbitWindow {
+  std::optional<double> since; ///< none: from where on the run is steady
+  std::optional<double> until; ///< none: the last row
+};
+
+/// What turns a series into viscosities.
+struct RingScale {
+  double mass = 0.0;              ///< kg, of all particles
+  double orbital_frequency = 0.0; ///< rad/s
+  double shear = 1.5;             ///< S, in units of it
+
+  static RingScale of(const Patch& patch);
+};
+
+/// Means over a window. Viscosities in m²/s.
+struct Transport {
+  double since_orbit = 0.0, until_orbit = 0.0;
+  bool since_found = false; ///< the beginning was looked for, not given
+  bool steady = false;      ///< loss and dispersion are (is_steady)
+  std::size_t intervals = 0;
+
+  Estimate translational, collisional;
+  std::optional<Estimate> gravitational; ///< none: not measured; without self-gravity 0
+  std::optional<Estimate> total;         ///< none: without the gravitational one
+  Estimate from_loss;                    ///< (loss + d(U + Φ)/dt) / (M S²): what the total must be
+  std::optional<Estimate> balance;       ///< from_loss over total: 1 when nothing else does work
+};
+
+/// Throws UsageError when the window holds fewer than three rows (of those with gravity's stress, where it is
+/// measured).
+Transport transport(const SeriesTable& series, const RingScale& scale, const OrbitWindow& window);
+
+/// From which orbit on loss, dispersion and stress are steady: the latest of their steady_start(). The first row's time
+/// for fewer than eight rows.
+double steady_since(const SeriesTable& series);
+
+} // namespace keeler

@@ -1,0 +1,102 @@
+#include <keeler/diagnostics/time_series.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+namespace keeler {
+namespace {
+
+constexpr std::size_t bins = 256; // of a series that is looked at for where it becomes steady
+
+double mean_of(std::span<const double> values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+// Error of the mean, were the values independent.
+double plain_error(std::span<const double> values) {
+  const double mean = mean_of(values), n = static_cast<double>(values.size());
+  double squares = 0.0;
+  for (const double v : values)
+    squares += (v - mean) * (v - mean);
+  return std::sqrt(squares / (n * (n - 1.0)));
+}
+
+std::vector<double> blocks_of(std::span<const double> values, std::size_t length) {
+  std::vector<double> blocks;
+  for (std::size_t k = 0; k + length <= values.size(); k += length)
+    blocks.push_back(mean_of(values.subspan(k, length)));
+  return blocks;
+}
+
+} // namespace
+
+Estimate block_mean(std::span<const double> values) {
+  constexpr std::size_t least_blocks = 4;
+  Estimate mean{mean_of(values), std::numeric_limits<double>::quiet_NaN()};
+  if (values.size() < least_blocks)
+    return mean;
+  const double alone = plain_error(values);
+  mean.error = alone;
+  if (alone == 0.0)
+    return mean;
+  for (std::size_t length = 1; values.size() / length >= least_blocks; length *= 2) {
+    const double error = plain_error(blocks_of(values, length)), b = static_cast<double>(length);
+    mean.error = std::max(mean.error, error);
+    if (b * b * b > 2.0 * static_cast<double>(values.size()) * std::pow(error / alone, 4.0)) {
+      mean.error = error;
+      break;
+    }
+  }
+  return mean;
+}
+
+double statistical_inefficiency(std::span<const double> values) {
+  const std::size_t n = values.size();
+  if (n < 4)
+    return 1.0;
+  const double mean = mean_of(values);
+  const auto product = [&](std::size_t lag) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k + lag < n; ++k)
+      sum += (values[k] - mean) * (values[k + lag] - mean);
+    return sum / static_cast<double>(n - lag);
+  };
+  const double variance = product(0);
+  double g = 1.0;
+  for (std::size_t lag = 1; variance > 0.0 && lag + 1 < n; ++lag) {
+    const double correlation = product(lag) / variance;
+    if (correlation <= 0.0)
+      break;
+    g += 2.0 * correlation * (1.0 - static_cast<double>(lag) / static_cast<double>(n));
+  }
+  return g;
+}
+
+std::size_t steady_start(std::span<const double> values) {
+  const std::size_t length = (values.size() + bins - 1) / bins;
+  const std::vector<double> coarse = blocks_of(values, std::max<std::size_t>(length, 1));
+  std::size_t best = 0;
+  double most = 0.0;
+  for (std::size_t start = 0; start + 4 <= coarse.size(); ++start) {
+    const std::span<const double> rest(coarse.data() + start, coarse.size() - start);
+    const double independent = static_cast<double>(rest.size()) / statistical_inefficiency(rest);
+    if (independent > most) {
+      most = independent;
+      best = start;
+    }
+  }
+  return best * length;
+}
+
+bool is_steady(std::span<const double> values) {
+  if (values.size() < 8 || 3 * steady_start(values) > values.size())
+    return false;
+  const std::size_t half = values.size() / 2;
+  const Estimate first = block_mean(values.first(half)), last = block_mean(values.last(half));
+  return std::fabs(last.value - first.value) <= 3.0 * std::hypot(first.error, last.error);
+}
+
+} // namespace keeler

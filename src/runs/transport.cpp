@@ -1,0 +1,150 @@
+#include <keeler/runs/transport.hpp>
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/units.hpp>
+#include <keeler/diagnostics/mean.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace keeler {
+namespace {
+
+using Values = std::vector<double>;
+
+// Whether the run had self-gravity, and whether its stress was measured.
+bool measures_gravity(const SeriesTable& series) {
+  return series.find("potential_energy_j") != nullptr;
+}
+
+// Rows at which everything is known.
+std::vector<std::size_t> whole_rows(const SeriesTable& series) {
+  std::vector<std::size_t> rows;
+  const Values* const potential = series.find("potential_energy_j");
+  for (std::size_t k = 0; k < series.rows(); ++k)
+    if (!potential || std::isfinite((*potential)[k]))
+      rows.push_back(k);
+  return rows;
+}
+
+// Rates between whole rows, all as viscosities: m²/s.
+struct Rates {
+  Values time;                                      // orbits, in the middle
+  Values translational, collisional, gravitational; // the last is empty without
+  Values total, loss;
+
+  std::size_t size() const { return time.size(); }
+};
+
+Rates rates_of(const SeriesTable& series, const std::vector<std::size_t>& rows, const RingScale& scale) {
+  const Values& orbits = series.of("time_orbits");
+  const Values &translational = series.of("translational_flux_kg_m2_s"),
+               &collisional = series.of("collisional_flux_kg_m2_s");
+  const Values &lost = series.of("energy_lost_j"), &random = series.of("random_energy_j");
+  const Values *const stress = series.find("gravitational_viscosity_m2_s"), *const potential =
+                                                                                series.find("potential_energy_j");
+  const double s = scale.shear * scale.orbital_frequency;
+  Rates rates;
+  for (std::size_t k = 0; k + 1 < rows.size(); ++k) {
+    const std::size_t a = rows[k], b = rows[k + 1];
+    const double time = (orbits[b] - orbits[a]) * 2.0 * pi / scale.orbital_frequency;
+    const double flux = 1.0 / (scale.mass * s * time), power = flux / s;
+    rates.time.push_back(0.5 * (orbits[a] + orbits[b]));
+    rates.translational.push_back((translational[b] - translational[a]) * flux);
+    rates.collisional.push_back((collisional[b] - collisional[a]) * flux);
+    double total = rates.translational.back() + rates.collisional.back();
+    double loss = lost[b] - lost[a] + random[b] - random[a];
+    if (potential) {
+      rates.gravitational.push_back(0.5 * ((*stress)[a] + (*stress)[b]));
+      total += rates.gravitational.back();
+      loss += (*potential)[b] - (*potential)[a];
+    }
+    rates.total.push_back(total);
+    rates.loss.push_back(loss * power);
+  }
+  return rates;
+}
+
+// The part of a list that belongs to rows within the window.
+std::vector<std::size_t> within(const std::vector<std::size_t>& rows, const Values& orbits, double since,
+                                double until) {
+  constexpr double rounding = 1e-9;
+  std::vector<std::size_t> chosen;
+  std::copy_if(rows.begin(), rows.end(), std::back_inserter(chosen),
+               [&](std::size_t k) { return orbits[k] >= since - rounding && orbits[k] <= until + rounding; });
+  return chosen;
+}
+
+// Their ratio, its error from what is left of one where the other has been taken out: both wander together.
+Estimate ratio_of(const Values& above, const Values& below) {
+  const double ratio =
+      std::accumulate(above.begin(), above.end(), 0.0) / std::accumulate(below.begin(), below.end(), 0.0);
+  Values rest(above.size());
+  for (std::size_t k = 0; k < above.size(); ++k)
+    rest[k] = above[k] - ratio * below[k];
+  return {ratio, block_mean(rest).error / std::fabs(block_mean(below).value)};
+}
+
+} // namespace
+
+RingScale RingScale::of(const Patch& patch) {
+  return {total_mass(patch), patch.orbital_frequency, patch.box.shear};
+}
+
+double steady_since(const SeriesTable& series) {
+  constexpr std::size_t least_rows = 8;
+  const Values& orbits = series.of("time_orbits");
+  const std::vector<std::size_t> rows = whole_rows(series);
+  if (rows.size() < least_rows)
+    return orbits.empty() ? 0.0 : orbits.front();
+  const Rates rates = rates_of(series, rows, {.mass = 1.0, .orbital_frequency = 1.0, .shear = 1.0});
+  const Values& dispersion = series.of("dispersion_x_m_s");
+  Values random;
+  for (const std::size_t k : rows)
+    random.push_back(dispersion[k]);
+  std::size_t start = std::max(steady_start(rates.loss), steady_start(random));
+  if (!rates.gravitational.empty())
+    start = std::max(start, steady_start(rates.gravitational));
+  return orbits[rows[std::min(start, rows.size() - 1)]];
+}
+
+Transport transport(const SeriesTable& series, const RingScale& scale, const OrbitWindow& window) {
+  const Values& orbits = series.of("time_orbits");
+  Transport result;
+  result.since_found = !window.since;
+  const double since = window.since ? *window.since : steady_since(series);
+  const double until = window.until ? *window.until : orbits.empty() ? 0.0 : orbits.back();
+  const std::vector<std::size_t> rows = within(whole_rows(series), orbits, since, until);
+  if (rows.size() < 3)
+    throw UsageError(
+        fmt::format("the series has {} between orbits {:.6g} and {:.6g}, too few for a viscosity; choose a "
+                    "longer part of the run",
+                    rows.size() == 1 ? "1 row" : fmt::format("{} rows", rows.size()), since, until));
+  const Rates rates = rates_of(series, rows, scale);
+  result.since_orbit = orbits[rows.front()];
+  result.until_orbit = orbits[rows.back()];
+  result.intervals = rates.size();
+  result.translational = block_mean(rates.translational);
+  result.collisional = block_mean(rates.collisional);
+  result.from_loss = block_mean(rates.loss);
+  const bool complete = measures_gravity(series) || std::fabs(series.of("kick_work_j").back()) == 0.0;
+  if (measures_gravity(series))
+    result.gravitational = block_mean(rates.gravitational);
+  else if (complete)
+    result.gravitational = Estimate{};
+  if (complete) {
+    result.total = block_mean(rates.total);
+    result.balance = ratio_of(rates.loss, rates.total);
+  }
+  const Values& all_dispersions = series.of("dispersion_x_m_s");
+  Values dispersions;
+  for (const std::size_t k : rows)
+    dispersions.push_back(all_dispersions[k]);
+  result.steady = is_steady(rates.loss) && is_steady(dispersions);
+  return result;
+}
+
+} // namespace keeler

@@ -1,0 +1,99 @@
+#include <keeler/runs/transport.hpp>
+
+#include "scenes.hpp"
+#include "unit/files/disk.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/units.hpp>
+#include <keeler/runs/run.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace keeler;
+using namespace keeler::test;
+
+namespace {
+
+SeriesTable series_of(const std::vector<std::string>& overrides) {
+  const TemporaryFolder work;
+  RunRequests requests;
+  RunOptions options;
+  options.folder = work / "run";
+  start_run(small_scene(overrides), options, requests);
+  return read_series(work / "run" / "series.csv");
+}
+
+// A series made up: rates of 3, 2 and 1 m²/s and a loss that balances them, after a transient of two orbits.
+SeriesTable made_up(std::size_t rows, double omega, double mass, double shear) {
+  SeriesTable t;
+  t.names = {"step",
+             "time_orbits",
+             "dispersion_x_m_s",
+             "energy_lost_j",
+             "kick_work_j",
+             "random_energy_j",
+             "translational_flux_kg_m2_s",
+             "collisional_flux_kg_m2_s",
+             "gravitational_viscosity_m2_s",
+             "potential_energy_j"};
+  t.columns.resize(t.names.size());
+  const double s = shear * omega;
+  for (std::size_t k = 0; k < rows; ++k) {
+    const double orbit = 0.1 * static_cast<double>(k), time = orbit * 2.0 * pi / omega;
+    const double transient = std::exp(-orbit / 0.3), noise = 0.02 * std::sin(12.9898 * static_cast<double>(k * k));
+    const double values[] = {10.0 * static_cast<double>(k),
+                             orbit,
+                             1e-3 * (1.0 + 3.0 * transient + noise),
+                             mass * s * s * (6.0 * time + 2.0 * pi / omega * (6.0 * (1.0 - transient) + 0.1 * noise)),
+                             mass * s * s * time,
+                             0.5 * mass,
+                             3.0 * mass * s * time,
+                             2.0 * mass * s * time,
+                             1.0 + 20.0 * transient + noise,
+                             -0.25 * mass};
+    for (std::size_t c = 0; c < t.columns.size(); ++c)
+      t.columns[c].push_back(values[c]);
+  }
+  return t;
+}
+
+} // namespace
+
+TEST_CASE("viscosities and balance of a series that is known, after the transient that is found") {
+  const double omega = 1.3e-4, mass = 5e6;
+  const SeriesTable series = made_up(150, omega, mass, 1.5);
+  const Transport t = transport(series, {mass, omega, 1.5}, {});
+  CHECK(t.since_found);
+  CHECK(t.since_orbit > 0.8);
+  CHECK(t.since_orbit < 3.0);
+  CHECK(t.steady);
+  CHECK(t.translational.value == doctest::Approx(3.0).epsilon(1e-9));
+  CHECK(t.collisional.value == doctest::Approx(2.0).epsilon(1e-9));
+  REQUIRE(t.total);
+  CHECK(t.gravitational->value == doctest::Approx(1.0).epsilon(0.03));
+  CHECK(t.total->value == doctest::Approx(6.0).epsilon(0.01));
+  CHECK(t.from_loss.value == doctest::Approx(6.0).epsilon(0.01));
+  CHECK(std::fabs(t.balance->value - 1.0) < 0.01);
+
+  const Transport early = transport(series, {mass, omega, 1.5}, {.since = 0.0, .until = 3.0});
+  CHECK_FALSE(early.since_found);
+  CHECK_FALSE(early.steady);
+  CHECK(early.until_orbit == doctest::Approx(3.0));
+  CHECK_THROWS_WITH_AS(transport(series, {mass, omega, 1.5}, {.since = 99.0, .until = {}}),
+                       doctest::Contains("choose a longer part"), UsageError);
+}
+
+TEST_CASE("gravity's energy and stress are in the rows that are due, and a scene without gravity has none") {
+  const SeriesTable with = series_of({"time.end=0.4", "output.series_every=0.02", "output.stress_every=0.1"});
+  const std::vector<double>& potential = with.of("potential_energy_j");
+  CHECK(std::count_if(potential.begin(), potential.end(), [](double v) { return std::isfinite(v); }) == 5);
+  CHECK(std::isfinite(potential.front()));
+  const SeriesTable without = series_of({"time.end=0.4", "output.stress_every=0"});
+  CHECK(without.find("potential_energy_j") == nullptr);
+  const Transport t = transport(without, {1.0, 1.9565e-4, 1.5}, {.since = 0.0, .until = {}});
+  CHECK_FALSE(t.gravitational); // there was gravity, and nobody looked
+  CHECK_FALSE(t.balance);
+}
