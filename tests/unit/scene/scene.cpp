@@ -304,6 +304,7 @@ end = 2.0
 
 [output]
 series_every = 0.02
+stress_every = 0.1
 snapshot_every = 0.0
 checkpoint_every = 0.0
 checkpoint_every_minutes = 10.0
