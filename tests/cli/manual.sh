@@ -46,6 +46,13 @@ names() {
     section "$1" | grep -qF "\`$name\`" || fail "the manual does not have the name $name of $1"
   done < <(sed -nE 's/^ {2,4}"([a-z_0-9]+)":.*/\1/p' "$work/out" | sort -u)
 }
+# explained: every such name, but that of a scatter, stands in the page on numbers
+explained() {
+  local name
+  while read -r name; do
+    grep -qE "[\`.]$name\`" "$source_dir/docs/manual/numbers.md" || fail "no explanation of the number $name"
+  done < <(sed -nE 's/^ +"([a-z_0-9]+)":.*/\1/p' "$work/out" | sed 's/_scatter//' | sort -u)
+}
 runs 0 bench drift --count 200 --repeats 1 --json
 names bench
 runs 0 bench gravity --count 200 --state uniform --solver tree --repeats 1 --json
@@ -59,7 +66,9 @@ accepts "check" check "$work/scene.toml" --json
 names check
 accepts "analyze" analyze "$work/run" --json
 names analyze
+explained
 accepts "lines of sight" analyze "$work/run" --json --elevation 5,30 --azimuth 0,90 --rays 1000
+explained
 sed -i 's/^ \{4,\}/    /' "$work/out" # names at any depth
 names analyze
 accepts "info" info "$(newest_checkpoint "$work/run")" --json
