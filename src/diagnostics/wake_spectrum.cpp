@@ -19,15 +19,25 @@ double cloud_window(double turn) {
   return sinc * sinc;
 }
 
+// Bins of 0.25 × 2π/λ_cr, the last without end, and of 15° about multiples of 15°, since many waves lie along x.
+std::size_t bin_of(double kx, double ky, double critical_wavelength) {
+  const double length = 4.0 * std::hypot(kx, ky) * critical_wavelength / two_pi;
+  const double turns = std::atan2(ky, kx) / pi * WakePower::directions + 0.5; // ky ≥ 0
+  return std::min(static_cast<std::size_t>(length), WakePower::lengths - 1) * WakePower::directions +
+         static_cast<std::size_t>(turns) % WakePower::directions;
+}
+
 } // namespace
 
 WakePower& WakePower::operator+=(const WakePower& more) {
+  for (std::size_t b = 0; b < bins.size(); ++b) {
+    bins[b].power += more.bins[b].power;
+    bins[b].k += more.bins[b].k;
+    bins[b].k_radial += more.bins[b].k_radial;
+  }
   power += more.power;
-  k += more.k;
-  k_radial += more.k_radial;
-  k_xx += more.k_xx;
-  k_xy += more.k_xy;
-  k_yy += more.k_yy;
+  cosine += more.cosine;
+  sine += more.sine;
   noise_squares += more.noise_squares;
   snapshots += more.snapshots;
   return *this;
@@ -60,12 +70,13 @@ WakePower wake_power(const Patch& patch, double critical_wavelength) {
       const double window = cloud_window(kx * dx) * cloud_window(ky * dy), weight = filter / (window * window);
       const double noise = self.wave(kx * dx, ky * dy) / nodes;
       const double power = weight * (std::norm(mesh.waves_of(i)[j]) / (nodes * nodes) - noise);
+      WakePower::Bin& bin = sums.bins[bin_of(kx, ky, critical_wavelength)];
+      bin.power += power;
+      bin.k += power * k;
+      bin.k_radial += power * std::fabs(kx);
       sums.power += power;
-      sums.k += power * k;
-      sums.k_radial += power * std::fabs(kx);
-      sums.k_xx += power * kx * kx / (k * k);
-      sums.k_xy += power * kx * ky / (k * k);
-      sums.k_yy += power * ky * ky / (k * k);
+      sums.cosine += power * (kx * kx - ky * ky) / (k * k);
+      sums.sine += power * 2.0 * kx * ky / (k * k);
       sums.noise_squares += filter * filter * shot * shot; // |Σ|² of a random wave is exponential about its mean
     }
   return sums;
@@ -73,16 +84,21 @@ WakePower wake_power(const Patch& patch, double critical_wavelength) {
 
 WakeWaves wake_waves(const WakePower& sums) {
   WakeWaves waves;
-  if (sums.snapshots == 0 || !(sums.power > 0.0))
+  if (sums.snapshots == 0)
     return waves;
-  waves.contrast = std::sqrt(2.0 * sums.power / sums.snapshots);
-  if (sums.power < least_significance * std::sqrt(sums.noise_squares))
+  waves.contrast = std::sqrt(2.0 * std::max(0.0, sums.power) / sums.snapshots);
+  if (std::hypot(sums.cosine, sums.sine) <= least_significance * std::sqrt(sums.noise_squares))
     return waves;
-  waves.wavelength = two_pi * sums.power / sums.k;
-  waves.radial_wavelength = two_pi * sums.power / sums.k_radial;
-  const double x = sums.k_xx - sums.k_yy, y = 2.0 * sums.k_xy; // the tensor's axis at twice its angle
-  waves.alignment = std::hypot(x, y) / sums.power;
-  waves.angle_degrees = 0.5 * std::atan2(y, x) * 180.0 / pi;
+  WakePower::Bin total;
+  for (const WakePower::Bin& bin : sums.bins)
+    if (bin.power > 0.0) {
+      total.power += bin.power;
+      total.k += bin.k;
+      total.k_radial += bin.k_radial;
+    }
+  waves.wavelength = two_pi * total.power / total.k;
+  waves.radial_wavelength = two_pi * total.power / total.k_radial;
+  waves.angle_degrees = 0.5 * std::atan2(sums.sine, sums.cosine) * 180.0 / pi;
   return waves;
 }
 

@@ -5,10 +5,15 @@
 // at the waves k that fit the sheared box: k_y = 2πn_y/L_y, k_x = (2πn_x + k_y d)/L_x. The second term is the power of
 // particles at random (shot noise). All numbers are integrals over the spectrum of a smoothed density, so they hold
 // still where a maximum of the autocorrelation jumps. They depend on the smoothing, which must be quoted with them.
+//
+// Spheres cannot overlap, so a dense layer is more even than particles at random, and P is below 0 along weak wakes.
+// The angle does not see that, since it is the same in all directions. The lengths leave out what is below 0 in the
+// mean over all waves of similar length and direction and over all snapshots.
 #pragma once
 
 #include <keeler/particles/patch.hpp>
 
+#include <array>
 #include <optional>
 
 namespace keeler {
@@ -19,10 +24,17 @@ inline constexpr double wake_smoothing = 1.0 / 8.0;
 
 /// Sums of filtered power over waves, each wave and its opposite counted once. Sums of several snapshots add up.
 struct WakePower {
-  double power = 0.0;             ///< Σ P: the variance of Σ/⟨Σ⟩ in one of the two halves of the plane
-  double k = 0.0, k_radial = 0.0; ///< Σ P |k|, Σ P |k_x|, m⁻¹
-  double k_xx = 0.0, k_xy = 0.0, k_yy = 0.0; ///< Σ P k k / k²
-  double noise_squares = 0.0;                ///< variance of `power` if particles stood at random
+  /// Waves of similar length and direction.
+  struct Bin {
+    double power = 0.0;             ///< Σ P
+    double k = 0.0, k_radial = 0.0; ///< Σ P |k|, Σ P |k_x|, m⁻¹
+  };
+  static constexpr std::size_t lengths = 16, directions = 12;
+
+  std::array<Bin, lengths * directions> bins{};
+  double power = 0.0;              ///< Σ P: half the variance of the smoothed Σ/⟨Σ⟩
+  double cosine = 0.0, sine = 0.0; ///< Σ P cos 2θ, Σ P sin 2θ with tan θ = k_y/k_x
+  double noise_squares = 0.0;      ///< variance of `power` if particles stood at random
   int snapshots = 0;
 
   WakePower& operator+=(const WakePower& more);
@@ -36,11 +48,10 @@ WakePower wake_power(const Patch& patch, double critical_wavelength);
 struct WakeWaves {
   double contrast = 0.0; ///< rms of the filtered Σ/⟨Σ⟩ − 1, noise taken out; 0 below the noise
 
-  // None unless the power stands five times above its noise.
-  std::optional<double> wavelength;        ///< λ_⊥ = 2π Σ P / Σ P |k|, m
-  std::optional<double> radial_wavelength; ///< λ_x = 2π Σ P / Σ P |k_x|, m
-  std::optional<double> angle_degrees;     ///< of the wakes from the y axis, in (−90, 90], positive when trailing
-  double alignment = 0.0;                  ///< 0: no direction; 1: all waves along one line
+  // None unless |Σ P exp(2iθ)| stands five times above its noise: wakes have a direction.
+  std::optional<double> wavelength;        ///< λ_⊥ = 2π Σ P / Σ P |k| over bins where Σ P > 0, m
+  std::optional<double> radial_wavelength; ///< λ_x = 2π Σ P / Σ P |k_x|, over the same, m
+  std::optional<double> angle_degrees;     ///< of the wakes from the y axis, (−90, 90], positive when trailing
 };
 
 WakeWaves wake_waves(const WakePower& sums);

@@ -13,7 +13,18 @@ namespace {
 const ShearingBox box{245.0, 200.0, 1.5, 0.0};
 constexpr double lambda = 61.0;
 
-// The sums by their definition: every wave over every particle.
+// All bins together.
+WakePower::Bin whole(const WakePower& sums) {
+  WakePower::Bin total;
+  for (const WakePower::Bin& bin : sums.bins) {
+    total.power += bin.power;
+    total.k += bin.k;
+    total.k_radial += bin.k_radial;
+  }
+  return total;
+}
+
+// The sums by their definition: every wave over every particle. One bin holds all.
 WakePower by_definition(const Patch& patch, int most) {
   WakePower sums;
   sums.snapshots = 1;
@@ -34,12 +45,12 @@ WakePower by_definition(const Patch& patch, int most) {
         wave += patch.masses[p] * std::polar(1.0, -kx * patch.positions[p].x() - ky * patch.positions[p].y());
       const double filter = std::exp(-std::pow(k * wake_smoothing * lambda, 2));
       const double power = filter * (std::norm(wave) / (mass * mass) - shot);
+      sums.bins[0].power += power;
+      sums.bins[0].k += power * k;
+      sums.bins[0].k_radial += power * std::fabs(kx);
       sums.power += power;
-      sums.k += power * k;
-      sums.k_radial += power * std::fabs(kx);
-      sums.k_xx += power * kx * kx / (k * k);
-      sums.k_xy += power * kx * ky / (k * k);
-      sums.k_yy += power * ky * ky / (k * k);
+      sums.cosine += power * std::cos(2.0 * std::atan2(ky, kx));
+      sums.sine += power * std::sin(2.0 * std::atan2(ky, kx));
       sums.noise_squares += std::pow(filter * shot, 2);
     }
   return sums;
@@ -59,11 +70,11 @@ TEST_CASE("the sums over the mesh are those over all waves and particles") {
     CHECK(fast.noise_squares == doctest::Approx(slow.noise_squares).epsilon(1e-6));
     // What a cloud aliases from waves shorter than two cells is all that differs.
     CHECK(fast.power == doctest::Approx(slow.power).epsilon(2e-3));
-    CHECK(fast.k == doctest::Approx(slow.k).epsilon(2e-3));
-    CHECK(fast.k_radial == doctest::Approx(slow.k_radial).epsilon(2e-3));
-    CHECK(fast.k_xx == doctest::Approx(slow.k_xx).epsilon(2e-3));
-    CHECK(std::fabs(fast.k_xy - slow.k_xy) < 2e-3 * slow.power);
-    CHECK(std::fabs(fast.k_yy - slow.k_yy) < 2e-3 * slow.power);
+    CHECK(whole(fast).power == doctest::Approx(fast.power).epsilon(1e-12));
+    CHECK(whole(fast).k == doctest::Approx(whole(slow).k).epsilon(2e-3));
+    CHECK(whole(fast).k_radial == doctest::Approx(whole(slow).k_radial).epsilon(2e-3));
+    CHECK(std::fabs(fast.cosine - slow.cosine) < 2e-3 * slow.power);
+    CHECK(std::fabs(fast.sine - slow.sine) < 2e-3 * slow.power);
   }
 }
 
@@ -83,7 +94,6 @@ TEST_CASE("a density wave has its length, direction and contrast, at any shear o
     CHECK(*waves.wavelength == doctest::Approx(wave.radial_length * std::cos(wave.pitch)).epsilon(0.02));
     CHECK(*waves.radial_wavelength == doctest::Approx(wave.radial_length).epsilon(0.02));
     CHECK(std::fabs(*waves.angle_degrees - wave.pitch * 180.0 / pi) < 0.5);
-    CHECK(waves.alignment > 0.95);
     const double k = two_pi / (wave.radial_length * std::cos(wave.pitch));
     const double smoothed = std::exp(-0.5 * std::pow(k * wake_smoothing * lambda, 2));
     CHECK(waves.contrast == doctest::Approx(0.8 / std::sqrt(2.0) * smoothed).epsilon(0.03)); // 0.4/0.5 cos(...)
@@ -114,4 +124,26 @@ TEST_CASE("a wavelength that the mesh does not resolve gives no waves") {
   const WakePower power = wake_power(test::uniform(box, 0.0, 2000, 1), 5.0);
   CHECK(power.snapshots == 0);
   CHECK(!wake_waves(power).wavelength);
+}
+
+TEST_CASE("weak waves among particles that keep apart: the lengths leave out what is below the noise") {
+  // Spheres on a lattice of 2 m, shaken by 0.7 m: far more even than at random. A wave moves them along x.
+  const ShearingBox wide{240.0, 240.0, 1.5, 0.0};
+  Patch patch = test::uniform(wide, 0.0, 14400, 1);
+  RandomStream random(3, RandomPurpose::position, 1);
+  const double k = two_pi * 4 / 240.0;
+  for (std::size_t p = 0; p < patch.size(); ++p) {
+    const double x = 2.0 * static_cast<double>(p / 120) - 119.0 + 0.7 * random.normal();
+    const double y = 2.0 * static_cast<double>(p % 120) - 119.0 + 0.7 * random.normal();
+    patch.positions[p] = {x - 0.15 / k * std::sin(k * x), y, 0.0};
+  }
+  const WakePower sums = wake_power(patch, lambda);
+  const auto below =
+      std::count_if(sums.bins.begin(), sums.bins.end(), [](const WakePower::Bin& bin) { return bin.power < 0.0; });
+  CHECK(below > 20);
+  const WakeWaves waves = wake_waves(sums);
+  REQUIRE(waves.wavelength);
+  CHECK(*waves.wavelength == doctest::Approx(60.0).epsilon(0.03));
+  CHECK(*waves.radial_wavelength == doctest::Approx(60.0).epsilon(0.03));
+  CHECK(std::fabs(*waves.angle_degrees) < 2.0);
 }
