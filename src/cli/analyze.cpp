@@ -1,14 +1,17 @@
-// keeler analyze: numbers from a snapshot, or averaged over the last orbit of a run.
+// keeler analyze: numbers from a snapshot, or averaged over the part of a run that is steady.
 #include "command.hpp"
 #include "common_options.hpp"
 #include "profile_file.hpp"
 #include "sight_options.hpp"
 #include "structure_report.hpp"
+#include "transport_report.hpp"
 
 #include <keeler/cells/overlap.hpp>
+#include <keeler/core/error.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/diagnostics/analysis.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/report/csv.hpp>
 #include <keeler/runs/stored_patches.hpp>
 
 #include <fmt/format.h>
@@ -28,7 +31,8 @@ struct AnalyzeOptions {
   std::string path;
   bool json = false;
   AnalysisSettings settings;
-  std::string profile;
+  OrbitWindow window;
+  std::string profile, csv;
   std::size_t profile_bins = default_profile_bins;
   SightOptions sights;
   ThreadOption threads;
@@ -53,7 +57,6 @@ nlohmann::ordered_json as_json(const Analysis& a, double overlap) {
   json["mean_eccentricity_m"] = a.mean_eccentricity_m;
   json["mean_inclination_m"] = a.mean_inclination_m;
   json["filling_factor"] = a.filling_factor;
-  json["translational_viscosity_m2_s"] = a.translational_viscosity_m2_s;
   json["random_energy_m2_s2"] = a.random_energy_m2_s2;
   json["largest_overlap"] = overlap;
   json["wake_pitch_degrees"] = maybe(a.wake_pitch_degrees);
@@ -93,17 +96,69 @@ void print_text(const Analysis& a, double overlap) {
              v[1], v[2]);
   fmt::print("scale height         {:.3g} m, filling factor {:.3g} in the mid-plane\n", a.scale_height_m,
              a.filling_factor);
-  fmt::print("viscosity            {:.3g} m^2/s translational\n", a.translational_viscosity_m2_s);
   fmt::print("largest overlap      {} of a radius sum\n", figures(overlap, 2));
   print_wakes(a);
   print_structure(a);
 }
 
+struct Measured {
+  StoredPatches stored;
+  std::optional<TransportReport> transport; // none: a run whose series is too short
+};
+
+// Of a run: the series says from where on it is steady, and snapshots are taken from there.
+Measured measure(const AnalyzeOptions& options) {
+  const OrbitWindow& window = options.window;
+  if (!std::filesystem::is_directory(options.path)) {
+    if (window.since || window.until)
+      throw UsageError(fmt::format("--since and --until choose a part of a run, and '{}' is a snapshot; give the run's "
+                                   "folder",
+                                   options.path));
+    Measured measured{load_newest_patch(options.path), std::nullopt};
+    measured.transport = TransportReport::of_snapshot(measured.stored.patches.front(), measured.stored.gravity);
+    return measured;
+  }
+  const Patch newest = load_newest_patch(options.path).patches.front();
+  std::optional<TransportReport> transport = TransportReport::of_run(options.path, RingScale::of(newest), window);
+  if (!transport)
+    return {load_patches(options.path, averaged_orbits), std::nullopt};
+  const double since = transport->transport().since_orbit, until = window.until.value_or(newest.time_orbits);
+  if (window.since || window.until)
+    return {load_patches_between(options.path, window.since.value_or(since), until), std::move(transport)};
+  return {load_patches(options.path, std::max(0.0, newest.time_orbits - since)), std::move(transport)};
+}
+
+// dispersion_m_s and x: dispersion_x_m_s, as in series.csv.
+std::string column_of_axis(const std::string& name, char axis) {
+  for (const std::string unit : {"_m_s", "_r_omega"})
+    if (name.ends_with(unit))
+      return fmt::format("{}_{}{}", name.substr(0, name.size() - unit.size()), axis, unit);
+  return fmt::format("{}_{}", name, axis);
+}
+
+// A row a snapshot: the numbers of each by itself, [x, y, z] in columns of their own.
+void write_snapshots(const std::string& file, const StoredPatches& stored, const AnalysisSettings& settings) {
+  auto rows = nlohmann::ordered_json::array();
+  for (const Patch& patch : stored.patches) {
+    nlohmann::ordered_json all = as_json(analyze(std::span(&patch, 1), settings), largest_overlap(patch).depth), row;
+    TransportReport::of_snapshot(patch, stored.gravity).add_to(all, patch);
+    for (const auto& [name, value] : all.items())
+      if (value.is_primitive() && !name.ends_with("_error_m2_s") && name.find("scatter") == std::string::npos)
+        row[name] = value.is_null() ? nlohmann::ordered_json("") : value;
+      else if (value.is_array() && value.size() == 3 && value[0].is_number())
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          row[column_of_axis(name, "xyz"[axis])] = value[axis];
+    rows.push_back(row);
+  }
+  write_text(file, csv_of(rows));
+}
+
 ExitCode run(const AnalyzeOptions& options) {
   options.threads.apply();
-  if (!options.profile.empty())
-    require_writable_folder(std::filesystem::absolute(options.profile).parent_path(), options.profile);
-  const StoredPatches stored = load_patches(options.path, averaged_orbits);
+  for (const std::string& file : {options.profile, options.csv})
+    if (!file.empty())
+      require_writable_folder(std::filesystem::absolute(file).parent_path(), file);
+  const auto [stored, transport] = measure(options);
   double overlap = 0.0;
   for (const Patch& patch : stored.patches)
     overlap = std::max(overlap, largest_overlap(patch).depth);
@@ -113,13 +168,19 @@ ExitCode run(const AnalyzeOptions& options) {
     sights.emplace(options.sights, stored.patches);
   if (!options.profile.empty())
     write_profiles(options.profile, stored.patches, options.profile_bins);
+  if (!options.csv.empty())
+    write_snapshots(options.csv, stored, options.settings);
   if (options.json) {
     nlohmann::ordered_json json = as_json(analysis, overlap);
+    if (transport)
+      transport->add_to(json, stored.patches.back());
     if (sights)
       json["sights"] = sights->json();
     fmt::print("{}\n", json.dump(2));
   } else {
     print_text(analysis, overlap);
+    if (transport)
+      transport->print(stored.patches.back());
     if (sights)
       sights->print();
   }
@@ -130,9 +191,13 @@ ExitCode run(const AnalyzeOptions& options) {
 
 void add_analyze(CLI::App& program, Action& action) {
   const auto options = std::make_shared<AnalyzeOptions>();
-  CLI::App& command = *program.add_subcommand("analyze", "measure a snapshot, or the last orbit of a run");
+  CLI::App& command = *program.add_subcommand("analyze", "measure a snapshot, or the steady part of a run");
   command.add_option("FILE|DIR", options->path, "a snapshot, or the folder of a run")->required()->type_name("");
   command.add_flag("--json", options->json, "print the numbers as JSON");
+  command.add_option("--since", options->window.since, "first orbit (default: from where on the run is steady)")
+      ->type_name("ORBIT");
+  command.add_option("--until", options->window.until, "last orbit (default: the newest)")->type_name("ORBIT");
+  command.add_option("--csv", options->csv, "write the numbers of each snapshot by itself to this file, a row each");
   command
       .add_option("--cluster-gap", options->settings.cluster_gap,
                   "largest gap between touching spheres, over the sum of their radii (default: 0.01)")

@@ -12,6 +12,7 @@
 #include <keeler/io/checkpoint_folder.hpp>
 #include <keeler/runs/folder_lock.hpp>
 #include <keeler/runs/state_hash.hpp>
+#include <keeler/runs/transport.hpp>
 #include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
@@ -190,6 +191,14 @@ struct Start {
                   last_checkpoint, resume_command(options)));
 }
 
+// None: the series has too few rows.
+std::optional<Transport> transport_in(const RunFolder& folder, const Patch& patch) {
+  const SeriesTable series = read_series(folder.series());
+  if (!enough_rows(series))
+    return std::nullopt;
+  return transport(series, RingScale::of(patch), {});
+}
+
 RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& requests, const RunFolder& folder,
                    Simulation& simulation, Recorder& recorder, const Start& start) {
   const std::int64_t first_step = simulation.state().step;
@@ -202,7 +211,8 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
   }
   const RunCost cost{first_step,   start.watch.elapsed(), cpu_seconds() - start.cpu,
                      start.made_s, recorder.costs(),      recorder.force_checks()};
-  const nlohmann::ordered_json summary = summarise(simulation, scene, result, cost, recorder.provenance());
+  const nlohmann::ordered_json summary =
+      summarise(simulation, scene, transport_in(folder, simulation.patch()), result, cost, recorder.provenance());
   write_text(folder.summary(), summary.dump(2) + "\n");
   recorder.log(result.finished ? "finished" : "stopped", {{"step", result.step}, {"state_hash", result.state_hash}});
   return result;

@@ -34,21 +34,55 @@ std::vector<fs::path> snapshots_in(const fs::path& folder) {
   return files;
 }
 
+constexpr double rounding = 1.0 + 1e-9; // of times in orbits
+
+Snapshot load(const fs::path& file) {
+  Snapshot snapshot = read_snapshot(file);
+  require_sound(snapshot.patch);
+  return snapshot;
+}
+
+// Adds it behind the others; the first one tells of the scene.
+void take(StoredPatches& stored, Snapshot snapshot, const fs::path& file) {
+  if (stored.patches.empty()) {
+    const Scene scene = parse_stored_scene(snapshot.meta.scene, file.string());
+    stored.title = scene.title;
+    stored.gravity = scene.gravity;
+  }
+  stored.patches.push_back(std::move(snapshot.patch));
+}
+
 } // namespace
+
+StoredPatches load_newest_patch(const fs::path& path) {
+  return load_patches(path, 0.0);
+}
 
 StoredPatches load_patches(const fs::path& path, double orbits) {
   const std::vector<fs::path> files = fs::is_directory(path) ? snapshots_in(path) : std::vector<fs::path>{path};
   StoredPatches stored;
   for (auto file = files.rbegin(); file != files.rend(); ++file) {
-    Snapshot snapshot = read_snapshot(*file);
-    require_sound(snapshot.patch);
-    if (stored.patches.empty())
-      stored.title = parse_stored_scene(snapshot.meta.scene, file->string()).title;
-    else if (snapshot.patch.time_orbits < stored.patches.front().time_orbits - orbits * (1.0 + 1e-9))
+    Snapshot snapshot = load(*file);
+    if (!stored.patches.empty() && snapshot.patch.time_orbits < stored.patches.back().time_orbits - orbits * rounding)
       break;
-    stored.patches.push_back(std::move(snapshot.patch));
+    take(stored, std::move(snapshot), *file);
+    std::rotate(stored.patches.begin(), stored.patches.end() - 1, stored.patches.end()); // oldest first
   }
-  std::reverse(stored.patches.begin(), stored.patches.end());
+  return stored;
+}
+
+StoredPatches load_patches_between(const fs::path& folder, double since, double until) {
+  StoredPatches stored;
+  for (const fs::path& file : snapshots_in(folder)) {
+    Snapshot snapshot = load(file);
+    if (snapshot.patch.time_orbits > until * rounding)
+      break;
+    if (snapshot.patch.time_orbits * rounding >= since)
+      take(stored, std::move(snapshot), file);
+  }
+  if (stored.patches.empty())
+    throw UsageError(fmt::format("no snapshot in '{}' is of orbits {:.6g} to {:.6g}; choose a longer part of the run",
+                                 folder.string(), since, until));
   return stored;
 }
 

@@ -5,6 +5,7 @@
 #include <keeler/files/files.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace keeler {
 namespace {
@@ -40,6 +41,20 @@ nlohmann::ordered_json force_error(const ForceChecks& checks) {
           {"particles", checks.particles}};
 }
 
+nlohmann::ordered_json energy_balance(const std::optional<Transport>& t) {
+  if (!t || !t->balance)
+    return nullptr;
+  const auto number = [](double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+  };
+  return {{"ratio", number(t->balance->value)},
+          {"error", number(t->balance->error)},
+          {"total_viscosity_m2_s", number(t->total->value)},
+          {"since_orbit", t->since_orbit},
+          {"until_orbit", t->until_orbit},
+          {"steady", t->steady}};
+}
+
 } // namespace
 
 bool says_finished(const std::filesystem::path& summary) {
@@ -50,7 +65,8 @@ bool says_finished(const std::filesystem::path& summary) {
   return json.is_object() && json.contains("finished") && json["finished"] == true;
 }
 
-nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scene, const RunResult& result,
+nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scene,
+                                 const std::optional<Transport>& transport, const RunResult& result,
                                  const RunCost& cost, const Provenance& provenance) {
   const SimulationState& state = simulation.state();
   const double count = static_cast<double>(state.particles.size()), orbits = simulation.orbits();
@@ -72,6 +88,7 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scen
   json["largest_overlap"] = largest_overlap(simulation.patch()).depth;
   json["force_error"] = force_error(cost.force_checks);
   json["energy_j"] = energies(simulation, scene);
+  json["energy_balance"] = energy_balance(transport);
   json["wall_s"] = cost.wall_s;
   json["cpu_s"] = cost.cpu_s;
   json["split"] = {{"start_s", cost.start_s},

@@ -5,6 +5,7 @@
 
 #include <keeler/io/provenance.hpp>
 #include <keeler/runs/run.hpp>
+#include <keeler/runs/transport.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -19,7 +20,8 @@ struct RunCost {
 };
 
 /// Counts and energies are those of the whole run, times those of this stretch.
-nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scene, const RunResult& result,
+nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scene,
+                                 const std::optional<Transport>& transport, const RunResult& result,
                                  const RunCost& cost, const Provenance& provenance);
 
 /// Whether the folder's summary is that of a finished run. False when there is none.

@@ -15,6 +15,8 @@ namespace {
 
 using Values = std::vector<double>;
 
+constexpr std::size_t least_rows = 3;
+
 // Whether the run had self-gravity, and whether its stress was measured.
 bool measures_gravity(const SeriesTable& series) {
   return series.find("potential_energy_j") != nullptr;
@@ -94,11 +96,15 @@ RingScale RingScale::of(const Patch& patch) {
   return {total_mass(patch), patch.orbital_frequency, patch.box.shear};
 }
 
+bool enough_rows(const SeriesTable& series) {
+  return whole_rows(series).size() >= least_rows;
+}
+
 double steady_since(const SeriesTable& series) {
-  constexpr std::size_t least_rows = 8;
+  constexpr std::size_t least = 8;
   const Values& orbits = series.of("time_orbits");
   const std::vector<std::size_t> rows = whole_rows(series);
-  if (rows.size() < least_rows)
+  if (rows.size() < least)
     return orbits.empty() ? 0.0 : orbits.front();
   const Rates rates = rates_of(series, rows, {.mass = 1.0, .orbital_frequency = 1.0, .shear = 1.0});
   const Values& dispersion = series.of("dispersion_x_m_s");
@@ -108,7 +114,7 @@ double steady_since(const SeriesTable& series) {
   std::size_t start = std::max(steady_start(rates.loss), steady_start(random));
   if (!rates.gravitational.empty())
     start = std::max(start, steady_start(rates.gravitational));
-  return orbits[rows[std::min(start, rows.size() - 1)]];
+  return orbits[rows[std::min(start, rows.size() - least)]];
 }
 
 Transport transport(const SeriesTable& series, const RingScale& scale, const OrbitWindow& window) {
@@ -118,7 +124,7 @@ Transport transport(const SeriesTable& series, const RingScale& scale, const Orb
   const double since = window.since ? *window.since : steady_since(series);
   const double until = window.until ? *window.until : orbits.empty() ? 0.0 : orbits.back();
   const std::vector<std::size_t> rows = within(whole_rows(series), orbits, since, until);
-  if (rows.size() < 3)
+  if (rows.size() < least_rows)
     throw UsageError(
         fmt::format("the series has {} between orbits {:.6g} and {:.6g}, too few for a viscosity; choose a "
                     "longer part of the run",

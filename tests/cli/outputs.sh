@@ -3,7 +3,7 @@
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
-sed -i 's/^end .*/end = 0.3/' "$work/scene.toml"
+sed -i 's/^end .*/end = 0.3/; s/^\[output\]/&\nstress_every = 0.02/' "$work/scene.toml"
 number='-?[0-9.]+(e[-+]?[0-9]+)?'
 
 # has KEY PATTERN: the JSON that the last command printed, its spaces removed, has the key with such a value
@@ -50,6 +50,19 @@ has time_orbits '0\.25'
 has particle_count 400
 accepts "info as text" info "$(newest_checkpoint "$work/run")"
 prints "info as text" "$(text state_hash "$work/run/summary.json")"
+
+
+accepts "analyze of a part" analyze "$work/run" --since 0.05 --json --csv "$work/snapshots.csv"
+has since_found false
+has total_viscosity_m2_s "$number"
+has energy_balance "$number"
+grep -q '^snapshots,time_orbits,.*,dispersion_x_m_s,.*,total_viscosity_m2_s' "$work/snapshots.csv" ||
+  fail "the columns of analyze --csv: $(head -n 1 "$work/snapshots.csv")"
+[ "$(wc -l <"$work/snapshots.csv")" -eq 3 ] || fail "analyze --csv has other rows than two snapshots"
+refuses "a part without rows" "too few for a viscosity" analyze "$work/run" --since 9
+refuses "a part without snapshots" "no snapshot in" analyze "$work/run" --since 0.02 --until 0.2
+refuses "a part of a snapshot" "give the run's folder" analyze "$work/run/snap_000001.hdf" --since 1
+refuses_with 4 "a CSV that cannot be written" "none" analyze "$work/run" --csv "$work/none/a.csv"
 
 for path in "$work/run" "$work/run/snap_000002.hdf"; do
   accepts "analyze" analyze "$path" --json

@@ -1,9 +1,11 @@
 // The snapshots of a file or of a run's folder, for whoever looks at results.
 #pragma once
 
+#include <keeler/gravity/solver.hpp>
 #include <keeler/particles/patch.hpp>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,10 +15,17 @@ namespace keeler {
 struct StoredPatches {
   std::vector<Patch> patches;
   std::string title;
+  std::optional<GravitySettings> gravity; ///< of that scene
 };
 
 /// A snapshot file gives that snapshot; a run's folder gives those of its last `orbits` orbits, the newest always among
 /// them. Throws IoError when there is none.
 StoredPatches load_patches(const std::filesystem::path& path, double orbits);
+
+/// Those of a run's folder from one orbit to another. Throws UsageError when there is none between them.
+StoredPatches load_patches_between(const std::filesystem::path& folder, double since, double until);
+
+/// The newest one.
+StoredPatches load_newest_patch(const std::filesystem::path& path);
 
 } // namespace keeler

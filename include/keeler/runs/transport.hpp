@@ -39,6 +39,10 @@ struct Transport {
   std::optional<Estimate> balance;       ///< from_loss over total: 1 when nothing else does work
 };
 
+/// Whether there is a viscosity to be had of all rows: at least three (of those with gravity's stress, where it is
+/// measured).
+bool enough_rows(const SeriesTable& series);
+
 /// Throws UsageError when the window holds fewer than three rows (of those with gravity's stress, where it is
 /// measured).
 Transport transport(const SeriesTable& series, const RingScale& scale, const OrbitWindow& window);

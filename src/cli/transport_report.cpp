@@ -1,0 +1,132 @@
+#include "transport_report.hpp"
+
+#include <keeler/core/units.hpp>
+#include <keeler/core/words.hpp>
+#include <keeler/diagnostics/dispersion.hpp>
+#include <keeler/diagnostics/mean.hpp>
+#include <keeler/diagnostics/surface.hpp>
+#include <keeler/diagnostics/viscosity.hpp>
+#include <keeler/gravity/fft.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+namespace keeler {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json or_null(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
+
+// How many m²/s the two other units of a viscosity are: r² Ω and G² Σ²/Ω³.
+struct ViscosityUnits {
+  explicit ViscosityUnits(const Patch& patch) {
+    const double r = mean_radius(patch), omega = patch.orbital_frequency;
+    const double g_sigma = newton_g_si * surface_density(patch);
+    radii = r * r * omega;
+    gravity = g_sigma * g_sigma / (omega * omega * omega);
+  }
+  double radii, gravity;
+};
+
+Estimate at_an_instant(double value) {
+  return {value, std::numeric_limits<double>::quiet_NaN()};
+}
+
+void add_viscosity(Json& json, const std::string& name, const std::optional<Estimate>& nu,
+                   const ViscosityUnits& units) {
+  const auto in = [&](double unit) { return nu ? or_null(nu->value / unit) : Json(nullptr); };
+  json[name + "_viscosity_m2_s"] = in(1.0);
+  json[name + "_viscosity_error_m2_s"] = nu ? or_null(nu->error) : Json(nullptr);
+  json[name + "_viscosity_r2_omega"] = in(units.radii);
+  json[name + "_viscosity_g2_sigma2_omega3"] = in(units.gravity);
+}
+
+std::string with_error(const Estimate& e, double unit) {
+  return std::isfinite(e.error) ? fmt::format("{:.3g} +- {:.1g}", e.value / unit, e.error / unit)
+                                : fmt::format("{:.3g}", e.value / unit);
+}
+
+void print_viscosity(const char* label, const char* name, const std::optional<Estimate>& nu,
+                     const ViscosityUnits& units) {
+  if (nu)
+    fmt::print("{:<20} {:<14} {} m^2/s = {:.3g} r^2 Omega = {:.3g} G^2 Sigma^2/Omega^3\n", label, name,
+               with_error(*nu, 1.0), nu->value / units.radii, nu->value / units.gravity);
+  else
+    fmt::print("{:<20} {:<14} not measured\n", label, name);
+}
+
+} // namespace
+
+std::optional<TransportReport> TransportReport::of_run(const std::filesystem::path& folder, const RingScale& scale,
+                                                       const OrbitWindow& window) {
+  const std::filesystem::path file = folder / "series.csv";
+  std::error_code unknown;
+  const bool asked = window.since || window.until;
+  if (!std::filesystem::exists(file, unknown) && !asked)
+    return std::nullopt;
+  const SeriesTable series = read_series(file);
+  TransportReport report;
+  report.of_run_ = true;
+  if (!asked && !enough_rows(series))
+    return std::nullopt;
+  report.transport_ = keeler::transport(series, scale, window);
+  return report;
+}
+
+TransportReport TransportReport::of_snapshot(const Patch& patch, const std::optional<GravitySettings>& gravity) {
+  TransportReport report;
+  Transport& t = report.transport_;
+  const double omega = patch.orbital_frequency;
+  t.since_orbit = t.until_orbit = patch.time_orbits;
+  t.translational = at_an_instant(translational_viscosity(patch) * omega);
+  if (gravity && has_energy_meter(*gravity)) {
+    const auto meter = make_energy_meter(*gravity, patch.masses, patch.box.area());
+    const GravityProblem problem{patch.positions, patch.masses, patch.ids, patch.box, patch.offset, newton_g(omega)};
+    t.gravitational = at_an_instant(meter->energy(problem).stress / (total_mass(patch) * patch.box.shear) * omega);
+  }
+  return report;
+}
+
+void TransportReport::add_to(Json& json, const Patch& patch) const {
+  const ViscosityUnits units(patch);
+  const Transport& t = transport_;
+  add_viscosity(json, "translational", t.translational, units);
+  add_viscosity(json, "collisional", of_run_ ? std::optional(t.collisional) : std::nullopt, units);
+  add_viscosity(json, "gravitational", t.gravitational, units);
+  add_viscosity(json, "total", t.total, units);
+  add_viscosity(json, "loss", of_run_ ? std::optional(t.from_loss) : std::nullopt, units);
+  json["energy_balance"] = t.balance ? or_null(t.balance->value) : Json(nullptr);
+  json["energy_balance_error"] = t.balance ? or_null(t.balance->error) : Json(nullptr);
+  json["since_orbit"] = t.since_orbit;
+  json["until_orbit"] = t.until_orbit;
+  json["since_found"] = t.since_found;
+  json["steady"] = of_run_ ? Json(t.steady) : Json(nullptr);
+}
+
+void TransportReport::print(const Patch& patch) const {
+  const ViscosityUnits units(patch);
+  const Transport& t = transport_;
+  if (of_run_)
+    fmt::print("viscosities          orbits {} to {}{}\n", figures(t.since_orbit, 4), figures(t.until_orbit, 4),
+               t.steady        ? (t.since_found ? ", where the run is steady" : ", steady")
+               : t.since_found ? ", but no part of the run is steady"
+                               : ", which are not steady");
+  print_viscosity(of_run_ ? "" : "viscosity", "translational", t.translational, units);
+  if (of_run_)
+    print_viscosity("", "collisional", t.collisional, units);
+  print_viscosity("", "gravitational", t.gravitational, units);
+  if (!of_run_)
+    return;
+  print_viscosity("", "total", t.total, units);
+  print_viscosity("", "from the loss", t.from_loss, units);
+  if (t.balance)
+    fmt::print("energy balance       {}: loss over the work of the shear, 1 when nothing else does work\n",
+               with_error(*t.balance, 1.0));
+}
+
+} // namespace keeler

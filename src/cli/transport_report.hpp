@@ -1,0 +1,37 @@
+// What `keeler analyze` prints of the transport of angular momentum: the viscosities of a run from its series, or those
+// of a snapshot at its instant.
+#pragma once
+
+#include <keeler/particles/patch.hpp>
+#include <keeler/runs/stored_patches.hpp>
+#include <keeler/runs/transport.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <optional>
+
+namespace keeler {
+
+class TransportReport {
+public:
+  /// Of a run's folder: from its series, when that has enough rows. A window that was asked for and has too few throws
+  /// UsageError.
+  static std::optional<TransportReport> of_run(const std::filesystem::path& folder, const RingScale& scale,
+                                               const OrbitWindow& window);
+
+  /// Of a snapshot of a scene with these settings of gravity.
+  static TransportReport of_snapshot(const Patch& patch, const std::optional<GravitySettings>& gravity);
+
+  const Transport& transport() const { return transport_; }
+
+  /// The unit of the other two forms of each viscosity is made from the patch.
+  void add_to(nlohmann::ordered_json& json, const Patch& patch) const;
+  void print(const Patch& patch) const;
+
+private:
+  Transport transport_;
+  bool of_run_ = false;
+};
+
+} // namespace keeler
