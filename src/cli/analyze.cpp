@@ -124,8 +124,8 @@ Measured measure(const AnalyzeOptions& options) {
     return {load_patches(options.path, averaged_orbits), std::nullopt};
   const double since = transport->transport().since_orbit, until = window.until.value_or(newest.time_orbits);
   if (window.since || window.until)
-    return {load_patches_between(options.path, window.since.value_or(since), until), std::move(transport)};
-  return {load_patches(options.path, std::max(0.0, newest.time_orbits - since)), std::move(transport)};
+    return {load_patches_between(options.path, window.since.value_or(since), until), transport};
+  return {load_patches(options.path, std::max(0.0, newest.time_orbits - since)), transport};
 }
 
 // dispersion_m_s and x: dispersion_x_m_s, as in series.csv.

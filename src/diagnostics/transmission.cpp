@@ -13,7 +13,7 @@ namespace {
 // The shadow of a sphere on the plane z = 0: a Δx² + 2 b Δx Δy + c Δy² < r² about its centre.
 class Shadow {
 public:
-  Shadow(const LineOfSight& sight)
+  explicit Shadow(const LineOfSight& sight)
       : sine_(std::sin(sight.elevation)), tilt_x_(std::cos(sight.elevation) * std::cos(sight.azimuth) / sine_),
         tilt_y_(std::cos(sight.elevation) * std::sin(sight.azimuth) / sine_) {
     const double along_x = std::cos(sight.azimuth), along_y = std::sin(sight.azimuth), s2 = sine_ * sine_;
@@ -72,8 +72,9 @@ RayLattice::RayLattice(const ShearingBox& box, std::size_t rays, double footprin
   const double dx = box.size_x / static_cast<double>(columns_), dy = box.size_y / static_cast<double>(rows_);
   parallel_for(places_.size(), [&](std::size_t k) {
     RandomStream random(seed, RandomPurpose::sample, k);
-    places_[k].x = -0.5 * box.size_x + (static_cast<double>(k / rows_) + random.uniform()) * dx;
-    places_[k].y = -0.5 * box.size_y + (static_cast<double>(k % rows_) + random.uniform()) * dy;
+    const std::size_t column = k / rows_, row = k % rows_;
+    places_[k].x = -0.5 * box.size_x + (static_cast<double>(column) + random.uniform()) * dx;
+    places_[k].y = -0.5 * box.size_y + (static_cast<double>(row) + random.uniform()) * dy;
   });
 }
 
