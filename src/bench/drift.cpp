@@ -3,7 +3,7 @@
 #include <keeler/bench/median.hpp>
 #include <keeler/bench/pair_set.hpp>
 #include <keeler/bench/states.hpp>
-#include <keeler/collision/finders.hpp>
+#include <keeler/contacts/finders.hpp>
 #include <keeler/core/phase_progress.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/simulation/simulation.hpp>

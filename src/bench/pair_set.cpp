@@ -84,7 +84,7 @@ double ns_per_call(const PairSet& pairs, Finder& finder, double least_seconds) {
 ScanResult dense_scan(const Pair& pair, const Frequencies& f) {
   constexpr int points = 512;
   const auto approaching = [&](double t) { return separation(pair, f, t).closing() < 0.0; };
-  const auto apart = [&](double t) { return separation(pair, f, t).gap(pair.reach) > 0.0; };
+  const auto apart = [&](double t) { return separation(pair, f, t).gap(pair.radius_sum) > 0.0; };
   ScanResult result;
   result.closest = std::numeric_limits<double>::infinity();
   double before = pair.start;
@@ -95,10 +95,10 @@ ScanResult dense_scan(const Pair& pair, const Frequencies& f) {
     if (last.closing() < 0.0) {
       const double deepest = here.closing() < 0.0 ? now : bisect(before, now, approaching);
       const Separation there = separation(pair, f, deepest);
-      result.closest = std::min(result.closest, there.d.norm() / pair.reach - 1.0);
-      if (there.gap(pair.reach) <= 0.0) {
+      result.closest = std::min(result.closest, there.d.norm() / pair.radius_sum - 1.0);
+      if (there.gap(pair.radius_sum) <= 0.0) {
         result.contact = true;
-        result.time = last.gap(pair.reach) > 0.0 ? bisect(before, deepest, apart) : before;
+        result.time = last.gap(pair.radius_sum) > 0.0 ? bisect(before, deepest, apart) : before;
         return result;
       }
     }

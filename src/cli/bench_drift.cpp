@@ -3,7 +3,7 @@
 #include "bench_counts.hpp"
 
 #include <keeler/bench/drift.hpp>
-#include <keeler/collision/finders.hpp>
+#include <keeler/contacts/finders.hpp>
 #include <keeler/core/words.hpp>
 
 #include <fmt/format.h>

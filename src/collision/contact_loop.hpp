@@ -21,8 +21,8 @@
 #include "ablation.hpp"
 
 #include <keeler/collision/events.hpp>
-#include <keeler/collision/finder.hpp>
 #include <keeler/collision/settings.hpp>
+#include <keeler/contacts/finder.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/interrupt.hpp>
 

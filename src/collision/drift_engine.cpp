@@ -2,10 +2,10 @@
 
 #include "ablation.hpp"
 
-#include <keeler/collision/certified_finder.hpp>
-#include <keeler/collision/finders.hpp>
-#include <keeler/collision/motion/relative.hpp>
-#include <keeler/collision/search/certified.hpp>
+#include <keeler/contacts/certified_finder.hpp>
+#include <keeler/contacts/finders.hpp>
+#include <keeler/contacts/motion/relative.hpp>
+#include <keeler/contacts/search/certified.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>

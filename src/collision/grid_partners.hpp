@@ -8,7 +8,7 @@
 #pragma once
 
 #include <keeler/cells/grid.hpp>
-#include <keeler/collision/straight_line.hpp>
+#include <keeler/contacts/straight_line.hpp>
 #include <keeler/core/interrupt.hpp>
 
 #include <vector>

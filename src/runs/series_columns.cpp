@@ -1,7 +1,7 @@
 #include <keeler/runs/series_columns.hpp>
 
 #include <keeler/cells/overlap.hpp>
-#include <keeler/collision/finders.hpp>
+#include <keeler/contacts/finders.hpp>
 
 #include <algorithm>
 #include <iterator>

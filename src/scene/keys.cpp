@@ -2,8 +2,8 @@
 
 #include "presets.hpp"
 
-#include <keeler/collision/finders.hpp>
 #include <keeler/collision/restitution.hpp>
+#include <keeler/contacts/finders.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/particles/sizes.hpp>
 

@@ -7,8 +7,8 @@
 
 #include <keeler/box/shearing_box.hpp>
 #include <keeler/collision/costs.hpp>
-#include <keeler/collision/finder.hpp>
 #include <keeler/collision/settings.hpp>
+#include <keeler/contacts/finder.hpp>
 #include <keeler/core/field_table.hpp>
 #include <keeler/particles/store.hpp>
 

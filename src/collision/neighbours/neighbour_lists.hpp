@@ -22,7 +22,7 @@
 #include "line_cells.hpp"
 #include "reach.hpp"
 
-#include <keeler/collision/straight_line.hpp>
+#include <keeler/contacts/straight_line.hpp>
 #include <keeler/core/interrupt.hpp>
 #include <keeler/particles/store.hpp>
 

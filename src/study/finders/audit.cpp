@@ -1,7 +1,7 @@
 #include "audit.hpp"
 
-#include <keeler/collision/finders.hpp>
-#include <keeler/collision/motion/relative.hpp>
+#include <keeler/contacts/finders.hpp>
+#include <keeler/contacts/motion/relative.hpp>
 
 namespace keeler {
 namespace {
@@ -11,7 +11,7 @@ constexpr double noticeable = 1e-6; // of the radius sum: two hundred times the 
 // How deep inside each other the spheres of a query are at a time, in R; negative: apart.
 double depth(const Query& query, const DriftStep& step, double time) {
   const Pair pair = pair_of(query, step);
-  return 1.0 - RelativeMotion(pair, step).at(time).d.norm() / pair.reach;
+  return 1.0 - RelativeMotion(pair, step).at(time).d.norm() / pair.radius_sum;
 }
 
 // The deepest between two times: a contact that was passed counts, though the spheres may be apart again. Sampled: what

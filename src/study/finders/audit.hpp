@@ -1,8 +1,8 @@
 // What a finder did in a run, call by call, against the certified finder's answer to the same call.
 #pragma once
 
-#include <keeler/collision/counts.hpp>
 #include <keeler/collision/drift.hpp>
+#include <keeler/contacts/counts.hpp>
 
 #include <memory>
 #include <vector>

@@ -2,8 +2,8 @@
 #include "perturbed_ring/perturbed_ring.hpp"
 #include "report.hpp"
 
-#include <keeler/collision/finder.hpp>
-#include <keeler/collision/motion/relative.hpp>
+#include <keeler/contacts/finder.hpp>
+#include <keeler/contacts/motion/relative.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/render/patch_picture.hpp>

@@ -5,9 +5,9 @@
 #include <keeler/bench/median.hpp>
 #include <keeler/bench/pair_set.hpp>
 #include <keeler/cells/overlap.hpp>
-#include <keeler/collision/finders.hpp>
-#include <keeler/collision/motion/relative.hpp>
-#include <keeler/collision/search/certified.hpp>
+#include <keeler/contacts/finders.hpp>
+#include <keeler/contacts/motion/relative.hpp>
+#include <keeler/contacts/search/certified.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/simulation/simulation.hpp>
@@ -144,7 +144,7 @@ void drop_overlapping(PairSet& pairs) {
   const DriftStep step = pairs.view();
   const auto overlapping = [&](const Query& query) {
     const Pair pair = pair_of(query, step);
-    return RelativeMotion(pair, step).at(query.start).gap(pair.reach) <= 0.0;
+    return RelativeMotion(pair, step).at(query.start).gap(pair.radius_sum) <= 0.0;
   };
   pairs.queries.erase(std::remove_if(pairs.queries.begin(), pairs.queries.end(), overlapping), pairs.queries.end());
 }

@@ -17,9 +17,9 @@ double own_speed(const Vec3& mid_place, const Vec3& velocity, double shear) {
 }
 
 // The time after which two straight lines touch, approaching; infinite when they do not.
-double time_to_contact(const State& relative, double reach) {
+double time_to_contact(const State& relative, double radius_sum) {
   const double slope = relative.position.dot(relative.velocity);
-  const double gap = relative.position.squaredNorm() - reach * reach;
+  const double gap = relative.position.squaredNorm() - radius_sum * radius_sum;
   const double discriminant = slope * slope - relative.velocity.squaredNorm() * gap;
   if (slope >= 0.0 || discriminant < 0.0)
     return HUGE_VAL;
@@ -107,8 +107,8 @@ void StraightDrift::predict(std::size_t i, std::size_t j, const Image& image) {
   const double start = std::max(a.since, b.since);
   const State shift = image_state(of_high, start);
   const State relative{b.at(start) + shift.position - a.at(start), b.velocity + shift.velocity - a.velocity};
-  const double reach = particles_->bodies[low].radius + particles_->bodies[high].radius;
-  const double time = start + time_to_contact(relative, reach);
+  const double radius_sum = particles_->bodies[low].radius + particles_->bodies[high].radius;
+  const double time = start + time_to_contact(relative, radius_sum);
   if (time < 0.5 * step_)
     events_.add({time, particles_->ids[low], particles_->ids[high], of_high, static_cast<std::uint32_t>(low),
                  static_cast<std::uint32_t>(high), stamps_[low], stamps_[high]});

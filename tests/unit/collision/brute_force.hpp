@@ -60,42 +60,43 @@ private:
           pending_[{*t, i, j, nx, ny}] = {i, j};
   }
 
-  Relative at(const Elements& el, Real reach, Real t) const {
+  Relative at(const Elements& el, Real radius_sum, Real t) const {
     const Real k = f_.kappa, n = f_.nu, s = (4 - k * k) / 2;
     const Real ce = std::cos(k * t), se = std::sin(k * t), ci = std::cos(n * t), si = std::sin(n * t);
     const Real ec = el.e_cos * ce - el.e_sin * se, es = el.e_sin * ce + el.e_cos * se;
     const Real is = el.i_sin * ci + el.i_cos * si, ic = el.i_cos * ci - el.i_sin * si;
     const Real x = el.guiding_x - ec, y = el.guiding_y - s * el.guiding_x * t + 2 / k * es, z = is;
     const Real vx = k * es, vy = 2 * ec - s * el.guiding_x, vz = n * ic;
-    return {x * x + y * y + z * z - reach * reach, 2 * (x * vx + y * vy + z * vz)};
+    return {x * x + y * y + z * z - radius_sum * radius_sum, 2 * (x * vx + y * vy + z * vz)};
   }
 
   std::optional<double> contact(std::size_t i, std::size_t j, const Image& image) const {
     const Body &a = particles_->bodies[i], &b = particles_->bodies[j];
     const Elements el = box_.image_of(b.elements, image, offset_) - a.elements;
-    const Real reach = static_cast<Real>(a.radius) + b.radius;
+    const Real radius_sum = static_cast<Real>(a.radius) + b.radius;
     const Real start = std::max(last_[i], last_[j]), end = 0.5L * step_;
     // too far for the speeds that these elements can ever have
     const Real fastest = f_.shear() * std::fabs(el.guiding_x) + 2 * el.eccentricity() + f_.nu * el.inclination();
-    if (std::sqrt(at(el, reach, start).gap + reach * reach) > reach + 1.001L * fastest * (end - start))
+    if (std::sqrt(at(el, radius_sum, start).gap + radius_sum * radius_sum) >
+        radius_sum + 1.001L * fastest * (end - start))
       return std::nullopt;
 
-    const Real touching = 1e-13L * reach * reach; // rounding of the elements after a bounce
-    Relative before = at(el, reach, start);
+    const Real touching = 1e-13L * radius_sum * radius_sum; // rounding of the elements after a bounce
+    Relative before = at(el, radius_sum, start);
     if (before.gap <= touching && before.slope < 0)
       return static_cast<double>(start);
     Real t_before = start;
     for (int k = 1; k <= scans_; ++k) {
       const Real t = start + (end - start) * k / scans_;
-      const Relative now = at(el, reach, t);
+      const Relative now = at(el, radius_sum, t);
       Real inside = t; // a time at which the pair may be in contact
       if (before.slope < 0 && now.slope >= 0)
-        inside = bisect(t_before, t, [&](Real at_time) { return at(el, reach, at_time).slope < 0; });
-      if (before.slope < 0 && at(el, reach, inside).gap < 0)
-        return accept(bisect(t_before, inside, [&](Real at_time) { return at(el, reach, at_time).gap > 0; }), end);
+        inside = bisect(t_before, t, [&](Real at_time) { return at(el, radius_sum, at_time).slope < 0; });
+      if (before.slope < 0 && at(el, radius_sum, inside).gap < 0)
+        return accept(bisect(t_before, inside, [&](Real at_time) { return at(el, radius_sum, at_time).gap > 0; }), end);
       if (before.slope >= 0 && before.gap <= touching && now.slope < 0 &&
           now.gap <= touching) // sinks back while touching
-        return accept(bisect(t_before, t, [&](Real at_time) { return at(el, reach, at_time).slope >= 0; }), end);
+        return accept(bisect(t_before, t, [&](Real at_time) { return at(el, radius_sum, at_time).slope >= 0; }), end);
       before = now;
       t_before = t;
     }

@@ -4,7 +4,7 @@
 
 #include "unit/collision/ring.hpp"
 
-#include <keeler/collision/counts.hpp>
+#include <keeler/contacts/counts.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/states/uniform.hpp>
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include <keeler/collision/drift.hpp>
-#include <keeler/collision/finders.hpp>
+#include <keeler/contacts/finders.hpp>
 
 #include <cmath>
 #include <map>

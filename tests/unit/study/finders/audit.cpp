@@ -1,8 +1,8 @@
 #include "finders/audit.hpp"
 
 #include <keeler/bench/pair_set.hpp>
-#include <keeler/collision/finders.hpp>
-#include <keeler/collision/motion/relative.hpp>
+#include <keeler/contacts/finders.hpp>
+#include <keeler/contacts/motion/relative.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/states/uniform.hpp>
 
@@ -91,7 +91,7 @@ TEST_CASE("a contact that was passed is late, though the spheres just touch when
   double inside = 0.0, outside = 0.1; // when they part again
   for (int k = 0; k < 60; ++k) {
     const double middle = 0.5 * (inside + outside);
-    (RelativeMotion(pair, step).at(middle).gap(pair.reach) < 0.0 ? inside : outside) = middle;
+    (RelativeMotion(pair, step).at(middle).gap(pair.radius_sum) < 0.0 ? inside : outside) = middle;
   }
   FinderAudit audit;
   audit.begins(step);
