@@ -133,8 +133,9 @@ TEST_CASE("weak waves among particles that keep apart: the lengths leave out wha
   RandomStream random(3, RandomPurpose::position, 1);
   const double k = two_pi * 4 / 240.0;
   for (std::size_t p = 0; p < patch.size(); ++p) {
-    const double x = 2.0 * static_cast<double>(p / 120) - 119.0 + 0.7 * random.normal();
-    const double y = 2.0 * static_cast<double>(p % 120) - 119.0 + 0.7 * random.normal();
+    const std::size_t column = p / 120, row = p % 120;
+    const double x = 2.0 * static_cast<double>(column) - 119.0 + 0.7 * random.normal();
+    const double y = 2.0 * static_cast<double>(row) - 119.0 + 0.7 * random.normal();
     patch.positions[p] = {x - 0.15 / k * std::sin(k * x), y, 0.0};
   }
   const WakePower sums = wake_power(patch, lambda);
