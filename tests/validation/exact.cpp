@@ -1,0 +1,135 @@
+// Exact solutions.
+#include "rows.hpp"
+
+#include <keeler/core/random.hpp>
+#include <keeler/core/threads.hpp>
+#include <keeler/core/units.hpp>
+#include <keeler/diagnostics/surface.hpp>
+#include <keeler/diagnostics/transmission.hpp>
+#include <keeler/gravity/fft.hpp>
+#include <keeler/simulation/simulation.hpp>
+
+#include "lattice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler::validation {
+namespace {
+
+constexpr double elevations[] = {5.0, 15.0, 30.0, 60.0, 90.0}; // degrees
+
+Patch empty_patch(double size_x, double size_y) {
+  Patch patch;
+  patch.box = {size_x, size_y, 1.5, 0.0};
+  patch.orbital_frequency = 1e-4;
+  return patch;
+}
+
+void add_sphere(Patch& patch, const Vec3& place, double radius) {
+  patch.positions.push_back(place);
+  patch.velocities.push_back(Vec3::Zero());
+  patch.radii.push_back(radius);
+  patch.masses.push_back(1.0);
+  patch.ids.push_back(patch.ids.size());
+}
+
+double transmission_of(const Patch& patch, double elevation, double azimuth) {
+  const RayLattice rays(patch.box, 4'000'000, patch.box.size_x);
+  const std::vector<std::uint8_t> blocked = rays.blocked(patch, {elevation * pi / 180.0, azimuth});
+  const auto stopped = static_cast<double>(std::count(blocked.begin(), blocked.end(), 1));
+  return 1.0 - stopped / static_cast<double>(blocked.size());
+}
+
+// N shadows of area a thrown independently on A leave (1 − a/A)^N; the layer is thick, so heights are independent too.
+std::vector<Row> uniform_layer() {
+  constexpr std::size_t count = 20'000;
+  Patch patch = empty_patch(500.0, 400.0);
+  RandomStream random(5, RandomPurpose::position, 0);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double x = random.uniform() - 0.5, y = random.uniform() - 0.5, z = random.uniform() - 0.5;
+    add_sphere(patch, {500.0 * x, 400.0 * y, 200.0 * z}, 1.0);
+  }
+  std::vector<Row> rows;
+  for (const double b : elevations) {
+    const double shadow = pi / std::sin(b * pi / 180.0) / patch.box.area(), n = static_cast<double>(count);
+    const double expected = std::pow(1.0 - shadow, n), tau = n * shadow;
+    // variance of the area that N shadows at random leave free is below T τ a/A
+    const double scatter = std::sqrt(expected * tau * shadow) + 1e-4;
+    rows.push_back({.what = fmt::format("transmission of a layer at random, B = {} degrees", b),
+                    .measured = transmission_of(patch, b, 0.7),
+                    .expected = expected,
+                    .tolerance = 3.0 * scatter,
+                    .tolerance_is = "three times its scatter",
+                    .source = "(1 - a/A)^N, a the area of a shadow",
+                    .command = fmt::format("{} spheres, seed 5, 4 million rays", count)});
+  }
+  return rows;
+}
+
+// Spheres so close along y that they make a cylinder: across it the shadow is 2 r/sin B wide, so rows at a distance D
+// leave 1 − 2 r/(D sin B) of the light.
+std::vector<Row> cylinders() {
+  constexpr double distance = 40.0, length = 20.0;
+  Patch patch = empty_patch(distance, length);
+  for (int k = 0; k < 1000; ++k)
+    add_sphere(patch, {1.0, length * (0.001 * k - 0.5), 0.0}, 1.0);
+  std::vector<Row> rows;
+  for (const double b : elevations)
+    rows.push_back({.what = fmt::format("transmission of cylinders, across, B = {} degrees", b),
+                    .measured = transmission_of(patch, b, 0.0),
+                    .expected = 1.0 - 2.0 / (distance * std::sin(b * pi / 180.0)),
+                    .tolerance = 5e-4,
+                    .tolerance_is = "of 4 million rays, stratified",
+                    .source = "1 - 2 r/(D sin B)",
+                    .command = "spheres of 1 m every 0.02 m along y, rows every 40 m"});
+  return rows;
+}
+
+// Φ of all pairs and images of a patch that is sheared by a small strain, each pair by Ewald's sum.
+double exact_potential(const Patch& patch, double strain) {
+  const Lattice lattice(patch.box, patch.offset + strain * patch.box.size_x, 1e-9);
+  const auto place = [&](std::size_t k) {
+    const Vec3& p = patch.positions[k];
+    return Vec3(p.x(), p.y() - strain * p.x(), p.z());
+  };
+  return ordered_sum(patch.size(), [&](std::size_t i) {
+    double sum = 0.5 * patch.masses[i] * lattice.potential(Vec3::Zero());
+    for (std::size_t j = 0; j < i; ++j)
+      sum += patch.masses[j] * lattice.potential(place(i) - place(j));
+    return patch.masses[i] * sum;
+  });
+}
+
+std::vector<Row> gravitational_stress() {
+  const Ran ran = run_example("a-ring-wakes", {"gravity={solver=\"fft\"}", "box.size_in_wavelengths=[1.5,1.5]", "time.end=3"});
+  const Patch& patch = ran.snapshots.back();
+  constexpr double strain = 2e-3;
+  const double g = newton_g(patch.orbital_frequency);
+  const double exact = g * (exact_potential(patch, strain) - exact_potential(patch, -strain)) / (2.0 * strain);
+  double mass = 0.0;
+  for (const double m : patch.masses)
+    mass += m;
+  const double unit = mass * patch.box.shear / patch.orbital_frequency; // to a viscosity in m²/s
+  const auto meter = make_energy_meter({.solver = GravitySettings::Solver::fft}, patch.masses, patch.box.area());
+  const GravityEnergy measured = meter->energy({patch.positions, patch.masses, patch.ids, patch.box, patch.offset, g});
+  return {{.what = "gravitational viscosity of wakes, m^2/s",
+           .measured = measured.stress / unit,
+           .expected = exact / unit,
+           .tolerance = 0.01 * std::fabs(exact / unit),
+           .tolerance_is = "1 %",
+           .source = "slope of the potential energy of all pairs and images under a shear of 0.002 (Ewald's sum)",
+           .command = ran.command}};
+}
+
+} // namespace
+
+std::vector<Subject> exact_subjects() {
+  return {{"transmission-layer", "Exact solutions", true, uniform_layer},
+          {"transmission-cylinders", "Exact solutions", true, cylinders},
+          {"gravitational-stress", "Exact solutions", true, gravitational_stress}};
+}
+
+} // namespace keeler::validation

@@ -1,0 +1,155 @@
+// Published values and relations.
+#include "rows.hpp"
+
+#include <keeler/core/units.hpp>
+#include <keeler/diagnostics/dispersion.hpp>
+#include <keeler/diagnostics/surface.hpp>
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+namespace keeler::validation {
+
+// 8 x 8 critical wavelengths of the A ring at optical depth 0.5, the density such that a pair's Hill radius over the sum
+// of the radii is as asked: r_h³ = π G ρ/(9 Ω²).
+std::vector<std::string> wakes(double hill, int seed, double orbits) {
+  constexpr double omega = 1.3175e-4;
+  const double density = 9.0 * omega * omega * hill * hill * hill / (pi * newton_g_si);
+  return {"gravity={solver=\"fft\"}",
+          "gravity.kick_every=2",
+          "box.size_in_wavelengths=[8,8]",
+          fmt::format("particles.density={:.1f}", density),
+          fmt::format("particles.seed={}", seed),
+          fmt::format("time.end={}", orbits),
+          "output.snapshot_every=0.5",
+          "output.stress_every=0.05"};
+}
+
+namespace {
+
+double mean_since(const Ran& ran, const char* column, double orbit) {
+  const std::vector<double>&values = ran.series.of(column), &orbits = ran.series.of("time_orbits");
+  double sum = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (orbits[k] >= orbit) {
+      sum += values[k];
+      count += 1.0;
+    }
+  return sum / count;
+}
+
+std::vector<Row> equilibria() {
+  struct Known {
+    double depth;
+    const char* restitution;
+    double c_x, c_z, height, translational, collisional, part;
+  };
+  // of equal spheres without gravity, κ = ν = Ω
+  const Known known[] = {
+      {0.1, "{ law = \"constant\", value = 0.5 }", 2.82, 1.80, 1.86, 0.168, 0.063, 0.08},
+      {0.5, "{ law = \"constant\", value = 0.5 }", 2.175, 1.45, 1.73, 0.451, 0.378, 0.05},
+      {1.0, "{ law = \"constant\", value = 0.5 }", 1.62, 1.17, 1.74, 0.408, 0.821, 0.05},
+      {0.5, "{ law = \"bridges\", scale = 0.34 }", 2.80, 1.91, 2.22, 0.747, 0.402, 0.05},
+  };
+  std::vector<Row> rows;
+  for (const Known& k : known) {
+    const double side = std::sqrt(pi * 2000.0 / k.depth), settled = k.depth < 0.3 ? 40.0 : 12.0;
+    const Ran ran = run_example(
+        "equilibrium", {fmt::format("particles.optical_depth={}", k.depth),
+                        fmt::format("box.size=[{0:.2f},{0:.2f}]", side), fmt::format("collisions.restitution={}", k.restitution),
+                        fmt::format("particles.velocity_dispersion={}", k.c_x), fmt::format("time.end={}", 3.0 * settled),
+                        "time.step=5e-3", "output.series_every=0.1"});
+    const Transport t = transport_since(ran, settled);
+    const Patch& patch = ran.snapshots.back();
+    const double speed = mean_radius(patch) * patch.orbital_frequency, viscosity = speed * mean_radius(patch);
+    const auto add = [&](const char* what, double measured, double expected, double part) {
+      rows.push_back({.what = fmt::format("{}, tau {}, {}", what, k.depth, k.restitution[9] == 'c' ? "eps 0.5" : "Bridges"),
+                      .measured = measured,
+                      .expected = expected,
+                      .tolerance = part * expected,
+                      .tolerance_is = fmt::format("{:.0f} %, the scatter of small boxes", 100.0 * part),
+                      .source = "REBOUND 6c44115f at steps of 1/1000 orbit, one seed",
+                      .command = fmt::format("{}; keeler analyze DIR --since {}", ran.command, settled)});
+    };
+    add("c_x / r Omega", mean_since(ran, "dispersion_x_m_s", settled) / speed, k.c_x, k.part);
+    add("c_z / r Omega", mean_since(ran, "dispersion_z_m_s", settled) / speed, k.c_z, k.part);
+    add("H / r", mean_since(ran, "scale_height_m", settled) / mean_radius(patch), k.height, k.part);
+    add("nu_trans / r^2 Omega", t.translational.value / viscosity, k.translational, 0.1);
+    add("nu_coll / r^2 Omega", t.collisional.value / viscosity, k.collisional, 0.1);
+  }
+  return rows;
+}
+
+// How fast the energy of a hot, thin patch changes at a constant coefficient: d ln E/dt an orbit.
+double heating(double depth, double restitution, std::string& command) {
+  const double side = std::sqrt(pi * 4000.0 / depth);
+  const Ran ran = run_example("equilibrium",
+                              {fmt::format("particles.optical_depth={}", depth),
+                               fmt::format("box.size=[{0:.2f},{0:.2f}]", side),
+                               fmt::format("collisions.restitution={{ law = \"constant\", value = {} }}", restitution),
+                               "particles.velocity_dispersion=30", fmt::format("time.end={}", 2.0 + 0.6 / depth),
+                               "time.step=2e-3", "output.series_every=0.05"});
+  command = ran.command;
+  const std::vector<double>&energy = ran.series.of("random_energy_j"), &orbits = ran.series.of("time_orbits");
+  std::size_t first = 0; // the ratios of the velocities settle first
+  while (orbits[first] < 0.4 * orbits.back())
+    ++first;
+  return std::log(energy.back() / energy[first]) / (orbits.back() - orbits[first]);
+}
+
+std::vector<Row> critical_restitution() {
+  std::vector<Row> rows;
+  for (const double depth : {0.1, 0.5, 1.0}) {
+    const double theory = std::sqrt(1.0 - 0.61 / (1.0 + depth * depth));
+    const std::array<double, 4> tried = {theory - 0.06, theory - 0.02, theory + 0.02, theory + 0.06};
+    double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0; // a line through the four
+    std::string command;
+    for (const double e : tried) {
+      const double y = heating(depth, e, command);
+      sx += e, sy += y, sxx += e * e, sxy += e * y;
+    }
+    const double slope = (4.0 * sxy - sx * sy) / (4.0 * sxx - sx * sx), zero = (sx - sy / slope) / 4.0;
+    rows.push_back({.what = fmt::format("critical restitution, tau {}", depth),
+                    .measured = zero,
+                    .expected = theory,
+                    .tolerance = 0.03,
+                    .tolerance_is = "of a theory of point particles; the constant is 0.61 to 0.63",
+                    .source = "(1 - eps^2)(1 + tau^2) = 0.61, Goldreich & Tremaine 1978",
+                    .command = command + ", and three values near; where d ln E/dt vanishes"});
+  }
+  return rows;
+}
+
+std::vector<Row> viscosity_of_wakes() {
+  std::vector<Row> rows;
+  for (const double hill : {0.8, 0.9, 1.0})
+    for (const int seed : {1, 2}) {
+      const Ran ran = run_example("a-ring-wakes", wakes(hill, seed, 11.0));
+      const Transport t = transport_since(ran, 5.0);
+      const Patch& patch = ran.snapshots.back();
+      const double g_sigma = newton_g_si * surface_density(patch);
+      const double unit = g_sigma * g_sigma / std::pow(patch.orbital_frequency, 3.0);
+      const double expected = 26.0 * std::pow(hill, 5.0), error = t.total->error / unit;
+      rows.push_back({.what = fmt::format("nu / (G^2 Sigma^2/Omega^3), r_h {}, seed {}", hill, seed),
+                      .measured = t.total->value / unit,
+                      .error = error,
+                      .expected = expected,
+                      .tolerance = 0.15 * expected + 2.0 * error,
+                      .tolerance_is = "15 % and twice the error",
+                      .source = "26 r_h^5, Daisaka, Tanaka & Ida 2001",
+                      .command = fmt::format("{}; keeler analyze DIR --since 5", ran.command)});
+    }
+  return rows;
+}
+
+} // namespace
+
+std::vector<Subject> literature_subjects() {
+  return {{"equilibria", "Equilibria without self-gravity", false, equilibria},
+          {"critical-restitution", "The critical coefficient of restitution", false, critical_restitution},
+          {"viscosity", "The viscosity of self-gravity wakes", false, viscosity_of_wakes}};
+}
+
+} // namespace keeler::validation

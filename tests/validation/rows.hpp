@@ -1,0 +1,52 @@
+// Keeler held against exact solutions, conservation laws and the literature: the rows of docs/validation.md.
+#pragma once
+
+#include <keeler/io/series.hpp>
+#include <keeler/particles/patch.hpp>
+#include <keeler/runs/transport.hpp>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace keeler::validation {
+
+/// One number against another.
+struct Row {
+  std::string what;
+  double measured = 0.0, error = 0.0; ///< 0: no statistical error
+  double expected = 0.0, tolerance = 0.0;
+  std::string tolerance_is; ///< what the tolerance stands for
+  std::string source;
+  std::string command; ///< what makes the run, with its seed, box and length
+
+  bool holds() const;
+};
+
+/// What is measured together.
+struct Subject {
+  std::string name;    ///< for --only
+  std::string section; ///< of the page
+  bool quick = false;  ///< a minute or less: CI runs it too
+  std::function<std::vector<Row>()> measure;
+};
+
+std::vector<Subject> exact_subjects();
+std::vector<Subject> balance_subjects();
+std::vector<Subject> literature_subjects();
+
+/// A run of a scene of examples/ with some keys set, in a folder that is gone afterwards.
+struct Ran {
+  std::string command; ///< that does the same
+  SeriesTable series;
+  std::vector<Patch> snapshots;
+};
+Ran run_example(const std::string& example, const std::vector<std::string>& overrides);
+
+/// Keys for self-gravity wakes at a Hill parameter r_h: 8 x 8 critical wavelengths of the A ring, equal spheres of 1 m.
+std::vector<std::string> wakes(double hill, int seed, double orbits);
+
+/// Viscosities and balance from an orbit on.
+Transport transport_since(const Ran& ran, double orbit);
+
+} // namespace keeler::validation

@@ -1,0 +1,32 @@
+#include "rows.hpp"
+
+#include "unit/files/disk.hpp"
+
+#include <keeler/runs/run.hpp>
+#include <keeler/runs/stored_patches.hpp>
+
+#include <fmt/format.h>
+
+namespace keeler::validation {
+
+Ran run_example(const std::string& example, const std::vector<std::string>& overrides) {
+  const test::TemporaryFolder work;
+  const std::string file = fmt::format("examples/{}/scene.toml", example);
+  RunRequests requests;
+  RunOptions options;
+  options.folder = work / "run";
+  start_run(load_scene(std::string(KEELER_SOURCE_DIR) + "/" + file, overrides), options, requests);
+  Ran ran;
+  ran.command = fmt::format("keeler run {}", file);
+  for (const std::string& key : overrides)
+    ran.command += fmt::format(" --set '{}'", key);
+  ran.series = read_series(work / "run" / "series.csv");
+  ran.snapshots = load_patches(work / "run", 1e9).patches;
+  return ran;
+}
+
+Transport transport_since(const Ran& ran, double orbit) {
+  return transport(ran.series, RingScale::of(ran.snapshots.back()), {.since = orbit, .until = {}});
+}
+
+} // namespace keeler::validation
