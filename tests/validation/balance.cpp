@@ -26,8 +26,9 @@ std::vector<Row> without_gravity() {
   std::vector<Row> rows;
   for (const double depth : {0.25, 0.5, 1.0, 2.0}) {
     const double side = std::sqrt(3.141592653589793 * 2000.0 / depth);
-    const Ran ran = run_example("equilibrium", {fmt::format("particles.optical_depth={}", depth), fmt::format("box.size=[{0:.2f},{0:.2f}]", side),
-                                                "time.end=25", "time.step=5e-3", "output.series_every=0.1"});
+    const Ran ran = run_example("equilibrium", {fmt::format("particles.optical_depth={}", depth),
+                                                fmt::format("box.size=[{0:.2f},{0:.2f}]", side), "time.end=25",
+                                                "time.step=5e-3", "output.series_every=0.1"});
     rows.push_back(balance_row(fmt::format("loss over work of the shear, tau {}", depth), ran, 10.0));
   }
   return rows;

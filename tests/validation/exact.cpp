@@ -11,6 +11,7 @@
 
 #include "lattice.hpp"
 
+#include <Eigen/Dense>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -104,7 +105,8 @@ double exact_potential(const Patch& patch, double strain) {
 }
 
 std::vector<Row> gravitational_stress() {
-  const Ran ran = run_example("a-ring-wakes", {"gravity={solver=\"fft\"}", "box.size_in_wavelengths=[1.5,1.5]", "time.end=3"});
+  const Ran ran =
+      run_example("a-ring-wakes", {"gravity={solver=\"fft\"}", "box.size_in_wavelengths=[1.5,1.5]", "time.end=3"});
   const Patch& patch = ran.snapshots.back();
   constexpr double strain = 2e-3;
   const double g = newton_g(patch.orbital_frequency);
@@ -124,10 +126,96 @@ std::vector<Row> gravitational_stress() {
            .command = ran.command}};
 }
 
+// The displacement that alternates from mass to mass, and its velocity: one number each of x and y.
+Eigen::Vector4d alternating(const Patch& patch, double spacing) {
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+  const auto count = static_cast<double>(patch.size());
+  for (std::size_t k = 0; k < patch.size(); ++k) {
+    const double sign = k % 2 == 0 ? 1.0 : -1.0, home = (static_cast<double>(k) - 0.5 * count + 0.5) * spacing;
+    sum += sign / count *
+           Eigen::Vector4d(patch.positions[k].x(), patch.positions[k].y() - home, patch.velocities[k].x(),
+                           patch.velocities[k].y());
+  }
+  return sum;
+}
+
+// The growth rate of the fastest mode, by the map of one sample to the next, which is linear.
+double string_growth(const std::string& solver, double g) {
+  constexpr double spacing = 1.0, omega = 1e-4;
+  constexpr int count = 16, samples = 24, steps = 40;
+  const Scene scene = parse_scene(fmt::format(R"(
+[planet]
+orbital_frequency = {}
+[box]
+size = [400.0, 16.0]
+[particles]
+count = 16
+density = 1000.0
+sizes = {{ law = "equal", radius = 1e-3 }}
+[gravity]
+solver = "{}"
+{}
+[time]
+step = 1e-3
+end = 1.0
+)",
+                                              omega, solver, solver == "tree" ? "opening_angle = 0.4" : ""),
+                                  "the string");
+  Patch patch = empty_patch(400.0, 16.0);
+  patch.orbital_frequency = omega;
+  RandomStream random(1, RandomPurpose::position, 0);
+  const Vec3 start = 1e-5 * Vec3(random.normal(), random.normal(), 0.0),
+             speed = 1e-5 * Vec3(random.normal(), random.normal(), 0.0);
+  for (int k = 0; k < count; ++k) {
+    const double sign = k % 2 == 0 ? 1.0 : -1.0;
+    add_sphere(patch, Vec3(0.0, (k - 0.5 * count + 0.5) * spacing, 0.0) + sign * start, 1e-3);
+    patch.masses.back() = g * spacing * spacing * spacing / newton_g(omega);
+    patch.velocities.back() = sign * speed - Vec3(0.0, 1.5 * sign * start.x(), 0.0);
+  }
+  Simulation simulation(scene, patch);
+  Eigen::Matrix<double, 4, samples> states;
+  for (int k = 0; k < samples; ++k) {
+    states.col(k) = alternating(simulation.patch(), spacing);
+    for (int step = 0; step < steps; ++step)
+      simulation.advance();
+  }
+  const auto before = states.leftCols<samples - 1>(), after = states.rightCols<samples - 1>();
+  const Eigen::Matrix4d map = before.transpose().colPivHouseholderQr().solve(after.transpose()).transpose();
+  return std::log(map.eigenvalues().cwiseAbs().maxCoeff()) / (steps * scene.step_length());
+}
+
+// Maxwell's string: masses m on a line along y at spacing d, g = Gm/(Ω²d³). With q = 2 g Σ (1 − cos nθ)/n³ the modes
+// obey s⁴ + (1 − q) s² + 2 q (3 − q) = 0; θ = π goes unstable first, at g = 0.0092669.
+std::vector<Row> maxwells_string() {
+  struct Known {
+    double over_critical, growth;
+  };
+  std::vector<Row> rows;
+  for (const auto& [solver, error] : {std::pair("direct", 3e-5), {"tree", 1e-3}, {"fft", 2e-3}})
+    for (const Known& k : {Known{0.99, 0.0}, {1.01, 0.035775}, {1.5, 0.240622}, {2.0, 0.327137}, {4.0, 0.509812}}) {
+      const bool exact = std::string(solver) == "direct";
+      if (k.over_critical < 1.5 && !exact)
+        continue;
+      rows.push_back({.what = fmt::format("growth / Omega of Maxwell's string, {}, {} of the critical mass",
+                                          exact                           ? "direct"
+                                          : solver == std::string("tree") ? "tree at 0.4"
+                                                                          : "fft",
+                                          k.over_critical),
+                      .measured = string_growth(solver, k.over_critical * 0.0092669),
+                      .expected = k.growth,
+                      .tolerance = exact ? 1e-4 : 3.0 * error * k.growth,
+                      .tolerance_is = exact ? "of the step, 1/1000 orbit" : "three times the rms error of the force",
+                      .source = "s^4 + (1 - q) s^2 + 2 q (3 - q) = 0 (Maxwell 1859)",
+                      .command = "16 masses in 400 x 16 spacings, a disturbance of 1e-5, 0.96 orbits"});
+    }
+  return rows;
+}
+
 } // namespace
 
 std::vector<Subject> exact_subjects() {
-  return {{"transmission-layer", "Exact solutions", true, uniform_layer},
+  return {{"string", "Exact solutions", true, maxwells_string},
+          {"transmission-layer", "Exact solutions", true, uniform_layer},
           {"transmission-cylinders", "Exact solutions", true, cylinders},
           {"gravitational-stress", "Exact solutions", true, gravitational_stress}};
 }

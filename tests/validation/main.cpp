@@ -46,11 +46,12 @@ std::string page_row(const Row& row) {
 }
 
 std::string page(const std::vector<std::pair<std::string, std::vector<Row>>>& sections) {
-  std::string text = "# Keeler against theory and literature\n\n"
-                     "Written by `scripts/test --physics`, which measures all of it again. A row holds when the measured "
-                     "value lies within the\ntolerance of the expected one; the error beside a measured value is its "
-                     "statistical one. Runs have the seed of their scene\n(1) where the command names no other; box and "
-                     "length stand in the scene or in the command.\n";
+  std::string text =
+      "# Keeler against theory and literature\n\n"
+      "Written by `scripts/test --physics`, which measures all of it again. A row holds when the measured "
+      "value lies within the\ntolerance of the expected one; the error beside a measured value is its "
+      "statistical one. Runs have the seed of their scene\n(1) where the command names no other; box and "
+      "length stand in the scene or in the command.\n";
   for (const auto& [section, rows] : sections) {
     text += fmt::format("\n## {}\n\n| what | measured | expected | tolerance is | source | verdict | made by |\n"
                         "|---|---|---|---|---|---|---|\n",
