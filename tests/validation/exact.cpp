@@ -211,12 +211,45 @@ std::vector<Row> maxwells_string() {
   return rows;
 }
 
+// Where a perturbed ring carries no angular momentum: flux over the first orbit at several bunchings q, and its zero.
+std::vector<Row> flux_reversal() {
+  const double bunchings[] = {0.78, 0.82, 0.86};
+  double collisional[3], total[3];
+  std::string command;
+  for (int k = 0; k < 3; ++k) {
+    const Ran ran = run_example("perturbed-ring", {fmt::format("particles.streamlines.bunching={}", bunchings[k]),
+                                                   "particles.streamlines.inclination=0", "box.size=[400,400]",
+                                                   "time.end=1", "output.series_every=0.05"});
+    const std::vector<double>& transport = ran.series.of("translational_flux_kg_m2_s");
+    collisional[k] = ran.series.of("collisional_flux_kg_m2_s").back();
+    total[k] = collisional[k] + transport.back() - transport[transport.size() / 2];
+    command = ran.command;
+  }
+  const auto zero = [&](const double* flux) { // of the line through the first and the last
+    return bunchings[0] + (bunchings[2] - bunchings[0]) * flux[0] / (flux[0] - flux[2]);
+  };
+  const auto row = [&](const char* what, const double* flux, double tolerance, const char* tolerance_is) {
+    return Row{.what = what,
+               .measured = zero(flux),
+               .expected = std::sqrt(0.75),
+               .tolerance = tolerance,
+               .tolerance_is = tolerance_is,
+               .source = "q = sqrt(3)/2 of a fluid of constant viscosity (Borderies et al. 1982; Hahn 2025)",
+               .command = command + ", and at q = 0.78"};
+  };
+  return {
+      row("bunching at which collisions carry no momentum", collisional, 0.03, "a ring of particles is no such fluid"),
+      row("bunching at which nothing does (transport of the second half orbit)", total, 0.08,
+          "the same, and the pattern decays meanwhile")};
+}
+
 } // namespace
 
 std::vector<Subject> exact_subjects() {
   return {{"string", "Exact solutions", true, maxwells_string},
           {"transmission-layer", "Exact solutions", true, uniform_layer},
           {"transmission-cylinders", "Exact solutions", true, cylinders},
+          {"flux-reversal", "Exact solutions", true, flux_reversal},
           {"gravitational-stress", "Exact solutions", true, gravitational_stress}};
 }
 

@@ -143,7 +143,11 @@ std::vector<Row> viscosity_of_wakes() {
                       .tolerance = 0.15 * expected + 2.0 * error,
                       .tolerance_is = "15 % and twice the error",
                       .source = "26 r_h^5, Daisaka, Tanaka & Ida 2001",
-                      .command = fmt::format("{}; keeler analyze DIR --since 5", ran.command)});
+                      .command = fmt::format("{}; keeler analyze DIR --since 5", ran.command),
+                      .known_difference = hill < 0.85
+                                              ? "The factor depends on restitution where wakes are weak: with a "
+                                                "constant 0.5 it is 11.2 at r_h 0.8, with Bridges' law 6.4."
+                                              : ""});
       rows.push_back({.what = fmt::format("nu_grav over nu_trans, r_h {}, seed {}", hill, seed),
                       .measured = t.gravitational->value / t.translational.value,
                       .expected = 1.0,

@@ -34,15 +34,20 @@ std::string measured(const Row& row) {
   return row.error > 0.0 ? fmt::format("{} ± {:.1g}", number(row.measured), row.error) : number(row.measured);
 }
 
+std::string verdict(const Row& row) {
+  return row.holds() ? "holds" : row.known_difference.empty() ? "fails" : "differs";
+}
+
 void print(const Row& row) {
-  fmt::print("{} {}: {}, expected {} ± {:.2g} ({})\n", row.holds() ? "holds" : "FAILS", row.what, measured(row),
-             number(row.expected), row.tolerance, row.source);
+  fmt::print("{} {}: {}, expected {} ± {:.2g} ({})\n", verdict(row), row.what, measured(row), number(row.expected),
+             row.tolerance, row.source);
   std::fflush(stdout);
 }
 
 std::string page_row(const Row& row) {
   return fmt::format("| {} | {} | {} ± {:.2g} | {} | {} | {} | `{}` |\n", row.what, measured(row), number(row.expected),
-                     row.tolerance, row.tolerance_is, row.source, row.holds() ? "holds" : "**fails**", row.command);
+                     row.tolerance, row.tolerance_is, row.source,
+                     row.holds() ? "holds" : fmt::format("**{}** {}", verdict(row), row.known_difference), row.command);
 }
 
 std::string page(const std::vector<std::pair<std::string, std::vector<Row>>>& sections) {
@@ -68,7 +73,7 @@ std::string page(const std::vector<std::pair<std::string, std::vector<Row>>>& se
 
 int measure(const Options& options) {
   std::vector<std::pair<std::string, std::vector<Row>>> sections;
-  int held = 0, failed = 0;
+  int held = 0, different = 0, failed = 0;
   for (const auto& subjects : {exact_subjects(), balance_subjects(), literature_subjects()})
     for (const Subject& subject : subjects) {
       if ((options.quick && !subject.quick) || (!options.only.empty() && subject.name != options.only))
@@ -76,7 +81,7 @@ int measure(const Options& options) {
       const std::vector<Row> rows = subject.measure();
       for (const Row& row : rows) {
         print(row);
-        ++(row.holds() ? held : failed);
+        ++(row.holds() ? held : verdict(row) == "differs" ? different : failed);
       }
       if (sections.empty() || sections.back().first != subject.section)
         sections.push_back({subject.section, {}});
@@ -84,7 +89,9 @@ int measure(const Options& options) {
     }
   if (!options.page.empty())
     write_text(options.page, page(sections));
-  fmt::print("{} passed, {} failed\n", held, failed);
+  if (different > 0)
+    fmt::print("{} differ from the literature for a known reason\n", different);
+  fmt::print("{} passed, {} failed\n", held + different, failed);
   return failed == 0 ? 0 : 1;
 }
 

@@ -20,6 +20,8 @@ struct Row {
   std::string source;
   std::string command; ///< what makes the run, with its seed, box and length
 
+  std::string known_difference{}; ///< why a row that does not hold is no fault of Keeler's; empty: it would be one
+
   bool holds() const;
 };
 
