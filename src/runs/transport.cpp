@@ -97,13 +97,13 @@ RingScale RingScale::of(const Patch& patch) {
 }
 
 bool enough_rows(const SeriesTable& series) {
-  return whole_rows(series).size() >= least_rows;
+  return series.find("translational_flux_kg_m2_s") && whole_rows(series).size() >= least_rows;
 }
 
-double steady_since(const SeriesTable& series) {
+double steady_since(const SeriesTable& series, double until) {
   constexpr std::size_t least = 8;
   const Values& orbits = series.of("time_orbits");
-  const std::vector<std::size_t> rows = whole_rows(series);
+  const std::vector<std::size_t> rows = within(whole_rows(series), orbits, -HUGE_VAL, until);
   if (rows.size() < least)
     return orbits.empty() ? 0.0 : orbits.front();
   const Rates rates = rates_of(series, rows, {.mass = 1.0, .orbital_frequency = 1.0, .shear = 1.0});
@@ -121,8 +121,8 @@ Transport transport(const SeriesTable& series, const RingScale& scale, const Orb
   const Values& orbits = series.of("time_orbits");
   Transport result;
   result.since_found = !window.since;
-  const double since = window.since ? *window.since : steady_since(series);
   const double until = window.until ? *window.until : orbits.empty() ? 0.0 : orbits.back();
+  const double since = window.since ? *window.since : steady_since(series, until);
   const std::vector<std::size_t> rows = within(whole_rows(series), orbits, since, until);
   if (rows.size() < least_rows)
     throw UsageError(

@@ -40,15 +40,15 @@ struct Transport {
 };
 
 /// Whether there is a viscosity to be had of all rows: at least three (of those with gravity's stress, where it is
-/// measured).
+/// measured), and the columns, which runs of former versions have not.
 bool enough_rows(const SeriesTable& series);
 
 /// Throws UsageError when the window holds fewer than three rows (of those with gravity's stress, where it is
 /// measured).
 Transport transport(const SeriesTable& series, const RingScale& scale, const OrbitWindow& window);
 
-/// From which orbit on loss, dispersion and stress are steady: the latest of their steady_start(). The first row's time
-/// for fewer than eight rows.
-double steady_since(const SeriesTable& series);
+/// From which orbit on loss, dispersion and stress are steady, of the rows up to `until`: the latest of their
+/// steady_start(). The first row's time for fewer than eight rows.
+double steady_since(const SeriesTable& series, double until);
 
 } // namespace keeler

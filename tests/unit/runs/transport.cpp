@@ -78,6 +78,12 @@ TEST_CASE("viscosities and balance of a series that is known, after the transien
   CHECK(t.from_loss.value == doctest::Approx(6.0).epsilon(0.01));
   CHECK(std::fabs(t.balance->value - 1.0) < 0.01);
 
+  CHECK(transport(series, {mass, omega, 1.5}, {.since = {}, .until = 6.0}).until_orbit == doctest::Approx(6.0));
+  SeriesTable former = series; // of a version without these columns
+  former.names[6] = "momentum_flux_kg_m2_s";
+  CHECK(enough_rows(series));
+  CHECK_FALSE(enough_rows(former));
+
   const Transport early = transport(series, {mass, omega, 1.5}, {.since = 0.0, .until = 3.0});
   CHECK_FALSE(early.since_found);
   CHECK_FALSE(early.steady);
