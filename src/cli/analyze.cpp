@@ -103,7 +103,7 @@ void print_text(const Analysis& a, double overlap) {
 
 struct Measured {
   StoredPatches stored;
-  std::optional<TransportReport> transport; // none: a run whose series is too short
+  TransportReport transport;
 };
 
 // Of a run: the series says from where on it is steady, and snapshots are taken from there.
@@ -114,18 +114,19 @@ Measured measure(const AnalyzeOptions& options) {
       throw UsageError(fmt::format("--since and --until choose a part of a run, and '{}' is a snapshot; give the run's "
                                    "folder",
                                    options.path));
-    Measured measured{load_newest_patch(options.path), std::nullopt};
-    measured.transport = TransportReport::of_snapshot(measured.stored.patches.front(), measured.stored.gravity);
-    return measured;
+    StoredPatches snapshot = load_newest_patch(options.path);
+    const TransportReport report = TransportReport::of_snapshot(snapshot.patches.front(), snapshot.gravity);
+    return {std::move(snapshot), report};
   }
-  const Patch newest = load_newest_patch(options.path).patches.front();
-  std::optional<TransportReport> transport = TransportReport::of_run(options.path, RingScale::of(newest), window);
-  if (!transport)
-    return {load_patches(options.path, averaged_orbits), std::nullopt};
-  const double since = transport->transport().since_orbit, until = window.until.value_or(newest.time_orbits);
+  const StoredPatches newest = load_newest_patch(options.path);
+  const Patch& last = newest.patches.front();
+  const TransportReport report = TransportReport::of_run(options.path, RingScale::of(last, newest.driven), window);
+  const std::optional<Transport>& found = report.transport();
+  const double since = found && found->since_found ? found->since_orbit : last.time_orbits - averaged_orbits;
   if (window.since || window.until)
-    return {load_patches_between(options.path, window.since.value_or(since), until), transport};
-  return {load_patches(options.path, std::max(0.0, newest.time_orbits - since)), transport};
+    return {load_patches_between(options.path, window.since.value_or(since), window.until.value_or(last.time_orbits)),
+            report};
+  return {load_patches(options.path, std::max(0.0, last.time_orbits - since)), report};
 }
 
 // dispersion_m_s and x: dispersion_x_m_s, as in series.csv.
@@ -172,15 +173,13 @@ ExitCode run(const AnalyzeOptions& options) {
     write_snapshots(options.csv, stored, options.settings);
   if (options.json) {
     nlohmann::ordered_json json = as_json(analysis, overlap);
-    if (transport)
-      transport->add_to(json, stored.patches.back());
+    transport.add_to(json, stored.patches.back());
     if (sights)
       json["sights"] = sights->json();
     fmt::print("{}\n", json.dump(2));
   } else {
     print_text(analysis, overlap);
-    if (transport)
-      transport->print(stored.patches.back());
+    transport.print(stored.patches.back());
     if (sights)
       sights->print();
   }

@@ -68,10 +68,11 @@ void print_summary(const std::string& folder, const nlohmann::json& s) {
              figures(energy("now") - energy("start"), 4), joules("translational_shear_work"),
              joules("collisional_shear_work"), joules("kick_work"), joules("lost_in_collisions"), energy("residual"));
   if (const nlohmann::json& b = s["energy_balance"]; !b.is_null() && b["ratio"].is_number())
-    fmt::print("energy balance                      {:.3f}{}: loss over the work of the shear, orbits {} to {}\n",
-               b["ratio"].get<double>(),
-               b["error"].is_number() ? fmt::format(" +- {:.1g}", b["error"].get<double>()) : "",
-               figures(b["since_orbit"].get<double>(), 4), figures(b["until_orbit"].get<double>(), 4));
+    fmt::print(
+        "energy balance                      {:.3f}{}: energy lost over the work of the shear, orbits {} to {}{}\n",
+        b["ratio"].get<double>(), b["error"].is_number() ? fmt::format(" +- {:.1g}", b["error"].get<double>()) : "",
+        figures(b["since_orbit"].get<double>(), 4), figures(b["until_orbit"].get<double>(), 4),
+        b["steady"].get<bool>() ? "" : ", not steady");
   const nlohmann::json& split = s["split"];
   const auto part = [&](const char* key) { return split.value(key, 0.0); };
   fmt::print("time                                {:.1f} s wall, {:.1f} s processor: start {:.1f} s, drift {:.1f} s, "

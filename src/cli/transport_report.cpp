@@ -1,5 +1,6 @@
 #include "transport_report.hpp"
 
+#include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
@@ -47,7 +48,7 @@ void add_viscosity(Json& json, const std::string& name, const std::optional<Esti
 }
 
 std::string with_error(const Estimate& e, double unit) {
-  return std::isfinite(e.error) ? fmt::format("{:.3g} +- {:.1g}", e.value / unit, e.error / unit)
+  return std::isfinite(e.error) ? fmt::format("{:.4g} +- {:.1g}", e.value / unit, e.error / unit)
                                 : fmt::format("{:.3g}", e.value / unit);
 }
 
@@ -62,25 +63,27 @@ void print_viscosity(const char* label, const char* name, const std::optional<Es
 
 } // namespace
 
-std::optional<TransportReport> TransportReport::of_run(const std::filesystem::path& folder, const RingScale& scale,
-                                                       const OrbitWindow& window) {
-  const std::filesystem::path file = folder / "series.csv";
-  std::error_code unknown;
-  const bool asked = window.since || window.until;
-  if (!std::filesystem::exists(file, unknown) && !asked)
-    return std::nullopt;
-  const SeriesTable series = read_series(file);
+TransportReport TransportReport::of_run(const std::filesystem::path& folder, const RingScale& scale,
+                                        const OrbitWindow& window) {
   TransportReport report;
   report.of_run_ = true;
-  if (!asked && !enough_rows(series))
-    return std::nullopt;
-  report.transport_ = keeler::transport(series, scale, window);
+  const std::filesystem::path file = folder / "series.csv";
+  std::error_code unknown;
+  if (!std::filesystem::exists(file, unknown))
+    return report;
+  const SeriesTable series = read_series(file);
+  if (!enough_rows(series))
+    return report;
+  try {
+    report.transport_ = keeler::transport(series, scale, window);
+  } catch (const UsageError&) { // too few rows in the window: its snapshots may be enough for the rest
+  }
   return report;
 }
 
 TransportReport TransportReport::of_snapshot(const Patch& patch, const std::optional<GravitySettings>& gravity) {
   TransportReport report;
-  Transport& t = report.transport_;
+  Transport& t = report.transport_.emplace();
   const double omega = patch.orbital_frequency;
   t.since_orbit = t.until_orbit = patch.time_orbits;
   t.translational = at_an_instant(translational_viscosity(patch) * omega);
@@ -94,28 +97,36 @@ TransportReport TransportReport::of_snapshot(const Patch& patch, const std::opti
 
 void TransportReport::add_to(Json& json, const Patch& patch) const {
   const ViscosityUnits units(patch);
-  const Transport& t = transport_;
-  add_viscosity(json, "translational", t.translational, units);
-  add_viscosity(json, "collisional", of_run_ ? std::optional(t.collisional) : std::nullopt, units);
-  add_viscosity(json, "gravitational", t.gravitational, units);
-  add_viscosity(json, "total", t.total, units);
-  add_viscosity(json, "loss", of_run_ ? std::optional(t.from_loss) : std::nullopt, units);
-  json["energy_balance"] = t.balance ? or_null(t.balance->value) : Json(nullptr);
-  json["energy_balance_error"] = t.balance ? or_null(t.balance->error) : Json(nullptr);
-  json["since_orbit"] = t.since_orbit;
-  json["until_orbit"] = t.until_orbit;
-  json["since_found"] = t.since_found;
-  json["steady"] = of_run_ ? Json(t.steady) : Json(nullptr);
+  const std::optional<Transport>& t = transport_;
+  const auto of = [&](const auto& part, bool known) { return t && known ? part(*t) : std::nullopt; };
+  const auto add = [&](const char* name, bool known, const auto& part) {
+    add_viscosity(json, name, of(part, known), units);
+  };
+  using Maybe = std::optional<Estimate>;
+  add("translational", true, [](const Transport& run) -> Maybe { return run.translational; });
+  add("collisional", of_run_, [](const Transport& run) -> Maybe { return run.collisional; });
+  add("gravitational", true, [](const Transport& run) -> Maybe { return run.gravitational; });
+  add("total", true, [](const Transport& run) -> Maybe { return run.total; });
+  add("loss", of_run_, [](const Transport& run) -> Maybe { return run.from_loss; });
+  const Maybe balance = t ? t->balance : std::nullopt;
+  json["energy_balance"] = balance ? or_null(balance->value) : Json(nullptr);
+  json["energy_balance_error"] = balance ? or_null(balance->error) : Json(nullptr);
+  json["since_orbit"] = t ? Json(t->since_orbit) : Json(nullptr);
+  json["until_orbit"] = t ? Json(t->until_orbit) : Json(nullptr);
+  json["since_found"] = t ? Json(t->since_found) : Json(nullptr);
+  json["steady"] = t && of_run_ ? Json(t->steady) : Json(nullptr);
 }
 
 void TransportReport::print(const Patch& patch) const {
+  if (!transport_) {
+    fmt::print("viscosities          not known because series.csv has fewer than three rows with all stresses here\n");
+    return;
+  }
   const ViscosityUnits units(patch);
-  const Transport& t = transport_;
+  const Transport& t = *transport_;
   if (of_run_)
-    fmt::print("viscosities          orbits {} to {}{}\n", figures(t.since_orbit, 4), figures(t.until_orbit, 4),
-               t.steady        ? (t.since_found ? ", where the run is steady" : ", steady")
-               : t.since_found ? ", but no part of the run is steady"
-                               : ", which are not steady");
+    fmt::print("viscosities          orbits {} to {}, {}\n", figures(t.since_orbit, 4), figures(t.until_orbit, 4),
+               t.steady ? "where the run is steady" : "which are not steady or too few to tell: run longer");
   print_viscosity(of_run_ ? "" : "viscosity", "translational", t.translational, units);
   if (of_run_)
     print_viscosity("", "collisional", t.collisional, units);
@@ -125,7 +136,7 @@ void TransportReport::print(const Patch& patch) const {
   print_viscosity("", "total", t.total, units);
   print_viscosity("", "from the loss", t.from_loss, units);
   if (t.balance)
-    fmt::print("energy balance       {}: loss over the work of the shear, 1 when nothing else does work\n",
+    fmt::print("energy balance       {}: energy lost over the work of the shear; 1 but for its error\n",
                with_error(*t.balance, 1.0));
 }
 

@@ -15,22 +15,21 @@ namespace keeler {
 
 class TransportReport {
 public:
-  /// Of a run's folder: from its series, when that has enough rows. A window that was asked for and has too few throws
-  /// UsageError.
-  static std::optional<TransportReport> of_run(const std::filesystem::path& folder, const RingScale& scale,
-                                               const OrbitWindow& window);
+  /// Of a run's folder: from its series. Without a viscosity when that has too few rows in the window.
+  static TransportReport of_run(const std::filesystem::path& folder, const RingScale& scale, const OrbitWindow& window);
 
   /// Of a snapshot of a scene with these settings of gravity.
   static TransportReport of_snapshot(const Patch& patch, const std::optional<GravitySettings>& gravity);
 
-  const Transport& transport() const { return transport_; }
+  /// None: the series has too few rows for a viscosity.
+  const std::optional<Transport>& transport() const { return transport_; }
 
   /// The unit of the other two forms of each viscosity is made from the patch.
   void add_to(nlohmann::ordered_json& json, const Patch& patch) const;
   void print(const Patch& patch) const;
 
 private:
-  Transport transport_;
+  std::optional<Transport> transport_;
   bool of_run_ = false;
 };
 

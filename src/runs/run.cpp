@@ -191,12 +191,18 @@ struct Start {
                   last_checkpoint, resume_command(options)));
 }
 
-// None: the series has too few rows.
-std::optional<Transport> transport_in(const RunFolder& folder, const Patch& patch) {
-  const SeriesTable series = read_series(folder.series());
-  if (!enough_rows(series))
-    return std::nullopt;
-  return transport(series, RingScale::of(patch), {});
+// None: the series has too few rows, or somebody has damaged it. That must not keep a run from ending well.
+std::optional<Transport> transport_in(const RunFolder& folder, const Patch& patch, const Scene& scene,
+                                      const RunOptions& options) {
+  try {
+    const SeriesTable series = read_series(folder.series());
+    if (enough_rows(series))
+      return transport(series, RingScale::of(patch, !scene.external_forces.empty()), {});
+  } catch (const Error& error) {
+    if (options.notice)
+      options.notice(fmt::format("no balance of energy: {}", error.what()));
+  }
+  return std::nullopt;
 }
 
 RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& requests, const RunFolder& folder,
@@ -211,8 +217,8 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
   }
   const RunCost cost{first_step,   start.watch.elapsed(), cpu_seconds() - start.cpu,
                      start.made_s, recorder.costs(),      recorder.force_checks()};
-  const nlohmann::ordered_json summary =
-      summarise(simulation, scene, transport_in(folder, simulation.patch()), result, cost, recorder.provenance());
+  const nlohmann::ordered_json summary = summarise(
+      simulation, scene, transport_in(folder, simulation.patch(), scene, options), result, cost, recorder.provenance());
   write_text(folder.summary(), summary.dump(2) + "\n");
   recorder.log(result.finished ? "finished" : "stopped", {{"step", result.step}, {"state_hash", result.state_hash}});
   return result;

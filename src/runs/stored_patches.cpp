@@ -48,6 +48,7 @@ void take(StoredPatches& stored, Snapshot snapshot, const fs::path& file) {
     const Scene scene = parse_stored_scene(snapshot.meta.scene, file.string());
     stored.title = scene.title;
     stored.gravity = scene.gravity;
+    stored.driven = !scene.external_forces.empty();
   }
   stored.patches.push_back(std::move(snapshot.patch));
 }

@@ -15,7 +15,9 @@ namespace {
 
 using Values = std::vector<double>;
 
-constexpr std::size_t least_rows = 3;
+constexpr std::size_t least_rows = 3;                         // for a viscosity
+constexpr std::size_t least_for_steady = 8;                   // to look for where a run becomes steady
+constexpr double least_orbits = 2.0, least_share = 1.0 / 3.0; // of a part that may be called steady
 
 // Whether the run had self-gravity, and whether its stress was measured.
 bool measures_gravity(const SeriesTable& series) {
@@ -92,8 +94,8 @@ Estimate ratio_of(const Values& above, const Values& below) {
 
 } // namespace
 
-RingScale RingScale::of(const Patch& patch) {
-  return {total_mass(patch), patch.orbital_frequency, patch.box.shear};
+RingScale RingScale::of(const Patch& patch, bool driven) {
+  return {total_mass(patch), patch.orbital_frequency, patch.box.shear, driven};
 }
 
 bool enough_rows(const SeriesTable& series) {
@@ -101,10 +103,9 @@ bool enough_rows(const SeriesTable& series) {
 }
 
 double steady_since(const SeriesTable& series, double until) {
-  constexpr std::size_t least = 8;
   const Values& orbits = series.of("time_orbits");
   const std::vector<std::size_t> rows = within(whole_rows(series), orbits, -HUGE_VAL, until);
-  if (rows.size() < least)
+  if (rows.size() < least_for_steady)
     return orbits.empty() ? 0.0 : orbits.front();
   const Rates rates = rates_of(series, rows, {.mass = 1.0, .orbital_frequency = 1.0, .shear = 1.0});
   const Values& dispersion = series.of("dispersion_x_m_s");
@@ -114,16 +115,16 @@ double steady_since(const SeriesTable& series, double until) {
   std::size_t start = std::max(steady_start(rates.loss), steady_start(random));
   if (!rates.gravitational.empty())
     start = std::max(start, steady_start(rates.gravitational));
-  return orbits[rows[std::min(start, rows.size() - least)]];
+  return orbits[rows[std::min(start, rows.size() - least_for_steady)]];
 }
 
 Transport transport(const SeriesTable& series, const RingScale& scale, const OrbitWindow& window) {
   const Values& orbits = series.of("time_orbits");
   Transport result;
-  result.since_found = !window.since;
   const double until = window.until ? *window.until : orbits.empty() ? 0.0 : orbits.back();
   const double since = window.since ? *window.since : steady_since(series, until);
   const std::vector<std::size_t> rows = within(whole_rows(series), orbits, since, until);
+  result.since_found = !window.since && rows.size() >= least_for_steady;
   if (rows.size() < least_rows)
     throw UsageError(
         fmt::format("the series has {} between orbits {:.6g} and {:.6g}, too few for a viscosity; choose a "
@@ -143,13 +144,16 @@ Transport transport(const SeriesTable& series, const RingScale& scale, const Orb
     result.gravitational = Estimate{};
   if (complete) {
     result.total = block_mean(rates.total);
-    result.balance = ratio_of(rates.loss, rates.total);
+    if (!scale.driven)
+      result.balance = ratio_of(rates.loss, rates.total);
   }
   const Values& all_dispersions = series.of("dispersion_x_m_s");
   Values dispersions;
   for (const std::size_t k : rows)
     dispersions.push_back(all_dispersions[k]);
-  result.steady = is_steady(rates.loss) && is_steady(dispersions);
+  const double length = result.until_orbit - result.since_orbit;
+  result.steady = length >= least_orbits && length >= least_share * (until - orbits.front()) && is_steady(rates.loss) &&
+                  is_steady(dispersions);
   return result;
 }
 

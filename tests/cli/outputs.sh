@@ -59,7 +59,7 @@ has energy_balance "$number"
 grep -q '^snapshots,time_orbits,.*,dispersion_x_m_s,.*,total_viscosity_m2_s' "$work/snapshots.csv" ||
   fail "the columns of analyze --csv: $(head -n 1 "$work/snapshots.csv")"
 [ "$(wc -l <"$work/snapshots.csv")" -eq 3 ] || fail "analyze --csv has other rows than two snapshots"
-refuses "a part without rows" "too few for a viscosity" analyze "$work/run" --since 9
+refuses "a part without rows" "no snapshot in" analyze "$work/run" --since 9
 refuses "a part without snapshots" "no snapshot in" analyze "$work/run" --since 0.02 --until 0.2
 refuses "a part of a snapshot" "give the run's folder" analyze "$work/run/snap_000001.hdf" --since 1
 refuses_with 4 "a CSV that cannot be written" "none" analyze "$work/run" --csv "$work/none/a.csv"

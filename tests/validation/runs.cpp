@@ -26,7 +26,7 @@ Ran run_example(const std::string& example, const std::vector<std::string>& over
 }
 
 Transport transport_since(const Ran& ran, double orbit) {
-  return transport(ran.series, RingScale::of(ran.snapshots.back()), {.since = orbit, .until = {}});
+  return transport(ran.series, RingScale::of(ran.snapshots.back(), false), {.since = orbit, .until = {}});
 }
 
 } // namespace keeler::validation

@@ -16,6 +16,7 @@ struct StoredPatches {
   std::vector<Patch> patches;
   std::string title;
   std::optional<GravitySettings> gravity; ///< of that scene
+  bool driven = false;                    ///< it has other forces besides
 };
 
 /// A snapshot file gives that snapshot; a run's folder gives those of its last `orbits` orbits, the newest always among

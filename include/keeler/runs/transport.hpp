@@ -21,22 +21,23 @@ struct RingScale {
   double mass = 0.0;              ///< kg, of all particles
   double orbital_frequency = 0.0; ///< rad/s
   double shear = 1.5;             ///< S, in units of it
+  bool driven = false;            ///< other forces than self-gravity do work: the loss is then not the shear's alone
 
-  static RingScale of(const Patch& patch);
+  static RingScale of(const Patch& patch, bool driven);
 };
 
 /// Means over a window. Viscosities in m²/s.
 struct Transport {
   double since_orbit = 0.0, until_orbit = 0.0;
-  bool since_found = false; ///< the beginning was looked for, not given
-  bool steady = false;      ///< loss and dispersion are (is_steady)
+  bool since_found = false; ///< the beginning was looked for, not given, in eight rows at least
+  bool steady = false;      ///< loss and dispersion are (is_steady), over two orbits at least and a third of the run
   std::size_t intervals = 0;
 
   Estimate translational, collisional;
   std::optional<Estimate> gravitational; ///< none: not measured; without self-gravity 0
   std::optional<Estimate> total;         ///< none: without the gravitational one
   Estimate from_loss;                    ///< (loss + d(U + Φ)/dt) / (M S²): what the total must be
-  std::optional<Estimate> balance;       ///< from_loss over total: 1 when nothing else does work
+  std::optional<Estimate> balance;       ///< from_loss over total: 1; none in a driven run
 };
 
 /// Whether there is a viscosity to be had of all rows: at least three (of those with gravity's stress, where it is
