@@ -1,6 +1,6 @@
 #include <keeler/diagnostics/measured.hpp>
 
-#include <keeler/report/scatter.hpp>
+#include <keeler/diagnostics/scatter.hpp>
 
 #include <cmath>
 

@@ -3,10 +3,10 @@
 #include "runs.hpp"
 #include "study_folder.hpp"
 
+#include <keeler/diagnostics/scatter.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/report/csv.hpp>
 #include <keeler/report/document.hpp>
-#include <keeler/report/scatter.hpp>
 
 #include <fmt/format.h>
 

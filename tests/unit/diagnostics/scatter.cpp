@@ -1,4 +1,4 @@
-#include <keeler/report/scatter.hpp>
+#include <keeler/diagnostics/scatter.hpp>
 
 #include <keeler/core/random.hpp>
 
