@@ -15,11 +15,13 @@
 //   void find_all(queries, results)
 //   void prefetch_partner(place)          it will be asked about soon
 //   void prefetch(place, stage)           a contact is to come: stages 0, 1 and 2, some contacts apart
-//   void happened(const Event&, const Contact&)     right before the changes
+//   void happened(const Contact&)     right before the changes
+//   void record(const CollisionRecord&)     after it, where the step is recorded
 #pragma once
 
 #include "ablation.hpp"
 
+#include <keeler/collision/drift.hpp>
 #include <keeler/collision/events.hpp>
 #include <keeler/collision/settings.hpp>
 #include <keeler/contacts/finder.hpp>
@@ -40,8 +42,9 @@ struct StepAtHand {
   Frequencies frequencies;
   double orbital_frequency = 0.0; ///< rad/s
   ShearingBox box;
-  double offset = 0.0; ///< at the epoch, m
-  double begin = 0.0;  ///< rad
+  double offset = 0.0;   ///< at the epoch, m
+  double begin = 0.0;    ///< rad
+  bool recorded = false; ///< whether somebody wants to have each contact
 };
 
 /// What has happened to the particles in the step so far, by place.
@@ -185,6 +188,7 @@ private:
     const Rebound after = rebound(*step_.settings, speed, a.radius, b.radius, step_.orbital_frequency);
     if (!(speed > -after.speed))
       return; // an inexact finder may call a pair that moves apart
+    const Vec3 place = step_.recorded ? place_of(a, normal, rotation) : Vec3::Zero();
     const double reduced_mass = a.mass * b.mass / (a.mass + b.mass);
     const Vec3 impulse = reduced_mass * (speed + after.speed) * normal; // on b; a gets the opposite
     contact.azimuthal_gain = azimuthal_gain(a, -impulse / a.mass, f, rotation);
@@ -197,7 +201,18 @@ private:
                     orbits_.last_change(event.low) == orbits_.last_change(event.high);
     contact.energy_lost = 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
     contact.momentum_flux = relative.position.x() * impulse.y();
-    orbits_.happened(event, contact);
+    orbits_.happened(contact);
+    if (step_.recorded)
+      orbits_.record({.time = event.time,
+                      .low_id = event.low_id,
+                      .high_id = event.high_id,
+                      .image = event.image,
+                      .normal_speed = speed,
+                      .fast = contact.fast,
+                      .tangential_speed = (relative.velocity + speed * normal).norm(),
+                      .energy_lost = contact.energy_lost,
+                      .radius_sum = a.radius + b.radius,
+                      .place = place});
 
     change(event.low, a.elements, event.time);
     change(event.high, b.elements, event.time);
@@ -207,6 +222,11 @@ private:
     look_around(event.high, event.time, event.low); // the pair itself, in all its images, has been looked at
     search();
     search_again(orbits_.to_search_again());
+  }
+
+  // Where a touches b, to which the normal points.
+  Vec3 place_of(const Body& a, const Vec3& normal, const Rotation& rotation) const {
+    return state_at(a.elements, step_.frequencies, rotation).position + a.radius * normal;
   }
 
   void change(std::uint32_t i, const Elements& elements, double time) {

@@ -113,11 +113,12 @@ struct DriftEngine::InPlace {
     }
   }
 
-  void happened(const Event& event, const Contact& contact) {
-    drift.count(contact, tally);
+  void happened(const Contact& contact) { drift.count(contact, tally); }
+  void record(const CollisionRecord& record) {
     if (drift.watch_)
-      drift.watch_->collided(
-          {event.time, event.low_id, event.high_id, event.image, contact.normal_speed, contact.fast});
+      drift.watch_->collided(record);
+    if (drift.takes_records_)
+      drift.records_.push_back(record);
   }
 
   std::vector<std::uint32_t> buffer;
@@ -143,6 +144,8 @@ void DriftEngine::collide(Particles& particles, const ShearingBox& box, double o
   if (!through_grid_)
     lists_.touched(touched_);
   tally.gave_up += gave_up_;
+  if (takes_records_)
+    takes_records_->recorded(records_);
   if (particles.size())
     costs_.bytes_per_particle = bytes() / particles.size();
   particles_ = nullptr; // the caller's, who may move it
@@ -164,7 +167,11 @@ bool DriftEngine::in_domains(const std::vector<Event>& first, CollisionTally& ta
   const std::size_t domains = std::min(OptimisticLoop::most_domains, wanted > 0 ? wanted : paying);
   if (domains < 2 || !optimistic_.carry_out(step_at_hand_, *particles_, so_far_, finder(), lists_, first, domains))
     return false;
-  optimistic_.visit_contacts([&](const Contact& contact) { count(contact, tally); });
+  optimistic_.visit_contacts([&](const Contact& contact, const CollisionRecord* record) {
+    count(contact, tally);
+    if (takes_records_)
+      records_.push_back(*record);
+  });
   optimistic_.list_touched(touched_);
   costs_.widest_list = std::max(costs_.widest_list, optimistic_.most_partners());
   return true;
@@ -177,6 +184,9 @@ void DriftEngine::prepare(bool undisturbed) {
   const ShearingBox& box = step_at_hand_.box;
   const bool every_candidate = observer_ && observer_->wants_every_candidate();
   watch_ = observer_ && observer_->looks_on() ? observer_ : nullptr;
+  takes_records_ = observer_ && observer_->wants_records() ? observer_ : nullptr;
+  step_at_hand_.recorded = watch_ || takes_records_;
+  records_.clear();
   if (every_candidate)
     lists_.release();
   through_grid_ = every_candidate || !lists_.begin(*particles_, box, step_at_hand_.offset, undisturbed);

@@ -51,8 +51,10 @@ private:
   DriftObserver* observer_ = nullptr;
 
   // the step at hand
-  DriftObserver* watch_ = nullptr; // the observer, when it looks on
-  Particles* particles_ = nullptr; // only while it goes on
+  DriftObserver* watch_ = nullptr;         // the observer, when it looks on
+  DriftObserver* takes_records_ = nullptr; // the observer, when it wants them
+  std::vector<CollisionRecord> records_;   // for it
+  Particles* particles_ = nullptr;         // only while it goes on
   StepAtHand step_at_hand_;
   DriftStep finder_step_;
   bool through_grid_ = false;

@@ -202,10 +202,11 @@ struct OptimisticLoop::Orbits {
       __builtin_prefetch(&all.barred_[i], 1);
     }
   }
-  void happened(const Event&, const Contact& contact) {
+  void happened(const Contact& contact) {
     domain.contacts.push_back(contact);
     domain.is_rolled_back.push_back(0);
   }
+  void record(const CollisionRecord& record) { domain.records.push_back(record); }
 };
 
 bool OptimisticLoop::carry_out(const StepAtHand& step, Particles& particles, StepSoFar& so_far, const Finder& finder,
@@ -258,6 +259,7 @@ void OptimisticLoop::Domain::clear() {
   barred.clear();
   changes.clear();
   contacts.clear();
+  records.clear();
   is_rolled_back.clear();
   unresolved.clear();
   touched.clear();
@@ -338,6 +340,8 @@ void OptimisticLoop::restore(const Change& change, bool alone) {
 // The domain's last contact, of which nobody knows yet.
 void OptimisticLoop::take_back(Domain& domain) {
   domain.contacts.pop_back();
+  if (!domain.records.empty())
+    domain.records.pop_back();
   domain.is_rolled_back.pop_back();
   for (int both = 0; both < 2; ++both) {
     const Change last = domain.changes.back();
@@ -385,7 +389,7 @@ std::size_t OptimisticLoop::bytes() const {
   for (const Domain& d : domains_)
     total += (d.given.capacity() + d.aside.capacity() + d.deferred.capacity()) * sizeof(Event) + d.events.bytes() +
              d.barred.capacity() * sizeof(Barred) + d.changes.capacity() * sizeof(Change) +
-             d.contacts.capacity() * sizeof(Contact);
+             d.contacts.capacity() * sizeof(Contact) + d.records.capacity() * sizeof(CollisionRecord);
   return total;
 }
 

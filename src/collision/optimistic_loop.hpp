@@ -44,7 +44,7 @@ public:
 
   /// How many of the step there were.
   std::size_t contacts() const;
-  /// Calls visit(contact) for each of them, in the order of events. Reads nothing but ids besides.
+  /// Calls visit(contact, its record or null) for each of them, in the order of events. Reads nothing but ids besides.
   template<class Visit> void visit_contacts(const Visit& visit) const;
   /// Each particle that was hit; who was rolled back and hit again, again.
   void list_touched(std::vector<std::uint32_t>& touched) const;
@@ -83,6 +83,7 @@ private:
     std::vector<Barred> barred;
     std::vector<Change> changes;
     std::vector<Contact> contacts;
+    std::vector<CollisionRecord> records;     // of each contact; none unless the step is recorded
     std::vector<std::uint8_t> is_rolled_back; // each contact
     std::vector<NewPath> unresolved;          // that meet what is not the domain's
     std::vector<std::uint32_t> touched;       // by it first of all domains
@@ -164,7 +165,9 @@ template<class Visit> void OptimisticLoop::visit_contacts(const Visit& visit) co
         first = s;
     if (times[first] == HUGE_VAL)
       return;
-    visit(domains_[first].contacts[next[first]++]);
+    const Domain& its = domains_[first];
+    visit(its.contacts[next[first]], its.records.empty() ? nullptr : &its.records[next[first]]);
+    ++next[first];
     skip_rolled_back(first);
     times[first] = time_of(first);
   }

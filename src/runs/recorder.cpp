@@ -27,10 +27,12 @@ Series open_series(const RunFolder& folder, const std::vector<std::string>& colu
 
 } // namespace
 
-void OutputCounters::list_fields(FieldTable& table) {
+void OutputCounters::list_fields(FieldTable& table, const Scene& scene) {
   table.scalar("snapshots_written", snapshots, "1", "number of the next snapshot");
   table.scalar("checkpoints_written", checkpoints, "1", "number of the next checkpoint");
   table.scalar("last_snapshot_step", last_snapshot_step, "1", "step of the newest snapshot");
+  if (scene.output.collisions)
+    contacts.list_fields(table);
 }
 
 Recorder::Recorder(const RunFolder& folder, const Scene& scene, const std::vector<std::string>& arguments,
@@ -38,23 +40,48 @@ Recorder::Recorder(const RunFolder& folder, const Scene& scene, const std::vecto
     : folder_(folder), scene_(scene), provenance_(collect_provenance(arguments)), counters_(counters),
       columns_(series_columns_of(scene)), series_(open_series(folder, names_of(columns_), resumed_at)) {
   write_text(folder_.scene(), scene_.resolved);
+  if (!scene_.output.collisions)
+    return;
+  std::optional<LogResume> resume;
+  if (resumed_at)
+    resume = LogResume{counters_.contacts, counters_.last_snapshot_step};
+  contact_log_.emplace(folder_, scene_, provenance_, resume);
+}
+
+void Recorder::watch(Simulation& simulation) {
+  if (contact_log_)
+    contact_log_->watch(simulation);
+}
+
+void Recorder::contacts() {
+  if (!contact_log_)
+    return;
+  const Stopwatch watch(costs_.contacts);
+  contact_log_->write_full_files();
 }
 
 void Recorder::snapshot(const Simulation& simulation) {
   const Stopwatch watch(costs_.snapshots);
   write_snapshot(folder_.snapshot(counters_.snapshots), simulation.patch(), {scene_.resolved, provenance_});
   ++counters_.snapshots;
+  if (contact_log_)
+    contact_log_->end_interval(counters_.last_snapshot_step, simulation.state().step);
   counters_.last_snapshot_step = simulation.state().step;
 }
 
 void Recorder::checkpoint(const Simulation& simulation) {
+  if (contact_log_) {
+    const Stopwatch watch(costs_.contacts);
+    contact_log_->write_all();
+    counters_.contacts = contact_log_->counters();
+  }
   const Stopwatch watch(costs_.checkpoints);
   series_.sync();
   SimulationState copy = simulation.state();
   OutputCounters counters = counters_;
   ++counters.checkpoints;
   FieldTable table = copy.fields();
-  counters.list_fields(table);
+  counters.list_fields(table, scene_);
   write_checkpoint(checkpoint_path(folder_.path(), counters_.checkpoints), table, {scene_.resolved, provenance_});
   counters_ = counters;
   prune_checkpoints(folder_.path());

@@ -1,6 +1,7 @@
 // Everything that a run writes. It works on copies and never touches the state.
 #pragma once
 
+#include "contact_log.hpp"
 #include "run_folder.hpp"
 
 #include <keeler/io/provenance.hpp>
@@ -20,13 +21,14 @@ struct OutputCounters {
   std::int64_t snapshots = 0;
   std::int64_t checkpoints = 0;
   std::int64_t last_snapshot_step = -1; ///< -1: none yet
+  ContactCounters contacts;             ///< only where the scene asks for a log of contacts
 
-  void list_fields(FieldTable& table);
+  void list_fields(FieldTable& table, const Scene& scene);
 };
 
 /// Wall time that output took, s.
 struct OutputCosts {
-  double series = 0.0, stresses = 0.0, snapshots = 0.0, checkpoints = 0.0;
+  double series = 0.0, stresses = 0.0, snapshots = 0.0, checkpoints = 0.0, contacts = 0.0;
 };
 
 /// What became of the checks of forces.
@@ -43,6 +45,13 @@ public:
   /// `resumed_at`: the series is continued from that step, else begun anew. The scene must outlive it.
   Recorder(const RunFolder& folder, const Scene& scene, const std::vector<std::string>& arguments,
            OutputCounters counters, std::optional<std::int64_t> resumed_at);
+
+  /// From now on contacts are logged, where the scene asks for it. The simulation must outlive its last step only.
+  void watch(Simulation& simulation);
+  /// After each step.
+  void contacts();
+  /// Of the log of contacts, rows that a resumed run did not find any more.
+  std::int64_t lost_contacts() const { return contact_log_ ? contact_log_->lost() : 0; }
 
   void snapshot(const Simulation& simulation);
   void checkpoint(const Simulation& simulation);
@@ -65,6 +74,7 @@ private:
   OutputCounters counters_;
   std::vector<SeriesColumn> columns_;
   Series series_;
+  std::optional<ContactLog> contact_log_;
   std::unique_ptr<FftSolver> energy_meter_; // null: not yet, or there is none
   ForceChecks force_checks_;
   OutputCosts costs_;

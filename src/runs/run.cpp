@@ -106,6 +106,7 @@ private:
 
   void record() {
     const std::int64_t step = simulation_.state().step;
+    recorder_.contacts();
     if (due(scene_.output.series_every))
       recorder_.sample(simulation_);
     const bool asked = between_kicks() && requests_.snapshot.exchange(false);
@@ -208,6 +209,7 @@ std::optional<Transport> transport_in(const RunFolder& folder, const Patch& patc
 RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& requests, const RunFolder& folder,
                    Simulation& simulation, Recorder& recorder, const Start& start) {
   const std::int64_t first_step = simulation.state().step;
+  recorder.watch(simulation);
   Runner runner(scene, options, requests, simulation, recorder, start.watch, start.checkpoint_step);
   RunResult result;
   try {
@@ -235,7 +237,7 @@ Loaded load(const std::filesystem::path& file) {
   loaded.run.scene = parse_stored_scene(header.scene, file.string());
   loaded.run.state = SimulationState(loaded.run.scene);
   FieldTable table = loaded.run.state.fields();
-  loaded.counters.list_fields(table);
+  loaded.counters.list_fields(table, loaded.run.scene);
   read_checkpoint(file, table);
   return loaded;
 }
@@ -321,6 +323,13 @@ RunResult go_on(const RunOptions& options, RunRequests& requests) {
   folder.cut_snapshots(loaded.counters.snapshots);
   folder.remove_summary();
   Recorder recorder(folder, scene, options.arguments, loaded.counters, step);
+  if (const std::int64_t lost = recorder.lost_contacts(); lost > 0) {
+    recorder.log("contacts lost", {{"rows", lost}});
+    if (options.notice)
+      options.notice(fmt::format("the last {} rows of the log of contacts are missing or damaged; it goes on without "
+                                 "them",
+                                 lost));
+  }
   recorder.log("resumed", {{"checkpoint", newest.path.filename().string()}, {"step", step}, {"threads", threads()}});
   return carry_on(scene, options, requests, folder, simulation, recorder, start);
 }

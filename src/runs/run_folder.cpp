@@ -23,16 +23,21 @@ bool is_numbered(std::string_view name, std::string_view prefix, std::string_vie
 bool is_own(std::string_view name) {
   if (name.ends_with(".tmp"))
     name.remove_suffix(4);
-  for (const std::string_view own : {"scene.toml", "series.csv", "summary.json", "log.jsonl"})
+  for (const std::string_view own : {"scene.toml", "series.csv", "impact_speeds.csv", "summary.json", "log.jsonl"})
     if (name == own)
       return true;
-  return is_numbered(name, "snap_", ".hdf") || is_numbered(name, "checkpoint_", ".h5");
+  return is_numbered(name, "snap_", ".hdf") || is_numbered(name, "checkpoint_", ".h5") ||
+         is_numbered(name, "collisions_", ".h5");
 }
 
 } // namespace
 
 fs::path RunFolder::snapshot(std::int64_t number) const {
   return path_ / fmt::format("snap_{:06}.hdf", number);
+}
+
+fs::path RunFolder::contacts(std::int64_t number) const {
+  return path_ / fmt::format("collisions_{:06}.h5", number);
 }
 
 void RunFolder::refuse_if_occupied() const {
@@ -78,6 +83,12 @@ void RunFolder::cut_snapshots(std::int64_t from_number) const {
   std::error_code ignored; // what cannot be removed will be replaced
   for (std::int64_t number = from_number; fs::exists(snapshot(number)); ++number)
     fs::remove(snapshot(number), ignored);
+}
+
+void RunFolder::cut_contacts(std::int64_t from_number) const {
+  std::error_code ignored; // what cannot be removed will be replaced
+  for (std::int64_t number = from_number; fs::exists(contacts(number)); ++number)
+    fs::remove(contacts(number), ignored);
 }
 
 void RunFolder::remove_summary() const {

@@ -14,7 +14,9 @@ public:
   std::filesystem::path series() const { return path_ / "series.csv"; }
   std::filesystem::path summary() const { return path_ / "summary.json"; }
   std::filesystem::path log() const { return path_ / "log.jsonl"; }
+  std::filesystem::path impact_speeds() const { return path_ / "impact_speeds.csv"; }
   std::filesystem::path snapshot(std::int64_t number) const;
+  std::filesystem::path contacts(std::int64_t number) const;
   const std::filesystem::path& path() const { return path_; }
 
   /// Throws UsageError when the name is taken by a file, or by a folder that holds anything.
@@ -32,6 +34,9 @@ public:
 
   /// Removes snapshots from this number on: the resumed run makes them again.
   void cut_snapshots(std::int64_t from_number) const;
+
+  /// The same of files of contacts.
+  void cut_contacts(std::int64_t from_number) const;
 
   /// Removes the summary of what the run was before: it is true no more. Throws IoError.
   void remove_summary() const;

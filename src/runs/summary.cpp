@@ -98,6 +98,7 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scen
                    {"stresses_s", cost.output.stresses},
                    {"snapshots_s", cost.output.snapshots},
                    {"checkpoints_s", cost.output.checkpoints},
+                   {"contacts_s", cost.output.contacts},
                    {"force_checks_s", cost.force_checks.seconds}};
   json["ns_per_particle_step"] = {{"drift", split.drift / passes},
                                   {"gravity", split.force("gravity") / passes},

@@ -261,6 +261,28 @@ std::vector<Key> course_keys() {
        .meaning = "wall time between checkpoints, besides those by checkpoint_every; 0: none by the clock",
        .range = KeyRange::at_least(0),
        .effect = output},
+
+      {.path = "output.collisions.min_speed",
+       .type = number,
+       .fallback = "0.0",
+       .unit = "m/s",
+       .meaning = "contacts with at least this normal speed are logged",
+       .range = KeyRange::at_least(0),
+       .effect = output},
+      {.path = "output.collisions.min_radius_sum",
+       .type = number,
+       .fallback = "0.0",
+       .unit = "m",
+       .meaning = "contacts of two particles whose radii sum up to at least this are logged",
+       .range = KeyRange::at_least(0),
+       .effect = output},
+      {.path = "output.collisions.share",
+       .type = number,
+       .fallback = "1.0",
+       .unit = "1",
+       .meaning = "share of these contacts that is logged, drawn by a hash",
+       .range = up_to(1),
+       .effect = output},
   };
 }
 
@@ -298,6 +320,7 @@ std::vector<Section> make_sections() {
       {.path = "start"},
       {.path = "time", .needed = true, .meaning = "it says how long the run is"},
       {.path = "output"},
+      {.path = "output.collisions"},
   };
   for (const ForceEntry& force : external_forces())
     sections.push_back({.path = force.table});

@@ -91,6 +91,14 @@ void read_times(Scene& scene, Settings& settings) {
   scene.output.checkpoint_every_minutes = settings.number("output.checkpoint_every_minutes");
 }
 
+std::optional<ContactLogSettings> read_contact_log(Settings& settings) {
+  if (!settings.has("output.collisions"))
+    return {};
+  return ContactLogSettings{settings.number("output.collisions.min_speed"),
+                            settings.number("output.collisions.min_radius_sum"),
+                            settings.number("output.collisions.share")};
+}
+
 enum class Purpose { start, go_on };
 
 Scene read_scene(Document document, const std::string& name, Purpose purpose, std::vector<std::string> notices) {
@@ -110,6 +118,7 @@ Scene read_scene(Document document, const std::string& name, Purpose purpose, st
   scene.gravity = read_gravity(settings, name);
   scene.external_forces = read_external_forces(settings, name);
   read_times(scene, settings);
+  scene.output.collisions = read_contact_log(settings);
   scene.resolved = settings.resolved();
   scene.motion = settings.motion();
   return scene;

@@ -13,6 +13,7 @@
 #include <keeler/particles/store.hpp>
 
 #include <memory>
+#include <span>
 
 namespace keeler {
 
@@ -42,9 +43,13 @@ inline double epicyclic_gain(const CollisionTally& tally, const Frequencies& f) 
 struct CollisionRecord {
   double time; ///< relative to the middle of the step, rad
   std::uint64_t low_id, high_id;
-  Image image;         ///< of the particle with the higher id
-  double normal_speed; ///< approach speed, m rad⁻¹
-  bool fast;           ///< faster than v_cut
+  Image image;                   ///< of the particle with the higher id
+  double normal_speed;           ///< approach speed, m rad⁻¹
+  bool fast;                     ///< faster than v_cut
+  double tangential_speed = 0.0; ///< before the contact, of centre against centre in the rotating frame, m rad⁻¹
+  double energy_lost = 0.0;      ///< kg m² rad⁻²
+  double radius_sum = 0.0;       ///< m
+  Vec3 place = Vec3::Zero();     ///< where the spheres touch, beside the particle with the lower id as it is stored, m
 };
 
 /// Looks on while drifts are carried out, and may say how: for measurements and tests. What happens is the same.
@@ -60,11 +65,15 @@ public:
   virtual Finder* stand_in() { return nullptr; }
   /// Whether the calls below are wanted. They come one at a time, in an order that no number of threads changes.
   virtual bool looks_on() const { return true; }
+  /// Whether recorded() is wanted. It costs no threads.
+  virtual bool wants_records() const { return false; }
 
   virtual void begins(const DriftStep&) {}
   virtual void searched(const Query&, const FinderResult&) {}
   virtual void collided(const CollisionRecord&) {}
   virtual void changed(std::size_t /*particle*/) {} ///< its velocity
+  /// At the end of each step: all its contacts in the order of events.
+  virtual void recorded(std::span<const CollisionRecord>) {}
 };
 
 class DriftPhase {

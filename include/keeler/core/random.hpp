@@ -14,7 +14,8 @@ enum class RandomPurpose : std::uint32_t {
   size = 3,
   relaxation = 4,
   gravity_origin = 5,
-  sample = 6
+  sample = 6,
+  contact = 7
 };
 
 /// Philox4x64-10 (Salmon et al. 2011) keyed by seed and purpose, counting draws of one id.

@@ -44,12 +44,20 @@ struct TimeSettings {
   std::int64_t end_step = 0; ///< steps
 };
 
+/// Which contacts are logged.
+struct ContactLogSettings {
+  double min_speed = 0.0;      ///< normal speed, m/s
+  double min_radius_sum = 0.0; ///< m
+  double share = 1.0;          ///< of these, drawn by a hash
+};
+
 struct OutputSettings {
-  std::int64_t series_every = 0;         ///< steps between rows of the series; 0: only at the start
-  std::int64_t stress_every = 0;         ///< steps between rows with gravity's energy and stress; 0: none
-  std::int64_t snapshot_every = 0;       ///< steps; 0: only at start and end
-  std::int64_t checkpoint_every = 0;     ///< steps; 0: none by the step
-  double checkpoint_every_minutes = 0.0; ///< of wall time; 0: none by the clock
+  std::int64_t series_every = 0;                ///< steps between rows of the series; 0: only at the start
+  std::int64_t stress_every = 0;                ///< steps between rows with gravity's energy and stress; 0: none
+  std::int64_t snapshot_every = 0;              ///< steps; 0: only at start and end
+  std::int64_t checkpoint_every = 0;            ///< steps; 0: none by the step
+  double checkpoint_every_minutes = 0.0;        ///< of wall time; 0: none by the clock
+  std::optional<ContactLogSettings> collisions; ///< none: no log
 };
 
 /// An external force that the scene asks for.

@@ -13,13 +13,19 @@ struct Domains final : DriftObserver {
   explicit Domains(std::size_t how_many) : count(how_many) {}
   bool looks_on() const override { return false; }
   std::size_t wants_domains() const override { return count; }
+  bool wants_records() const override { return true; }
+  void recorded(std::span<const CollisionRecord> of_step) override {
+    records.insert(records.end(), of_step.begin(), of_step.end());
+  }
   std::size_t count;
+  std::vector<CollisionRecord> records;
 };
 
 struct End {
   Particles particles;
   CollisionTally tally;
   DriftCosts costs;
+  std::vector<CollisionRecord> records;
 };
 
 End drift(const Patch& patch, const CollisionSettings& settings, double step, int steps, std::size_t domains) {
@@ -32,7 +38,7 @@ End drift(const Patch& patch, const CollisionSettings& settings, double step, in
     if (k % 4 == 3)
       ring.kick_all(0.05);
   }
-  return {ring.particles, ring.tally, ring.drift.costs()};
+  return {ring.particles, ring.tally, ring.drift.costs(), wanted.records};
 }
 
 } // namespace
@@ -60,6 +66,8 @@ TEST_CASE("domains carry out, defer and roll back what the sequence carries out"
         CHECK(test::same_bits(end.particles, expected.particles));
         CHECK(test::same_bits(end.tally, expected.tally));
         CHECK(end.costs.contacts == expected.costs.contacts);
+        CHECK(end.records.size() == end.costs.contacts);
+        CHECK(test::same_records(end.records, expected.records) == expected.records.size());
         contacts += end.costs.contacts;
         deferred += end.costs.deferred;
         in_sequence += end.costs.in_sequence;

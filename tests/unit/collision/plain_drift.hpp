@@ -107,6 +107,8 @@ private:
       return false;
     const double reduced_mass = a.mass * b.mass / (a.mass + b.mass);
     const Vec3 impulse = reduced_mass * (speed + after.speed) * normal;
+    const double tangential_speed = (relative.velocity + speed * normal).norm();
+    const Vec3 place = state_at(a.elements, f_, rotation).position + a.radius * normal;
     double gain = azimuthal_gain(a, -impulse / a.mass, f_, rotation);
     gain += azimuthal_gain(b, impulse / b.mass, f_, rotation);
     tally.azimuthal_gain += gain;
@@ -114,9 +116,11 @@ private:
     kick(b.elements, impulse / b.mass, f_, rotation);
     last_[places.first] = last_[places.second] = time;
     ++(after.fast ? tally.fast : tally.slow);
-    tally.energy_lost += 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
+    const double lost = 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
+    tally.energy_lost += lost;
     tally.momentum_flux += relative.position.x() * impulse.y();
-    records.push_back({time, low_id, high_id, image, speed, after.fast});
+    records.push_back(
+        {time, low_id, high_id, image, speed, after.fast, tangential_speed, lost, a.radius + b.radius, place});
     return true;
   }
 

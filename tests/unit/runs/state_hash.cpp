@@ -87,6 +87,9 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
       {"output.checkpoint_every_minutes", {"5.0", output}},
       {"output.series_every", {"0.05", output}},
       {"output.stress_every", {"0.2", output}},
+      {"output.collisions.min_speed", {"1e-4", output}},
+      {"output.collisions.min_radius_sum", {"1.0", output}},
+      {"output.collisions.share", {"0.5", output}},
   };
   const std::set<std::string> needless = {"planet.preset",
                                           "box.size_in_wavelengths",

@@ -1,0 +1,50 @@
+// Contacts as data: a row a contact, in SI, in files of HDF5 that each hold the next rows of one long table. The layout
+// is in docs/formats.md. A file is written whole or not at all.
+#pragma once
+
+#include <keeler/box/shearing_box.hpp>
+#include <keeler/core/vector.hpp>
+#include <keeler/io/provenance.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace keeler {
+
+/// One contact of two spheres.
+struct ContactRow {
+  std::int64_t step = 0; ///< steps done before it
+  double time_orbits = 0.0;
+  Vec3 place = Vec3::Zero(); ///< where the spheres touch, m
+  std::uint64_t low_id = 0, high_id = 0;
+  Image image;                   ///< of the particle with the higher id
+  double normal_speed = 0.0;     ///< of the approach, m/s
+  double tangential_speed = 0.0; ///< of the relative motion before the contact, m/s
+  bool fast = false;             ///< faster than v_cut
+
+  friend bool operator==(const ContactRow&, const ContactRow&) = default;
+};
+
+/// What stands in a file beside its rows.
+struct ContactMeta {
+  std::int64_t first_row = 0;     ///< number of its first row in the whole table
+  double orbital_frequency = 0.0; ///< rad/s
+  std::string scene;              ///< the resolved scene, as TOML
+  Provenance provenance;
+};
+
+struct ContactFile {
+  ContactMeta meta;
+  std::vector<ContactRow> rows;
+};
+
+/// Throws IoError.
+void write_contacts(const std::filesystem::path& file, std::span<const ContactRow> rows, const ContactMeta& meta);
+
+/// Throws IoError, also when the file is damaged or something else.
+ContactFile read_contacts(const std::filesystem::path& file);
+
+} // namespace keeler

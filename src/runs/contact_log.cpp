@@ -1,0 +1,126 @@
+#include "contact_log.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/random.hpp>
+#include <keeler/core/units.hpp>
+
+#include <algorithm>
+#include <bit>
+
+namespace keeler {
+namespace {
+
+const std::vector<std::string> speed_columns = {"since_orbits", "until_orbits", "speed_from_m_s",
+                                                "speed_to_m_s", "contacts",     "energy_lost_j"};
+
+// Rows stand at snapshots alone, so those after the last one will be made again.
+Series open_speeds(const RunFolder& folder, const std::optional<LogResume>& resume) {
+  return resume ? Series::resume(folder.impact_speeds(), speed_columns, resume->last_snapshot_step)
+                : Series::begin(folder.impact_speeds(), speed_columns);
+}
+
+} // namespace
+
+void ContactCounters::list_fields(FieldTable& table) {
+  table.scalar("contacts_logged", rows, "1", "rows of the log of contacts");
+  speeds.list_fields(table);
+}
+
+bool is_logged(const ContactLogSettings& settings, const CollisionRecord& record, double time_orbits,
+               double orbital_frequency) {
+  if (record.normal_speed * orbital_frequency < settings.min_speed || record.radius_sum < settings.min_radius_sum)
+    return false;
+  if (settings.share >= 1.0)
+    return true;
+  constexpr std::uint64_t odd = 0x9e3779b97f4a7c15; // one number for both ids
+  RandomStream random(std::bit_cast<std::uint64_t>(time_orbits), RandomPurpose::contact,
+                      odd * record.low_id + record.high_id);
+  return random.uniform() < settings.share;
+}
+
+ContactLog::ContactLog(const RunFolder& folder, const Scene& scene, const Provenance& provenance,
+                       const std::optional<LogResume>& resume, std::int64_t file_rows)
+    : folder_(folder), scene_(scene), provenance_(provenance), file_rows_(file_rows),
+      counters_(resume ? resume->counters : ContactCounters{}), speeds_(open_speeds(folder, resume)) {
+  if (resume)
+    take_up();
+  write_all(); // now, so that a run whose log cannot be written ends before its first step
+}
+
+// The rows of the last file up to the checkpoint's. What somebody removed or damaged is no reason to lose the run: the
+// table goes on with a gap.
+void ContactLog::take_up() {
+  const std::int64_t number = counters_.rows / file_rows_;
+  folder_.cut_contacts(number + 1);
+  first_row_ = number * file_rows_;
+  if (first_row_ == counters_.rows)
+    return;
+  try {
+    ContactFile file = read_contacts(folder_.contacts(number));
+    const std::int64_t wanted = counters_.rows - file.meta.first_row;
+    if (file.meta.first_row >= first_row_ && wanted >= 0 && wanted <= static_cast<std::int64_t>(file.rows.size())) {
+      first_row_ = file.meta.first_row;
+      rows_ = std::move(file.rows);
+      rows_.resize(static_cast<std::size_t>(wanted));
+      return;
+    }
+  } catch (const IoError&) {
+    // it is not there or damaged
+  }
+  lost_ = counters_.rows - first_row_;
+  first_row_ = counters_.rows;
+}
+
+void ContactLog::watch(Simulation& simulation) {
+  simulation_ = &simulation;
+  simulation.drift().observe(this);
+}
+
+void ContactLog::recorded(std::span<const CollisionRecord> records) {
+  const double omega = scene_.planet.orbital_frequency;
+  const std::int64_t step = simulation_->state().step;
+  for (const CollisionRecord& record : records) {
+    counters_.speeds.add(record.normal_speed * omega, record.energy_lost * omega * omega);
+    const double time = (static_cast<double>(step) + 0.5) * scene_.time.step + record.time / two_pi;
+    if (!is_logged(*scene_.output.collisions, record, time, omega))
+      continue;
+    rows_.push_back({step, time, record.place, record.low_id, record.high_id, record.image, record.normal_speed * omega,
+                     record.tangential_speed * omega, record.fast});
+    ++counters_.rows;
+  }
+}
+
+void ContactLog::write_full_files() {
+  for (std::int64_t end; (end = (first_row_ / file_rows_ + 1) * file_rows_) <= counters_.rows;) {
+    const auto full = static_cast<std::size_t>(end - first_row_);
+    write_file(full);
+    rows_.erase(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(full));
+    first_row_ = end;
+  }
+}
+
+void ContactLog::write_all() {
+  write_full_files();
+  if (written_ != counters_.rows)
+    write_file(rows_.size());
+  speeds_.sync();
+}
+
+void ContactLog::write_file(std::size_t rows) {
+  write_contacts(folder_.contacts(first_row_ / file_rows_), std::span(rows_).first(rows),
+                 {first_row_, scene_.planet.orbital_frequency, scene_.resolved, provenance_});
+  written_ = first_row_ + static_cast<std::int64_t>(rows);
+}
+
+void ContactLog::end_interval(std::int64_t last_snapshot_step, std::int64_t step) {
+  const double since = static_cast<double>(std::max<std::int64_t>(last_snapshot_step, 0)) * scene_.time.step;
+  const double until = static_cast<double>(step) * scene_.time.step;
+  ImpactSpeeds& speeds = counters_.speeds;
+  for (std::size_t bin = 0; bin < speeds.bins(); ++bin)
+    if (speeds.count(bin) > 0)
+      speeds_.append(step, std::vector<double>{since, until, speeds.from(bin), speeds.to(bin),
+                                               static_cast<double>(speeds.count(bin)), speeds.energy_lost(bin)});
+  speeds.clear();
+}
+
+} // namespace keeler

@@ -1,0 +1,43 @@
+#!/bin/bash
+# contacts.sh KEELER SOURCE_DIR: the log of contacts is the same however a run was cut into pieces and with any number of
+# threads; one that cannot be written ends the run with exit code 4 and one line, and the run goes on from there.
+# shellcheck source=tests/cli/helpers.sh
+source "$(dirname "$0")/helpers.sh"
+small_scene
+echo "collisions = {}" >>"$work/scene.toml" # in [output]
+
+# same NAME FOLDER: the log of the uninterrupted run, and its state
+same() {
+  local column
+  [ "$(state_hash "$work/whole")" = "$(state_hash "$2")" ] || fail "$1: another state"
+  for column in Step Time X Y Z LowID HighID ImageX ImageY NormalSpeed TangentialSpeed Fast; do
+    same_bytes "$1" "$work/whole/collisions_000000.h5" "$2/collisions_000000.h5" "/Contacts/$column"
+  done
+  cmp "$work/whole/impact_speeds.csv" "$2/impact_speeds.csv" || fail "$1: other impact speeds"
+}
+
+runs 0 run "$work/scene.toml" -o "$work/whole" --threads 1
+[ "$(wc -l <"$work/whole/impact_speeds.csv")" -gt 20 ] || fail "few rows: $(cat "$work/whole/impact_speeds.csv")"
+runs 0 run "$work/scene.toml" -o "$work/two" --threads 2
+same "two threads" "$work/two"
+
+runs 0 run "$work/scene.toml" -o "$work/half" --set time.end=0.5
+runs 0 resume "$work/half" --until 1
+same "half and half" "$work/half"
+
+interrupted KILL 137 "$work/killed"
+runs 0 resume "$work/killed"
+same "kill -9" "$work/killed"
+
+# A folder stands where the log is to be.
+runs 0 run "$work/scene.toml" -o "$work/blocked" --set time.end=0.5
+mv "$work/blocked/collisions_000000.h5" "$work/kept.h5"
+mkdir "$work/blocked/collisions_000000.h5"
+refuses_with 4 "a folder in the way" "collisions_000000.h5" resume "$work/blocked" --until 1
+rmdir "$work/blocked/collisions_000000.h5"
+mv "$work/kept.h5" "$work/blocked/collisions_000000.h5"
+runs 0 resume "$work/blocked" --until 1
+same "a folder in the way" "$work/blocked"
+
+refuses "a share of nothing" "output.collisions.share" check "$work/scene.toml" --set output.collisions.share=0
+report
