@@ -227,7 +227,7 @@ bool OptimisticLoop::carry_out(const StepAtHand& step, Particles& particles, Ste
     if (std::any_of(domains_.begin(), domains_.end(), [](const Domain& d) { return d.failed; }))
       return roll_back_all();
   }
-  return true;
+  return put_in_order() || roll_back_all();
 }
 
 // Where the first contacts are tells where to cut, so that each domain has as many.
@@ -353,6 +353,44 @@ void OptimisticLoop::take_back(Domain& domain) {
   }
 }
 
+// Contacts of one domain are in order, and of the next ones of all domains the one with the smallest key comes first.
+// False: of several contacts at one instant a later round has some.
+bool OptimisticLoop::put_in_order() {
+  std::vector<std::uint32_t> next(domains_.size());
+  std::vector<double> times; // of the next ones
+  const auto time_of = [&](std::size_t s) {
+    const Domain& its = domains_[s];
+    while (next[s] < its.contacts.size() && its.is_rolled_back[next[s]])
+      ++next[s];
+    return next[s] < its.contacts.size() ? its.contacts[next[s]].time : HUGE_VAL;
+  };
+  const auto ids_of = [&](std::size_t s) {
+    const Change* both = &domains_[s].changes[2 * next[s]];
+    return std::pair(particles_->ids[both[0].place], particles_->ids[both[1].place]);
+  };
+  for (std::size_t s = 0; s < domains_.size(); ++s)
+    times.push_back(time_of(s));
+  order_.clear();
+  double last_time = -HUGE_VAL;
+  bool last_is_late = false; // some contact at that instant is not of the first round
+  for (;;) {
+    std::size_t first = 0;
+    for (std::size_t s = 1; s < domains_.size(); ++s)
+      if (times[s] < times[first] || (times[s] == times[first] && times[s] < HUGE_VAL && ids_of(s) < ids_of(first)))
+        first = s;
+    const double time = times[first];
+    if (time == HUGE_VAL)
+      return true;
+    const bool is_late = first >= end_of(0);
+    if (time == last_time && (is_late || last_is_late))
+      return false;
+    last_time = time;
+    last_is_late = is_late;
+    order_.emplace_back(first, next[first]++);
+    times[first] = time_of(first);
+  }
+}
+
 // Everything as at the start of the step.
 bool OptimisticLoop::roll_back_all() {
   so_far_->begin_step(particles_->size(), step_->begin);
@@ -385,7 +423,8 @@ std::uint64_t OptimisticLoop::most_partners() const {
 }
 
 std::size_t OptimisticLoop::bytes() const {
-  std::size_t total = newest_.capacity() * sizeof(std::uint32_t) + barred_.capacity();
+  std::size_t total =
+      newest_.capacity() * sizeof(std::uint32_t) + barred_.capacity() + order_.capacity() * sizeof(order_[0]);
   for (const Domain& d : domains_)
     total += (d.given.capacity() + d.aside.capacity() + d.deferred.capacity()) * sizeof(Event) + d.events.bytes() +
              d.barred.capacity() * sizeof(Barred) + d.changes.capacity() * sizeof(Change) +

@@ -19,8 +19,9 @@
 // changes but the last round; `newest_` is each particle's last change; changes of a particle follow each other in
 // time; a particle's stamp never comes back, so that what was found for a path that was rolled back never holds.
 //
-// What does not fit, be it an orbit too fast for nearest images, contacts of different domains at an instant of which
-// one made the other, or an error, is left to the sequential loop, with everything as at the start of the step.
+// What does not fit, be it an orbit too fast for nearest images, several contacts at one instant of which a later round
+// has one (which of them the sequence has first depends on what was found when), or an error, is left to the sequential
+// loop, with everything as at the start of the step.
 #pragma once
 
 #include "contact_loop.hpp"
@@ -44,7 +45,7 @@ public:
 
   /// How many of the step there were.
   std::size_t contacts() const;
-  /// Calls visit(contact, its record or null) for each of them, in the order of events. Reads nothing but ids besides.
+  /// Calls visit(contact, its record or null) for each of them, in the order of events.
   template<class Visit> void visit_contacts(const Visit& visit) const;
   /// Each particle that was hit; who was rolled back and hit again, again.
   void list_touched(std::vector<std::uint32_t>& touched) const;
@@ -123,6 +124,7 @@ private:
   std::vector<Event> left_by(std::size_t round) const;
   void restore(const Change& change, bool alone);
   void take_back(Domain& domain);
+  bool put_in_order();
   bool roll_back_all();
 
   // the step at hand
@@ -137,39 +139,13 @@ private:
   std::vector<Domain> domains_;       // round by round
   std::vector<std::uint32_t> newest_; // the number of each particle's last change, if it has a stamp
   std::vector<std::uint8_t> barred_;  // each particle from its domain of the round at hand
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> order_; // of events: domain and number of each contact that held
 };
 
-// Those of one domain are in order, and of the next ones of all domains the one with the smallest key comes first.
 template<class Visit> void OptimisticLoop::visit_contacts(const Visit& visit) const {
-  std::vector<std::size_t> next(domains_.size());
-  std::vector<double> times; // of the next ones
-  const auto time_of = [&](std::size_t s) {
-    return next[s] < domains_[s].contacts.size() ? domains_[s].contacts[next[s]].time : HUGE_VAL;
-  };
-  const auto ids_of = [&](std::size_t s) {
-    const Change* both = &domains_[s].changes[2 * next[s]];
-    return std::pair(step_->particles->ids[both[0].place], step_->particles->ids[both[1].place]);
-  };
-  const auto skip_rolled_back = [&](std::size_t s) {
-    while (next[s] < domains_[s].contacts.size() && domains_[s].is_rolled_back[next[s]])
-      ++next[s];
-  };
-  for (std::size_t s = 0; s < domains_.size(); ++s) {
-    skip_rolled_back(s);
-    times.push_back(time_of(s));
-  }
-  for (;;) {
-    std::size_t first = 0;
-    for (std::size_t s = 1; s < domains_.size(); ++s)
-      if (times[s] < times[first] || (times[s] == times[first] && times[s] < HUGE_VAL && ids_of(s) < ids_of(first)))
-        first = s;
-    if (times[first] == HUGE_VAL)
-      return;
-    const Domain& its = domains_[first];
-    visit(its.contacts[next[first]], its.records.empty() ? nullptr : &its.records[next[first]]);
-    ++next[first];
-    skip_rolled_back(first);
-    times[first] = time_of(first);
+  for (const auto& [domain, contact] : order_) {
+    const Domain& its = domains_[domain];
+    visit(its.contacts[contact], its.records.empty() ? nullptr : &its.records[contact]);
   }
 }
 
