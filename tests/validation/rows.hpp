@@ -34,6 +34,7 @@ struct Subject {
 };
 
 std::vector<Subject> exact_subjects();
+std::vector<Subject> two_body_subjects();
 std::vector<Subject> balance_subjects();
 std::vector<Subject> literature_subjects();
 
