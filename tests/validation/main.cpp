@@ -87,6 +87,10 @@ int measure(const Options& options) {
         sections.push_back({subject.section, {}});
       sections.back().second.insert(sections.back().second.end(), rows.begin(), rows.end());
     }
+  if (sections.empty()) {
+    fmt::print(stderr, "validation: no subject is called {}\n", options.only);
+    return 2;
+  }
   if (!options.page.empty())
     write_text(options.page, page(sections));
   if (different > 0)
