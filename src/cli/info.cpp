@@ -1,6 +1,7 @@
-// keeler info: what is in a snapshot or a checkpoint.
+// keeler info: what is in a snapshot, a checkpoint or a file of contacts.
 #include "command.hpp"
 
+#include <keeler/io/contacts.hpp>
 #include <keeler/io/describe.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/runs/run.hpp>
@@ -14,22 +15,38 @@
 namespace keeler {
 namespace {
 
-nlohmann::ordered_json describe(const std::string& path) {
-  const FileDescription file = describe_file(path);
+// What tells one file from another of its kind.
+nlohmann::ordered_json describe_state(const std::string& path, FileKind kind) {
   nlohmann::ordered_json json;
-  json["file"] = path;
-  json["kind"] = file.kind == FileKind::checkpoint ? "checkpoint" : "snapshot";
-  json["format_version"] = file.format_version;
-  if (file.kind == FileKind::checkpoint) {
+  if (kind == FileKind::checkpoint) {
     const StoredRun run = load_checkpoint(path);
     json["state_hash"] = state_hash(run.state, run.scene);
     json["time_orbits"] = static_cast<double>(run.state.step) * run.scene.time.step;
     json["particle_count"] = run.state.particles.size();
-  } else {
+  } else if (kind == FileKind::snapshot) {
     const Patch patch = read_snapshot(path).patch;
     json["time_orbits"] = patch.time_orbits;
     json["particle_count"] = patch.size();
+  } else {
+    const ContactFile contacts = read_contacts(path);
+    json["contact_count"] = contacts.rows.size();
+    if (!contacts.rows.empty()) {
+      json["first_time_orbits"] = contacts.rows.front().time_orbits;
+      json["last_time_orbits"] = contacts.rows.back().time_orbits;
+    }
   }
+  return json;
+}
+
+nlohmann::ordered_json describe(const std::string& path) {
+  const FileDescription file = describe_file(path);
+  nlohmann::ordered_json json;
+  json["file"] = path;
+  json["kind"] = file.kind == FileKind::checkpoint ? "checkpoint"
+                 : file.kind == FileKind::snapshot ? "snapshot"
+                                                   : "contacts";
+  json["format_version"] = file.format_version;
+  json.update(describe_state(path, file.kind));
   for (const FieldDescription& field : file.fields) {
     nlohmann::ordered_json entry = {
         {"type", field.type}, {"shape", field.shape}, {"unit", field.unit}, {"about", field.about}};
@@ -43,9 +60,10 @@ nlohmann::ordered_json describe(const std::string& path) {
 }
 
 void print_text(const nlohmann::ordered_json& json) {
-  for (const char* key : {"file", "kind", "format_version", "state_hash", "time_orbits", "particle_count"})
+  for (const char* key : {"file", "kind", "format_version", "state_hash", "time_orbits", "particle_count",
+                          "contact_count", "first_time_orbits", "last_time_orbits"})
     if (json.contains(key))
-      fmt::print("{:15} {}\n", key, json[key].is_string() ? json[key].get<std::string>() : json[key].dump());
+      fmt::print("{:17} {}\n", key, json[key].is_string() ? json[key].get<std::string>() : json[key].dump());
   fmt::print("\n");
   for (const auto& [name, field] : json["fields"].items()) {
     const std::string shape =
@@ -66,8 +84,10 @@ void add_info(CLI::App& program, Action& action) {
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App& command = *program.add_subcommand("info", "show what is in a snapshot or a checkpoint");
-  command.add_option("FILE", options->file, "a snapshot or a checkpoint")->required()->type_name("");
+  CLI::App& command = *program.add_subcommand("info", "show what is in a snapshot, a checkpoint or a file of contacts");
+  command.add_option("FILE", options->file, "a snapshot, a checkpoint or a file of contacts")
+      ->required()
+      ->type_name("");
   command.add_flag("--json", options->json, "print it as JSON");
   command.callback([options, &action] {
     action = [options] {

@@ -82,11 +82,14 @@ FileDescription describe_checkpoint(const hdf5::Handle& image) {
   return description;
 }
 
-FileDescription describe_snapshot(const hdf5::Handle& image) {
+// A file whose format and scene stand in groups of their own.
+FileDescription describe_table(const hdf5::Handle& image, FileKind kind, const char* table,
+                               std::initializer_list<const char*> groups) {
   FileDescription description;
+  description.kind = kind;
   description.format_version = hdf5::read_attribute<std::int64_t>(hdf5::open_group(image, "Code"), "format_version");
-  add_fields(description, image, "PartType1");
-  for (const char* group : {"Header", "RingBox", "Code", clumping_group})
+  add_fields(description, image, table);
+  for (const char* group : groups)
     if (hdf5::exists(image, group))
       add_attributes(description, hdf5::open_group(image, group), group);
   description.scene = hdf5::read_text_attribute(hdf5::open_group(image, "Parameters"), "scene");
@@ -100,12 +103,17 @@ FileDescription describe_file(const std::filesystem::path& file) {
   try {
     if (has_format(image, checkpoint_format))
       return describe_checkpoint(image);
-    if (hdf5::exists(image, "Code") && has_format(hdf5::open_group(image, "Code"), snapshot_format))
-      return describe_snapshot(image);
+    if (hdf5::exists(image, "Code")) {
+      const hdf5::Handle code = hdf5::open_group(image, "Code");
+      if (has_format(code, snapshot_format))
+        return describe_table(image, FileKind::snapshot, "PartType1", {"Header", "RingBox", "Code", clumping_group});
+      if (has_format(code, contacts_format))
+        return describe_table(image, FileKind::contacts, "Contacts", {"Contacts", "Code"});
+    }
   } catch (const IoError& error) {
     throw IoError(fmt::format("cannot read '{}': {}", file.string(), error.what()));
   }
-  throw IoError(fmt::format("'{}' is neither a snapshot nor a checkpoint of Keeler", file.string()));
+  throw IoError(fmt::format("'{}' is no snapshot, checkpoint or file of contacts of Keeler", file.string()));
 }
 
 } // namespace keeler

@@ -18,6 +18,9 @@ same() {
 
 runs 0 run "$work/scene.toml" -o "$work/whole" --threads 1
 [ "$(wc -l <"$work/whole/impact_speeds.csv")" -gt 20 ] || fail "few rows: $(cat "$work/whole/impact_speeds.csv")"
+runs 0 info "$work/whole/collisions_000000.h5"
+prints "info" "contact_count"
+prints "info" "NormalSpeed"
 runs 0 run "$work/scene.toml" -o "$work/two" --threads 2
 same "two threads" "$work/two"
 

@@ -9,7 +9,7 @@
 
 namespace keeler {
 
-enum class FileKind { checkpoint, snapshot };
+enum class FileKind { checkpoint, snapshot, contacts };
 
 struct FieldDescription {
   std::string name;
@@ -28,7 +28,7 @@ struct FileDescription {
   std::string scene;                             ///< the resolved scene, as TOML
 };
 
-/// Describes a snapshot or a checkpoint. Throws IoError for damage and for any other kind of file.
+/// Describes a snapshot, a checkpoint or a file of contacts. Throws IoError for damage and for any other kind of file.
 FileDescription describe_file(const std::filesystem::path& file);
 
 } // namespace keeler
