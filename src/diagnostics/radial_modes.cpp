@@ -3,6 +3,7 @@
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/mean.hpp>
+#include <keeler/diagnostics/time_series.hpp>
 
 #include <cmath>
 
@@ -24,6 +25,16 @@ struct Sums {
 
 double RadialMode::epicyclic_speed(double kappa) const {
   return std::sqrt(std::norm(velocity_x) + std::norm(2.0 / kappa * velocity_y));
+}
+
+// With φ = κt ∓ kx, v_x = κ e sin φ and 2 v_y/κ = κ e cos φ are the real parts of ±i and 1 times κ e exp(∓iκt)
+// exp(ikx).
+std::complex<double> RadialMode::outward(double kappa) const {
+  return velocity_y / kappa - std::complex(0.0, 0.5) * velocity_x;
+}
+
+std::complex<double> RadialMode::inward(double kappa) const {
+  return velocity_y / kappa + std::complex(0.0, 0.5) * velocity_x;
 }
 
 std::vector<RadialMode> radial_modes(const Patch& patch, int count) {
@@ -69,8 +80,13 @@ std::optional<Growth> growth(std::span<const double> times, std::span<const doub
     return std::nullopt;
   Growth result;
   result.rate = tl / tt;
-  if (values.size() > 2)
-    result.error = std::sqrt(std::max(0.0, ll - tl * tl / tt) / ((count - 2.0) * tt));
+  if (values.size() > 2) {
+    std::vector<double> about_line;
+    for (std::size_t k = 0; k < values.size(); ++k)
+      about_line.push_back(std::log(values[k]) - mean_log - result.rate * (times[k] - mean_time));
+    const double independent = statistical_inefficiency(about_line);
+    result.error = std::sqrt(independent * std::max(0.0, ll - tl * tl / tt) / ((count - 2.0) * tt));
+  }
   return result;
 }
 

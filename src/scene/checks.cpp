@@ -44,7 +44,9 @@ bool fits_type(const Key& key, const Value& value) {
   }
   case KeyType::rows: {
     const auto* rows = std::get_if<NumberRows>(&value);
-    return std::holds_alternative<std::string>(value) ||
+    const auto* list = std::get_if<std::vector<double>>(&value);
+    const bool none = list && list->empty() && !key.fallback.empty(); // a key that may be left out may have no rows
+    return none || std::holds_alternative<std::string>(value) ||
            (rows && std::all_of(rows->begin(), rows->end(),
                                 [&](const std::vector<double>& row) { return row.size() == key.columns.size(); }));
   }

@@ -185,6 +185,21 @@ std::vector<Key> streamline_keys() {
   };
 }
 
+std::vector<Key> mode_keys() {
+  const auto key = [](const char* name, const char* meaning) {
+    return Key{.path = std::string("particles.modes.") + name,
+               .type = KeyType::rows,
+               .fallback = "[]",
+               .meaning = meaning,
+               .columns = {"waves in the box", "amplitude of the relative surface density",
+                           "phase in degrees, with a crest at x = -phase/k"},
+               .effect = KeyEffect::start};
+  };
+  return {key("outward", "epicyclic waves along the radius at the start that travel outward"),
+          key("inward", "the same, inward"),
+          key("standing", "the same, standing; their density is largest at the start")};
+}
+
 std::vector<Key> collision_keys() {
   using enum KeyType;
   return {
@@ -296,6 +311,7 @@ std::vector<Key> make_keys() {
             .effect = KeyEffect::start},
            "particles.sizes", size_laws());
   add(streamline_keys());
+  add(mode_keys());
   add(collision_keys());
   add_laws(keys,
            {.type = KeyType::choice, .fallback = "\"bridges\"", .meaning = "how much normal speed a bounce keeps"},
@@ -314,6 +330,7 @@ std::vector<Section> make_sections() {
       {.path = "particles", .needed = true, .meaning = "it says what is in the patch", .replaced_by = "start.from"},
       {.path = "particles.sizes", .needed = true, .meaning = "it says how large they are", .replaced_by = "start.from"},
       {.path = "particles.streamlines", .replaced_by = "start.from"},
+      {.path = "particles.modes", .replaced_by = "start.from"},
       {.path = "collisions"},
       {.path = "collisions.restitution"},
       {.path = "gravity"},

@@ -1,5 +1,6 @@
 #include "particles_and_box.hpp"
 
+#include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/scene/derived.hpp>
@@ -26,6 +27,60 @@ StreamlineSettings read_streamlines(const Settings& settings) {
     return {};
   return {static_cast<int>(settings.integer("particles.streamlines.waves")),
           settings.number("particles.streamlines.bunching"), settings.number("particles.streamlines.inclination")};
+}
+
+// Of all modes together: where their amplitudes sum up to 1 streamlines may cross.
+constexpr double most_bunching = 0.9;
+
+ModeSettings read_mode(const std::vector<double>& row, ModeSettings::Direction direction, const std::string& which) {
+  const auto require = [&](const char* what, double value, const KeyRange& range, const char* why) {
+    if (!range.contains(value))
+      throw UsageError(
+          fmt::format("{} has {} {:g} (it must be {}{}); correct it", which, what, value, range.words(), why));
+  };
+  if (row[0] != std::floor(row[0]))
+    throw UsageError(fmt::format("{} has {:g} waves (the box is periodic); give a whole number", which, row[0]));
+  require("waves:", row[0], {.low = 1, .high = 1000}, "");
+  require("the amplitude", row[1], {.low = 0, .high = most_bunching, .low_open = true}, ": at 1 streamlines cross");
+  require("the phase", row[2], {.low = -360, .high = 360}, " degrees");
+  return {direction, static_cast<int>(row[0]), row[1], row[2]};
+}
+
+void read_modes(Settings& settings, const std::string& name, const char* key, ModeSettings::Direction direction,
+                std::vector<ModeSettings>& modes) {
+  const std::string section = "particles.modes", path = fmt::format("{}.{}", section, key),
+                    place = settings.place(path);
+  const Parameters parameters = settings.parameters(section, name);
+  const NumberRows& rows = parameters.rows(key);
+  try {
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      modes.push_back(read_mode(rows[k], direction, fmt::format("row {} of {}", k + 1, path)));
+  } catch (const UsageError& fault) {
+    fail_at(place, fault.what());
+  }
+}
+
+std::vector<ModeSettings> read_modes(Settings& settings, const std::string& name) {
+  std::vector<ModeSettings> modes;
+  if (!settings.has("particles.modes"))
+    return modes;
+  const std::string place = settings.place("particles.modes");
+  if (settings.has("particles.streamlines"))
+    fail_at(place, "[particles.modes] cannot stand beside [particles.streamlines] (either is the mean motion at the "
+                   "start); keep one of the two");
+  read_modes(settings, name, "outward", ModeSettings::Direction::outward, modes);
+  read_modes(settings, name, "inward", ModeSettings::Direction::inward, modes);
+  read_modes(settings, name, "standing", ModeSettings::Direction::standing, modes);
+  if (modes.empty())
+    fail_at(place, "[particles.modes] has no mode in it; add for example outward = [[1, 0.1, 0.0]]");
+  double sum = 0.0;
+  for (const ModeSettings& mode : modes)
+    sum += mode.amplitude;
+  if (!(sum <= most_bunching))
+    fail_at(place, fmt::format("the amplitudes of [particles.modes] sum up to {:.3g} (at 1 streamlines cross); lower "
+                               "them to {} in all",
+                               sum, most_bunching));
+  return modes;
 }
 
 // The key that sets how much there is, and the optical depth it asks for (0 when a count waits for the box).
@@ -112,7 +167,9 @@ void check_filling(Scene& scene, const std::string& place) {
                                "optical depth from {:.3g} to at most {:.2f}{}",
                                filling, refused_filling, std::ceil(hot * 100.0) / 100.0, depth,
                                std::floor(thin * depth / bunched * 100.0) / 100.0,
-                               bunched > depth ? " or lower the bunching" : ""));
+                               !(bunched > depth)        ? ""
+                               : particles.modes.empty() ? " or lower the bunching"
+                                                         : " or lower the amplitudes of the modes"));
   }
   if (filling > largest_filling)
     scene.notices.push_back(fmt::format("the start has a flat-topped layer, its mid-plane filled to {:.2f}: a Gaussian "
@@ -129,6 +186,7 @@ void read_particles_and_box(Scene& scene, Settings& settings, const std::string&
   particles.velocity_dispersion = settings.number("particles.velocity_dispersion");
   particles.seed = static_cast<std::uint64_t>(settings.integer("particles.seed"));
   particles.streamlines = read_streamlines(settings);
+  particles.modes = read_modes(settings, name);
   const Amount amount = read_amount(settings, particles);
   read_box(scene, settings, amount);
   const std::string place = settings.place(amount.key); // before it is resolved to a count

@@ -126,6 +126,13 @@ Scene read_scene(Document document, const std::string& name, Purpose purpose, st
 
 } // namespace
 
+double ParticleSettings::bunching() const {
+  double sum = streamlines.bunching;
+  for (const ModeSettings& mode : modes)
+    sum += mode.amplitude;
+  return sum;
+}
+
 double Scene::step_length() const {
   return two_pi * time.step;
 }
@@ -141,7 +148,7 @@ double Scene::optical_depth() const {
 }
 
 double Scene::bunched_optical_depth() const {
-  return optical_depth() / (1.0 - particles.streamlines.bunching);
+  return optical_depth() / (1.0 - particles.bunching());
 }
 
 Scene parse_scene(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,

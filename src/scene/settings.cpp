@@ -95,6 +95,8 @@ NumberRows Settings::rows(const Key& key, const std::string& scene_name) {
   const Value& value = find_entry(document_, key.path)->value;
   if (const auto* given = std::get_if<NumberRows>(&value))
     return *given;
+  if (std::holds_alternative<std::vector<double>>(value)) // []
+    return {};
   const std::string place = this->place(key.path), path = file_path(key.path, scene_name);
   NumberRows rows = read_rows(path, key, place);
   if (key.effect == KeyEffect::motion)

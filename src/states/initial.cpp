@@ -77,6 +77,19 @@ double own_room(const UniformRequest& request) {
   return std::pow(radius * height_in_radii, 2);
 }
 
+Streamlines streamlines_of(const Scene& scene) {
+  const StreamlineSettings& settings = scene.particles.streamlines;
+  Streamlines streamlines = Streamlines::bunched(settings.waves, scene.size_x, settings.bunching);
+  streamlines.inclination = settings.inclination * scene.particles.sizes.mean_power(1);
+  for (const ModeSettings& mode : scene.particles.modes) {
+    const auto add = mode.direction == ModeSettings::Direction::outward  ? &Streamlines::add_outward
+                     : mode.direction == ModeSettings::Direction::inward ? &Streamlines::add_inward
+                                                                         : &Streamlines::add_standing;
+    (streamlines.*add)(mode.waves, scene.size_x, mode.amplitude, mode.phase_degrees * pi / 180.0);
+  }
+  return streamlines;
+}
+
 UniformRequest request_of(const Scene& scene) {
   const double mean_radius = scene.particles.sizes.mean_power(1);
   UniformRequest request;
@@ -87,9 +100,7 @@ UniformRequest request_of(const Scene& scene) {
   request.dispersion_x = scene.particles.velocity_dispersion * mean_radius;
   request.dispersion_z = vertical_share * request.dispersion_x;
   request.own_room = own_room(request);
-  const StreamlineSettings& streamlines = scene.particles.streamlines;
-  request.streamlines = Streamlines::bunched(streamlines.waves, scene.size_x, streamlines.bunching);
-  request.streamlines.inclination = streamlines.inclination * mean_radius;
+  request.streamlines = streamlines_of(scene);
   request.seed = scene.particles.seed;
   return request;
 }

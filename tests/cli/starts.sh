@@ -39,6 +39,11 @@ prints "split" "processor: start "
 refuses "too dense" "raise velocity_dispersion to at least 3.44 or lower the optical depth from 4 to at most 3.05" \
   generate "$work/dense.toml" --set particles.optical_depth=4.0 -o "$work/none.hdf"
 
+refuses "modes that make streamlines cross" "sum up to 1.1 (at 1 streamlines cross)" \
+  generate "$work/scene.toml" --set 'particles.modes={outward=[[1,0.6,0]], standing=[[2,0.5,0]]}' -o "$work/none.hdf"
+refuses "a mode that does not fit the box" "row 1 of particles.modes.outward has waves: 0" \
+  generate "$work/scene.toml" --set 'particles.modes.outward=[[0,0.1,0]]' -o "$work/none.hdf"
+
 # A stop, in a start that takes ten seconds and more. The program is ready for signals when it catches TERM (bit 14).
 catches_signals() { ((0x$(sed -n 's/^SigCgt:[[:space:]]*//p' "/proc/$1/status" 2>/dev/null || echo 0) & 0x4000)); }
 stops() {

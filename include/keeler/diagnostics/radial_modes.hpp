@@ -21,6 +21,11 @@ struct RadialMode {
   /// √(|v_x|² + |2Ω v_y/κ|²), m rad⁻¹: of an epicyclic oscillation it stays the same while v_x and v_y change places,
   /// in standing and in travelling waves.
   double epicyclic_speed(double kappa) const;
+
+  /// The epicyclic waves whose crests travel outward and inward: κ e exp(iφ) each, m rad⁻¹. The squares of their
+  /// absolute values add up to half of the square of the epicyclic speed.
+  std::complex<double> outward(double kappa) const;
+  std::complex<double> inward(double kappa) const;
 };
 
 /// Modes 1 … count.
@@ -31,8 +36,10 @@ double radial_mode_noise(const Patch& patch);
 
 /// Slope of a straight line fitted to ln(value) over time by least squares.
 struct Growth {
-  double rate = 0.0;           ///< per unit of time
-  std::optional<double> error; ///< standard error by the scatter about the line; none of fewer than three values
+  double rate = 0.0; ///< per unit of time
+  /// Standard error by the scatter about the line, with neighbours as independent as they are
+  /// (statistical_inefficiency() in time_series.hpp; at equal intervals); none of fewer than three values.
+  std::optional<double> error;
 };
 
 /// None unless there are two values above 0 at different times, and none of them is 0 or less.

@@ -29,6 +29,15 @@ struct StreamlineSettings {
   double inclination = 0.0; ///< ⟨r⟩
 };
 
+/// A radial mode at the start, one term of the mean motion: an epicyclic wave with a whole number of crests in the box.
+struct ModeSettings {
+  enum class Direction { outward, inward, standing };
+  Direction direction = Direction::outward; ///< in which its crests travel
+  int waves = 1;                            ///< n of k = 2π n / L_x
+  double amplitude = 0.0;                   ///< of Σ/⟨Σ⟩ − 1; of a standing wave the largest
+  double phase_degrees = 0.0;               ///< of Σ/⟨Σ⟩ − 1 = amplitude cos(kx + phase) at the start
+};
+
 struct ParticleSettings {
   std::size_t count = 0; ///< N, derived when the file gives τ or Σ
   double density = 0.0;  ///< kg/m³
@@ -36,6 +45,11 @@ struct ParticleSettings {
   double velocity_dispersion = 2.0; ///< c_x in ⟨r⟩ Ω
   std::uint64_t seed = 1;
   StreamlineSettings streamlines;
+  std::vector<ModeSettings> modes; ///< none beside patterned streamlines
+
+  /// The largest that 1 − spacing of streamlines may come to be, in their mean spacing: q, or the sum of the
+  /// amplitudes.
+  double bunching() const;
 };
 
 /// Steps are integers: `end` and the schedules are rounded to whole kick intervals.

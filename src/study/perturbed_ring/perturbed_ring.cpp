@@ -21,7 +21,7 @@ constexpr double orbital_frequency = 1.95e-4; // rad/s; a constant restitution d
 struct Ring {
   Particles particles;
   ShearingBox box;
-  Streamlines streamlines;
+  EccentricityWave pattern;
 };
 
 Ring make_ring(const PerturbedRing& settings, double step) {
@@ -35,7 +35,7 @@ Ring make_ring(const PerturbedRing& settings, double step) {
   request.streamlines = Streamlines::bunched(settings.waves, side, settings.bunching);
   request.streamlines.inclination = settings.inclination;
   request.seed = settings.seed;
-  return {particles_from(uniform_patch(request), 0.5 * step), request.box, request.streamlines};
+  return {particles_from(uniform_patch(request), 0.5 * step), request.box, request.streamlines.waves.front()};
 }
 
 // The pattern's amplitude: the mean of the eccentricity vectors, each turned back by its phase Ωt + kX at the epoch.
@@ -43,17 +43,17 @@ std::complex<double> pattern_amplitude(const Ring& ring, double epoch) {
   std::complex<double> sum = 0.0;
   for (const Body& body : ring.particles.bodies)
     sum += std::complex(body.elements.e_cos, body.elements.e_sin) *
-           std::polar(1.0, -(epoch + ring.streamlines.wave_number * body.elements.guiding_x));
+           std::polar(1.0, -(epoch + ring.pattern.wave_number * body.elements.guiding_x));
   return sum / static_cast<double>(ring.particles.size());
 }
 
 // A radial impulse 2 Im(m exp i(Ωt + kX)) brings what is missing, m, back to the mean pattern: half of it works on the
 // pattern, the other half turns against it and comes to nothing in the mean over X.
 void drive(Ring& ring, double epoch, double step) {
-  const std::complex<double> missing = ring.streamlines.eccentricity - pattern_amplitude(ring, epoch);
+  const std::complex<double> missing = ring.pattern.eccentricity - pattern_amplitude(ring, epoch);
   const Rotation start(frequencies, -0.5 * step);
   for (Body& body : ring.particles.bodies) {
-    const double phase = epoch - 0.5 * step + ring.streamlines.wave_number * body.elements.guiding_x;
+    const double phase = epoch - 0.5 * step + ring.pattern.wave_number * body.elements.guiding_x;
     const double impulse = 2.0 * std::imag(missing * std::polar(1.0, phase));
     kick(body.elements, Vec3(impulse, 0.0, 0.0), frequencies, start);
   }

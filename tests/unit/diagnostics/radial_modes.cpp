@@ -2,6 +2,7 @@
 
 #include "states.hpp"
 
+#include <keeler/core/random.hpp>
 #include <keeler/core/threads.hpp>
 
 #include <doctest/doctest.h>
@@ -82,6 +83,52 @@ TEST_CASE("growth is the slope of the logarithm") {
   CHECK(!growth(std::span(times).first(1), std::span(exact).first(1)));
   CHECK(!growth(std::array{1.0, 1.0}, std::array{1.0, 2.0}));
   CHECK(!growth(std::array{1.0, 2.0}, std::array{0.0, 2.0}));
+}
+
+TEST_CASE("the error of a growth rate holds where the scatter lasts") {
+  // noise that forgets a third of itself a sample, about a growth of 0.01: the rates of many such series scatter by it
+  constexpr int samples = 80, series = 300;
+  double squares = 0.0, errors = 0.0;
+  for (int s = 0; s < series; ++s) {
+    RandomStream random(7, RandomPurpose::position, static_cast<std::uint64_t>(s));
+    std::vector<double> times, values;
+    double noise = 0.0;
+    for (int k = -20; k < samples; ++k) {
+      noise = 0.67 * noise + 0.1 * random.normal();
+      if (k < 0)
+        continue;
+      times.push_back(k);
+      values.push_back(std::exp(0.01 * k + noise));
+    }
+    const Growth fit = *growth(times, values);
+    squares += (fit.rate - 0.01) * (fit.rate - 0.01) / series;
+    errors += *fit.error * *fit.error / series;
+  }
+  CHECK(std::sqrt(errors / squares) == doctest::Approx(1.0).epsilon(0.2));
+}
+
+TEST_CASE("an epicyclic wave travels outward, inward, or half of it either way") {
+  // x = X − e cos φ: v_x = κ e sin φ, v_y = ½κ² e cos φ beyond the shear, φ = κt ∓ kx at κt = 0.4
+  const double kappa = 0.9, speed = 0.02;
+  Patch patch = with_mode(0.0, 0.0, 0.0, 0.0, 0.0);
+  const auto modes_with = [&](double outward, double inward) {
+    for (std::size_t k = 0; k < patch.size(); ++k) {
+      const double wave = mode_k * patch.positions[k].x();
+      patch.velocities[k] =
+          Vec3(speed * (outward * std::sin(0.4 - wave) + inward * std::sin(0.4 + wave)),
+               0.5 * kappa * speed * (outward * std::cos(0.4 - wave) + inward * std::cos(0.4 + wave)) -
+                   box.shear * patch.positions[k].x(),
+               0.0);
+    }
+    return radial_modes(patch, 3)[2];
+  };
+  CHECK(std::abs(modes_with(1.0, 0.0).outward(kappa) - std::polar(speed, -0.4)) < 1e-6);
+  CHECK(std::abs(modes_with(1.0, 0.0).inward(kappa)) < 1e-6);
+  CHECK(std::abs(modes_with(0.0, 1.0).inward(kappa) - std::polar(speed, 0.4)) < 1e-6);
+  CHECK(std::abs(modes_with(0.0, 1.0).outward(kappa)) < 1e-6);
+  const RadialMode both = modes_with(0.7, 0.3);
+  CHECK(2.0 * (std::norm(both.outward(kappa)) + std::norm(both.inward(kappa))) ==
+        doctest::Approx(std::pow(both.epicyclic_speed(kappa), 2)).epsilon(1e-9));
 }
 
 TEST_CASE("a growing epicyclic oscillation has its growth rate, whatever its phase") {

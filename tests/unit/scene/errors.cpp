@@ -140,6 +140,37 @@ TEST_CASE("impossible requests are told") {
   CHECK(with("end = 2", "end = 1e300").find("time.end = 1e+300 is too long") != std::string::npos);
 }
 
+TEST_CASE("modes that fit no box, or would make streamlines cross, are told") {
+  const auto modes = [](const std::string& keys) { return fault(least + "[particles.modes]\n" + keys + "\n"); };
+  CHECK(modes("outward = [[1, 0.1, 0]]").empty());
+  CHECK(modes("outward = [[1, 0.1, 0], [0, 0.1, 0]]") ==
+        "s.toml:12:11: row 2 of particles.modes.outward has waves: 0 (it must be from 1 to 1000); correct it");
+  CHECK(modes("inward = [[1.5, 0.1, 0]]") ==
+        "s.toml:12:10: row 1 of particles.modes.inward has 1.5 waves (the box is periodic); give a whole number");
+  CHECK(modes("standing = [[1, 1.2, 0]]") ==
+        "s.toml:12:12: row 1 of particles.modes.standing has the amplitude 1.2 (it must be above 0 and at most 0.9: at "
+        "1 streamlines cross); correct it");
+  CHECK(modes("standing = [[1, 0.2, 400]]") ==
+        "s.toml:12:12: row 1 of particles.modes.standing has the phase 400 (it must be from -360 to 360 degrees); "
+        "correct it");
+  CHECK(modes("outward = [[1, 0.5, 0]]\ninward = [[2, 0.5, 0]]") ==
+        "s.toml:11:1: the amplitudes of [particles.modes] sum up to 1 (at 1 streamlines cross); lower them to 0.9 in "
+        "all");
+  CHECK(modes("outward = [[1, 0.1]]").find("rows in place: waves in the box, amplitude") != std::string::npos);
+  CHECK(modes("") == "s.toml:11:1: [particles.modes] has no mode in it; add for example outward = [[1, 0.1, 0.0]]");
+  CHECK(modes("outward = []").find("has no mode in it") != std::string::npos);
+  CHECK(modes("outwards = [[1, 0.1, 0]]").find("did you mean \"outward\"?") != std::string::npos);
+  CHECK(fault(changed(least, "count = 300", "count = 300\nstreamlines = { waves = 1, bunching = 0.1 }") +
+              "[particles.modes]\noutward = [[1, 0.1, 0]]\n") ==
+        "s.toml:12:1: [particles.modes] cannot stand beside [particles.streamlines] (either is the mean motion at the "
+        "start); keep one of the two");
+  CHECK(fault("planet.preset = \"saturn-b-ring\"\ntime.end = 1\nstart.from = \"w.hdf\"\n"
+              "[particles.modes]\noutward = [[1, 0.1, 0]]\n")
+            .find("cannot stand beside start.from") != std::string::npos);
+  CHECK(fault(changed(least, "count = 300", "optical_depth = 1.8") + "[particles.modes]\noutward = [[1, 0.5, 0]]\n")
+            .find("to at most 1.52 or lower the amplitudes of the modes") != std::string::npos);
+}
+
 TEST_CASE("what follows from other keys has its range as well") {
   CHECK(
       with("size = [100, 50.0]\n[particles]\ncount = 300",

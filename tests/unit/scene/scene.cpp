@@ -111,6 +111,28 @@ checkpoint_every = 0.25
   CHECK(scene.output.checkpoint_every == 25);
 }
 
+TEST_CASE("modes reach their place") {
+  const Scene scene = parse_scene(
+      least + "[particles.modes]\noutward = [[2, 0.1, 30.0]]\nstanding = [[1, 0.25, -90], [3, 0.05, 0]]\n", "s.toml");
+  const std::vector<ModeSettings>& modes = scene.particles.modes;
+  REQUIRE(modes.size() == 3);
+  CHECK(modes[0].direction == ModeSettings::Direction::outward);
+  CHECK(modes[0].waves == 2);
+  CHECK(modes[0].amplitude == 0.1);
+  CHECK(modes[0].phase_degrees == 30.0);
+  CHECK(modes[1].direction == ModeSettings::Direction::standing);
+  CHECK(modes[1].phase_degrees == -90.0);
+  CHECK(modes[2].waves == 3);
+  CHECK(scene.bunched_optical_depth() == doctest::Approx(scene.optical_depth() / 0.6).epsilon(1e-14));
+  CHECK(scene.resolved.find("[particles.modes]\noutward = [[2.0, 0.1, 30.0]]\ninward = []\nstanding = ") !=
+        std::string::npos);
+  CHECK(parse_scene(scene.resolved, "r.toml").resolved == scene.resolved);
+  const Scene given = parse_scene(least, "s.toml", {"particles.modes.inward=[[4, 0.2, 0]]"});
+  REQUIRE(given.particles.modes.size() == 1);
+  CHECK(given.particles.modes[0].direction == ModeSettings::Direction::inward);
+  CHECK(parse_scene(least, "s.toml").particles.modes.empty());
+}
+
 TEST_CASE("an empty gravity section means gravity with its defaults") {
   const Scene scene = parse_scene(least + "[gravity]\n", "s.toml");
   REQUIRE(scene.gravity);
