@@ -74,7 +74,8 @@ std::string page(const std::vector<std::pair<std::string, std::vector<Row>>>& se
 int measure(const Options& options) {
   std::vector<std::pair<std::string, std::vector<Row>>> sections;
   int held = 0, different = 0, failed = 0;
-  for (const auto& subjects : {exact_subjects(), two_body_subjects(), balance_subjects(), literature_subjects()})
+  for (const auto& subjects : {exact_subjects(), two_body_subjects(), balance_subjects(), literature_subjects(),
+                               overstability_subjects()})
     for (const Subject& subject : subjects) {
       if ((options.quick && !subject.quick) || (!options.only.empty() && subject.name != options.only))
         continue;

@@ -1,0 +1,153 @@
+// Viscous overstability: waves that are seeded, and grow or decay; without self-gravity, and with it and its wakes.
+#include "rows.hpp"
+
+#include <keeler/core/units.hpp>
+#include <keeler/diagnostics/radial_modes.hpp>
+#include <keeler/diagnostics/surface.hpp>
+#include <keeler/diagnostics/wakes.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace keeler::validation {
+namespace {
+
+constexpr double settled = 3.0; // orbits; the layer relaxes within one
+
+struct Wave {
+  std::string command;
+  std::vector<Patch> patches; ///< since the layer has settled
+  Growth growth;              ///< in Ω
+};
+
+// One wave of 5 % in the box, as long as it.
+Wave seeded_wave(double length, double width, double depth, double orbits, std::vector<std::string> more) {
+  more.insert(more.begin(),
+              {fmt::format("box.size=[{},{}]", length, width), fmt::format("particles.optical_depth={}", depth),
+               "particles.modes.outward=[[1,0.05,0]]", fmt::format("time.end={}", orbits), "time.step=2e-3",
+               "output.snapshot_every=0.25", "output.series_every=0.1"});
+  const Ran ran = run_example("equilibrium", more);
+  Wave wave;
+  wave.command = fmt::format("{}; keeler analyze DIR --since {}", ran.command, settled);
+  for (const Patch& patch : ran.snapshots)
+    if (patch.time_orbits > settled - 1e-9)
+      wave.patches.push_back(patch);
+  wave.growth = *analyze_radial_modes(wave.patches, 1)[0].growth;
+  return wave;
+}
+
+// ν/Ω = 3.6 stands for the vertical self-gravity of a dense ring.
+Wave without_gravity(double length, double depth) {
+  return seeded_wave(length, std::round((depth > 1.0 ? 6000.0 : 12000.0) / length), depth, 24.0,
+                     {"planet.vertical_ratio=3.6"});
+}
+
+Wave with_gravity(double hill, double orbits) {
+  constexpr double omega = 1.95e-4; // of the example
+  const double density = 9.0 * omega * omega * hill * hill * hill / (pi * newton_g_si);
+  return seeded_wave(100.0, 60.0, 1.0, orbits,
+                     {fmt::format("particles.density={:.1f}", density), "gravity={solver=\"fft\"}",
+                      "collisions.restitution={ law = \"constant\", value = 0.1 }"});
+}
+
+Row growth_row(const std::string& wave_of, const Wave& wave, double expected, double tolerance,
+               const char* tolerance_is, const char* source) {
+  return {.what = fmt::format("growth rate / Omega of a wave of {}", wave_of),
+          .measured = wave.growth.rate,
+          .error = *wave.growth.error,
+          .expected = expected,
+          .tolerance = tolerance,
+          .tolerance_is = tolerance_is,
+          .source = source,
+          .command = wave.command};
+}
+
+Row ratio_row(const char* what, const Wave& wave, const Wave& other, double expected, double tolerance,
+              const char* tolerance_is) {
+  const double ratio = wave.growth.rate / other.growth.rate;
+  return {.what = what,
+          .measured = ratio,
+          .error = std::fabs(ratio) *
+                   std::hypot(*wave.growth.error / wave.growth.rate, *other.growth.error / other.growth.rate),
+          .expected = expected,
+          .tolerance = tolerance,
+          .tolerance_is = tolerance_is,
+          .source = "k^2, of long waves in a viscous fluid (Schmit & Tscharnuter 1995)",
+          .command = "of the same runs"};
+}
+
+// In a thin ring the same waves decay.
+std::vector<Row> decay() {
+  const char *sign = "the sign", *source = "overstable only at high optical depth (Salo, Schmidt & Spahn 2001)";
+  const Wave longer = without_gravity(200.0, 0.5), shorter = without_gravity(100.0, 0.5);
+  return {growth_row("200 m, nu 3.6, tau 0.5", longer, -0.01, 0.01, sign, source),
+          growth_row("100 m, nu 3.6, tau 0.5", shorter, -0.02, 0.02, sign, source),
+          ratio_row("rate of 100 m over that of 200 m, nu 3.6, tau 0.5", shorter, longer, 4.0, 0.8,
+                    "20 %: another seed changes either rate by 10 %")};
+}
+
+std::vector<Row> growth_by_length() {
+  const Wave longest = without_gravity(400.0, 1.64), middle = without_gravity(200.0, 1.64);
+  return {
+      growth_row("200 m, nu 3.6, tau 1.64", middle, 1.0 / (30.0 * two_pi), 0.004, "the order, and the sign",
+                 "\"about 30 orbits\" to occur: REBOUND's example of overstability, a set-up of Rein & Latter 2013"),
+      growth_row("400 m, nu 3.6, tau 1.64", longest, 0.25 * middle.growth.rate, 0.25 * middle.growth.rate,
+                 "between nothing and half of the rate of 200 m, for which k^4 counts",
+                 "k^2, of long waves in a viscous fluid (Schmit & Tscharnuter 1995)"),
+      growth_row("70 m, nu 3.6, tau 1.64", without_gravity(70.0, 1.64), -0.02, 0.02, "the sign",
+                 "short waves are damped (Schmidt, Salo, Spahn & Petzschmann 2001)")};
+}
+
+// How much of the wave that was seeded outward travels inward, by the squares of the amplitudes.
+Row inward_row(double hill, const Wave& wave, double expected, double tolerance, const char* tolerance_is,
+               const char* source) {
+  double inward = 0.0, both = 0.0;
+  for (const Patch& patch : wave.patches) {
+    const RadialMode mode = radial_modes(patch, 1)[0];
+    inward += std::norm(mode.inward(patch.frequencies.kappa));
+    both += 0.5 * std::pow(mode.epicyclic_speed(patch.frequencies.kappa), 2);
+  }
+  return {.what = fmt::format("share of the wave that travels inward, tau 1, eps 0.1, r_h {}", hill),
+          .measured = inward / both,
+          .expected = expected,
+          .tolerance = tolerance,
+          .tolerance_is = tolerance_is,
+          .source = source,
+          .command = "of the same run"};
+}
+
+// At r_h 0.5 to 0.6 the wave grows and remains what it is. At 0.7 wakes take its place: no wave, but whatever of their
+// noise is axisymmetric, either way, in a structure that leans.
+std::vector<Row> overstability_or_wakes() {
+  const char* source =
+      "Fig. 4 of Mondino-Llermanos & Salo 2025 (A&A 695, A37): overstable at 0.5 to 0.6, wakes above 0.65";
+  std::vector<Row> rows;
+  for (const double hill : {0.5, 0.55, 0.6}) {
+    const Wave wave = with_gravity(hill, 24.0);
+    rows.push_back(
+        growth_row(fmt::format("100 m, tau 1, eps 0.1, r_h {}", hill), wave, 0.01, 0.01, "the sign", source));
+    rows.push_back(inward_row(hill, wave, 0.0, 0.1, "a wave, not noise", source));
+  }
+  const Wave wakes = with_gravity(0.7, 9.0);
+  rows.push_back(inward_row(0.7, wakes, 0.5, 0.3, "noise, not a wave", source));
+  const double length = critical_wavelength(wakes.patches.back());
+  rows.push_back({.what = "pitch of the structure in degrees, tau 1, eps 0.1, r_h 0.7",
+                  .measured = find_wakes(mean_autocorrelation(wakes.patches), length).pitch_degrees.value_or(0.0),
+                  .expected = 22.5,
+                  .tolerance = 10.0,
+                  .tolerance_is = "wakes have 15 to 30 degrees; a box of 2 x 1.2 critical wavelengths",
+                  .source = source,
+                  .command = wakes.command});
+  return rows;
+}
+
+} // namespace
+
+std::vector<Subject> overstability_subjects() {
+  return {{"overstability-decay", "Viscous overstability", true, decay},
+          {"overstability", "Viscous overstability", false, growth_by_length},
+          {"overstability-wakes", "Viscous overstability", false, overstability_or_wakes}};
+}
+
+} // namespace keeler::validation
