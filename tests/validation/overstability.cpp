@@ -85,7 +85,7 @@ std::vector<Row> decay() {
   return {growth_row("200 m, nu 3.6, tau 0.5", longer, -0.01, 0.01, sign, source),
           growth_row("100 m, nu 3.6, tau 0.5", shorter, -0.02, 0.02, sign, source),
           ratio_row("rate of 100 m over that of 200 m, nu 3.6, tau 0.5", shorter, longer, 4.0, 0.8,
-                    "20 %: another seed changes either rate by 10 %")};
+                    "20 %: another start changes a rate by as much")};
 }
 
 std::vector<Row> growth_by_length() {
