@@ -101,7 +101,11 @@ void print_text(const Scene& scene, const Derived& d, const std::optional<RunEst
     print_particles(scene, d);
   else
     fmt::print("box and particles  from {}\n", *scene.start_from);
-  fmt::print("steps              {} of {} orbits\n", d.steps, figures(scene.time.step));
+  if (scene.time.automatic)
+    fmt::print("steps              automatic, from 1/{} to 1/{} orbits\n", TimeSettings::ticks_per_orbit,
+               TimeSettings::ticks_per_orbit / TimeSettings::longest);
+  else
+    fmt::print("steps              {} of {} orbits\n", d.steps, figures(scene.time.step));
   if (d.particles_known)
     fmt::print("memory             about {:.0f} MB (an estimate)\n", d.memory_mb);
   if (cost)

@@ -42,9 +42,10 @@ struct StepAtHand {
   Frequencies frequencies;
   double orbital_frequency = 0.0; ///< rad/s
   ShearingBox box;
-  double offset = 0.0;   ///< at the epoch, m
-  double begin = 0.0;    ///< rad
-  bool recorded = false; ///< whether somebody wants to have each contact
+  double offset = 0.0;    ///< at the epoch, m
+  double begin = 0.0;     ///< rad
+  bool recorded = false;  ///< whether somebody wants to have each contact
+  double kick_pull = 0.0; ///< G times the kick interval, m³ kg⁻¹ rad⁻¹
 };
 
 /// What has happened to the particles in the step so far, by place.
@@ -93,6 +94,7 @@ struct Contact {
   double momentum_flux = 0.0;  ///< kg m² rad⁻¹
   double azimuthal_gain = 0.0; ///< of Σ m c_y², kg m² rad⁻²
   bool fast = false;           ///< faster than v_cut
+  bool unresolved = false;     ///< slower than what a kick of the pair's own gravity gives
   bool again = false;          ///< the last contact of both particles was with each other, in this step
 };
 
@@ -196,7 +198,9 @@ private:
     kick(a.elements, -impulse / a.mass, f, rotation);
     kick(b.elements, impulse / b.mass, f, rotation);
 
+    const double distance = a.radius + b.radius;
     contact.fast = after.fast;
+    contact.unresolved = speed * distance * distance < step_.kick_pull * (a.mass + b.mass);
     contact.again = orbits_.last_change(event.low) > step_.begin &&
                     orbits_.last_change(event.low) == orbits_.last_change(event.high);
     contact.energy_lost = 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
@@ -211,7 +215,7 @@ private:
                       .fast = contact.fast,
                       .tangential_speed = (relative.velocity + speed * normal).norm(),
                       .energy_lost = contact.energy_lost,
-                      .radius_sum = a.radius + b.radius,
+                      .radius_sum = distance,
                       .place = place});
 
     change(event.low, a.elements, event.time);

@@ -7,6 +7,7 @@ namespace keeler {
 void CollisionTally::list_fields(FieldTable& table) {
   table.scalar("collisions_fast", fast, "1", "collisions faster than v_cut");
   table.scalar("collisions_slow", slow, "1", "contacts slower than v_cut, bounced elastically");
+  table.scalar("collisions_unresolved", unresolved, "1", "contacts slower than a kick of the pair's own gravity");
   table.scalar("finder_gave_up", gave_up, "1", "searches abandoned by the finder");
   table.scalar("collision_energy_lost", energy_lost, "kg m^2 rad^-2", "energy dissipated in collisions");
   table.scalar("collision_momentum_flux", momentum_flux, "kg m^2 rad^-1", "sum of (x_j - x_i) p_y gained by j");
@@ -15,6 +16,7 @@ void CollisionTally::list_fields(FieldTable& table) {
 
 void CollisionTally::add(const Contact& contact) {
   ++(contact.fast ? fast : slow);
+  unresolved += contact.unresolved;
   energy_lost += contact.energy_lost;
   momentum_flux += contact.momentum_flux;
   azimuthal_gain += contact.azimuthal_gain;
@@ -27,6 +29,10 @@ DriftPhase::DriftPhase(const CollisionSettings& settings, const Frequencies& fre
 DriftPhase::~DriftPhase() = default;
 DriftPhase::DriftPhase(DriftPhase&& other) noexcept = default;
 DriftPhase& DriftPhase::operator=(DriftPhase&& other) noexcept = default;
+
+void DriftPhase::set_pace(double step, double kick_pull) {
+  engine_->set_pace(step, kick_pull);
+}
 
 void DriftPhase::collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally,
                          bool undisturbed) {

@@ -38,6 +38,15 @@ DriftEngine::DriftEngine(const CollisionSettings& settings, const Frequencies& f
     throw UsageError(fmt::format("unknown collision finder '{}'", settings.finder));
 }
 
+void DriftEngine::set_pace(double step, double kick_pull) {
+  kick_pull_ = kick_pull;
+  if (step == step_)
+    return;
+  step_ = step;
+  lists_.set_step(step);
+  grid_ = GridPartners(frequencies_, step);
+}
+
 // The orbits in the store itself: one loop has them all.
 struct DriftEngine::InPlace {
   DriftEngine& drift;
@@ -128,7 +137,8 @@ void DriftEngine::collide(Particles& particles, const ShearingBox& box, double o
                           bool undisturbed) {
   touched_.clear();
   particles_ = &particles;
-  step_at_hand_ = {&particles, &settings_, frequencies_, orbital_frequency_, box, offset, -0.5 * step_};
+  step_at_hand_ = {&particles, &settings_,   frequencies_, orbital_frequency_, box,
+                   offset,     -0.5 * step_, false,        kick_pull_};
   gave_up_ = 0;
   prepare(undisturbed);
   reject();

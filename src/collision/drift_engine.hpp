@@ -25,6 +25,7 @@ public:
     return stand_in ? *stand_in : *finder_;
   }
   void release() { lists_.release(); }
+  void set_pace(double step, double kick_pull);
   void observe(DriftObserver* observer) { observer_ = observer; }
 
 private:
@@ -47,6 +48,7 @@ private:
   CollisionSettings settings_;
   Frequencies frequencies_;
   double orbital_frequency_, step_;
+  double kick_pull_ = 0.0;
   std::unique_ptr<Finder> finder_;
   DriftObserver* observer_ = nullptr;
 

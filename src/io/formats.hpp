@@ -7,7 +7,7 @@
 namespace keeler {
 
 inline constexpr char checkpoint_format[] = "keeler checkpoint";
-inline constexpr std::int64_t checkpoint_version = 3;
+inline constexpr std::int64_t checkpoint_version = 4;
 
 inline constexpr char snapshot_format[] = "keeler snapshot";
 inline constexpr std::int64_t snapshot_version = 1;

@@ -78,10 +78,12 @@ void ContactLog::watch(Simulation& simulation) {
 
 void ContactLog::recorded(std::span<const CollisionRecord> records) {
   const double omega = scene_.planet.orbital_frequency;
-  const std::int64_t step = simulation_->state().step;
+  const SimulationState& state = simulation_->state();
+  const std::int64_t step = state.step;
+  const double middle = static_cast<double>(step) + 0.5 * static_cast<double>(state.control.step);
   for (const CollisionRecord& record : records) {
     counters_.speeds.add(record.normal_speed * omega, record.energy_lost * omega * omega);
-    const double time = (static_cast<double>(step) + 0.5) * scene_.time.step + record.time / two_pi;
+    const double time = middle * scene_.time.step + record.time / two_pi;
     if (!is_logged(*scene_.output.collisions, record, time, omega))
       continue;
     rows_.push_back({step, time, record.place, record.low_id, record.high_id, record.image, record.normal_speed * omega,

@@ -208,7 +208,7 @@ std::optional<Transport> transport_in(const RunFolder& folder, const Patch& patc
 
 RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& requests, const RunFolder& folder,
                    Simulation& simulation, Recorder& recorder, const Start& start) {
-  const std::int64_t first_step = simulation.state().step;
+  const std::int64_t first_step = simulation.state().control.steps;
   recorder.watch(simulation);
   Runner runner(scene, options, requests, simulation, recorder, start.watch, start.checkpoint_step);
   RunResult result;

@@ -2,6 +2,7 @@
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/contacts/finders.hpp>
+#include <keeler/core/units.hpp>
 
 #include <algorithm>
 #include <iterator>
@@ -84,6 +85,11 @@ const SeriesColumn all_columns[] = {
     {"potential_energy_j", "J",
      "Φ of the patch in its own gravity, images included, from an arbitrary zero; nan where it was not measured",
      [](Sample s) { return s.gravity ? joule(s, s.gravity->potential) : not_measured; }, measures_gravity},
+    {"step_orbits", "orbits", "length of the step to come; only with `time.step = \"auto\"`",
+     [](Sample s) { return state(s).step_length / two_pi; }, [](const Scene& scene) { return scene.time.automatic; }},
+    {"kick_interval_orbits", "orbits", "from kick to kick from now on; only with `time.step = \"auto\"`",
+     [](Sample s) { return static_cast<double>(state(s).control.kick) * s.scene.time.step; },
+     [](const Scene& scene) { return scene.time.automatic; }},
     {"largest_overlap", "r_i + r_j",
      "largest overlap of any pair; only with a finder other than `certified`, which lets none overlap",
      [](Sample s) { return largest_overlap(s.simulation.patch()).depth; }, may_overlap},

@@ -14,6 +14,7 @@ std::string state_hash(const SimulationState& state, const Scene& scene) {
   }
   hash.add(state.step);
   hash.add(state.step_length);
+  hash.add(state.control.kick);
   hash.add(state.box);
   hash.add(state.boundary_offset());
   hash.add_text(scene.motion);

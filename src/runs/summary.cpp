@@ -74,16 +74,20 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scen
     return orbits > 0.0 ? 2.0 * static_cast<double>(n) / (count * orbits) : 0.0;
   };
   const TimeSplit& split = simulation.time_split();
-  const double passes = 1e-9 * count * static_cast<double>(std::max<std::int64_t>(1, state.step - cost.first_step));
+  const double passes =
+      1e-9 * count * static_cast<double>(std::max<std::int64_t>(1, state.control.steps - cost.first_step));
   nlohmann::ordered_json json;
   json["finished"] = result.finished;
   json["state_hash"] = result.state_hash;
   json["time_orbits"] = orbits;
-  json["steps"] = state.step;
+  json["steps"] = state.control.steps;
   json["particle_count"] = state.particles.size();
   json["threads"] = threads();
   json["collisions_per_particle_orbit"] = rate(state.collisions.fast);
   json["slow_contacts_per_particle_orbit"] = rate(state.collisions.slow);
+  const std::uint64_t contacts = state.collisions.fast + state.collisions.slow;
+  json["unresolved_contacts_share"] =
+      static_cast<double>(state.collisions.unresolved) / static_cast<double>(std::max<std::uint64_t>(1, contacts));
   json["finder_gave_up"] = state.collisions.gave_up;
   json["largest_overlap"] = largest_overlap(simulation.patch()).depth;
   json["force_error"] = force_error(cost.force_checks);

@@ -35,7 +35,8 @@ bool fits_type(const Key& key, const Value& value) {
   case KeyType::path:
     return std::holds_alternative<std::string>(value);
   case KeyType::number:
-    return std::holds_alternative<double>(value) || std::holds_alternative<std::int64_t>(value);
+    return std::holds_alternative<double>(value) || std::holds_alternative<std::int64_t>(value) ||
+           (!key.choices.empty() && std::holds_alternative<std::string>(value));
   case KeyType::integer:
     return std::holds_alternative<std::int64_t>(value);
   case KeyType::pair: {
@@ -74,7 +75,7 @@ bool fits_value(const Key& key, const Value& value) {
   const auto* text = std::get_if<std::string>(&value);
   if (key.type == KeyType::path || (key.type == KeyType::rows && text))
     return !text->empty();
-  return key.type != KeyType::choice || std::find(key.choices.begin(), key.choices.end(), *text) != key.choices.end();
+  return !text || key.choices.empty() || std::find(key.choices.begin(), key.choices.end(), *text) != key.choices.end();
 }
 
 void check_value(const Key& key, const Entry& entry) {
@@ -83,7 +84,7 @@ void check_value(const Key& key, const Entry& entry) {
     return;
   const std::string is = right_type ? to_toml(entry.value) : kind_words(entry.value);
   std::string advice = "write for example " + sample_of(key);
-  if (const auto* word = std::get_if<std::string>(&entry.value); word && key.type == KeyType::choice)
+  if (const auto* word = std::get_if<std::string>(&entry.value); word && !key.choices.empty())
     if (const std::string near = closest(*word, key.choices); !near.empty())
       advice = fmt::format("did you mean \"{}\"?", near);
   fail_at(entry.value_place,

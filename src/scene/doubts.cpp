@@ -44,7 +44,7 @@ void doubt_room_for_wakes(const PatchScale& patch, Lines& lines) {
 
 void doubt_kicks(const Scene& scene, Lines& lines) {
   constexpr double resolved = 0.02; // orbits
-  const double apart = scene.time.step * scene.gravity->kick_every;
+  const double apart = scene.time.step * static_cast<double>(scene.kick_interval());
   if (apart > resolved)
     lines.push_back(fmt::format("kicks are {} orbits apart: beyond {:g} self-gravity is hardly resolved in time",
                                 figures(apart, 3), resolved));

@@ -50,14 +50,29 @@ double start_ns(const Scene& scene) {
   return mixed * (cost::start + cost::start_depth * scene.optical_depth());
 }
 
+// An automatic step has about a third of a contact a particle (simulation/step_control.hpp), orbits.
+double step_in(const Scene& scene, const ContactRates& rates) {
+  if (!scene.time.automatic)
+    return scene.time.step;
+  const double longest = static_cast<double>(TimeSettings::longest) * scene.time.step;
+  return std::clamp(0.35 / rates.all(), scene.time.step, longest);
+}
+
+double kicks_an_orbit(const Scene& scene) {
+  constexpr double in_wakes = 128.0; // of an automatic interval
+  return scene.time.automatic ? in_wakes : 1.0 / (scene.time.step * scene.gravity->kick_every);
+}
+
+// Of an orbit.
 double drift_ns(const ContactRates& rates, double dilute, double count, const Scene& scene) {
-  const double contacts = rates.all() * scene.time.step; // of a particle in a step; half as many events
+  const double step = step_in(scene, rates);
+  const double contacts = rates.all() * step; // of a particle in a step; half as many events
   const double spread = size_spread(scene.particles.sizes);
   // Searches see more neighbours, or go through more levels; neighbours that stand close are of the finest level.
   const double search = std::max(spread, 1.0 + 0.17 * std::log(std::max(1.0, rates.fast / dilute)));
   const double kicks = cost::kick * static_cast<double>(scene.external_forces.size());
-  return cost::advance + kicks + (cost::lists + cost::left_list * std::min(contacts, 0.3)) * spread +
-         cost::contact * search * cache_factor(count) * 0.5 * contacts;
+  const double lists = (cost::lists + cost::left_list * std::min(contacts, 0.3)) * spread;
+  return (cost::advance + kicks + lists + cost::contact * search * cache_factor(count) * 0.5 * contacts) / step;
 }
 
 // Height of the layer at the start in mean distances of particles in the plane. More than one where the layer is dense,
@@ -187,8 +202,9 @@ const char* RunEstimate::dominating() const {
 }
 
 RunEstimate estimate_run(const Scene& scene, double pair_ns) {
-  const double count = static_cast<double>(scene.particles.count), steps = static_cast<double>(scene.time.end_step);
-  const double smooth = std::min(steps, clumping_orbits / scene.time.step);
+  const double count = static_cast<double>(scene.particles.count);
+  const double orbits = static_cast<double>(scene.time.end_step) * scene.time.step;
+  const double smooth = std::min(orbits, clumping_orbits);
   const SceneContacts contacts = scene_contacts(scene);
   const double dilute = 19.0 * met_optical_depth(scene);
   const double scale = 1e-9 * pair_ns / reference_pair_ns;
@@ -196,9 +212,9 @@ RunEstimate estimate_run(const Scene& scene, double pair_ns) {
   estimate.start = scale * start_ns(scene) * count;
   estimate.drift = scale * count *
                    (smooth * drift_ns(contacts.smooth, dilute, count, scene) +
-                    (steps - smooth) * drift_ns(contacts.wakes, dilute, count, scene));
+                    (orbits - smooth) * drift_ns(contacts.wakes, dilute, count, scene));
   if (scene.gravity)
-    estimate.gravity = scale * count * steps / scene.gravity->kick_every * gravity_ns(scene);
+    estimate.gravity = scale * count * orbits * kicks_an_orbit(scene) * gravity_ns(scene);
   estimate.output = scale * output_ns(scene, count);
   return estimate;
 }

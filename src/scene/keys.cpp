@@ -231,8 +231,9 @@ std::vector<Key> course_keys() {
        .type = number,
        .fallback = "1e-3",
        .unit = "orbits",
-       .meaning = "length of a step",
-       .range = {.low = 1e-9, .high = 0.1}},
+       .meaning = "length of a step; \"auto\": step and kick interval follow the state, from 1/4096 to 1/64",
+       .range = {.low = 1e-9, .high = 0.1},
+       .choices = {"auto"}},
       {.path = "time.end",
        .type = number,
        .example = "3.0",
@@ -379,7 +380,8 @@ std::string allowed_words(const Key& key) {
   case KeyType::choice:
     return fmt::format("one of \"{}\"", fmt::join(key.choices, "\", \""));
   case KeyType::number:
-    return "a number" + suffix;
+    return "a number" + suffix +
+           (key.choices.empty() ? "" : fmt::format(", or \"{}\"", fmt::join(key.choices, "\", \"")));
   case KeyType::integer:
     return "a whole number" + suffix;
   case KeyType::pair:

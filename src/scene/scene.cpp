@@ -72,17 +72,24 @@ std::int64_t whole_kicks(Scene& scene, Settings& settings, const std::string& ke
   const std::int64_t steps = whole * per_kick;
   if (std::fabs(kicks - static_cast<double>(whole)) > 1e-9 * kicks) {
     const double rounded = static_cast<double>(steps) * scene.time.step;
-    const std::string kicks_every = per_kick > 1 ? fmt::format("kicks, one every {} steps", per_kick) : "steps";
+    const std::string kicks_every = scene.time.automatic ? "longest steps"
+                                    : per_kick > 1       ? fmt::format("kicks, one every {} steps", per_kick)
+                                                         : "steps";
     if (settings.given(key))
       scene.notices.push_back(fmt::format("{} = {} is rounded to {:.12g} orbits (whole {} of {} orbits)", key, orbits,
-                                          rounded, kicks_every, scene.time.step));
+                                          rounded, kicks_every, scene.time.automatic ? interval : scene.time.step));
     settings.resolve(key, rounded);
   }
   return steps;
 }
 
 void read_times(Scene& scene, Settings& settings) {
-  scene.time.step = settings.number("time.step");
+  scene.time.automatic = settings.is_word("time.step");
+  scene.time.step = scene.time.automatic ? 1.0 / TimeSettings::ticks_per_orbit : settings.number("time.step");
+  if (scene.time.automatic && scene.gravity && scene.gravity->kick_every != 1)
+    fail_at(settings.place("gravity.kick_every"),
+            "gravity.kick_every cannot stand beside time.step = \"auto\" (which sets the kick interval); remove one of "
+            "the two");
   scene.time.end_step = whole_kicks(scene, settings, "time.end");
   scene.output.series_every = whole_kicks(scene, settings, "output.series_every");
   scene.output.stress_every = whole_kicks(scene, settings, "output.stress_every");

@@ -68,6 +68,10 @@ std::int64_t Settings::integer(const std::string& path) const {
   return std::get<std::int64_t>(find_entry(document_, path)->value);
 }
 
+bool Settings::is_word(const std::string& path) const {
+  return std::holds_alternative<std::string>(find_entry(document_, path)->value);
+}
+
 std::string Settings::text(const std::string& path) const {
   return std::get<std::string>(find_entry(document_, path)->value);
 }
@@ -132,7 +136,8 @@ Parameters Settings::parameters(const std::string& section, const std::string& s
 }
 
 std::string Settings::toml_of(const Key& key) const {
-  const bool as_double = key.type == KeyType::number; // 3 and 3.0 are one value, and shall be one text
+  // 3 and 3.0 are one value, and shall be one text
+  const bool as_double = key.type == KeyType::number && !is_word(key.path);
   return to_toml(as_double ? Value(number(key.path)) : find_entry(document_, key.path)->value);
 }
 

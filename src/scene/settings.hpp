@@ -20,6 +20,8 @@ public:
   bool has(const std::string& path) const { return find_entry(document_, path) != nullptr; }
   double number(const std::string& path) const;
   std::int64_t integer(const std::string& path) const;
+  /// Whether a key that is a number or a word is a word.
+  bool is_word(const std::string& path) const;
   std::string text(const std::string& path) const;
   std::vector<double> numbers(const std::string& path) const;
 

@@ -5,6 +5,7 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
+#include <keeler/core/units.hpp>
 #include <keeler/forces/self_gravity.hpp>
 
 #include <fmt/format.h>
@@ -42,7 +43,9 @@ SimulationState first_state(const Scene& scene, const Patch& start) {
                     "({:.4g} m across); start from another state",
                     start.box.size_x, start.box.size_y, 2.0 * largest));
   SimulationState state(scene);
-  state.step_length = scene.step_length();
+  if (scene.time.automatic)
+    state.control = StepControl::automatic(!state.forces.empty());
+  state.step_length = static_cast<double>(state.control.step) * scene.step_length();
   state.box = start.box;
   state.box.shear = scene.planet.frequencies.shear();
   state.box.first_offset = start.offset;
@@ -84,6 +87,7 @@ Simulation::Simulation(const Scene& scene, SimulationState state)
     : scene_(scene), state_(std::move(state)),
       drift_(scene.collisions, scene.planet.frequencies, scene.planet.orbital_frequency, state_.step_length) {
   forces_ = make_forces(scene_, state_);
+  set_pace();
 }
 
 void Simulation::advance() {
@@ -102,12 +106,35 @@ void Simulation::advance() {
       accelerate(f);
       half_kick(f);
     }
+  decide_when_due();
 }
 
-// Memory order follows the places every tenth of an orbit. That depends on the step number alone: a restart goes on
-// with the same order.
+// Where the kicks of all forces meet. Elements move to the middle of what the next step is now.
+void Simulation::decide_when_due() {
+  if (!scene_.time.automatic || state_.step % decision_ticks != 0)
+    return;
+  const Stopwatch watch(split_.advance);
+  const double tick = state_.tick(), before = state_.step_length;
+  state_.control = decide_step(state_.control, state_.collisions, state_.particles.size(), state_.step);
+  state_.step_length = static_cast<double>(state_.control.step) * tick;
+  set_pace();
+  if (state_.step_length == before)
+    return;
+  rebase(0.5 * (state_.step_length - before));
+  undisturbed_ = false;
+}
+
+void Simulation::set_pace() {
+  const double kick_interval = !scene_.gravity ? 0.0 : static_cast<double>(ticks_between_kicks(0)) * state_.tick();
+  drift_.set_pace(state_.step_length, newton_g(scene_.planet.orbital_frequency) * kick_interval);
+}
+
+// Memory order follows the places every tenth of an orbit. That depends on the tick alone: a restart goes on with the
+// same order.
 void Simulation::sort_when_due() {
-  const auto interval = static_cast<std::int64_t>(std::ceil(sorting_interval / scene_.time.step));
+  const std::int64_t longest = scene_.time.automatic ? TimeSettings::longest : 1;
+  const auto intervals = std::ceil(sorting_interval / (static_cast<double>(longest) * scene_.time.step));
+  const std::int64_t interval = longest * static_cast<std::int64_t>(intervals);
   if (state_.step % interval != 0)
     return;
   const Stopwatch watch(split_.drift);
@@ -120,17 +147,22 @@ void Simulation::sort_when_due() {
     reorder(force.accelerations, order);
 }
 
-// To the epoch of the next step, and back into the cell by guiding centre.
+// To the epoch of the next step.
 void Simulation::move_on() {
   const Stopwatch watch(split_.advance);
-  const Frequencies& f = scene_.planet.frequencies;
-  const Rebase rebase(f, state_.step_length);
-  ++state_.step;
+  state_.step += state_.control.step;
+  ++state_.control.steps;
+  rebase(state_.step_length);
+}
+
+// Elements to another epoch, and back into the cell by guiding centre.
+void Simulation::rebase(double time) {
+  const Rebase to_epoch(scene_.planet.frequencies, time);
   const double offset = state_.epoch_offset();
   parallel_for(state_.particles.size(), [&](std::size_t k) {
     state_.particles.prefetch_after(k);
     Elements& el = state_.particles.bodies[k].elements;
-    rebase(el);
+    to_epoch(el);
     const Image image = state_.box.image_into_cell(el.guiding_x, el.guiding_y, offset);
     if (image != Image{})
       el = state_.box.image_of(el, image, offset);
@@ -155,7 +187,7 @@ void Simulation::half_kick(std::size_t f) {
   ForceState& force = state_.forces[f];
   const Frequencies& frequencies = scene_.planet.frequencies;
   const Rotation rotation = boundary().rotation();
-  const double half = 0.5 * state_.step_length * static_cast<double>(forces_[f]->kick_every());
+  const double half = 0.5 * state_.tick() * static_cast<double>(ticks_between_kicks(f));
   undisturbed_ = false;
   const KickSums sums = ordered_total<KickSums>(state_.particles.size(), [&](KickSums& total, std::size_t k) {
     state_.particles.prefetch_after(k);

@@ -23,8 +23,9 @@ FieldTable SimulationState::fields() {
   table.scalar("box_size_y", box.size_y, "m", "L_y");
   table.scalar("box_shear", box.shear, "1", "shear rate in units of the orbital frequency");
   table.scalar("box_first_offset", box.first_offset, "m", "shear offset at time zero");
-  table.scalar("step", step, "1", "steps done");
-  table.scalar("step_length", step_length, "rad", "length of a step");
+  table.scalar("step", step, "1", "ticks done");
+  table.scalar("step_length", step_length, "rad", "length of the step to come");
+  control.list_fields(table);
   collisions.list_fields(table);
   table.scalar("energy_start", energy.epicyclic, "kg m^2 rad^-2", "epicyclic energy when the run began");
   table.scalar("azimuthal_start", energy.azimuthal, "kg m^2 rad^-2", "sum of m c_y^2 when the run began");

@@ -22,12 +22,13 @@ class DriftEngine;
 
 /// What collisions did, summed in the order of the events. Energies in kg m² rad⁻².
 struct CollisionTally {
-  std::uint64_t fast = 0;      ///< collisions faster than v_cut
-  std::uint64_t slow = 0;      ///< contacts slower than v_cut, bounced elastically
-  std::uint64_t gave_up = 0;   ///< searches that a finder abandoned: contacts may have been lost
-  double energy_lost = 0.0;    ///< dissipated
-  double momentum_flux = 0.0;  ///< Σ (x_j − x_i)(p_y gained by j), kg m² rad⁻¹: the collisional viscosity
-  double azimuthal_gain = 0.0; ///< what Σ m c_y² gained: the translational viscosity (docs/dev/diagnostics.md)
+  std::uint64_t fast = 0;       ///< collisions faster than v_cut
+  std::uint64_t slow = 0;       ///< contacts slower than v_cut, bounced elastically
+  std::uint64_t unresolved = 0; ///< of both, contacts slower than what one kick of the pair's own gravity gives them
+  std::uint64_t gave_up = 0;    ///< searches that a finder abandoned: contacts may have been lost
+  double energy_lost = 0.0;     ///< dissipated
+  double momentum_flux = 0.0;   ///< Σ (x_j − x_i)(p_y gained by j), kg m² rad⁻¹: the collisional viscosity
+  double azimuthal_gain = 0.0;  ///< what Σ m c_y² gained: the translational viscosity (docs/dev/diagnostics.md)
 
   void add(const Contact& contact);
   void list_fields(FieldTable& table);
@@ -80,6 +81,10 @@ class DriftPhase {
 public:
   /// `step` is the length h of a drift (rad). Throws UsageError for an unknown finder.
   DriftPhase(const CollisionSettings& settings, const Frequencies& frequencies, double orbital_frequency, double step);
+
+  /// From the next step on: the length h of a drift (rad), and G times the kick interval (m³ kg⁻¹ rad⁻¹; 0 without
+  /// self-gravity), which tells what contacts kicks do not resolve.
+  void set_pace(double step, double kick_pull);
 
   ~DriftPhase();
   DriftPhase(DriftPhase&& other) noexcept;

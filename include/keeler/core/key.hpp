@@ -51,7 +51,7 @@ struct Key {
   std::string unit{};
   std::string meaning{};
   KeyRange range{};
-  std::vector<std::string> choices{};
+  std::vector<std::string> choices{};      ///< of a choice; words that a number may be instead
   std::vector<std::string> alternatives{}; ///< exactly one of this key and these is given
   KeyCondition only_with{};
   std::vector<std::string> columns{}; ///< of rows: what each holds, with its unit

@@ -52,10 +52,14 @@ struct ParticleSettings {
   double bunching() const;
 };
 
-/// Steps are integers: `end` and the schedules are rounded to whole kick intervals.
+/// Time is a whole number of ticks: of steps, or of the shortest step that an automatic one may be. `end` and the
+/// schedules are rounded to whole kick intervals.
 struct TimeSettings {
-  double step = 1e-3;        ///< orbits
-  std::int64_t end_step = 0; ///< steps
+  static constexpr std::int64_t ticks_per_orbit = 4096, longest = 64; ///< of an automatic step: longest in ticks
+
+  double step = 1e-3;        ///< a tick, orbits
+  bool automatic = false;    ///< step and kick interval follow the state (simulation/step_control.hpp)
+  std::int64_t end_step = 0; ///< ticks
 };
 
 /// Which contacts are logged.
@@ -66,7 +70,7 @@ struct ContactLogSettings {
 };
 
 struct OutputSettings {
-  std::int64_t series_every = 0;                ///< steps between rows of the series; 0: only at the start
+  std::int64_t series_every = 0;                ///< ticks between rows of the series; 0: only at the start
   std::int64_t stress_every = 0;                ///< steps between rows with gravity's energy and stress; 0: none
   std::int64_t snapshot_every = 0;              ///< steps; 0: only at start and end
   std::int64_t checkpoint_every = 0;            ///< steps; 0: none by the step
@@ -96,10 +100,13 @@ struct Scene {
   std::string motion;               ///< of these the keys that have a say in how a state moves on, a line each
   std::vector<std::string> notices; ///< what was rounded or derived and a user should know, a line each
 
-  /// Length of a step in internal time (rad).
+  /// Length of a tick in internal time (rad).
   double step_length() const;
-  /// Steps from one kick to the next: only there does a state stand with both halves of its kicks.
-  std::int64_t kick_interval() const { return gravity ? gravity->kick_every : 1; }
+  /// Ticks from one kick to the next, of an automatic step the longest: only there does a state stand with both halves
+  /// of its kicks.
+  std::int64_t kick_interval() const {
+    return time.automatic ? TimeSettings::longest : gravity ? gravity->kick_every : 1;
+  }
   /// Surface density that the particles make, kg/m².
   double surface_density() const;
   /// Optical depth Σ π r² / area.

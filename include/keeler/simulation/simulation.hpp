@@ -65,8 +65,14 @@ private:
   void accelerate(std::size_t f);
   void half_kick(std::size_t f);
   void move_on();
+  void rebase(double time);
   void sort_when_due();
-  bool kick_due(std::size_t f) const { return state_.step % forces_[f]->kick_every() == 0; }
+  void decide_when_due();
+  void set_pace();
+  std::int64_t ticks_between_kicks(std::size_t f) const {
+    return state_.control.kick > 0 ? state_.control.kick : forces_[f]->kick_every();
+  }
+  bool kick_due(std::size_t f) const { return state_.step % ticks_between_kicks(f) == 0; }
 
   Scene scene_;
   SimulationState state_;

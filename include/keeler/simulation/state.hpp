@@ -6,6 +6,7 @@
 #include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/particles/patch.hpp>
 #include <keeler/scene/scene.hpp>
+#include <keeler/simulation/step_control.hpp>
 
 #include <cstdint>
 #include <string>
@@ -42,13 +43,14 @@ struct ForceState {
   double azimuthal_gain = 0.0;     ///< what they added to Σ m c_y², kg m² rad⁻²
 };
 
-/// Elements stand at the middle of the step to come: step · h + h/2.
+/// Elements stand at the middle of the step to come, h/2 after the present tick.
 struct SimulationState {
   Particles particles;
   std::vector<ForceState> forces; ///< self-gravity first, then the external forces of the scene
   ShearingBox box;
-  std::int64_t step = 0;    ///< steps done
-  double step_length = 0.0; ///< h, rad
+  std::int64_t step = 0;    ///< ticks done: steps, where these are not automatic
+  double step_length = 0.0; ///< h of the step to come, rad
+  StepControl control;
   CollisionTally collisions;
   EnergyStart energy;
 
@@ -60,8 +62,11 @@ struct SimulationState {
   FieldTable fields();
 
   /// Shear offset at the epoch of the elements, and at this boundary between steps.
-  double epoch_offset() const { return box.offset(2 * step + 1, 0.5 * step_length); }
-  double boundary_offset() const { return box.offset(2 * step, 0.5 * step_length); }
+  double epoch_offset() const { return box.offset(2 * step + control.step, 0.5 * tick()); }
+  double boundary_offset() const { return box.offset(2 * step, 0.5 * tick()); }
+
+  /// Length of a tick, rad.
+  double tick() const { return step_length / static_cast<double>(control.step); }
 
   /// Energy gained from the kicks of all forces, kg m² rad⁻².
   double kick_work() const;

@@ -36,6 +36,12 @@ class NeighbourLists {
 public:
   NeighbourLists(const Frequencies& frequencies, double step) : frequencies_(frequencies), step_(step) {}
 
+  /// The length of the steps to come. All lists are made anew.
+  void set_step(double step) {
+    release();
+    step_ = step;
+  }
+
   /// A step begins. Makes all lists anew or mends those of before, as it costs less. `undisturbed`: the particles of
   /// the last step have moved on by one step and been wrapped, nothing else; otherwise nothing need be as it was.
   /// Returns false when the box is so small that pairs may meet through several images: then nothing else may be asked.
