@@ -25,6 +25,7 @@ struct GenerateOptions {
   SceneArguments scene;
   std::string output;
   bool clumped = false, force = false;
+  SettleCriterion criterion;
   ThreadOption threads;
 };
 
@@ -53,20 +54,29 @@ Patch make_patch(const Scene& scene) {
   return initial_patch(scene, [&line](const StartProgress& progress) { line.show(progress); });
 }
 
-ClumpedState evolve_until_clumped(const Scene& scene) {
+ClumpedState evolve_until_clumped(const Scene& scene, const SettleCriterion& criterion) {
   ProgressLine line;
-  return clumped_state(scene, [&line](const ClumpingProgress& progress) { line.show(progress); });
+  return clumped_state(scene, criterion, [&line](const ClumpingProgress& progress) { line.show(progress); });
+}
+
+void print_means(const char* name, const char* unit, const WindowMeans& means, const MeanBounds& bounds,
+                 double in_unit) {
+  fmt::print("{}: {:.4g} ± {:.2g} {}, {:.4g} ± {:.2g} before: changes by {:.1f} % (at most {:.1f} %), errors up to "
+             "{:.1f} % (at most {:g} %)\n",
+             name, in_unit * means.last.value, in_unit * means.last.error, unit, in_unit * means.before.value,
+             in_unit * means.before.error, 100.0 * means.change(), 100.0 * means.tolerance, 100.0 * means.error(),
+             100.0 * bounds.error);
 }
 
 void print_clumping(const Clumping& c) {
   const Settling& s = c.settling;
-  fmt::print(
-      "settled after {:.4g} orbits: mean autocorrelation amplitude {:.3g} over the last orbit, {:.3g} over the one "
-      "before\n",
-      c.orbits, s.amplitude, s.before);
-  fmt::print(
-      "criterion: the mean changes by {:.1f} % (at most {:g} %), the state is {:.1f} % off it (at most {:g} %)\n",
-      100.0 * s.change, 100.0 * c.criterion.largest_change, 100.0 * s.deviation, 100.0 * c.criterion.largest_deviation);
+  fmt::print("settled after {:.4g} orbits, by means over the last {} orbits and the {} before, after orbit {:g}\n",
+             c.orbits, s.window_orbits, s.window_orbits, c.criterion.first_orbit);
+  print_means("viscosity from the loss of energy", "m²/s", s.viscosity, c.criterion.viscosity, c.orbital_frequency);
+  print_means("wake length lambda_perp", "m", s.wavelength, c.criterion.wavelengths, 1.0);
+  print_means("wake length lambda_x", "m", s.radial_wavelength, c.criterion.wavelengths, 1.0);
+  fmt::print("contrast: {:.3g}, of this state {:.1f} % off it (at most {:g} %)\n", s.contrast, 100.0 * s.deviation,
+             100.0 * c.criterion.largest_deviation);
 }
 
 void print_doubts(const Scene& scene, const Patch& patch) {
@@ -82,7 +92,7 @@ ExitCode generate(const GenerateOptions& options, const std::vector<std::string>
   SnapshotMeta meta{scene.resolved, collect_provenance(arguments)};
   Patch patch;
   if (options.clumped) {
-    ClumpedState state = unless_stopped([&] { return evolve_until_clumped(scene); });
+    ClumpedState state = unless_stopped([&] { return evolve_until_clumped(scene, options.criterion); });
     patch = std::move(state.patch);
     meta.clumping = clumping_numbers(state.clumping);
     print_clumping(state.clumping);
@@ -105,8 +115,13 @@ void add_generate(CLI::App& program, Action& action, const std::vector<std::stri
   CLI::App& command = *program.add_subcommand("generate", "write the initial state of a scene as a snapshot");
   options->scene.add_to(command)->required();
   command.add_option("-o,--output", options->output, "the snapshot to write; give it the ending .hdf")->required();
-  command.add_flag("--clumped", options->clumped,
-                   "evolve the state under its own gravity until its wakes have settled");
+  CLI::Option& clumped = *command.add_flag("--clumped", options->clumped,
+                                           "evolve the state under its own gravity until its wakes have settled");
+  command
+      .add_option("--most-orbits", options->criterion.most_orbits,
+                  "give up when wakes have not settled by then (default: 30)")
+      ->check(CLI::Range(0.0, 200.0).description(""))
+      ->needs(&clumped);
   command.add_flag("--force", options->force, "replace the file if it exists");
   options->threads.add_to(command);
   command.callback(

@@ -85,10 +85,18 @@ void ProgressLine::note(const std::string& text) {
 void ProgressLine::show(const ClumpingProgress& p) {
   if (!due(p.elapsed_s, p.settled))
     return;
-  std::string numbers = fmt::format("{:.3f} orbits  {}  amplitude {:.3f}", p.orbits, clock(p.elapsed_s), p.amplitude);
-  if (p.settling)
-    numbers += fmt::format("  mean {:.3f}, changes by {:.0f} % (settled at {:.0f} %)", p.settling->amplitude,
-                           100.0 * p.settling->change, 100.0 * p.criterion.largest_change);
+  std::string numbers = fmt::format("{:.3f} orbits  {}  contrast {:.3f}", p.orbits, clock(p.elapsed_s), p.contrast);
+  if (!p.settling) {
+    numbers += fmt::format("  compared from orbit {:g} on", p.criterion.least_orbits());
+  } else if (p.settling->standing < p.criterion.least_standing) {
+    numbers += "  no wakes stand out";
+  } else {
+    const auto change = [&](const WindowMeans& means) {
+      return fmt::format("{:.0f} % (settled at {:.0f} %)", 100.0 * means.change(), 100.0 * means.tolerance);
+    };
+    numbers += fmt::format("  viscosity changes by {}, wake lengths by {} and {}", change(p.settling->viscosity),
+                           change(p.settling->wavelength), change(p.settling->radial_wavelength));
+  }
   print("", numbers);
 }
 

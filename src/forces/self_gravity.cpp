@@ -60,6 +60,17 @@ GravityProblem gravity_problem(const Boundary& boundary, double orbital_frequenc
   return {positions, masses, particles.ids, boundary.box, boundary.offset, newton_g(orbital_frequency)};
 }
 
+std::optional<GravityEnergy> GravityMeter::measure(const Boundary& boundary) {
+  if (!has_energy_meter(settings_))
+    return std::nullopt;
+  std::vector<Vec3> positions;
+  std::vector<double> masses;
+  const GravityProblem problem = gravity_problem(boundary, orbital_frequency_, positions, masses);
+  if (!solver_)
+    solver_ = make_energy_meter(settings_, masses, problem.box.area());
+  return solver_->energy(problem);
+}
+
 std::unique_ptr<Force> make_self_gravity(const GravitySettings& settings, const ForceContext& context) {
   return std::make_unique<SelfGravity>(settings, context);
 }

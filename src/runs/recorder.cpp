@@ -6,7 +6,6 @@
 #include <keeler/files/files.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/gravity/direct.hpp>
-#include <keeler/gravity/fft.hpp>
 #include <keeler/io/checkpoint.hpp>
 #include <keeler/io/checkpoint_folder.hpp>
 #include <keeler/io/snapshot.hpp>
@@ -40,6 +39,8 @@ Recorder::Recorder(const RunFolder& folder, const Scene& scene, const std::vecto
     : folder_(folder), scene_(scene), provenance_(collect_provenance(arguments)), counters_(counters),
       columns_(series_columns_of(scene)), series_(open_series(folder, names_of(columns_), resumed_at)) {
   write_text(folder_.scene(), scene_.resolved);
+  if (scene_.gravity)
+    gravity_meter_.emplace(*scene_.gravity, scene_.planet.orbital_frequency);
   if (!scene_.output.collisions)
     return;
   std::optional<LogResume> resume;
@@ -96,18 +97,12 @@ void Recorder::sample(const Simulation& simulation) {
 // In the first row at or after each multiple of its interval: what is due follows from the step alone.
 std::optional<GravityEnergy> Recorder::measure_gravity(const Simulation& simulation) {
   const std::int64_t step = simulation.state().step, every = scene_.output.stress_every;
-  if (!scene_.gravity || every == 0 || !has_energy_meter(*scene_.gravity))
+  if (!gravity_meter_ || every == 0)
     return std::nullopt;
   if (step > 0 && step / every == (step - scene_.output.series_every) / every)
     return std::nullopt;
   const Stopwatch watch(costs_.stresses);
-  std::vector<Vec3> positions;
-  std::vector<double> masses;
-  const GravityProblem problem =
-      gravity_problem(simulation.boundary(), scene_.planet.orbital_frequency, positions, masses);
-  if (!energy_meter_)
-    energy_meter_ = make_energy_meter(*scene_.gravity, masses, problem.box.area());
-  return energy_meter_->energy(problem);
+  return gravity_meter_->measure(simulation.boundary());
 }
 
 void Recorder::check_forces(const Simulation& simulation) {

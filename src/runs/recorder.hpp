@@ -4,6 +4,7 @@
 #include "contact_log.hpp"
 #include "run_folder.hpp"
 
+#include <keeler/forces/self_gravity.hpp>
 #include <keeler/io/provenance.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/runs/series_columns.hpp>
@@ -11,7 +12,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <memory>
 #include <optional>
 
 namespace keeler {
@@ -75,7 +75,7 @@ private:
   std::vector<SeriesColumn> columns_;
   Series series_;
   std::optional<ContactLog> contact_log_;
-  std::unique_ptr<FftSolver> energy_meter_; // null: not yet, or there is none
+  std::optional<GravityMeter> gravity_meter_; // only with self-gravity
   ForceChecks force_checks_;
   OutputCosts costs_;
 };

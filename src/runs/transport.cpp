@@ -3,6 +3,7 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/mean.hpp>
+#include <keeler/diagnostics/viscosity.hpp>
 
 #include <fmt/format.h>
 
@@ -55,7 +56,7 @@ Rates rates_of(const SeriesTable& series, const std::vector<std::size_t>& rows, 
   for (std::size_t k = 0; k + 1 < rows.size(); ++k) {
     const std::size_t a = rows[k], b = rows[k + 1];
     const double time = (orbits[b] - orbits[a]) * 2.0 * pi / scale.orbital_frequency;
-    const double flux = 1.0 / (scale.mass * s * time), power = flux / s;
+    const double flux = 1.0 / (scale.mass * s * time);
     rates.time.push_back(0.5 * (orbits[a] + orbits[b]));
     rates.translational.push_back((translational[b] - translational[a]) * flux);
     rates.collisional.push_back((collisional[b] - collisional[a]) * flux);
@@ -67,7 +68,7 @@ Rates rates_of(const SeriesTable& series, const std::vector<std::size_t>& rows, 
       loss += (*potential)[b] - (*potential)[a];
     }
     rates.total.push_back(total);
-    rates.loss.push_back(loss * power);
+    rates.loss.push_back(loss_viscosity(loss, scale.mass, s, time));
   }
   return rates;
 }

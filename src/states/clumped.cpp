@@ -3,7 +3,8 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/diagnostics/surface.hpp>
-#include <keeler/diagnostics/wakes.hpp>
+#include <keeler/diagnostics/viscosity.hpp>
+#include <keeler/forces/self_gravity.hpp>
 #include <keeler/simulation/simulation.hpp>
 #include <keeler/states/initial.hpp>
 
@@ -15,17 +16,21 @@
 namespace keeler {
 namespace {
 
-Wakes wakes_of(const Patch& patch) {
-  return find_wakes(mean_autocorrelation(std::span(&patch, 1)), critical_wavelength(patch));
-}
-
 void require_gravity(const Scene& scene) {
   if (!scene.gravity)
     throw UsageError("the scene has no [gravity] (only their own gravity clumps particles); add [gravity] to it");
 }
 
+void require_room_to_settle(const SettleCriterion& criterion) {
+  if (criterion.most_orbits < criterion.least_orbits())
+    throw UsageError(fmt::format("wakes cannot have settled within {:g} orbits (means of {} orbits are compared, after "
+                                 "orbit {:g}); allow at least {:g}",
+                                 criterion.most_orbits, criterion.least_window_orbits, criterion.first_orbit,
+                                 criterion.least_orbits()));
+}
+
 void require_visible_wakes(const Patch& patch) {
-  if (patch.size() == 0 || wakes_of(patch).profile.empty())
+  if (patch.size() == 0 || wake_power(patch, critical_wavelength(patch)).snapshots == 0)
     throw UsageError(fmt::format("wakes could not be seen in this patch ({} particles; lambda_cr, {:.3g} m, spans too "
                                  "few of them); take more particles, a higher optical depth or a larger box",
                                  patch.size(), patch.size() ? critical_wavelength(patch) : 0.0));
@@ -38,47 +43,77 @@ std::int64_t steps_between_samples(const Scene& scene, const SettleCriterion& cr
   return kicks * std::max(1L, std::lround(1.0 / (criterion.samples_per_orbit * interval)));
 }
 
+class Sampler {
+public:
+  explicit Sampler(const Scene& scene) : meter_(*scene.gravity, scene.planet.orbital_frequency) {}
+
+  SettleSample measure(const Simulation& simulation) {
+    const ParticleMeans means = simulation.means();
+    const EnergyBalance balance = simulation.balance(means);
+    const std::optional<GravityEnergy> gravity = meter_.measure(simulation.boundary());
+    const Patch patch = simulation.patch();
+    const double work = balance.lost + balance.energy + (gravity ? gravity->potential : 0.0);
+    return {simulation.orbits(), loss_viscosity(work, means.mass, patch.box.shear, 1.0),
+            wake_power(patch, critical_wavelength(patch))};
+  }
+
+private:
+  GravityMeter meter_;
+};
+
+std::string difference(const char* name, const WindowMeans& means, const MeanBounds& bounds) {
+  return fmt::format("{} by {:.0f} % with errors of {:.0f} % (settled is {:.0f} %, with errors of {:g} %)", name,
+                     100.0 * means.change(), 100.0 * means.error(), 100.0 * means.tolerance, 100.0 * bounds.error);
+}
+
 [[noreturn]] void fail_unsettled(const Clumping& c, const Patch& patch) {
   const Settling& s = c.settling;
-  if (!s.standing)
+  if (s.standing < c.criterion.least_standing)
     throw Error(ExitCode::run_time,
-                fmt::format("no wakes stand in the patch after {:.3g} orbits (autocorrelation amplitude {:.2g}): it is "
-                            "too light or too hot to clump (Toomre's Q is {:.3g}); raise the optical depth or the "
-                            "density of the particles",
-                            c.orbits, s.amplitude, toomre_q(patch)));
-  throw Error(ExitCode::run_time,
-              fmt::format("the wakes did not settle in {:.3g} orbits (autocorrelation amplitude {:.3g} over the last "
-                          "orbit, {:.3g} over the one before: a change of {:.0f} %, settled is {:g} %); take a larger "
-                          "box, whose mean scatters less, or a snapshot of a run",
-                          c.orbits, s.amplitude, s.before, 100.0 * s.change, 100.0 * c.criterion.largest_change));
+                fmt::format("no wakes stand in the patch after {:.3g} orbits (they stand out of the noise in {:.0f} % "
+                            "of the samples): it is too light or too hot to clump (Toomre's Q is {:.3g}); raise the "
+                            "optical depth or the density of the particles",
+                            c.orbits, 100.0 * s.standing, toomre_q(patch)));
+  throw Error(
+      ExitCode::run_time,
+      fmt::format("the wakes did not settle in {:.3g} orbits (of the last {} orbits and of the {} before, these "
+                  "means differ: {}; {}; {}); take a larger box, whose means scatter less, allow more orbits, "
+                  "or take a snapshot of a run",
+                  c.orbits, s.window_orbits, s.window_orbits,
+                  difference("viscosity", s.viscosity, c.criterion.viscosity),
+                  difference("lambda_perp", s.wavelength, c.criterion.wavelengths),
+                  difference("lambda_x", s.radial_wavelength, c.criterion.wavelengths)));
 }
 
 } // namespace
 
-ClumpedState clumped_state(const Scene& scene, const std::function<void(const ClumpingProgress&)>& progress) {
+ClumpedState clumped_state(const Scene& scene, const SettleCriterion& criterion,
+                           const std::function<void(const ClumpingProgress&)>& progress) {
   require_gravity(scene);
+  require_room_to_settle(criterion);
   double seconds = 0.0;
   const Stopwatch watch(seconds);
   Simulation simulation(scene, initial_patch(scene));
   require_visible_wakes(simulation.patch());
 
   Clumping clumping;
-  const std::int64_t every = steps_between_samples(scene, clumping.criterion);
+  clumping.criterion = criterion;
+  clumping.orbital_frequency = scene.planet.orbital_frequency;
+  const std::int64_t every = steps_between_samples(scene, criterion);
   clumping.sample_every_orbits = static_cast<double>(every) * scene.time.step;
-  const auto window = static_cast<std::size_t>(
-      std::max(1L, std::lround(clumping.criterion.window_orbits / clumping.sample_every_orbits)));
+  const auto orbit = static_cast<std::size_t>(std::max(1L, std::lround(1.0 / clumping.sample_every_orbits)));
+  Sampler sampler(scene);
   ClumpingProgress p;
-  p.criterion = clumping.criterion;
+  p.criterion = criterion;
   for (;;) {
     simulation.advance();
     p.orbits = clumping.orbits = simulation.orbits();
     const bool sample = simulation.state().step % every == 0;
     if (sample) {
-      const Wakes wakes = wakes_of(simulation.patch());
-      p.amplitude = wakes.amplitude;
-      clumping.history.push_back({p.orbits, wakes.amplitude, wakes.pitch_degrees.has_value()});
-      p.settling = compare_windows(clumping.history, window);
-      p.settled = p.settling && settled(*p.settling, clumping.criterion);
+      clumping.history.push_back(sampler.measure(simulation));
+      p.contrast = wake_waves(clumping.history.back().waves).contrast;
+      p.settling = compare_windows(clumping.history, orbit, criterion);
+      p.settled = p.settling && settled(*p.settling, criterion);
       clumping.settling = p.settling.value_or(Settling{});
     }
     p.elapsed_s = watch.elapsed();
@@ -86,27 +121,49 @@ ClumpedState clumped_state(const Scene& scene, const std::function<void(const Cl
       progress(p);
     if (p.settled)
       return {simulation.patch(), clumping};
-    if (sample && p.orbits >= clumping.criterion.most_orbits)
+    if (sample && p.settling && p.orbits >= criterion.most_orbits)
       fail_unsettled(clumping, simulation.patch());
   }
 }
 
 std::map<std::string, std::vector<double>> clumping_numbers(const Clumping& clumping) {
+  const SettleCriterion& criterion = clumping.criterion;
+  const Settling& settling = clumping.settling;
+  const double omega = clumping.orbital_frequency;
   std::map<std::string, std::vector<double>> numbers = {
       {"orbits", {clumping.orbits}},
-      {"amplitude", {clumping.settling.amplitude}},
-      {"amplitude_before", {clumping.settling.before}},
-      {"change", {clumping.settling.change}},
-      {"largest_change", {clumping.criterion.largest_change}},
-      {"deviation", {clumping.settling.deviation}},
-      {"largest_deviation", {clumping.criterion.largest_deviation}},
-      {"window_orbits", {clumping.criterion.window_orbits}},
-      {"most_orbits", {clumping.criterion.most_orbits}},
+      {"window_orbits", {static_cast<double>(settling.window_orbits)}},
+      {"standing", {settling.standing}},
+      {"contrast", {settling.contrast}},
+      {"deviation", {settling.deviation}},
+      {"first_orbit", {criterion.first_orbit}},
+      {"least_window_orbits", {static_cast<double>(criterion.least_window_orbits)}},
+      {"most_orbits", {criterion.most_orbits}},
+      {"standard_errors", {criterion.standard_errors}},
+      {"least_standing", {criterion.least_standing}},
+      {"largest_deviation", {criterion.largest_deviation}},
       {"sample_every_orbits", {clumping.sample_every_orbits}},
   };
-  for (const WakeSample& sample : clumping.history) {
+  const auto add = [&](const std::string& name, const WindowMeans& means, const MeanBounds& bounds, double unit) {
+    numbers[name] = {unit * means.last.value};
+    numbers[name + "_before"] = {unit * means.before.value};
+    numbers[name + "_error"] = {unit * means.last.error};
+    numbers[name + "_error_before"] = {unit * means.before.error};
+    numbers[name + "_change"] = {means.change()};
+    numbers[name + "_tolerance"] = {means.tolerance};
+    numbers[name + "_least_tolerance"] = {bounds.change};
+    numbers[name + "_largest_error"] = {bounds.error};
+  };
+  add("loss_viscosity_m2_s", settling.viscosity, criterion.viscosity, omega);
+  add("wake_wavelength_m", settling.wavelength, criterion.wavelengths, 1.0);
+  add("wake_radial_wavelength_m", settling.radial_wavelength, criterion.wavelengths, 1.0);
+  for (const SettleSample& sample : clumping.history) {
+    const WakeWaves waves = wake_waves(sample.waves);
     numbers["history_orbits"].push_back(sample.orbits);
-    numbers["history_amplitude"].push_back(sample.amplitude);
+    numbers["history_work_m2"].push_back(sample.work);
+    numbers["history_contrast"].push_back(waves.contrast);
+    numbers["history_wake_wavelength_m"].push_back(waves.wavelength.value_or(NAN));
+    numbers["history_wake_radial_wavelength_m"].push_back(waves.radial_wavelength.value_or(NAN));
   }
   return numbers;
 }

@@ -1,6 +1,6 @@
 #!/bin/bash
 # clumped.sh KEELER SOURCE_DIR: `generate --clumped` evolves a scene until its wakes have settled, says by which numbers,
-# keeps them in the file, is the same for any number of threads, and its state is where a run goes on.
+# keeps them in the file, and its state is where a run goes on. (The same for any number of threads: tests/unit/states.)
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 cat >"$work/scene.toml" <<END
@@ -25,27 +25,32 @@ clump=(generate "$work/scene.toml" --clumped)
 
 runs 0 "${clump[@]}" -o "$work/one.hdf" --threads 1
 cp "$work/out" "$work/printed"
-grep -q ' orbits .* amplitude .* changes by ' "$work/err" || fail "no progress: $(cat "$work/err")"
-runs 0 "${clump[@]}" -o "$work/two.hdf" --threads 2
-for dataset in Coordinates Velocities Masses ParticleIDs; do
-  same_bytes "1 and 2 threads" "$work/one.hdf" "$work/two.hdf" "/PartType1/$dataset"
-done
+grep -q ' orbits .* contrast .* viscosity changes by ' "$work/err" || fail "no progress: $(cat "$work/err")"
 
 # recorded KEY: the number of this name in the record of the file
 runs 0 info "$work/one.hdf" --json
 cp "$work/out" "$work/info.json"
 recorded() { text "Clumping\/$1" "$work/info.json"; }
 holds() { awk "BEGIN { exit !($2) }" || fail "$1: $2"; }
-holds "settled" "$(recorded change) <= $(recorded largest_change) && $(recorded deviation) <= $(recorded largest_deviation)"
-holds "two windows" "$(recorded orbits) >= 2 * $(recorded window_orbits)"
+for quantity in loss_viscosity_m2_s wake_wavelength_m wake_radial_wavelength_m; do
+  holds "$quantity settled" "$(recorded ${quantity}_change) <= $(recorded ${quantity}_tolerance)"
+  mean="($(recorded $quantity) + $(recorded ${quantity}_before)) / 2"
+  for error in error error_before; do
+    holds "$quantity known" "$(recorded ${quantity}_$error) / ($mean) <= $(recorded ${quantity}_largest_error)"
+  done
+done
+holds "typical" "$(recorded deviation) <= $(recorded largest_deviation)"
+holds "wakes stand" "$(recorded standing) >= $(recorded least_standing)"
+holds "two windows" "$(recorded orbits) + 1e-9 >= $(recorded first_orbit) + 2 * $(recorded window_orbits)"
 holds "time of the state" "$(recorded orbits) == $(text time_orbits "$work/info.json")"
-grep -q '"Clumping/history_amplitude": "\[' "$work/info.json" || fail "no history in the file"
+grep -q '"Clumping/history_work_m2": "\[' "$work/info.json" || fail "no history in the file"
 cp "$work/printed" "$work/out"
 prints "orbits" "settled after $(printf %.4g "$(recorded orbits)") orbits"
-prints "amplitude" "amplitude $(printf %.3g "$(recorded amplitude)") over the last orbit"
-prints "criterion" "(at most $(printf %g "$(awk "BEGIN { print 100 * $(recorded largest_change) }")") %)"
+prints "viscosity" "viscosity from the loss of energy: $(printf %.4g "$(recorded loss_viscosity_m2_s)") ±"
+prints "wake lengths" "wake length lambda_x: $(printf %.4g "$(recorded wake_radial_wavelength_m)") ±"
+prints "criterion" "(at most $(printf %.1f "$(awk "BEGIN { print 100 * $(recorded wake_wavelength_m_tolerance) }")") %)"
 runs 0 info "$work/one.hdf"
-prints "info in text" "Clumping/amplitude"
+prints "info in text" "Clumping/loss_viscosity_m2_s"
 runs 0 analyze "$work/one.hdf"
 prints "wakes" "trailing"
 
@@ -60,8 +65,13 @@ grep -q Clumping "$work/out" && fail "a snapshot of a run has the record of its 
 # What does not clump, or is not let, leaves nothing behind.
 nothing_left() { [ -e "$work/none.hdf" ] && fail "$1: left a file behind"; }
 refuses_with 1 "too light" "no wakes stand in the patch" "${clump[@]}" -o "$work/none.hdf" \
-  --set particles.density=110 --set 'box.size=[60,60]'
+  --set particles.density=110 --set 'box.size=[60,60]' --most-orbits 9
 nothing_left "too light"
+refuses_with 1 "not by then" "did not settle in 9 orbits" "${clump[@]}" -o "$work/none.hdf" --most-orbits 9 \
+  --set particles.seed=2
+nothing_left "not settled"
+refuses "a limit too low" "allow at least 9" "${clump[@]}" -o "$work/none.hdf" --most-orbits 8
+refuses "a limit of nothing" "requires --clumped" generate "$work/scene.toml" -o "$work/none.hdf" --most-orbits 9
 refuses "too few" "wakes could not be seen" "${clump[@]}" -o "$work/none.hdf" --set particles.count=5 --set 'box.size=[60,60]'
 sed '/^\[gravity\]/,/^kick/d' "$work/scene.toml" >"$work/light.toml"
 refuses "no gravity" "add [gravity]" generate "$work/light.toml" --clumped -o "$work/none.hdf"

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <keeler/forces/force.hpp>
+#include <keeler/gravity/fft.hpp>
 #include <keeler/gravity/solver.hpp>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace keeler {
@@ -17,6 +19,21 @@ GravitySettings gravity_settings(const Parameters& parameters);
 /// outlive the problem, as the particles must.
 GravityProblem gravity_problem(const Boundary& boundary, double orbital_frequency, std::vector<Vec3>& positions,
                                std::vector<double>& masses);
+
+/// Measures the energy and the stress of the particles in their own gravity, along a run of always the same particles.
+class GravityMeter {
+public:
+  GravityMeter(const GravitySettings& settings, double orbital_frequency)
+      : settings_(settings), orbital_frequency_(orbital_frequency) {}
+
+  /// None where only some rings of images act (has_energy_meter).
+  std::optional<GravityEnergy> measure(const Boundary& boundary);
+
+private:
+  GravitySettings settings_;
+  double orbital_frequency_;
+  std::unique_ptr<FftSolver> solver_; // null: not yet, or there is none
+};
 
 /// The solver sees the patch from another origin at each kick, drawn from the seed and the step: where cells and meshes
 /// fall among the particles changes, and their errors do not add up from kick to kick. In a periodic box nothing else

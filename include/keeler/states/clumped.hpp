@@ -19,7 +19,8 @@ struct Clumping {
   double sample_every_orbits = 0.0; ///< 1 / samples_per_orbit, rounded to whole kick intervals
   double orbits = 0.0;              ///< evolved
   Settling settling;                ///< at the end
-  std::vector<WakeSample> history;
+  std::vector<SettleSample> history;
+  double orbital_frequency = 0.0; ///< rad/s: makes m²/s of m² rad⁻¹
 };
 
 struct ClumpedState {
@@ -31,17 +32,19 @@ struct ClumpedState {
 struct ClumpingProgress {
   double orbits = 0.0;
   double elapsed_s = 0.0;           ///< wall time
-  double amplitude = 0.0;           ///< of the last sample
-  std::optional<Settling> settling; ///< none in the first two windows
+  double contrast = 0.0;            ///< of the last sample: rms of the smoothed Σ/⟨Σ⟩ − 1
+  std::optional<Settling> settling; ///< none before criterion.least_orbits()
   SettleCriterion criterion;
   bool settled = false;
 };
 
 /// Evolves the scene's initial state, by the scene's step and gravity, until its wakes have settled; the scene's end
-/// time and schedules do not matter. Same scene, same state, for any number of threads. Throws UsageError for a scene
-/// without gravity or whose wakes could not be seen, Error (run_time) when they do not settle, Interrupted
-/// (interrupt.hpp), and what initial_patch() and Simulation throw.
-ClumpedState clumped_state(const Scene& scene, const std::function<void(const ClumpingProgress&)>& progress = {});
+/// time and schedules do not matter. Same scene and criterion, same state, for any number of threads. Throws UsageError
+/// for a scene without gravity or whose wakes could not be seen, and for a limit of orbits below which nothing settles;
+/// Error (run_time) when they have not settled by then; Interrupted (interrupt.hpp), and what initial_patch() and
+/// Simulation throw.
+ClumpedState clumped_state(const Scene& scene, const SettleCriterion& criterion = {},
+                           const std::function<void(const ClumpingProgress&)>& progress = {});
 
 /// The record as numbers by name, for SnapshotMeta::clumping.
 std::map<std::string, std::vector<double>> clumping_numbers(const Clumping& clumping);

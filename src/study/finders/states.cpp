@@ -16,7 +16,7 @@ namespace keeler {
 namespace {
 
 constexpr double early_orbits = 0.25;  // long enough for the start's own features to go, too short for clumps
-constexpr double clumped_orbits = 3.0; // in a box below four λ_cr, which holds too few wakes to settle
+constexpr double clumped_orbits = 3.0; // in a box below four λ_cr, which holds too few wakes to settle soon
 
 struct Recipe {
   const char* name;
@@ -80,16 +80,16 @@ Made settle(const Scene& scene, const std::function<void(const std::string&)>& s
   const auto progress = [&](const ClumpingProgress& p) {
     if (p.orbits < next)
       return;
-    say(fmt::format("clumping: {:.2f} orbits, autocorrelation amplitude {:.3f}", p.orbits, p.amplitude));
+    say(fmt::format("clumping: {:.2f} orbits, contrast {:.3f}", p.orbits, p.contrast));
     next = p.orbits + 0.5;
   };
-  const ClumpedState state = clumped_state(scene, progress);
+  const ClumpedState state = clumped_state(scene, {}, progress);
   const Settling& s = state.clumping.settling;
-  return Made{
-      state.patch,
-      fmt::format("{} particles, {:.3g} orbits with self-gravity, until the mean autocorrelation amplitude of an "
-                  "orbit settled ({:.3g}, {:.0f} % from the orbit before)",
-                  scene.particles.count, state.clumping.orbits, s.amplitude, 100.0 * s.change)};
+  return Made{state.patch,
+              fmt::format("{} particles, {:.3g} orbits with self-gravity, until the viscosity from the loss of energy "
+                          "and the wake lengths settled (over {} orbits they change by {:.0f}, {:.0f} and {:.0f} %)",
+                          scene.particles.count, state.clumping.orbits, s.window_orbits, 100.0 * s.viscosity.change(),
+                          100.0 * s.wavelength.change(), 100.0 * s.radial_wavelength.change())};
 }
 
 Made make(const Scene& scene, bool clumped, const std::function<void(const std::string&)>& say) {
