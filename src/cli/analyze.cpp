@@ -190,7 +190,8 @@ ExitCode run(const AnalyzeOptions& options) {
 
 void add_analyze(CLI::App& program, Action& action) {
   const auto options = std::make_shared<AnalyzeOptions>();
-  CLI::App& command = *program.add_subcommand("analyze", "measure a snapshot, or the steady part of a run");
+  CLI::App& command = *program.add_subcommand(
+      "analyze", "measure a snapshot, or the steady part of a run: viscosities, energy, wakes, structure");
   command.add_option("FILE|DIR", options->path, "a snapshot, or the folder of a run")->required()->type_name("");
   command.add_flag("--json", options->json, "print the numbers as JSON");
   command.add_option("--since", options->window.since, "first orbit (default: from where on the run is steady)")
