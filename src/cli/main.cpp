@@ -49,6 +49,7 @@ int run(int argc, char** argv) {
   add_render(program, action);
   add_bench(program, action);
   add_study(program, action, arguments);
+  add_sweep(program, action);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& asked) { // --help and --version

@@ -1,20 +1,34 @@
 #include "signals.hpp"
 
+#include <atomic>
 #include <csignal>
+#include <ctime>
 
 #include <unistd.h>
 
 namespace keeler {
 namespace {
 
-RunRequests requests; // a handler can reach nothing else
+// A handler can reach nothing else.
+RunRequests requests;
+std::atomic<double> first_stop_s = 0.0;
+
+constexpr double one_request_s = 0.25;
+
+double now_s() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 void give_up(int) {
   requests.give_up = true;
 }
 
 void ask_to_stop(int signal) {
-  if (requests.stop.exchange(true)) {
+  if (!requests.stop.exchange(true)) {
+    first_stop_s = now_s();
+  } else if (now_s() - first_stop_s > one_request_s) {
     give_up(signal);
     std::signal(signal, SIG_DFL); // one more ends the program
   }

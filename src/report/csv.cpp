@@ -3,10 +3,24 @@
 namespace keeler {
 namespace {
 
+// Quoted where it must be (RFC 4180).
+std::string field_of(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos)
+    return text;
+  std::string quoted = "\"";
+  for (const char c : text)
+    quoted += c == '"' ? std::string(2, c) : std::string(1, c);
+  return quoted + "\"";
+}
+
 std::string csv_line(const nlohmann::ordered_json& row, bool names) {
   std::string line;
-  for (const auto& [key, value] : row.items())
-    line += (line.empty() ? "" : ",") + (names ? key : value.is_string() ? value.get<std::string>() : value.dump());
+  bool first = true;
+  for (const auto& [key, value] : row.items()) {
+    const std::string text = names ? key : value.is_string() ? value.get<std::string>() : value.dump();
+    line += (first ? "" : ",") + field_of(text);
+    first = false;
+  }
   return line + "\n";
 }
 

@@ -74,13 +74,13 @@ void apply(Document& document, const std::string& path, const Document& entries,
   }
 }
 
-void apply_text(Document& document, const std::string& text, std::vector<std::string>& notices) {
+Override from_command_line(const std::string& text) {
   const std::string place = "--set " + text;
   const std::size_t equals = text.find('=');
   const std::string path = text.substr(0, equals);
   if (equals == std::string::npos || !is_dotted_name(path))
     throw UsageError(place + ": not an override (it needs a key and a value); write --set table.key=value");
-  apply(document, path, parse_override_value(text.substr(equals + 1), path, place), place, notices);
+  return {path, text.substr(equals + 1), place, place};
 }
 
 } // namespace
@@ -90,9 +90,15 @@ void apply_start(Document& document, const std::string& snapshot, std::vector<st
   apply(document, path, {{path, place, place, snapshot, true}}, place, notices);
 }
 
+void apply_override(Document& document, const Override& by, std::vector<std::string>& notices) {
+  Document entries = parse_override_value(by.value, by.key, by.value_place);
+  entries.front().key_place = by.key_place;
+  apply(document, by.key, entries, by.value_place, notices);
+}
+
 void apply_overrides(Document& document, const std::vector<std::string>& overrides, std::vector<std::string>& notices) {
   for (const std::string& text : overrides)
-    apply_text(document, text, notices);
+    apply_override(document, from_command_line(text), notices);
 }
 
 } // namespace keeler

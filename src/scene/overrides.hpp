@@ -1,15 +1,20 @@
-// Overrides from the command line: "a.b=value" on top of a scene file.
+// Overrides on top of a scene file: "a.b=value" of the command line, or keys of another file.
 #pragma once
 
 #include "document.hpp"
+
+#include <keeler/scene/scene.hpp>
 
 #include <string>
 #include <vector>
 
 namespace keeler {
 
-/// Puts the overrides into the document. What the file says against an override (another way to give the same thing, a
+/// Puts an override into the document. What the file says against an override (another way to give the same thing, a
 /// key of another law, the sections that a start file replaces) is dropped, with a notice each.
+void apply_override(Document& document, const Override& by, std::vector<std::string>& notices);
+
+/// The same for those of the command line, in their order. Throws UsageError where one is not KEY=VALUE.
 void apply_overrides(Document& document, const std::vector<std::string>& overrides, std::vector<std::string>& notices);
 
 /// The same for the snapshot of --from.

@@ -168,6 +168,14 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::v
   return read_scene(std::move(document), name, Purpose::start, std::move(notices));
 }
 
+Scene load_varied_scene(const std::string& path, const std::vector<Override>& overrides) {
+  Document document = parse_document(read_input(path, path), path);
+  std::vector<std::string> notices;
+  for (const Override& by : overrides)
+    apply_override(document, by, notices);
+  return read_scene(std::move(document), path, Purpose::start, std::move(notices));
+}
+
 Scene parse_stored_scene(const std::string& text, const std::string& name) {
   return read_scene(parse_document(text, name), name, Purpose::go_on, {});
 }

@@ -62,6 +62,9 @@ runs 0 bench step --count 200 --repeats 1 --json
 names bench
 runs 0 run "$work/scene.toml" -o "$work/run" --set time.end=0.004 --json
 names run
+printf 'scene = "scene.toml"\n[set]\n"time.end" = 0.004\n' >"$work/grid.toml"
+runs 0 sweep "$work/grid.toml" -o "$work/sweep" --json
+names sweep
 accepts "check" check "$work/scene.toml" --json
 names check
 accepts "analyze" analyze "$work/run" --json

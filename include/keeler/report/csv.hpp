@@ -7,7 +7,8 @@
 
 namespace keeler {
 
-/// Objects of plain values as CSV: the keys of the first as a header, then a line each. At least one object.
+/// Objects of plain values as CSV: the keys of the first as a header, then a line each. Texts with commas, quotes
+/// or line breaks are quoted. At least one object.
 std::string csv_of(const nlohmann::ordered_json& rows);
 
 } // namespace keeler

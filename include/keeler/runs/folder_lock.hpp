@@ -18,4 +18,7 @@ private:
   int descriptor_;
 };
 
+/// Whether a process holds the folder now. False of one that is not there.
+bool folder_is_held(const std::filesystem::path& folder);
+
 } // namespace keeler

@@ -121,6 +121,15 @@ struct Scene {
 Scene load_scene(const std::string& path, const std::vector<std::string>& overrides = {},
                  const std::optional<std::string>& from = {});
 
+/// A key given another value by another file than the scene: TOML, or a bare word. The places are for messages.
+struct Override {
+  std::string key, value;
+  std::string key_place, value_place;
+};
+
+/// The same with such overrides, later ones on top of earlier ones.
+Scene load_varied_scene(const std::string& path, const std::vector<Override>& overrides);
+
 /// The same from text; `name` stands for the file in messages.
 Scene parse_scene(const std::string& text, const std::string& name, const std::vector<std::string>& overrides = {},
                   const std::optional<std::string>& from = {});

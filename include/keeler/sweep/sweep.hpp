@@ -1,0 +1,42 @@
+// Many runs of one scene: a grid of keys times seeds, each run in a folder of its own, several at once, and tables and
+// a figure of what they measure. A sweep that was stopped or killed goes on with the same call; programs on any number
+// of machines may work in one folder.
+//
+// docs/manual/commands.md has the file of a grid, docs/formats.md the folder.
+#pragma once
+
+#include <keeler/core/progress.hpp>
+#include <keeler/diagnostics/time_series.hpp>
+#include <keeler/runs/run.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+namespace keeler {
+
+struct SweepSettings {
+  std::filesystem::path grid;
+  std::filesystem::path folder;
+  std::size_t jobs = 1; ///< runs at once, each a process
+  int threads_per_run = 1;
+  bool tables_only = false; ///< start nothing, make the tables of what is finished
+  std::function<void(const Progress&)> progress;
+  std::function<void(const std::string&)> notice;
+};
+
+/// How the folder stands.
+struct SweepResult {
+  std::size_t runs = 0, finished = 0, failed = 0; ///< of the grid
+  bool stopped = false;                           ///< on request; the tables were not made
+  nlohmann::ordered_json points;                  ///< the rows of points.csv
+};
+
+/// Carries out the runs that are neither finished nor held by another program, and makes the tables. Everything is
+/// checked before anything is written. Throws UsageError when the grid or a scene of it is wrong, or when the folder
+/// holds something else or runs of other settings; IoError.
+SweepResult sweep(const SweepSettings& settings, const RunRequests& requests);
+
+} // namespace keeler

@@ -1,0 +1,93 @@
+// keeler sweep: many runs over a grid of keys and seeds.
+#include "command.hpp"
+#include "common_options.hpp"
+#include "messages.hpp"
+#include "progress_line.hpp"
+#include "signals.hpp"
+
+#include <keeler/core/words.hpp>
+#include <keeler/sweep/sweep.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+namespace keeler {
+namespace {
+
+struct SweepOptions {
+  SweepSettings settings;
+  std::size_t jobs = 0; // 0: as many as there are processors for
+  bool json = false;
+};
+
+void print_json(const SweepResult& result) {
+  nlohmann::ordered_json json;
+  json["runs"] = result.runs;
+  json["finished"] = result.finished;
+  json["failed"] = result.failed;
+  json["points"] = result.points;
+  fmt::print("{}\n", json.dump(2));
+}
+
+void print_text(const SweepResult& result, const std::filesystem::path& folder) {
+  fmt::print("{}: {} finished, {} failed\n", counted(result.runs, "run"), result.finished, result.failed);
+  for (const char* const name : {"sweep.csv", "points.csv", "report.md", "figure.svg"})
+    if (std::filesystem::exists(folder / name))
+      fmt::print("{}\n", (folder / name).string());
+}
+
+ExitCode carry_out(SweepOptions& options) {
+  SweepSettings& settings = options.settings;
+  const auto processors = static_cast<std::size_t>(threads());
+  const auto per_run = static_cast<std::size_t>(settings.threads_per_run);
+  settings.jobs = options.jobs > 0 ? options.jobs : std::max<std::size_t>(1, processors / per_run);
+  SweepResult result;
+  {
+    ProgressLine line;
+    settings.progress = [&](const Progress& progress) { line.show(progress); };
+    settings.notice = [&](const std::string& text) { line.note(text); };
+    result = sweep(settings, requests_from_signals());
+  }
+  if (result.stopped) {
+    say("stopped, each run with a checkpoint; the same command goes on from here");
+    return ExitCode::stopped;
+  }
+  if (options.json)
+    print_json(result);
+  else
+    print_text(result, settings.folder);
+  const std::size_t left = result.runs - result.finished - result.failed;
+  if (left > 0)
+    say(fmt::format("{} not finished; the tables have the others", counted(left, "run")));
+  if (result.failed > 0)
+    say(fmt::format("{} failed, sweep.csv has the reasons; the same command tries again",
+                    counted(result.failed, "run")));
+  return result.failed > 0 ? ExitCode::run_time : ExitCode::done;
+}
+
+} // namespace
+
+void add_sweep(CLI::App& program, Action& action) {
+  const auto options = std::make_shared<SweepOptions>();
+  SweepSettings& settings = options->settings;
+  CLI::App& command = *program.add_subcommand(
+      "sweep", "run a scene over a grid of keys and seeds, with tables and a figure; stopped or killed, the same "
+               "command goes on");
+  command.add_option("GRID", settings.grid, "the grid (TOML): a scene, seeds, and which keys take which values")
+      ->required()
+      ->type_name("");
+  command.add_option("-o,--output", settings.folder, "the folder for the results; several programs may share it")
+      ->required();
+  command.add_option("--jobs", options->jobs, "runs at once (default: threads of the machine / threads of a run)")
+      ->check(number_between(1, most_threads, "a number of runs"));
+  command.add_option("--threads", settings.threads_per_run, "threads of each run (default: 1)")
+      ->check(number_between(1, most_threads, "a number of threads"));
+  command.add_flag("--tables", settings.tables_only,
+                   "start nothing: make the tables and the figure of what is finished");
+  command.add_flag("--json", options->json, "print the counts and the table of points as JSON");
+  command.callback([options, &action] { action = [options] { return carry_out(*options); }; });
+}
+
+} // namespace keeler

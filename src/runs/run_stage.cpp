@@ -1,0 +1,51 @@
+#include <keeler/runs/run_stage.hpp>
+
+#include "run_folder.hpp"
+#include "summary.hpp"
+
+#include <keeler/io/checkpoint_folder.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <string>
+
+namespace keeler {
+namespace {
+
+constexpr std::streamoff longest_row = 4096; // bytes, more than any row has
+
+// The end of a text file, with one whole line at least where there is one.
+std::string tail_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  if (!in)
+    return {};
+  const std::streamoff size = in.tellg();
+  in.seekg(std::max<std::streamoff>(0, size - 2 * longest_row));
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+} // namespace
+
+RunStage run_stage(const std::filesystem::path& folder) {
+  std::error_code unknown;
+  if (!std::filesystem::exists(folder, unknown) || std::filesystem::is_empty(folder, unknown))
+    return RunStage::absent;
+  if (says_finished(RunFolder(folder).summary()))
+    return RunStage::finished;
+  return list_checkpoints(folder).empty() ? RunStage::begun : RunStage::resumable;
+}
+
+std::int64_t steps_on_record(const std::filesystem::path& folder) {
+  const std::string tail = tail_of(RunFolder(folder).series());
+  const std::size_t end = tail.rfind('\n');
+  if (end == std::string::npos || end == 0)
+    return 0;
+  const std::size_t line_break = tail.rfind('\n', end - 1);
+  const std::size_t begin = line_break == std::string::npos ? 0 : line_break + 1;
+  std::int64_t step = 0;
+  std::from_chars(tail.data() + begin, tail.data() + end, step); // the header leaves 0
+  return step;
+}
+
+} // namespace keeler

@@ -1,0 +1,324 @@
+#include "grid.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/files/input.hpp>
+#include <keeler/scene/keys.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace keeler {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+
+constexpr const char* seed_key = "particles.seed";
+
+[[noreturn]] void fail_at(const std::string& place, const std::string& message) {
+  throw UsageError(place + ": " + message);
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text)
+    out += c == '"' || c == '\\'                  ? fmt::format("\\{}", c)
+           : static_cast<unsigned char>(c) < 0x20 ? fmt::format("\\u{:04x}", static_cast<unsigned>(c))
+                                                  : std::string(1, c);
+  return out + '"';
+}
+
+// Whether the value of a key, if it is a text, names a file.
+bool names_file(const std::string& path) {
+  const Key* const key = find_key(path);
+  return key && (key->type == KeyType::path || key->type == KeyType::rows);
+}
+
+class GridReader {
+public:
+  explicit GridReader(const fs::path& file) : text_(read_input(file, file.string())) {
+    grid_.file = file;
+    grid_.text = text_;
+  }
+
+  Grid read() {
+    const toml::table table = parse();
+    known(table, {"scene", "seeds", "since", "set", "axis", "plot"}, "a grid");
+    read_scene(table);
+    read_since(table);
+    read_seeds(table);
+    read_set(table);
+    read_axes(table);
+    read_plot(table);
+    return std::move(grid_);
+  }
+
+private:
+  toml::table parse() const {
+    try {
+      return toml::parse(text_, grid_.file.string());
+    } catch (const toml::parse_error& error) {
+      std::string reason(error.description());
+      std::replace_if(
+          reason.begin(), reason.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+      fail_at(place(error.source().begin), fmt::format("not TOML ({}); correct this line", reason));
+    }
+  }
+
+  std::string place(const toml::source_position& position) const {
+    return fmt::format("{}:{}:{}", grid_.file.string(), position.line, position.column);
+  }
+  std::string place(const toml::node& node) const { return place(node.source().begin); }
+  std::string start() const { return grid_.file.string() + ":1:1"; }
+
+  void known(const toml::table& table, const Names& names, const char* whose) const {
+    for (const auto& [key, node] : table)
+      if (std::find(names.begin(), names.end(), key.str()) == names.end())
+        fail_at(place(key.source().begin), fmt::format("unknown key {} ({} has {}); correct or remove it", key.str(),
+                                                       whose, fmt::join(names, ", ")));
+  }
+
+  // A key that is there must have a value of this kind.
+  template<class Type> const auto* find(const toml::table& table, const char* name, const char* kind) const {
+    const toml::node* const node = table.get(name);
+    if (node && !node->is<Type>())
+      fail_at(place(*node), fmt::format("{} must be {}; correct it", name, kind));
+    return node ? node->as<Type>() : nullptr;
+  }
+
+  std::string absolute(const std::string& path) const {
+    return fs::absolute(grid_.file.parent_path() / path).lexically_normal().string();
+  }
+
+  // A value as TOML on one line; files are named relative to the grid.
+  std::string toml_of(const toml::node& node, const std::string& path) const {
+    if (const auto* const text = node.as_string())
+      return quoted(names_file(path) && !text->get().empty() ? absolute(text->get()) : text->get());
+    if (const auto* const flag = node.as_boolean())
+      return flag->get() ? "true" : "false";
+    if (const auto* const integer = node.as_integer())
+      return fmt::format("{}", integer->get());
+    if (const auto* const number = node.as_floating_point()) {
+      const std::string digits = fmt::format("{}", number->get());
+      return digits.find_first_of(".en") == std::string::npos ? digits + ".0" : digits;
+    }
+    Names parts;
+    if (const auto* const list = node.as_array()) {
+      for (const toml::node& element : *list)
+        parts.push_back(toml_of(element, path));
+      return fmt::format("[{}]", fmt::join(parts, ", "));
+    }
+    if (const auto* const table = node.as_table()) {
+      for (const auto& [key, inner] : *table)
+        parts.push_back(fmt::format("{} = {}", key.str(), toml_of(inner, fmt::format("{}.{}", path, key.str()))));
+      return fmt::format("{{ {} }}", fmt::join(parts, ", "));
+    }
+    fail_at(place(node), fmt::format("{} is a date or time (no key takes one); correct it", path));
+  }
+
+  static std::string label_of(const toml::node& node, const std::string& toml) {
+    if (const auto* const text = node.as_string())
+      return text->get();
+    if (node.is_floating_point())
+      return fmt::format("{}", *node.value<double>()); // 1 for 1.0
+    const auto* const list = node.as_array();
+    if (!list || !list->is_homogeneous<double>())
+      return toml;
+    Names parts;
+    for (const toml::node& element : *list)
+      parts.push_back(label_of(element, {}));
+    return fmt::format("[{}]", fmt::join(parts, ", "));
+  }
+
+  GridValue value_of(const toml::node& node, const std::string& key, const std::string& key_place) const {
+    const std::string toml = toml_of(node, key);
+    return {{key, toml, key_place, place(node)},
+            label_of(node, toml),
+            node.is_number() ? node.value<double>() : std::nullopt};
+  }
+
+  void read_scene(const toml::table& table) {
+    const auto* const scene = find<std::string>(table, "scene", "the path of a scene file, in quotes");
+    if (!scene)
+      fail_at(start(), "scene is missing (the runs need one); add scene = \"FILE.toml\", relative to this file");
+    grid_.scene = (grid_.file.parent_path() / scene->get()).lexically_normal();
+    if (!fs::is_regular_file(grid_.scene))
+      fail_at(place(*scene),
+              fmt::format("the scene {} is not there (looked for as {}); correct the path, which is relative to this "
+                          "file",
+                          quoted(scene->get()), grid_.scene.string()));
+  }
+
+  void read_since(const toml::table& table) {
+    const toml::node* const since = table.get("since");
+    if (!since)
+      return;
+    grid_.since_place = place(*since);
+    grid_.since = since->is_number() ? since->value<double>() : std::nullopt;
+    if (!grid_.since || !std::isfinite(*grid_.since) || *grid_.since < 0.0)
+      fail_at(grid_.since_place, "since must be a number of orbits, 0 or more; correct it, or remove it to have the "
+                                 "steady part found");
+  }
+
+  void read_seeds(const toml::table& table) {
+    const auto* const seeds = find<toml::array>(table, "seeds", "a list of whole numbers, as [1, 2, 3]");
+    if (!seeds)
+      return;
+    for (const toml::node& seed : *seeds)
+      grid_.seeds.push_back(value_of(seed, seed_key, place(*seeds)));
+    if (grid_.seeds.empty())
+      fail_at(place(*seeds), "seeds is empty (no run would be made); list one at least, or remove the key");
+    refuse_twice(grid_.seeds, "seed");
+  }
+
+  void refuse_twice(const std::vector<GridValue>& values, const char* what) const {
+    std::set<std::string> seen;
+    for (const GridValue& value : values)
+      if (!seen.insert(value.label).second)
+        fail_at(value.override.value_place,
+                fmt::format("the {} {} stands here twice (both would be one run); remove one", what, value.label));
+  }
+
+  void read_set(const toml::table& table) {
+    if (const auto* const set = find<toml::table>(table, "set", "a table: write [set] and keys of the scene below"))
+      add_settings(*set, "");
+  }
+
+  // "time.end" = 30.0 and time.end = 30.0 are the same; a table in braces is a value.
+  void add_settings(const toml::table& table, const std::string& prefix) {
+    for (const auto& [key, node] : table) {
+      const std::string path = prefix + std::string(key.str());
+      const toml::table* const inner = node.as_table();
+      if (inner && !inner->is_inline())
+        add_settings(*inner, path + ".");
+      else
+        grid_.set.push_back(value_of(node, claimed(path, place(key.source().begin)), place(key.source().begin)));
+    }
+  }
+
+  // Each key of the scene is given once.
+  std::string claimed(const std::string& key, const std::string& at) {
+    if (key == seed_key)
+      fail_at(at, "particles.seed is given by seeds (a run has one seed); write seeds = [...]");
+    if (!keys_.insert(key).second)
+      fail_at(at, fmt::format("{} is given twice in this grid (a run has one value of it); remove one", key));
+    return key;
+  }
+
+  void read_axes(const toml::table& table) {
+    const toml::node* const axes = table.get("axis");
+    if (!axes)
+      return;
+    if (!axes->is_array_of_tables())
+      fail_at(place(*axes), "axis must be a list of tables; write [[axis]] with a key and its values below");
+    for (const toml::node& axis : *axes->as_array())
+      grid_.axes.push_back(read_axis(*axis.as_table()));
+  }
+
+  GridAxis read_axis(const toml::table& table) {
+    known(table, {"key", "keys", "values"}, "an axis");
+    GridAxis axis;
+    const std::vector<std::string> key_places = read_keys(table, axis);
+    const auto* const values = find<toml::array>(table, "values", "a list of values");
+    if (!values || values->empty())
+      fail_at(values ? place(*values) : place(table),
+              fmt::format("the axis of {} has no values (no run would be made); add values = [...]",
+                          fmt::join(axis.keys, " and ")));
+    const bool several = table.contains("keys");
+    for (const toml::node& node : *values)
+      axis.points.push_back(read_point(node, axis.keys, key_places, several));
+    refuse_same_points(axis);
+    return axis;
+  }
+
+  std::vector<std::string> read_keys(const toml::table& table, GridAxis& axis) {
+    std::vector<std::string> places;
+    const auto* const one = find<std::string>(table, "key", "a key of the scene, in quotes");
+    const auto* const several = find<toml::array>(table, "keys", "a list of keys of the scene");
+    if ((one != nullptr) == (several != nullptr))
+      fail_at(place(table), "an axis needs either key or keys; write for example key = \"particles.optical_depth\"");
+    const auto add = [&](const toml::node& node) {
+      if (!node.is_string())
+        fail_at(place(node), "a key of an axis must be a string; write for example \"particles.optical_depth\"");
+      axis.keys.push_back(claimed(node.as_string()->get(), place(node)));
+      places.push_back(place(node));
+    };
+    if (one)
+      add(*one);
+    else
+      for (const toml::node& node : *several)
+        add(node);
+    if (axis.keys.empty())
+      fail_at(place(*several), "keys is empty (the axis changes nothing); list one at least");
+    return places;
+  }
+
+  std::vector<GridValue> read_point(const toml::node& node, const Names& keys, const Names& key_places,
+                                    bool several) const {
+    std::vector<GridValue> point;
+    if (!several)
+      return {value_of(node, keys.front(), key_places.front())};
+    const toml::array* const list = node.as_array();
+    if (!list || list->size() != keys.size())
+      fail_at(place(node), fmt::format("this must be a list of {} values, of {}; correct it", keys.size(),
+                                       fmt::join(keys, " and ")));
+    for (std::size_t k = 0; k < keys.size(); ++k)
+      point.push_back(value_of((*list)[k], keys[k], key_places[k]));
+    return point;
+  }
+
+  void refuse_same_points(const GridAxis& axis) const {
+    std::set<Names> seen;
+    for (const std::vector<GridValue>& point : axis.points) {
+      Names labels;
+      for (const GridValue& value : point)
+        labels.push_back(value.label);
+      if (!seen.insert(labels).second)
+        fail_at(point.front().override.value_place,
+                fmt::format("{} stands here twice (both would be one run); remove one", fmt::join(labels, ", ")));
+    }
+  }
+
+  void read_plot(const toml::table& table) {
+    if (!grid_.axes.empty())
+      grid_.plot.x = grid_.axes.front().keys.front();
+    const auto* const plot = find<toml::table>(table, "plot", "a table: write [plot] and its keys below");
+    if (!plot)
+      return;
+    known(*plot, {"x", "y", "x_log", "y_log"}, "a plot");
+    if (const auto* const x = find<std::string>(*plot, "x", "a key of an axis, in quotes")) {
+      grid_.plot.x = x->get();
+      const bool on_axis = std::any_of(grid_.axes.begin(), grid_.axes.end(), [&](const GridAxis& axis) {
+        return std::find(axis.keys.begin(), axis.keys.end(), x->get()) != axis.keys.end();
+      });
+      if (!on_axis)
+        fail_at(place(*x),
+                fmt::format("x = {} is no key of an axis (only these change); name one of them", quoted(x->get())));
+    }
+    if (const auto* const y = find<std::string>(*plot, "y", "a column of sweep.csv, in quotes")) {
+      grid_.plot.y = y->get();
+      grid_.plot.y_place = place(*y);
+    }
+    if (const auto* const log = find<bool>(*plot, "x_log", "true or false"))
+      grid_.plot.x_log = log->get();
+    if (const auto* const log = find<bool>(*plot, "y_log", "true or false"))
+      grid_.plot.y_log = log->get();
+  }
+
+  std::string text_;
+  Grid grid_;
+  std::set<std::string> keys_; // of [set] and the axes
+};
+
+} // namespace
+
+Grid read_grid(const fs::path& file) {
+  return GridReader(file).read();
+}
+
+} // namespace keeler

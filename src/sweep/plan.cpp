@@ -1,0 +1,152 @@
+#include "plan.hpp"
+
+#include "quantities.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/io/hash.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+
+namespace keeler {
+namespace {
+
+std::string last_part(const std::string& key) {
+  return key.substr(key.rfind('.') + 1);
+}
+
+// The keys by their last parts, where these differ.
+std::vector<std::string> short_names(const std::vector<std::string>& keys) {
+  std::vector<std::string> names;
+  for (const std::string& key : keys) {
+    const auto same = [&](const std::string& other) { return last_part(other) == last_part(key); };
+    names.push_back(std::count_if(keys.begin(), keys.end(), same) == 1 ? last_part(key) : key);
+  }
+  return names;
+}
+
+// "217x108" for "[217, 108]".
+std::string with_lists_by_x(std::string label) {
+  if (label.starts_with("[") && label.ends_with("]"))
+    label = label.substr(1, label.size() - 2);
+  for (std::size_t at; (at = label.find(", ")) != std::string::npos;)
+    label.replace(at, 2, "x");
+  return label;
+}
+
+// A value in the name of a folder: a plain number, word or list of numbers as it is. Anything else has its letters and
+// a fingerprint, so that no two are the same.
+std::string in_name(const std::string& label) {
+  constexpr std::size_t longest = 24;
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '+' ||
+           c == '-';
+  };
+  const std::string text = with_lists_by_x(label);
+  if (text.size() <= longest && std::all_of(text.begin(), text.end(), plain))
+    return text;
+  std::string name;
+  std::copy_if(label.begin(), label.end(), std::back_inserter(name), plain);
+  Hash hash;
+  hash.add_text(label);
+  return name.substr(0, longest) + "~" + hash.hex().substr(0, 8);
+}
+
+std::vector<GridPoint> points_of(const std::vector<GridAxis>& axes) {
+  std::vector<GridPoint> points(1);
+  for (const GridAxis& axis : axes) {
+    std::vector<GridPoint> crossed;
+    for (const GridPoint& point : points)
+      for (std::size_t k = 0; k < axis.points.size(); ++k) {
+        GridPoint next = point;
+        next.on_axis.push_back(k);
+        for (const GridValue& value : axis.points[k])
+          next.settings.push_back(&value);
+        crossed.push_back(std::move(next));
+      }
+    points = std::move(crossed);
+  }
+  return points;
+}
+
+std::string name_of(const GridPoint& point, const std::vector<std::string>& names) {
+  std::string name;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    name += fmt::format("{}-{}_", names[k], in_name(point.settings[k]->label));
+  return name;
+}
+
+// A fault of the grid names its line; one of the scene's file says which run shows it.
+Scene checked_scene(const Grid& grid, const GridPoint& point, const GridValue* seed, const std::string& run) {
+  std::vector<Override> overrides;
+  for (const GridValue& value : grid.set)
+    overrides.push_back(value.override);
+  for (const GridValue* const value : point.settings)
+    overrides.push_back(value->override);
+  if (seed)
+    overrides.push_back(seed->override);
+  try {
+    return load_varied_scene(grid.scene.string(), overrides);
+  } catch (const UsageError& error) {
+    const std::string fault = error.what();
+    if (fault.starts_with(grid.file.string() + ":"))
+      throw;
+    throw UsageError(fmt::format("{} (in the run {} of {})", fault, run, grid.file.string()));
+  }
+}
+
+void check_start(const Grid& grid, const PlannedRun& run) {
+  if (run.scene.start_from && !std::filesystem::exists(*run.scene.start_from))
+    throw UsageError(fmt::format("{}:1:1: start.from of the run {} names '{}', which does not exist; correct it",
+                                 grid.file.string(), run.name, *run.scene.start_from));
+}
+
+void check_since(const Grid& grid, const PlannedRun& run) {
+  const double end = static_cast<double>(run.scene.time.end_step) * run.scene.time.step;
+  if (grid.since && *grid.since >= end)
+    throw UsageError(fmt::format("{}: since = {} is not before the end of the run {} (time.end = {:.6g}), so nothing "
+                                 "would be measured; choose an earlier orbit",
+                                 grid.since_place, *grid.since, run.name, end));
+}
+
+void check_plot(const Grid& grid) {
+  const std::vector<std::string> names = quantity_names();
+  if (std::find(names.begin(), names.end(), grid.plot.y) == names.end())
+    throw UsageError(fmt::format("{}: y = \"{}\" is nothing that a sweep measures; choose one of {}", grid.plot.y_place,
+                                 grid.plot.y, fmt::join(names, ", ")));
+}
+
+} // namespace
+
+Plan plan_runs(const Grid& grid) {
+  check_plot(grid);
+  Plan plan;
+  for (const GridAxis& axis : grid.axes)
+    plan.keys.insert(plan.keys.end(), axis.keys.begin(), axis.keys.end());
+  const std::vector<std::string> names = short_names(plan.keys);
+  plan.points = points_of(grid.axes);
+  std::vector<const GridValue*> seeds;
+  for (const GridValue& seed : grid.seeds)
+    seeds.push_back(&seed);
+  if (seeds.empty())
+    seeds.push_back(nullptr);
+  for (std::size_t p = 0; p < plan.points.size(); ++p)
+    for (const GridValue* const seed : seeds) {
+      PlannedRun run;
+      const std::string point = name_of(plan.points[p], names);
+      run.scene = checked_scene(grid, plan.points[p], seed, point + (seed ? "seed-" + seed->label : "seed"));
+      run.point = p;
+      run.seed = run.scene.particles.seed;
+      run.name = fmt::format("{}seed-{}", point, run.seed);
+      check_start(grid, run);
+      check_since(grid, run);
+      plan.runs.push_back(std::move(run));
+    }
+  return plan;
+}
+
+} // namespace keeler

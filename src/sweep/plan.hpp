@@ -1,0 +1,36 @@
+// The runs of a grid: every point with every seed, each with its name and its checked scene.
+#pragma once
+
+#include "grid.hpp"
+
+#include <keeler/scene/scene.hpp>
+
+#include <string>
+#include <vector>
+
+namespace keeler {
+
+/// A point of the grid: where it stands on each axis.
+struct GridPoint {
+  std::vector<std::size_t> on_axis;       ///< index of the value, an axis each
+  std::vector<const GridValue*> settings; ///< of all keys of all axes, in their order; they belong to the grid
+};
+
+struct PlannedRun {
+  std::string name; ///< of its folder; it depends on the point's keys and values and on the seed, on nothing else
+  std::size_t point = 0;
+  std::uint64_t seed = 0;
+  Scene scene;
+};
+
+/// The last axis changes fastest. Runs of a point stand together, in the order of the seeds.
+struct Plan {
+  std::vector<GridPoint> points;
+  std::vector<PlannedRun> runs;
+  std::vector<std::string> keys; ///< of all axes
+};
+
+/// Checks the scene of every run. The grid must outlive the plan. Throws UsageError for the first fault.
+Plan plan_runs(const Grid& grid);
+
+} // namespace keeler

@@ -1,0 +1,96 @@
+#include "output.hpp"
+
+#include <keeler/core/words.hpp>
+#include <keeler/files/files.hpp>
+#include <keeler/report/document.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+using Table = std::vector<std::vector<std::string>>;
+
+// What the table of points shows; the rest stands in points.csv.
+std::vector<std::size_t> shown(const Grid& grid) {
+  const std::vector<std::string> names = quantity_names();
+  std::vector<std::size_t> columns;
+  const auto add = [&](const std::string& name) {
+    const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+    if (std::find(columns.begin(), columns.end(), at) == columns.end())
+      columns.push_back(at);
+  };
+  add(grid.plot.y);
+  for (const char* const name :
+       {"total_viscosity_r2_omega", "translational_viscosity_r2_omega", "collisional_viscosity_r2_omega",
+        "gravitational_viscosity_r2_omega", "energy_balance", "dispersion_x_r_omega", "collisions_per_particle_orbit"})
+    add(name);
+  return columns;
+}
+
+std::string with_error(const std::optional<Estimate>& value) {
+  if (!value)
+    return "–";
+  return std::isfinite(value->error) ? fmt::format("{} ± {}", figures(value->value, 4), figures(value->error, 2))
+                                     : figures(value->value, 4);
+}
+
+Table table_of_points(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points) {
+  std::vector<std::string> header = plan.keys;
+  header.insert(header.end(), {"runs", "steady"});
+  const std::vector<std::size_t> columns = shown(grid);
+  for (const std::size_t column : columns)
+    header.push_back("`" + quantities()[column].column() + "`");
+  Table table = {header};
+  for (const PointRow& point : points) {
+    if (point.finished == 0)
+      continue;
+    std::vector<std::string> row;
+    for (const GridValue* const value : point.point->settings)
+      row.push_back(value->label);
+    row.insert(row.end(), {fmt::format("{}", point.finished), fmt::format("{}", point.steady)});
+    for (const std::size_t column : columns)
+      row.push_back(with_error(point.values[column]));
+    table.push_back(row);
+  }
+  return table;
+}
+
+std::size_t count_of(const std::vector<RunRow>& runs, RunStatus status) {
+  return static_cast<std::size_t>(
+      std::count_if(runs.begin(), runs.end(), [&](const RunRow& run) { return run.status == status; }));
+}
+
+} // namespace
+
+void write_report(const Grid& grid, const Plan& plan, const std::vector<RunRow>& runs,
+                  const std::vector<PointRow>& points, const SweepFolder& folder, Figure figure) {
+  Document report("Sweep of " + grid.file.filename().string());
+  report.paragraph(fmt::format("{} of {}: {} finished, {} failed, {} not finished.", counted(runs.size(), "run"),
+                               counted(plan.points.size(), "point"), count_of(runs, RunStatus::finished),
+                               count_of(runs, RunStatus::failed), count_of(runs, RunStatus::unfinished)));
+  report.paragraph(fmt::format(
+      "Each run is measured {}. A number is the mean over the seeds, its error the standard error by the spread of the "
+      "seeds; of one seed it is that run's own error by blocks. `steady` counts the runs that are steady in the part "
+      "measured.",
+      grid.since ? fmt::format("from orbit {} on", figures(*grid.since)) : "from where it becomes steady"));
+  report.heading("Points");
+  report.table(table_of_points(grid, plan, points));
+  if (figure == Figure::drawn)
+    report.paragraph("![figure](figure.svg)");
+  if (count_of(runs, RunStatus::failed) > 0) {
+    report.heading("Failed runs");
+    Table table = {{"run", "why"}};
+    for (const RunRow& run : runs)
+      if (run.status == RunStatus::failed)
+        table.push_back({run.run->name, run.reason});
+    report.table(table);
+  }
+  report.paragraph("`points.csv` and `sweep.csv` have all numbers, of points and of runs.");
+  write_text(folder.path() / "report.md", report.markdown());
+}
+
+} // namespace keeler

@@ -1,0 +1,105 @@
+#include "sweep_folder.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/files/files.hpp>
+
+#include <fmt/format.h>
+
+#include <map>
+#include <set>
+#include <sstream>
+
+namespace keeler {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The keys of a resolved scene, which has one on a line.
+std::map<std::string, std::string> keys_of(const std::string& resolved) {
+  std::map<std::string, std::string> keys;
+  std::istringstream lines(resolved);
+  std::string section;
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t equals = line.find(" = ");
+    if (line.starts_with("["))
+      section = line.substr(1, line.find(']') - 1) + ".";
+    else if (equals != std::string::npos)
+      keys[section + line.substr(0, equals)] = line.substr(equals + 3);
+  }
+  return keys;
+}
+
+// "time.end = 20.0 and now has time.end = 30.0"; empty: none.
+std::string difference(const std::string& before, const std::string& now) {
+  const std::map<std::string, std::string> old_keys = keys_of(before), new_keys = keys_of(now);
+  const auto words = [](const std::map<std::string, std::string>& keys, const std::string& key) {
+    const auto found = keys.find(key);
+    return found == keys.end() ? "no " + key : fmt::format("{} = {}", key, found->second);
+  };
+  std::map<std::string, std::string> all = old_keys;
+  all.insert(new_keys.begin(), new_keys.end());
+  for (const auto& [key, value] : all)
+    if (words(old_keys, key) != words(new_keys, key))
+      return fmt::format("{} and now has {}", words(old_keys, key), words(new_keys, key));
+  return {};
+}
+
+void refuse_changed(const Grid& grid, const PlannedRun& run, const fs::path& folder) {
+  const fs::path file = folder / "scene.toml";
+  std::error_code unknown;
+  if (!fs::exists(file, unknown))
+    return;
+  // Both as this version of the program reads them: keys that it has learned since have their defaults.
+  const std::string before = parse_stored_scene(read_text(file), file.string()).resolved;
+  const std::string now = parse_stored_scene(run.scene.resolved, file.string()).resolved;
+  if (const std::string change = difference(before, now); !change.empty())
+    throw UsageError(fmt::format("{}:1:1: the run {} was made with {} (runs of other settings cannot stand in one "
+                                 "table); change the setting back, name another folder, or remove '{}' to make it anew",
+                                 grid.file.string(), run.name, change, folder.string()));
+}
+
+} // namespace
+
+void SweepFolder::refuse_other_content(const Grid& grid, const Plan& plan) const {
+  std::error_code unknown;
+  const fs::file_status status = fs::status(path_, unknown);
+  if (fs::exists(status) && !fs::is_directory(status))
+    throw UsageError(fmt::format("'{}' is a file (results go into a folder); name another", path_.string()));
+  if (fs::is_directory(status) && !fs::is_empty(path_, unknown) && !fs::exists(claims(), unknown))
+    throw UsageError(fmt::format("'{}' is not empty and holds no sweep; name another folder", path_.string()));
+  for (const PlannedRun& planned : plan.runs)
+    refuse_changed(grid, planned, run(planned.name));
+}
+
+std::size_t SweepFolder::runs_beside(const Plan& plan) const {
+  std::set<std::string> planned;
+  for (const PlannedRun& run : plan.runs)
+    planned.insert(run.name);
+  std::size_t count = 0;
+  std::error_code unknown;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path_ / "runs", unknown))
+    count += planned.contains(entry.path().filename().string()) ? 0 : 1;
+  return count;
+}
+
+void SweepFolder::make() const {
+  for (const char* const name : {"runs", "scenes", "failed"}) {
+    std::error_code error;
+    fs::create_directories(path_ / name, error);
+    if (error)
+      throw IoError(
+          fmt::format("cannot make the folder '{}': {}; name another", (path_ / name).string(), error.message()));
+  }
+}
+
+std::optional<std::string> SweepFolder::failure_of(const std::string& name) const {
+  std::error_code unknown;
+  if (!fs::exists(failure(name), unknown))
+    return std::nullopt;
+  std::string reason = read_text(failure(name));
+  while (!reason.empty() && reason.back() == '\n')
+    reason.pop_back();
+  return reason;
+}
+
+} // namespace keeler

@@ -1,0 +1,142 @@
+#include "tables.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/diagnostics/scatter.hpp>
+#include <keeler/report/csv.hpp>
+#include <keeler/runs/run_stage.hpp>
+
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+Json or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json or_null(const std::optional<double>& value) {
+  return value ? or_null(*value) : Json(nullptr);
+}
+
+void add_settings(Json& row, const Plan& plan, const GridPoint& point) {
+  for (std::size_t k = 0; k < plan.keys.size(); ++k) {
+    const GridValue& value = *point.settings[k];
+    const Json number = Json::parse(value.label, nullptr, false);
+    row[plan.keys[k]] = value.number && number.is_number() ? number : Json(value.label);
+  }
+}
+
+void add_values(Json& row, const std::vector<std::optional<Estimate>>& values) {
+  for (std::size_t k = 0; k < quantities().size(); ++k) {
+    const std::optional<Estimate> value = k < values.size() ? values[k] : std::nullopt;
+    row[quantities()[k].column()] = value ? or_null(value->value) : Json(nullptr);
+    row[quantities()[k].error_column()] = value ? or_null(value->error) : Json(nullptr);
+  }
+}
+
+RunRow measured_row(const Grid& grid, const PlannedRun& run, const SweepFolder& folder) {
+  RunRow row;
+  row.run = &run;
+  if (run_stage(folder.run(run.name)) == RunStage::finished) {
+    row.status = RunStatus::finished;
+    try {
+      row.numbers = measure_run(folder.run(run.name), run.scene, grid.since);
+    } catch (const Error& error) { // a damaged file must not take the other runs from the table
+      row.reason = error.what();
+    }
+  } else if (const std::optional<std::string> reason = folder.failure_of(run.name)) {
+    row.status = RunStatus::failed;
+    row.reason = *reason;
+  }
+  return row;
+}
+
+} // namespace
+
+Estimate seed_mean(std::span<const Estimate> seeds) {
+  if (seeds.size() == 1)
+    return seeds.front();
+  std::vector<double> values;
+  for (const Estimate& seed : seeds)
+    values.push_back(seed.value);
+  const Scatter scatter = scatter_of(values);
+  return {scatter.mean, scatter.deviation / std::sqrt(static_cast<double>(scatter.count))};
+}
+
+std::vector<RunRow> run_rows(const Grid& grid, const Plan& plan, const SweepFolder& folder) {
+  std::vector<RunRow> rows;
+  for (const PlannedRun& run : plan.runs)
+    rows.push_back(measured_row(grid, run, folder));
+  return rows;
+}
+
+std::vector<PointRow> point_rows(const Plan& plan, const std::vector<RunRow>& runs) {
+  std::vector<PointRow> rows(plan.points.size());
+  for (std::size_t p = 0; p < rows.size(); ++p)
+    rows[p].point = &plan.points[p];
+  std::vector<std::vector<std::vector<Estimate>>> seeds(rows.size(),
+                                                        std::vector<std::vector<Estimate>>(quantities().size()));
+  for (const RunRow& run : runs) {
+    PointRow& row = rows[run.run->point];
+    row.finished += run.status == RunStatus::finished ? 1 : 0;
+    row.failed += run.status == RunStatus::failed ? 1 : 0;
+    if (!run.numbers)
+      continue;
+    row.steady += run.numbers->steady ? 1 : 0;
+    for (std::size_t k = 0; k < quantities().size(); ++k)
+      if (const std::optional<Estimate>& value = run.numbers->values[k]; value && std::isfinite(value->value))
+        seeds[run.run->point][k].push_back(*value);
+  }
+  for (std::size_t p = 0; p < rows.size(); ++p)
+    for (const std::vector<Estimate>& of_seeds : seeds[p])
+      rows[p].values.push_back(of_seeds.empty() ? std::nullopt : std::optional(seed_mean(of_seeds)));
+  return rows;
+}
+
+Json runs_as_json(const Plan& plan, const std::vector<RunRow>& runs) {
+  Json rows = Json::array();
+  for (const RunRow& run : runs) {
+    if (run.status == RunStatus::unfinished)
+      continue;
+    const RunNumbers numbers = run.numbers.value_or(RunNumbers());
+    Json row;
+    row["run"] = run.run->name;
+    add_settings(row, plan, plan.points[run.run->point]);
+    row["seed"] = run.run->seed;
+    row["status"] = run.status == RunStatus::finished ? "finished" : "failed";
+    row["reason"] = run.reason.empty() ? Json(nullptr) : Json(run.reason);
+    row["particle_count"] = run.numbers ? Json(numbers.particle_count) : Json(nullptr);
+    row["since_orbit"] = or_null(numbers.since_orbit);
+    row["until_orbit"] = or_null(numbers.until_orbit);
+    row["steady"] = run.numbers ? Json(numbers.steady) : Json(nullptr);
+    add_values(row, numbers.values);
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Json points_as_json(const Plan& plan, const std::vector<PointRow>& points) {
+  Json rows = Json::array();
+  for (const PointRow& point : points) {
+    if (point.finished == 0)
+      continue;
+    Json row;
+    add_settings(row, plan, *point.point);
+    row["finished_runs"] = point.finished;
+    row["failed_runs"] = point.failed;
+    row["steady_runs"] = point.steady;
+    add_values(row, point.values);
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+std::string csv_with_gaps(Json rows) {
+  for (Json& row : rows)
+    for (auto& [name, value] : row.items())
+      if (value.is_null())
+        value = "";
+  return csv_of(rows);
+}
+
+} // namespace keeler

@@ -1,0 +1,242 @@
+#include "workers.hpp"
+
+#include "child.hpp"
+
+#include <keeler/core/stopwatch.hpp>
+#include <keeler/core/words.hpp>
+#include <keeler/files/files.hpp>
+#include <keeler/runs/folder_lock.hpp>
+#include <keeler/runs/run_stage.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <vector>
+
+namespace keeler {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::chrono::milliseconds pause(20);
+constexpr double look_interval_s = 1.0; // at files, for runs that became free and for how far the others are
+constexpr double stop_interval_s = 0.5; // between one request to stop at once and the next
+
+// Stops of children are no failures when they were asked for, by anyone.
+bool is_stop(const ChildEnd& end) {
+  return end.code == static_cast<int>(ExitCode::stopped);
+}
+
+class Workers {
+public:
+  Workers(const Plan& plan, const SweepFolder& folder, Claims& claims, const WorkOptions& options,
+          const RunRequests& requests)
+      : plan_(plan), folder_(folder), claims_(claims), options_(options), requests_(requests),
+        states_(plan.runs.size()) {
+    for (std::size_t k = 0; k < states_.size(); ++k)
+      states_[k].former_failure = failure_time(k);
+    look();
+    done_at_start_ = done();
+  }
+
+  void work() {
+    while (true) {
+      collect();
+      if (requests_.stop)
+        stop_children();
+      else if (free_slots() && due(next_start_))
+        start_some();
+      if (due(next_look_))
+        look();
+      report();
+      if (running() == 0 && (requests_.stop || nothing_to_wait_for_))
+        return;
+      std::this_thread::sleep_for(pause);
+    }
+  }
+
+private:
+  struct State {
+    std::unique_ptr<Child> child;
+    bool finished = false, failed = false;
+    double share = 0.0;                               // of its steps
+    std::optional<fs::file_time_type> former_failure; // of the record that was there at the beginning
+  };
+
+  const PlannedRun& run(std::size_t k) const { return plan_.runs[k]; }
+  fs::path path(std::size_t k) const { return folder_.run(run(k).name); }
+
+  std::optional<fs::file_time_type> failure_time(std::size_t k) const {
+    std::error_code none;
+    const fs::file_time_type time = fs::last_write_time(folder_.failure(run(k).name), none);
+    return none ? std::nullopt : std::optional(time);
+  }
+
+  std::size_t running() const {
+    return static_cast<std::size_t>(
+        std::count_if(states_.begin(), states_.end(), [](const State& s) { return s.child != nullptr; }));
+  }
+  bool free_slots() const { return running() < options_.jobs; }
+
+  // Whether a moment has come; the next one is an interval later.
+  bool due(double& moment) {
+    if (watch_.elapsed() < moment)
+      return false;
+    moment = watch_.elapsed() + look_interval_s;
+    return true;
+  }
+
+  // Points first, then seeds: a figure of all points is there early.
+  std::vector<std::size_t> order() const {
+    const std::size_t seeds = plan_.runs.size() / plan_.points.size();
+    std::vector<std::size_t> order;
+    for (std::size_t s = 0; s < seeds; ++s)
+      for (std::size_t p = 0; p < plan_.points.size(); ++p)
+        order.push_back(p * seeds + s);
+    return order;
+  }
+
+  void start_some() {
+    nothing_to_wait_for_ = true;
+    for (const std::size_t k : order())
+      if (free_slots())
+        consider(k);
+      else
+        nothing_to_wait_for_ = false;
+  }
+
+  // Takes a run that is free. What another program holds is that program's; what is held without a claim (by what a
+  // dead program left, or by hand) will be free soon.
+  void consider(std::size_t k) {
+    State& state = states_[k];
+    if (state.child || state.finished || state.failed || !claims_.take(run(k).name))
+      return;
+    const RunStage stage = run_stage(path(k));
+    state.finished = stage == RunStage::finished;
+    const std::optional<fs::file_time_type> failure = failure_time(k);
+    state.failed = !state.finished && failure && failure != state.former_failure;
+    const bool held = folder_is_held(path(k));
+    if (held)
+      nothing_to_wait_for_ = false;
+    if (state.finished || state.failed || held)
+      claims_.release(run(k).name);
+    else
+      start(k, stage);
+  }
+
+  void start(std::size_t k, RunStage stage) {
+    nothing_to_wait_for_ = false;
+    std::error_code ignored; // it was not there, or is written anew
+    fs::remove(folder_.failure(run(k).name), ignored);
+    states_[k].former_failure.reset();
+    std::vector<std::string> words;
+    if (stage == RunStage::resumable) {
+      words = {"resume", path(k).string()};
+    } else {
+      const fs::path scene = folder_.scene(run(k).name);
+      write_text(scene, run(k).scene.resolved);
+      words = {"run", scene.string(), "-o", path(k).string()};
+      if (stage == RunStage::begun)
+        words.emplace_back("--force");
+    }
+    words.insert(words.end(), {"--threads", fmt::format("{}", options_.threads)});
+    states_[k].child = std::make_unique<Child>(words);
+  }
+
+  void collect() {
+    for (std::size_t k = 0; k < states_.size(); ++k) {
+      if (!states_[k].child)
+        continue;
+      if (const std::optional<ChildEnd> end = states_[k].child->end()) {
+        states_[k].child.reset();
+        conclude(k, *end);
+        claims_.release(run(k).name);
+        next_start_ = 0.0;
+      }
+    }
+  }
+
+  void conclude(std::size_t k, const ChildEnd& end) {
+    State& state = states_[k];
+    state.finished = run_stage(path(k)) == RunStage::finished;
+    if (state.finished || is_stop(end) || requests_.stop)
+      return;
+    state.failed = true;
+    const std::string reason =
+        end.message.empty() ? fmt::format("the run ended with exit code {}", end.code) : end.message;
+    write_text(folder_.failure(run(k).name), reason + "\n");
+    options_.notice(fmt::format("the run {} failed: {}", run(k).name, reason));
+  }
+
+  // Once, and again and again when the requests ask to give up.
+  void stop_children() {
+    if (asked_to_stop_ && !(requests_.give_up && watch_.elapsed() >= next_stop_))
+      return;
+    for (State& state : states_)
+      if (state.child)
+        state.child->stop();
+    asked_to_stop_ = true;
+    next_stop_ = watch_.elapsed() + stop_interval_s;
+  }
+
+  void look() {
+    for (std::size_t k = 0; k < states_.size(); ++k)
+      if (State& state = states_[k]; !state.finished) {
+        state.finished = !state.child && run_stage(path(k)) == RunStage::finished;
+        state.share = static_cast<double>(steps_on_record(path(k))) /
+                      static_cast<double>(std::max<std::int64_t>(1, run(k).scene.time.end_step));
+      }
+  }
+
+  // Work in particles and steps, of all runs in the grid, whoever does it.
+  double weight(std::size_t k) const {
+    return static_cast<double>(std::max<std::size_t>(1, run(k).scene.particles.count)) *
+           static_cast<double>(std::max<std::int64_t>(1, run(k).scene.time.end_step));
+  }
+  double done() const {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < states_.size(); ++k)
+      sum += weight(k) * (states_[k].finished ? 1.0 : states_[k].share);
+    return sum;
+  }
+
+  void report() const {
+    double all = 0.0;
+    for (std::size_t k = 0; k < states_.size(); ++k)
+      all += weight(k);
+    const auto finished = std::count_if(states_.begin(), states_.end(), [](const State& s) { return s.finished; });
+    const double now = done(), gained = now - done_at_start_, elapsed = watch_.elapsed();
+    Progress progress;
+    progress.share = finished == std::ssize(states_) ? 1.0 : std::min(now / all, 0.999);
+    progress.elapsed_s = elapsed;
+    progress.remaining_s = gained > 0.0 ? elapsed * (all - now) / gained : 0.0;
+    progress.what = fmt::format("{} of {} done, {} running", finished, counted(states_.size(), "run"), running());
+    options_.progress(progress);
+  }
+
+  const Plan& plan_;
+  const SweepFolder& folder_;
+  Claims& claims_;
+  const WorkOptions& options_;
+  const RunRequests& requests_;
+  std::vector<State> states_; // a run each
+  double elapsed_ = 0.0;
+  Stopwatch watch_{elapsed_};
+  double next_start_ = 0.0, next_look_ = 0.0, next_stop_ = 0.0;
+  double done_at_start_ = 0.0;
+  bool nothing_to_wait_for_ = false, asked_to_stop_ = false;
+};
+
+} // namespace
+
+void work_on(const Plan& plan, const SweepFolder& folder, Claims& claims, const WorkOptions& options,
+             const RunRequests& requests) {
+  Workers(plan, folder, claims, options, requests).work();
+}
+
+} // namespace keeler
