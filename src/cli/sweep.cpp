@@ -9,6 +9,7 @@
 #include <keeler/sweep/sweep.hpp>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -27,7 +28,7 @@ void print_json(const SweepResult& result) {
   json["runs"] = result.runs;
   json["finished"] = result.finished;
   json["failed"] = result.failed;
-  json["points"] = result.points;
+  json["points"] = nlohmann::ordered_json::parse(result.points);
   fmt::print("{}\n", json.dump(2));
 }
 

@@ -102,7 +102,7 @@ SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
   write_tables(grid, plan, folder, runs, points, settings.notice);
   result.finished = count_of(runs, RunStatus::finished);
   result.failed = count_of(runs, RunStatus::failed);
-  result.points = points_as_json(plan, points);
+  result.points = points_as_json(plan, points).dump();
   return result;
 }
 

@@ -6,10 +6,7 @@
 #pragma once
 
 #include <keeler/core/progress.hpp>
-#include <keeler/diagnostics/time_series.hpp>
 #include <keeler/runs/run.hpp>
-
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <functional>
@@ -31,7 +28,7 @@ struct SweepSettings {
 struct SweepResult {
   std::size_t runs = 0, finished = 0, failed = 0; ///< of the grid
   bool stopped = false;                           ///< on request; the tables were not made
-  nlohmann::ordered_json points;                  ///< the rows of points.csv
+  std::string points;                             ///< the rows of points.csv, as a list in JSON
 };
 
 /// Carries out the runs that are neither finished nor held by another program, and makes the tables. Everything is
