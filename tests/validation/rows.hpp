@@ -1,6 +1,8 @@
 // Keeler held against exact solutions, conservation laws and the literature: the rows of docs/validation.md.
 #pragma once
 
+#include "rows/rows.hpp"
+
 #include <keeler/io/series.hpp>
 #include <keeler/particles/patch.hpp>
 #include <keeler/runs/transport.hpp>

@@ -3,10 +3,9 @@
 
 #include "unit/collision/plain_drift.hpp"
 #include "unit/collision/ring.hpp"
+#include "unit/collision/same_bits.hpp"
 
 #include <doctest/doctest.h>
-
-#include <cstring>
 
 namespace keeler::test {
 
@@ -23,29 +22,6 @@ struct Taker : DriftObserver {
   std::size_t wants_domains() const override { return static_cast<std::size_t>(threads()); }
   void recorded(std::span<const CollisionRecord> of_step) override { records.assign(of_step.begin(), of_step.end()); }
 };
-
-inline bool same_bits(double a, double b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
-}
-
-inline bool same_bits(const Particles& a, const Particles& b) {
-  const std::vector<Body> left = by_id(a), right = by_id(b);
-  return left.size() == right.size() &&
-         (left.empty() || std::memcmp(left.data(), right.data(), left.size() * sizeof(Body)) == 0);
-}
-
-inline bool same_bits(const CollisionTally& a, const CollisionTally& b) {
-  return a.fast == b.fast && a.slow == b.slow && a.gave_up == b.gave_up && same_bits(a.energy_lost, b.energy_lost) &&
-         same_bits(a.momentum_flux, b.momentum_flux) && same_bits(a.azimuthal_gain, b.azimuthal_gain);
-}
-
-/// Everything to the bit.
-inline bool same_bits(const CollisionRecord& a, const CollisionRecord& b) {
-  return same_bits(a.time, b.time) && a.low_id == b.low_id && a.high_id == b.high_id && a.image == b.image &&
-         same_bits(a.normal_speed, b.normal_speed) && a.fast == b.fast &&
-         same_bits(a.tangential_speed, b.tangential_speed) && same_bits(a.energy_lost, b.energy_lost) &&
-         same_bits(a.radius_sum, b.radius_sum) && a.place == b.place;
-}
 
 /// How many of the records, from the first on, are the same.
 inline std::size_t same_records(const std::vector<CollisionRecord>& a, const std::vector<CollisionRecord>& b) {
