@@ -21,7 +21,8 @@ KeyRange up_to(double high) {
 
 // Ranges are wide, so that only slips of units lie outside: orbits of ten minutes to 20 years, patches up to a tenth of
 // a ring's distance from its planet (1e8 m), materials up to the densest metals, motions up to 1000 times the shear
-// across a particle, v_cut up to where a rebound would heat (it is at least v_cut / 1000).
+// across a particle, v_cut up to where a rebound would heat (it is at least v_cut / 1000), steps up to 0.3 orbit
+// (without forces a drift is exact, however long).
 
 std::vector<std::string> finder_names() {
   std::vector<std::string> names;
@@ -232,7 +233,7 @@ std::vector<Key> course_keys() {
        .fallback = "1e-3",
        .unit = "orbits",
        .meaning = "length of a step; \"auto\": step and kick interval follow the state, from 1/4096 to 1/64",
-       .range = {.low = 1e-9, .high = 0.1},
+       .range = {.low = 1e-9, .high = 0.3},
        .choices = {"auto"}},
       {.path = "time.end",
        .type = number,
