@@ -17,14 +17,14 @@ namespace {
 // Σ m e and Σ m i as complex numbers, turned back to the first epoch.
 struct VectorSums {
   std::complex<double> e = 0.0, i = 0.0;
-  double scale = 0.0; // Σ m (e + i + r)
+  double scale = 0.0; // Σ m (e + i)
 
   VectorSums(const SimulationState& state, const Frequencies& f) {
     for (const Body& b : state.particles.bodies) {
       const Elements& el = b.elements;
       e += b.mass * std::complex<double>(el.e_cos, el.e_sin);
       i += b.mass * std::complex<double>(el.i_cos, el.i_sin);
-      scale += b.mass * (el.eccentricity() + el.inclination() + b.radius);
+      scale += b.mass * (el.eccentricity() + el.inclination());
     }
     e *= back(f.kappa, state);
     i *= back(f.nu, state);
@@ -39,7 +39,7 @@ struct VectorSums {
 double energy_scale(const SimulationState& state, const Frequencies& f) {
   double sum = 0.0;
   for (const Body& b : state.particles.bodies)
-    sum += b.mass * (std::pow(b.elements.eccentricity() + b.radius, 2) + std::pow(f.nu * b.elements.inclination(), 2));
+    sum += b.mass * (std::pow(b.elements.eccentricity(), 2) + std::pow(f.nu * b.elements.inclination(), 2));
   return sum;
 }
 
@@ -97,10 +97,9 @@ std::vector<Row> rows_of(const State& state, const Course& course, double least)
   return {at_least(state, "contacts", static_cast<double>(course.collisions), least, "else nothing is tested"),
           at_most(state, "deepest overlap over the radius sum", course.overlap, course.rounding,
                   "rounding of places as large as the box: 1e-15 of it over the smallest radius"),
-          at_most(state, "change of Σme and Σmi over Σm(e + i + r)", course.momentum, walked,
+          at_most(state, "change of Σme and Σmi over Σm(e + i)", course.momentum, walked,
                   "1e-15 a rounding, which walk: (10 + √(contacts + steps))"),
-          at_most(state, "energy that the budget leaves open, over Σm((e + r)² + ν²i²)", course.energy, walked,
-                  "the same")};
+          at_most(state, "energy that the budget leaves open, over Σm(e² + ν²i²)", course.energy, walked, "the same")};
 }
 
 AgainstPlain& AgainstPlain::operator+=(const AgainstPlain& more) {

@@ -99,7 +99,7 @@ std::vector<Row> force_rows(const std::string& name, const std::vector<std::stri
 
 std::vector<Row> oblong_boxes() {
   std::vector<Row> rows;
-  for (const char* size : {"[20,2000]", "[2000,20]"})
+  for (const char* size : {"[10,1000]", "[1000,10]"})
     for (const Row& row : force_rows(fmt::format("a box of {} radii", size), {fmt::format("box.size={}", size)}))
       rows.push_back(row);
   return rows;
