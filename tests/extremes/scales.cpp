@@ -160,7 +160,7 @@ std::vector<Subject> scale_subjects() {
           {"small-boxes", section, Length::quick, small_boxes},
           {"large-box", section, Length::usual, large_box},
           {"oblong-boxes", section, Length::usual, oblong_boxes},
-          {"few", section, Length::usual, few}};
+          {"few", section, Length::quick, few}};
 }
 
 } // namespace keeler::extremes
