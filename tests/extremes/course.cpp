@@ -82,7 +82,7 @@ Course follow(Simulation& simulation, std::int64_t steps, int looks) {
   const VectorSums after(state, f);
   course.collisions = contacts_of(simulation);
   course.momentum = (std::abs(after.e - before.e) + std::abs(after.i - before.i)) / std::max(before.scale, after.scale);
-  course.energy = std::fabs(simulation.balance().residual) / energy_scale(state, f);
+  course.energy = std::fabs(simulation.balance().residual) / (energy_scale(state, f) + state.collisions.energy_lost);
   return course;
 }
 
@@ -99,7 +99,8 @@ std::vector<Row> rows_of(const State& state, const Course& course, double least)
                   "rounding of places as large as the box: 1e-15 of it over the smallest radius"),
           at_most(state, "change of Σme and Σmi over Σm(e + i)", course.momentum, walked,
                   "1e-15 a rounding, which walk: (10 + √(contacts + steps))"),
-          at_most(state, "energy that the budget leaves open, over Σm(e² + ν²i²)", course.energy, walked, "the same")};
+          at_most(state, "energy that the budget leaves open, over Σm(e² + ν²i²) and what was lost", course.energy,
+                  walked, "the same")};
 }
 
 AgainstPlain& AgainstPlain::operator+=(const AgainstPlain& more) {

@@ -26,7 +26,7 @@ struct Course {
   double overlap = 0.0;    ///< the deepest, of a radius sum
   double rounding = 0.0;   ///< of the distance of two centres, over the smallest radius sum
   double momentum = 0.0;   ///< change of the two vector sums, over Σ m (e + i)
-  double energy = 0.0;     ///< what the budget leaves open, over Σ m (e² + ν² i²)
+  double energy = 0.0;     ///< what the budget leaves open, over Σ m (e² + ν² i²) and what collisions took
   double worst_step = 0.0; ///< contacts of a particle in a step, mean of the worst step
 };
 

@@ -17,8 +17,6 @@
 namespace keeler::extremes {
 namespace {
 
-constexpr const char* section = "The longest two";
-
 double sum_of_x(const Simulation& simulation) {
   double sum = 0.0;
   for (const Body& b : simulation.state().particles.bodies)
@@ -86,8 +84,8 @@ std::vector<Row> many_particles() {
 } // namespace
 
 std::vector<Subject> long_subjects() {
-  return {{"many-orbits", section, rows::Length::extra, many_orbits},
-          {"many-particles", section, rows::Length::extra, many_particles}};
+  return {{"many-orbits", "Long: 10⁵ orbits", rows::Length::extra, many_orbits},
+          {"many-particles", "Long: 10⁷ particles with self-gravity", rows::Length::extra, many_particles}};
 }
 
 } // namespace keeler::extremes

@@ -43,8 +43,8 @@ rows::Page page() {
   return {.head =
               "# Extremes\n\n"
               "What Keeler does where numbers are extreme, and which message it ends with where it refuses. Written "
-              "by\n`scripts/test --extremes`, the last section by `scripts/test --extremes=long`; both measure all "
-              "of it again. Starts have\nthe seed of their scene (1) where the row names no other.\n",
+              "by\n`scripts/test --extremes`, the sections called long by `scripts/test --extremes=long`; both "
+              "measure all of it again.\nStarts have the seed of their scene (1) where the row names no other.\n",
           .columns = {"what", "measured", "bound", "why this bound", "verdict", "made by"},
           .tail = ""};
 }
