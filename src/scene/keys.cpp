@@ -232,7 +232,7 @@ std::vector<Key> course_keys() {
        .type = number,
        .fallback = "1e-3",
        .unit = "orbits",
-       .meaning = "length of a step; \"auto\": step and kick interval follow the state, from 1/4096 to 1/64",
+       .meaning = "length of a step; with \"auto\" it follows the state",
        .range = {.low = 1e-9, .high = 0.3},
        .choices = {"auto"}},
       {.path = "time.end",

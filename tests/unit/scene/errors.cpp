@@ -60,10 +60,9 @@ TEST_CASE("values out of range are told with the range") {
   CHECK(with("[100, 50.0]", "[100, -50.0]").find("box.size is [100.0, -50.0], but must be") != std::string::npos);
   CHECK(with("2e-4", "2e-4\nepicyclic_ratio = 2").find("must be a number above 0.1 and below 2") != std::string::npos);
   CHECK(with("end = 2", "end = 2\nstep = 0.3").empty());
-  CHECK(
-      with("end = 2", "end = 2\nstep = 0.31") ==
-      "s.toml:11:8: time.step is 0.31, but must be a number from 1e-9 to 0.3 (length of a step, in orbits); write for "
-      "example step = 1e-3");
+  CHECK(with("end = 2", "end = 2\nstep = 0.31") ==
+        "s.toml:11:8: time.step is 0.31, but must be a number from 1e-9 to 0.3, or \"auto\" (length of a step; with "
+        "\"auto\" it follows the state, in orbits); write for example step = 1e-3");
   CHECK(fault(least + "[gravity]\nsolver = \"trea\"\n") ==
         "s.toml:12:10: gravity.solver is \"trea\", but must be one of \"direct\", \"tree\", \"fft\", "
         "\"mesh\", \"auto\" (how accelerations are computed); did you mean \"tree\"?");
