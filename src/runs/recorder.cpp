@@ -11,6 +11,7 @@
 #include <keeler/io/snapshot.hpp>
 
 #include <algorithm>
+#include <utility>
 
 #include <fcntl.h>
 
@@ -36,7 +37,7 @@ void OutputCounters::list_fields(FieldTable& table, const Scene& scene) {
 
 Recorder::Recorder(const RunFolder& folder, const Scene& scene, const std::vector<std::string>& arguments,
                    OutputCounters counters, std::optional<std::int64_t> resumed_at)
-    : folder_(folder), scene_(scene), provenance_(collect_provenance(arguments)), counters_(counters),
+    : folder_(folder), scene_(scene), provenance_(collect_provenance(arguments)), counters_(std::move(counters)),
       columns_(series_columns_of(scene)), series_(open_series(folder, names_of(columns_), resumed_at)) {
   write_text(folder_.scene(), scene_.resolved);
   if (scene_.gravity)
