@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace keeler {
 namespace {
@@ -91,6 +92,7 @@ Simulation::Simulation(const Scene& scene, SimulationState state)
 }
 
 void Simulation::advance() {
+  assert(state_.control.fits(state_.step));
   sort_when_due();
   for (std::size_t f = 0; f < forces_.size(); ++f)
     if (kick_due(f))

@@ -71,9 +71,9 @@ struct ContactLogSettings {
 
 struct OutputSettings {
   std::int64_t series_every = 0;                ///< ticks between rows of the series; 0: only at the start
-  std::int64_t stress_every = 0;                ///< steps between rows with gravity's energy and stress; 0: none
-  std::int64_t snapshot_every = 0;              ///< steps; 0: only at start and end
-  std::int64_t checkpoint_every = 0;            ///< steps; 0: none by the step
+  std::int64_t stress_every = 0;                ///< ticks between rows with gravity's energy and stress; 0: none
+  std::int64_t snapshot_every = 0;              ///< ticks; 0: only at start and end
+  std::int64_t checkpoint_every = 0;            ///< ticks; 0: none by these
   double checkpoint_every_minutes = 0.0;        ///< of wall time; 0: none by the clock
   std::optional<ContactLogSettings> collisions; ///< none: no log
 };

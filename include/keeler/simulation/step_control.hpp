@@ -23,6 +23,9 @@ struct StepControl {
   std::int64_t decided_at = 0; ///< tick
   std::uint64_t contacts = 0, unresolved = 0;
 
+  /// Whether a step may begin at that tick.
+  bool fits(std::int64_t tick) const { return tick % step == 0 && (kick == 0 || kick % step == 0); }
+
   /// What an automatic step begins with.
   static StepControl automatic(bool with_forces);
 
