@@ -27,6 +27,11 @@ struct CheckOptions {
   bool markdown = false;
 };
 
+// Of a scene with self-gravity and a fixed step.
+double kick_interval_orbits(const Scene& scene) {
+  return scene.time.step * static_cast<double>(scene.gravity->kick_every);
+}
+
 // None when only a start file knows the particles.
 std::optional<RunEstimate> estimate(const Scene& scene, const Derived& d) {
   if (!d.particles_known)
@@ -59,6 +64,10 @@ nlohmann::ordered_json as_json(const Scene& scene, const Derived& d, const std::
   json["midplane_filling"] = known(d.midplane_filling);
   json["box_m"] = {known(scene.size_x), known(scene.size_y)};
   json["steps"] = d.steps;
+  json["step_orbits"] = scene.time.automatic ? nlohmann::ordered_json() : nlohmann::ordered_json(scene.time.step);
+  json["kick_interval_orbits"] = scene.gravity && !scene.time.automatic
+                                     ? nlohmann::ordered_json(kick_interval_orbits(scene))
+                                     : nlohmann::ordered_json();
   json["memory_mb"] = known(d.memory_mb);
   json["estimated_s"] = cost ? nlohmann::ordered_json(cost->total()) : nlohmann::ordered_json();
   json["estimate"] = cost ? as_json(*cost) : nlohmann::ordered_json();
@@ -94,6 +103,36 @@ void print_estimate(const RunEstimate& cost) {
              parts, cost.dominating());
 }
 
+std::string words_of(const GravitySettings& gravity) {
+  using Solver = GravitySettings::Solver;
+  switch (gravity.solver) {
+  case Solver::direct:
+    return "direct sum";
+  case Solver::tree:
+    return fmt::format("tree, opening angle {:g}", gravity.opening_angle);
+  case Solver::mesh:
+    return fmt::format("mesh, spacing {:g} mean distances", gravity.mesh_spacing);
+  default:
+    return fmt::format("fft, asked for an rms force error of {:g}", gravity.force_error);
+  }
+}
+
+void print_steps(const Scene& scene, const Derived& d) {
+  if (scene.time.automatic)
+    fmt::print("steps              automatic, from 1/{} to 1/{} orbits\n", TimeSettings::ticks_per_orbit,
+               TimeSettings::ticks_per_orbit / TimeSettings::longest);
+  else
+    fmt::print("steps              {} of {} orbits\n", d.steps, figures(scene.time.step));
+  if (!scene.gravity)
+    return;
+  fmt::print("gravity            {}",
+             words_of(d.particles_known ? chosen_for(d.particle_count, *scene.gravity) : *scene.gravity));
+  if (scene.time.automatic)
+    fmt::print("\n");
+  else
+    fmt::print("; a kick each {} orbits\n", figures(kick_interval_orbits(scene)));
+}
+
 void print_text(const Scene& scene, const Derived& d, const std::optional<RunEstimate>& cost) {
   if (!scene.title.empty())
     fmt::print("{}\n", scene.title);
@@ -101,11 +140,7 @@ void print_text(const Scene& scene, const Derived& d, const std::optional<RunEst
     print_particles(scene, d);
   else
     fmt::print("box and particles  from {}\n", *scene.start_from);
-  if (scene.time.automatic)
-    fmt::print("steps              automatic, from 1/{} to 1/{} orbits\n", TimeSettings::ticks_per_orbit,
-               TimeSettings::ticks_per_orbit / TimeSettings::longest);
-  else
-    fmt::print("steps              {} of {} orbits\n", d.steps, figures(scene.time.step));
+  print_steps(scene, d);
   if (d.particles_known)
     fmt::print("memory             about {:.0f} MB (an estimate)\n", d.memory_mb);
   if (cost)

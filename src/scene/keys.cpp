@@ -6,6 +6,7 @@
 #include <keeler/contacts/finders.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/particles/sizes.hpp>
+#include <keeler/scene/quality.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -28,6 +29,13 @@ std::vector<std::string> finder_names() {
   std::vector<std::string> names;
   for (const FinderEntry& finder : finder_table())
     names.emplace_back(finder.name);
+  return names;
+}
+
+std::vector<std::string> quality_names() {
+  std::vector<std::string> names = {"custom"};
+  for (const Quality& quality : qualities)
+    names.emplace_back(quality.name);
   return names;
 }
 
@@ -64,6 +72,12 @@ std::vector<Key> patch_keys() {
        .type = text,
        .fallback = "\"\"",
        .meaning = "a name for reports and pictures",
+       .effect = output},
+      {.path = "quality",
+       .type = choice,
+       .fallback = "\"custom\"",
+       .meaning = "how accurate steps, kicks and gravity are where their own keys do not say it",
+       .choices = quality_names(),
        .effect = output},
 
       {.path = "planet.preset",

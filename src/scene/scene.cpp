@@ -4,6 +4,7 @@
 #include "overrides.hpp"
 #include "particles_and_box.hpp"
 #include "presets.hpp"
+#include "quality.hpp"
 #include "settings.hpp"
 
 #include <keeler/core/units.hpp>
@@ -109,6 +110,7 @@ std::optional<ContactLogSettings> read_contact_log(Settings& settings) {
 enum class Purpose { start, go_on };
 
 Scene read_scene(Document document, const std::string& name, Purpose purpose, std::vector<std::string> notices) {
+  add_gravity_of_quality(document);
   check_document(document, name);
   Settings settings(std::move(document));
   Scene scene;
@@ -124,6 +126,7 @@ Scene read_scene(Document document, const std::string& name, Purpose purpose, st
   scene.collisions = read_collisions(settings, name);
   scene.gravity = read_gravity(settings, name);
   scene.external_forces = read_external_forces(settings, name);
+  resolve_times_of_quality(scene, settings);
   read_times(scene, settings);
   scene.output.collisions = read_contact_log(settings);
   scene.resolved = settings.resolved();

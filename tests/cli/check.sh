@@ -19,7 +19,7 @@ for scene in "$source_dir"/examples/*/scene.toml; do
   prints "$scene" "steps"
   accepts "$scene as JSON" check "$scene" --json
   for key in particle_count optical_depth surface_density lambda_cr_m toomre_q hill_parameter midplane_filling box_m \
-    steps memory_mb estimated_s estimate start_s drift_s gravity_s output_s notices doubts; do
+    steps step_orbits kick_interval_orbits memory_mb estimated_s estimate start_s drift_s gravity_s output_s notices doubts; do
     prints "$scene as JSON" "\"$key\":"
   done
 done
@@ -31,6 +31,8 @@ accepts "overrides before and after" check --set particles.count=500 "$good" --s
 prints "overrides before and after" "particles          500"
 accepts "a box of 4 lambda_cr" check "$good"
 prints "a box of 4 lambda_cr" "note: the box spans 4 lambda_cr: in wakes, 4 x 4 show 12 % less velocity dispersion"
+accepts "a quality" check "$good" --set quality=strict
+prints "a quality" "gravity            tree, opening angle 0.6; a kick each 0.002 orbits"
 accepts "34 particles" check --set particles.count=34 --set 'box.size=[100, 100]' "$good" --json
 prints "34 particles" "34 particles are few: one measurement of their velocity dispersion scatters by 12 %"
 accepts "defaults" check --defaults

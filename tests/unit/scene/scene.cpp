@@ -293,6 +293,7 @@ end = 0.5
 
   const Scene least_scene = parse_scene(least, "s.toml");
   CHECK(least_scene.resolved == R"(title = ""
+quality = "custom"
 
 [planet]
 orbital_frequency = 0.0002

@@ -1,0 +1,105 @@
+#include "quality.hpp"
+
+#include <keeler/core/units.hpp>
+#include <keeler/scene/derived.hpp>
+#include <keeler/scene/estimate.hpp>
+#include <keeler/scene/quality.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+constexpr double usual_hill = 0.94;    // where the intervals were measured
+constexpr double cheapest_drift = 0.3; // contacts that a particle has in it
+constexpr double longest_drift = 8e-3; // orbits; longer ones cost no less, even in a sparse patch
+
+double contacts_an_orbit(const Scene& scene) {
+  constexpr double in_wakes = 230.0, in_a_layer = 20.0; // of a state from a file
+  if (scene.start_from)
+    return scene.gravity ? in_wakes : in_a_layer;
+  return scene_contacts(scene).wakes.all();
+}
+
+// 1, 2 or 5 times a power of ten, not more than the number: times of output are multiples of it.
+double round_part_of_an_orbit(double number) {
+  const double ten = std::pow(10.0, std::floor(std::log10(number)));
+  for (const double digit : {10.0, 5.0, 2.0})
+    if (digit * ten <= number * (1.0 + 1e-9))
+      return digit * ten;
+  return ten;
+}
+
+// A kick makes spheres that touch close with g Δt, and the pull g of their own gravity is 3 r_h³ of r Ω².
+double kick_interval_of(const Quality& quality, const Scene& scene) {
+  if (scene.start_from)
+    return quality.kick_interval;
+  const double hill = hill_parameter(scene.particles.density, distance_from_saturn(scene.planet));
+  return round_part_of_an_orbit(quality.kick_interval * std::min(1.0, std::pow(usual_hill / hill, 3)));
+}
+
+// A power of two: the cost of a drift hardly changes over a factor of two in its length.
+std::int64_t drifts_in(double interval, double drift) {
+  return std::int64_t{1} << std::llround(std::clamp(std::log2(interval / drift), 0.0, 9.0));
+}
+
+const Quality* quality_of(const std::string& name) {
+  const auto found =
+      std::find_if(qualities.begin(), qualities.end(), [&](const Quality& quality) { return name == quality.name; });
+  return found == qualities.end() ? nullptr : &*found;
+}
+
+const std::string* word_in(const Document& document, const std::string& path) {
+  const Entry* const entry = find_entry(document, path);
+  return entry ? std::get_if<std::string>(&entry->value) : nullptr;
+}
+
+} // namespace
+
+void add_gravity_of_quality(Document& document) {
+  const std::string* const name = word_in(document, "quality");
+  const Quality* const quality = name ? quality_of(*name) : nullptr;
+  if (!quality || !find_entry(document, "gravity"))
+    return;
+  const auto add = [&](const std::string& path, Value value) {
+    if (!find_entry(document, path))
+      document.push_back({path, "quality", "quality", std::move(value), false});
+  };
+  const auto has = [&](const std::string& path) { return find_entry(document, path) != nullptr; };
+  const bool for_tree = has("gravity.opening_angle") || has("gravity.images") || has("gravity.image_rings");
+  add("gravity.solver", std::string(for_tree ? "tree" : "auto"));
+  const std::string* const given = word_in(document, "gravity.solver");
+  const std::string solver = given ? *given : "";
+  if (solver == "fft" || solver == "auto")
+    add("gravity.force_error", quality->force_error);
+  if (solver == "tree")
+    add("gravity.opening_angle", quality->opening_angle);
+}
+
+void resolve_times_of_quality(Scene& scene, Settings& settings) {
+  const Quality* const quality = quality_of(settings.text("quality"));
+  if (!quality || settings.is_word("time.step"))
+    return;
+  const bool kicks_given = scene.gravity && settings.given("gravity.kick_every");
+  if (settings.given("time.step") && (kicks_given || !scene.gravity)) // as in the scene of a run's folder
+    return;
+  const bool has_forces = scene.gravity || !scene.external_forces.empty();
+  const double interval = has_forces ? kick_interval_of(*quality, scene) : longest_drift;
+  const double cheapest = std::min(longest_drift, cheapest_drift / contacts_an_orbit(scene));
+  std::int64_t drifts = scene.gravity ? drifts_in(interval, cheapest) : 1;
+  if (settings.given("time.step"))
+    drifts = std::clamp<std::int64_t>(std::llround(interval / settings.number("time.step")), 1, 1000);
+  else {
+    if (kicks_given)
+      drifts = scene.gravity->kick_every;
+    const double longest = interval / static_cast<double>(drifts);
+    settings.resolve("time.step", scene.gravity ? longest : round_part_of_an_orbit(std::min(longest, cheapest)));
+  }
+  if (scene.gravity && !kicks_given) {
+    scene.gravity->kick_every = static_cast<int>(drifts);
+    settings.resolve("gravity.kick_every", drifts);
+  }
+}
+
+} // namespace keeler

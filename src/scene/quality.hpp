@@ -1,0 +1,17 @@
+// quality = "fast", "balanced" or "strict": numbers for the keys of accuracy that a scene does not give. They come from
+// a table (docs/manual/scene.md) and from the scene's own keys, never from a clock, and stand in the resolved scene.
+#pragma once
+
+#include "settings.hpp"
+
+#include <keeler/scene/scene.hpp>
+
+namespace keeler {
+
+/// Adds the keys of [gravity]. The document need not be checked yet.
+void add_gravity_of_quality(Document& document);
+
+/// Sets the step and the kick interval; all but the times has been read.
+void resolve_times_of_quality(Scene& scene, Settings& settings);
+
+} // namespace keeler

@@ -1,0 +1,102 @@
+// quality = "…" becomes fixed numbers, by the table of docs/manual/scene.md.
+#include <keeler/core/error.hpp>
+#include <keeler/scene/quality.hpp>
+#include <keeler/scene/scene.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace keeler;
+
+namespace {
+
+// A patch of the A ring; without a step and what else a quality decides.
+Scene a_ring(const std::vector<std::string>& overrides) {
+  return parse_scene(R"(
+planet.preset = "saturn-a-ring"
+box.size_in_wavelengths = [4, 4]
+particles = { optical_depth = 0.5, density = 450, sizes = { law = "equal", radius = 1 } }
+gravity = {}
+time.end = 1
+)",
+                     "s.toml", overrides);
+}
+
+Scene without_gravity(const std::vector<std::string>& overrides) {
+  return parse_scene(R"(
+planet.preset = "saturn-a-ring"
+box.size = [100, 100]
+particles = { optical_depth = 0.5, density = 450, sizes = { law = "equal", radius = 1 } }
+time.end = 1
+)",
+                     "s.toml", overrides);
+}
+
+} // namespace
+
+TEST_CASE("each quality gives a scene its numbers") {
+  for (const Quality& quality : qualities) {
+    CAPTURE(quality.name);
+    const Scene scene = a_ring({std::string("quality=") + quality.name});
+    CHECK(scene.gravity->solver == GravitySettings::Solver::automatic);
+    CHECK(scene.gravity->force_error == quality.force_error);
+    CHECK(scene.time.step * scene.gravity->kick_every == doctest::Approx(quality.kick_interval).epsilon(1e-12));
+    CHECK(scene.time.step == doctest::Approx(0.00125).epsilon(0.25)); // of wakes at τ 0.5
+    CHECK(scene.notices.empty());                                     // the times of output are whole kick intervals
+  }
+}
+
+TEST_CASE("custom is the default and changes nothing") {
+  CHECK(a_ring({}).resolved == a_ring({"quality=custom"}).resolved);
+  CHECK(a_ring({}).gravity->kick_every == 1);
+}
+
+TEST_CASE("what a scene says itself stands") {
+  const Scene step = a_ring({"quality=balanced", "time.step=5e-4"});
+  CHECK(step.time.step == 5e-4);
+  CHECK(step.gravity->kick_every == 10);
+  const Scene kicks = a_ring({"quality=balanced", "gravity.kick_every=2"});
+  CHECK(kicks.time.step == 2.5e-3);
+  CHECK(kicks.gravity->kick_every == 2);
+  const Scene both = a_ring({"quality=balanced", "time.step=1e-3", "gravity.kick_every=3"});
+  CHECK(both.time.step == 1e-3);
+  CHECK(both.gravity->kick_every == 3);
+  const Scene automatic = a_ring({"quality=strict", "time.step=auto"});
+  CHECK(automatic.time.automatic);
+  CHECK(automatic.gravity->force_error == 1e-3);
+  const Scene tree = a_ring({"quality=strict", "gravity.solver=tree"});
+  CHECK(tree.gravity->opening_angle == 0.4);
+  CHECK(a_ring({"quality=strict", "gravity.image_rings=2"}).gravity->solver == GravitySettings::Solver::tree);
+  CHECK(a_ring({"quality=strict", "gravity.solver=tree", "gravity.opening_angle=0.3"}).gravity->opening_angle == 0.3);
+  CHECK(a_ring({"quality=strict", "gravity.solver=fft", "gravity.force_error=5e-3"}).gravity->force_error == 5e-3);
+}
+
+TEST_CASE("particles that attract each other more are kicked more often") {
+  const Scene dense = a_ring({"quality=balanced", "particles.density=900"}); // r_h 1.17
+  CHECK(dense.time.step * dense.gravity->kick_every == doctest::Approx(2e-3));
+  const Scene light = a_ring({"quality=balanced", "particles.density=200"});
+  CHECK(light.time.step * light.gravity->kick_every == doctest::Approx(5e-3));
+}
+
+TEST_CASE("without self-gravity all qualities are one, a step that is cheap") {
+  const Scene fast = without_gravity({"quality=fast"}), strict = without_gravity({"quality=strict"});
+  CHECK(fast.time.step == strict.time.step);
+  CHECK(fast.time.step == 5e-3);
+  const Scene forced = without_gravity({"quality=strict", "constant_acceleration.vertical=1e-9"});
+  CHECK(forced.time.step == doctest::Approx(2e-3));
+}
+
+TEST_CASE("the resolved scene holds the numbers and reads back to the same scene") {
+  for (const char* const quality : {"fast", "balanced", "strict"}) {
+    const Scene scene = a_ring({std::string("quality=") + quality});
+    const Scene again = parse_scene(scene.resolved, "r.toml"), stored = parse_stored_scene(scene.resolved, "r.toml");
+    CHECK(again.resolved == scene.resolved);
+    CHECK(stored.motion == scene.motion);
+    CHECK(again.motion == scene.motion);
+  }
+}
+
+TEST_CASE("a quality that is none is refused where it stands") {
+  CHECK_THROWS_WITH_AS(a_ring({"quality=best"}), doctest::Contains("quality"), UsageError);
+  CHECK_THROWS_AS(a_ring({"quality=3"}), UsageError);
+  CHECK_THROWS_AS(a_ring({"quality=fast", "gravity.solver=3"}), UsageError);
+}
