@@ -95,10 +95,9 @@ std::vector<std::pair<std::string, double>> GravityBenchRow::numbers() const {
           {"ns_per_particle", ns_per_particle}};
 }
 
-GravityBench bench_gravity(const GravityBenchSettings& settings) {
-  PhaseProgress progress(settings.progress);
-  const GravityState kind = settings.clumped ? GravityState::clumped : GravityState::uniform;
-  const Patch patch = in_memory_order(gravity_state(settings.count, kind, progress).patch);
+GravityBench bench_gravity_of(const Patch& state, const std::vector<GravityChoice>& choices, int repeats,
+                              PhaseProgress& progress) {
+  const Patch patch = in_memory_order(state);
   const GravityProblem problem = gravity_problem(patch);
   const ForceSample sample = sample_of(problem);
   GravityBench bench;
@@ -111,17 +110,23 @@ GravityBench bench_gravity(const GravityBenchSettings& settings) {
   bench.edge_width_m = edge_width;
 
   const std::vector<Vec3> exact = exact_accelerations(problem, sample, progress);
-  const std::vector<GravityChoice> choices = chosen(settings, bench.count);
   progress.begin("timing", static_cast<double>(choices.size()));
   std::vector<Vec3> accelerations(bench.count);
   for (const GravityChoice& choice : choices) {
     const std::unique_ptr<GravitySolver> solver = make_gravity_solver(choice.settings, patch.masses, patch.box.area());
-    const std::vector<double> times = solve_times(*solver, problem, accelerations, settings.repeats);
+    const std::vector<double> times = solve_times(*solver, problem, accelerations, repeats);
     bench.rows.push_back({choice, force_errors(sample, exact, accelerations), net_force(patch.masses, accelerations),
                           1e9 * median(times) / static_cast<double>(bench.count)});
     progress.add(1.0);
   }
   return bench;
+}
+
+GravityBench bench_gravity(const GravityBenchSettings& settings) {
+  PhaseProgress progress(settings.progress);
+  const GravityState kind = settings.clumped ? GravityState::clumped : GravityState::uniform;
+  const Patch patch = gravity_state(settings.count, kind, progress).patch;
+  return bench_gravity_of(patch, chosen(settings, patch.size()), settings.repeats, progress);
 }
 
 } // namespace keeler

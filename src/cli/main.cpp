@@ -50,6 +50,7 @@ int run(int argc, char** argv) {
   add_bench(program, action);
   add_study(program, action, arguments);
   add_sweep(program, action);
+  add_tune(program, action);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& asked) { // --help and --version

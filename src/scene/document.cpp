@@ -113,6 +113,29 @@ Document flattened(const toml::table& table, const std::string& name) {
   return document;
 }
 
+// The TOML library counts lines from 1 and, in a line, characters of UTF-8 from 1.
+std::size_t offset_of(const std::string& text, const toml::source_position& position) {
+  std::size_t at = 0;
+  for (toml::source_index line = 1; line < position.line; ++line)
+    at = text.find('\n', at) + 1;
+  for (toml::source_index column = 1; column < position.column && at < text.size(); ++column)
+    do
+      ++at;
+    while (at < text.size() && (static_cast<unsigned char>(text[at]) & 0xc0) == 0x80);
+  return at;
+}
+
+toml::table parsed(const std::string& text, const std::string& name) {
+  try {
+    return toml::parse(text, name);
+  } catch (const toml::parse_error& error) {
+    std::string reason(error.description());
+    std::replace_if(
+        reason.begin(), reason.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+    throw UsageError(fmt::format("{}: not TOML ({}); correct this line", place_of(name, error.source().begin), reason));
+  }
+}
+
 } // namespace
 
 const Entry* find_entry(const Document& document, const std::string& path) {
@@ -121,14 +144,15 @@ const Entry* find_entry(const Document& document, const std::string& path) {
 }
 
 Document parse_document(const std::string& text, const std::string& name) {
-  try {
-    return flattened(toml::parse(text, name), name);
-  } catch (const toml::parse_error& error) {
-    std::string reason(error.description());
-    std::replace_if(
-        reason.begin(), reason.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-    throw UsageError(fmt::format("{}: not TOML ({}); correct this line", place_of(name, error.source().begin), reason));
-  }
+  return flattened(parsed(text, name), name);
+}
+
+std::optional<TextRange> range_in(const std::string& text, const std::string& name, const std::string& path) {
+  const toml::table document = parsed(text, name);
+  const toml::node* const node = document.at_path(path).node();
+  if (!node)
+    return std::nullopt;
+  return TextRange{offset_of(text, node->source().begin), offset_of(text, node->source().end)};
 }
 
 Document parse_override_value(const std::string& text, const std::string& path, const std::string& place) {

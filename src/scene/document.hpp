@@ -3,7 +3,9 @@
 
 #include <keeler/core/key.hpp>
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -35,6 +37,15 @@ const Entry* find_entry(const Document& document, const std::string& path);
 
 /// Throws UsageError where the text is not TOML; `name` stands for the file.
 Document parse_document(const std::string& text, const std::string& name);
+
+/// Bytes of a text, the end not included.
+struct TextRange {
+  std::size_t begin = 0, end = 0;
+};
+
+/// Where a key's value stands in a TOML text; of a table its braces, or its header. None: the key is not there. Throws
+/// as parse_document().
+std::optional<TextRange> range_in(const std::string& text, const std::string& name, const std::string& path);
 
 /// The value of an override: TOML, or else the text itself as a string. All entries get the place and are overridden.
 Document parse_override_value(const std::string& text, const std::string& path, const std::string& place);

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <keeler/bench/gravity_choices.hpp>
-#include <keeler/core/progress.hpp>
+#include <keeler/core/phase_progress.hpp>
 #include <keeler/diagnostics/force_error.hpp>
 
 #include <cstddef>
@@ -46,5 +46,9 @@ struct GravityBench {
 
 /// Throws what make_gravity_solver() throws.
 GravityBench bench_gravity(const GravityBenchSettings& settings);
+
+/// The same of these choices in any patch.
+GravityBench bench_gravity_of(const Patch& state, const std::vector<GravityChoice>& choices, int repeats,
+                              PhaseProgress& progress);
 
 } // namespace keeler

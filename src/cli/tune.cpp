@@ -1,0 +1,212 @@
+// keeler tune: the cheapest settings of a scene that are as accurate as one asks for.
+#include "command.hpp"
+#include "common_options.hpp"
+#include "messages.hpp"
+#include "progress_line.hpp"
+#include "scene_arguments.hpp"
+#include "signals.hpp"
+
+#include <keeler/core/interrupt.hpp>
+#include <keeler/core/words.hpp>
+#include <keeler/files/files.hpp>
+#include <keeler/files/input.hpp>
+#include <keeler/scene/quality.hpp>
+#include <keeler/tune/tune.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+namespace keeler {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TuneOptions {
+  SceneArguments scene;
+  TuneSettings settings;
+  std::string quality = "balanced";
+  std::optional<double> force_error, physics_error;
+  std::optional<std::string> output;
+  bool force = false, json = false;
+  ThreadOption threads;
+};
+
+TuneSettings tolerances(const TuneOptions& options) {
+  TuneSettings settings = options.settings;
+  for (const Quality& quality : qualities)
+    if (options.quality == quality.name) {
+      settings.force_error = options.force_error.value_or(quality.force_error);
+      settings.physics_error = options.physics_error.value_or(quality.physics_error);
+    }
+  return settings;
+}
+
+void refuse_what_cannot_be_written(const TuneOptions& options) {
+  if (!options.output)
+    return;
+  if (!options.scene.overrides.empty())
+    throw UsageError("--output cannot stand beside --set (the file would not have what was tuned); write the keys into "
+                     "the scene first");
+  if (fs::is_directory(*options.output))
+    throw UsageError(fmt::format("'{}' is a folder (a scene is one file); name a file in it", *options.output));
+  if (fs::exists(*options.output) && !options.force)
+    throw UsageError(fmt::format("'{}' exists already; name another file or add --force", *options.output));
+  require_writable_folder(fs::absolute(*options.output).parent_path(), *options.output);
+}
+
+Tuning measure(const Scene& scene, TuneSettings settings) {
+  ProgressLine line;
+  settings.progress = [&line](const Progress& progress) { line.show(progress); };
+  try {
+    const Interruptible by_signals(requests_from_signals().stop);
+    return tune(scene, settings);
+  } catch (const Interrupted&) {
+    throw Error(ExitCode::run_time, "stopped before all was measured (on request), so nothing is written");
+  }
+}
+
+nlohmann::ordered_json as_json(const Tuning& t, const std::vector<KeyChange>& keys) {
+  nlohmann::ordered_json json;
+  for (const KeyChange& key : keys)
+    if (key.value)
+      json["keys"][key.path] = *key.value;
+  json["particles"] = t.particles;
+  json["orbits"] = t.orbits;
+  json["gravity"] = nlohmann::ordered_json::array();
+  for (const GravityBenchRow& row : t.gravity)
+    json["gravity"].push_back({{"solver", row.choice.solver},
+                               {"settings", row.choice.text},
+                               {"error_rms", row.errors.rms},
+                               {"ns_per_particle", row.ns_per_particle}});
+  json["kicks"] = nlohmann::ordered_json::array();
+  for (const KickProbe& probe : t.kicks)
+    json["kicks"].push_back({{"kick_interval_orbits", probe.interval},
+                             {"unresolved_contacts_share", probe.unresolved},
+                             {"physics_error", probe.physics_error()}});
+  json["steps"] = nlohmann::ordered_json::array();
+  for (const StepProbe& probe : t.steps)
+    json["steps"].push_back({{"step_orbits", probe.step},
+                             {"drifts_per_kick", probe.drifts},
+                             {"contacts_per_particle_drift", probe.contacts},
+                             {"processor_s_per_orbit", probe.seconds}});
+  json["threads"] = nlohmann::ordered_json::array();
+  for (const ThreadProbe& probe : t.threads)
+    json["threads"].push_back({{"threads", probe.threads}, {"speedup", probe.speedup}});
+  json["chosen"] = {{"threads", t.chosen_threads},
+                    {"error_rms", t.gravity.empty() ? nlohmann::ordered_json()
+                                                    : nlohmann::ordered_json(t.gravity[t.chosen_gravity].errors.rms)},
+                    {"physics_error", t.kicks.empty()
+                                          ? nlohmann::ordered_json()
+                                          : nlohmann::ordered_json(t.kicks[t.chosen_kicks].physics_error())},
+                    {"processor_s", t.processor_seconds},
+                    {"wall_s", t.wall_seconds}};
+  return json;
+}
+
+const char* mark(bool chosen) {
+  return chosen ? "  <-" : "";
+}
+
+void print_text(const Tuning& t) {
+  fmt::print("{} in the state after {:g} orbits, one thread\n", counted(t.particles, "particle"), t.orbits);
+  if (!t.gravity.empty())
+    fmt::print("\n{:<8}{:<22}{:>14}{:>18}\n", "solver", "settings", "force error", "ns a particle");
+  for (std::size_t k = 0; k < t.gravity.size(); ++k)
+    fmt::print("{:<8}{:<22}{:>14.1e}{:>18.0f}{}\n", t.gravity[k].choice.solver, t.gravity[k].choice.text,
+               t.gravity[k].errors.rms, t.gravity[k].ns_per_particle, mark(k == t.chosen_gravity));
+  if (!t.kicks.empty())
+    fmt::print("\n{:<22}{:>22}{:>18}\n", "kick interval, orbits", "contacts by kicks", "loss over work");
+  for (std::size_t k = 0; k < t.kicks.size(); ++k)
+    fmt::print("{:<22g}{:>20.2g} %{:>+16.2g} %{}\n", t.kicks[k].interval, 100.0 * t.kicks[k].unresolved,
+               100.0 * t.kicks[k].physics_error(), mark(k == t.chosen_kicks));
+  fmt::print("\n{:<16}{:>16}{:>28}{:>28}\n", "step, orbits", "drifts a kick", "contacts a particle, drift",
+             "processor s an orbit");
+  for (std::size_t k = 0; k < t.steps.size(); ++k)
+    fmt::print("{:<16g}{:>16}{:>28.2g}{:>28.3g}{}\n", t.steps[k].step, t.steps[k].drifts, t.steps[k].contacts,
+               t.steps[k].seconds, mark(k == t.chosen_step));
+  fmt::print("\n");
+  for (const ThreadProbe& probe : t.threads)
+    if (probe.threads > 1)
+      fmt::print("{}: {:.2f} times as fast{}\n", counted(probe.threads, "thread"), probe.speedup,
+                 mark(probe.threads == t.chosen_threads));
+  fmt::print("the whole run: about {} processor seconds, {} s on {}\n\n", figures(t.processor_seconds, 2),
+             figures(t.wall_seconds, 2), counted(t.chosen_threads, "thread"));
+}
+
+void print_keys(const std::vector<KeyChange>& keys) {
+  for (const KeyChange& key : keys) {
+    if (!key.comment.empty())
+      fmt::print("# {}\n", key.comment);
+    if (key.value)
+      fmt::print("{} = {}\n", key.path, *key.value);
+  }
+}
+
+void warn(const Tuning& t) {
+  if (!t.meets_force_error)
+    say("no solver meets the force error; the most accurate one is chosen");
+  if (!t.meets_physics_error)
+    say("no kick interval down to 1/1000 orbit meets the physics error; that one is chosen");
+}
+
+ExitCode tune_scene(const TuneOptions& options) {
+  options.threads.apply();
+  TuneSettings settings = tolerances(options);
+  settings.most_threads = threads();
+  const Scene scene = options.scene.load();
+  refuse_what_cannot_be_written(options);
+  const std::string text = read_input(options.scene.path, options.scene.path);
+  const Tuning tuning = measure(scene, settings);
+  const std::vector<KeyChange> keys = chosen_keys(tuning, settings, scene);
+  if (options.json)
+    fmt::print("{}\n", as_json(tuning, keys).dump(2));
+  else
+    print_text(tuning);
+  warn(tuning);
+  if (options.output) {
+    write_text(*options.output, edit_scene(text, options.scene.path, keys));
+    if (!options.json)
+      fmt::print("{}\n", *options.output);
+  } else if (!options.json) {
+    print_keys(keys);
+  }
+  return ExitCode::done;
+}
+
+} // namespace
+
+void add_tune(CLI::App& program, Action& action) {
+  const auto options = std::make_shared<TuneOptions>();
+  CLI::App& command = *program.add_subcommand(
+      "tune", "find the cheapest solver, kick interval, step and threads that are as accurate as asked for, by probes "
+              "on the scene's own state");
+  options->scene.add_to(command)->required();
+  std::vector<std::string> names;
+  for (const Quality& quality : qualities)
+    names.emplace_back(quality.name);
+  command.add_option("--quality", options->quality, "what is asked for: fast, balanced or strict (default: balanced)")
+      ->check(CLI::IsMember(names).description(""));
+  command
+      .add_option("--force-error", options->force_error,
+                  "rms error of gravity's forces that is allowed, in place of the quality's")
+      ->check(number_between(1e-5, 0.1, "a force error"));
+  command
+      .add_option("--physics-error", options->physics_error,
+                  "share of the energy loss that kicks may make, in place of the quality's")
+      ->check(number_between(1e-4, 0.5, "a share"));
+  command
+      .add_option("--orbits", options->settings.orbits,
+                  "age of the state that is probed (default: 4 with self-gravity, else 8; at most the run's end)")
+      ->check(positive_number());
+  command.add_option("-o,--output", options->output, "write the scene with the keys that were found");
+  command.add_flag("--force", options->force, "replace the file if it exists");
+  command.add_flag("--json", options->json, "print the numbers as JSON");
+  options->threads.add_to(command);
+  command.callback([options, &action] { action = [options] { return tune_scene(*options); }; });
+}
+
+} // namespace keeler

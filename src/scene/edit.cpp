@@ -1,0 +1,141 @@
+#include <keeler/scene/edit.hpp>
+
+#include "document.hpp"
+
+#include <keeler/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace keeler {
+namespace {
+
+std::string parent_of(const std::string& path) {
+  const std::size_t dot = path.rfind('.');
+  return dot == std::string::npos ? "" : path.substr(0, dot);
+}
+
+std::string name_of(const std::string& path) {
+  return path.substr(path.rfind('.') + 1); // npos + 1 is 0
+}
+
+std::size_t line_begin(const std::string& text, std::size_t at) {
+  const std::size_t before = at == 0 ? std::string::npos : text.rfind('\n', at - 1);
+  return before == std::string::npos ? 0 : before + 1;
+}
+
+// After the line's end.
+std::size_t next_line(const std::string& text, std::size_t at) {
+  const std::size_t end = text.find('\n', at);
+  return end == std::string::npos ? text.size() : end + 1;
+}
+
+std::size_t first_word(const std::string& text, std::size_t at) {
+  return std::min(text.find_first_not_of(" \t", at), text.size());
+}
+
+// Above the line that holds the place, in line with it. It takes the place of a former one that begins with the same
+// word and a colon.
+void put_comment(std::string& text, std::size_t at, const std::string& comment) {
+  if (comment.empty())
+    return;
+  std::size_t begin = line_begin(text, at);
+  const std::string line = fmt::format("{}# ", text.substr(begin, first_word(text, begin) - begin));
+  const std::string same = line + comment.substr(0, comment.find(':') + 1);
+  if (const std::size_t above = begin == 0 ? 0 : line_begin(text, begin - 1);
+      text.compare(above, same.size(), same) == 0) {
+    text.erase(above, begin - above);
+    begin = above;
+  }
+  text.insert(begin, line + comment + "\n");
+}
+
+void put_value(std::string& text, const TextRange& range, const KeyChange& change) {
+  text.replace(range.begin, range.end - range.begin, *change.value);
+  put_comment(text, range.begin, change.comment);
+}
+
+void put_into_inline_table(std::string& text, const TextRange& table, const KeyChange& change) {
+  const bool empty = text[text.find_first_not_of(" \t", table.begin + 1)] == '}';
+  text.insert(table.begin + 1, fmt::format(" {} = {}{}", name_of(change.path), *change.value, empty ? " " : ","));
+  put_comment(text, table.begin, change.comment);
+}
+
+// Below the header [table], or as a.b = value beside another key that is written so.
+void put_line(std::string& text, const TextRange& table, const KeyChange& change) {
+  const std::size_t begin = line_begin(text, table.begin);
+  const bool has_header = text[first_word(text, begin)] == '[';
+  std::size_t at = begin;
+  if (has_header) {
+    at = next_line(text, begin);
+    if (text[at - 1] != '\n')
+      text.insert(at++, "\n");
+  }
+  text.insert(at, fmt::format("{} = {}\n", has_header ? name_of(change.path) : change.path, *change.value));
+  put_comment(text, at, change.comment);
+}
+
+void put_new(std::string& text, const std::string& name, const KeyChange& change) {
+  const std::string parent = parent_of(change.path);
+  const std::optional<TextRange> table = parent.empty() ? TextRange{} : range_in(text, name, parent);
+  if (!table)
+    return;
+  if (!parent.empty() && text[table->begin] == '{')
+    put_into_inline_table(text, *table, change);
+  else
+    put_line(text, *table, change);
+}
+
+// With its line, or out of a table on one line with a comma.
+void take_out(std::string& text, const TextRange& value, const std::string& path) {
+  const std::size_t begin = line_begin(text, value.begin), word = first_word(text, begin);
+  const std::size_t key = text.rfind(name_of(path), value.begin);
+  const std::string before = text.substr(word, key - word);
+  if (before.empty() || before == parent_of(path) + ".") {
+    text.erase(begin, next_line(text, value.end) - begin);
+    return;
+  }
+  std::size_t from = key, to = value.end;
+  if (const std::size_t after = first_word(text, value.end); after < text.size() && text[after] == ',')
+    to = first_word(text, after + 1);
+  else if (const std::size_t comma = text.find_last_not_of(" \t", key - 1); text[comma] == ',')
+    from = comma;
+  text.erase(from, to - from);
+}
+
+bool stands(const std::string& text, const std::string& name, const KeyChange& change) {
+  const Document document = parse_document(text, name);
+  const Entry* const entry = find_entry(document, change.path);
+  if (!entry || !change.value)
+    return !entry && !change.value;
+  return to_toml(entry->value) == to_toml(parse_override_value(*change.value, change.path, name).front().value);
+}
+
+} // namespace
+
+std::string edit_scene(const std::string& text, const std::string& name, const std::vector<KeyChange>& changes) {
+  std::string edited = text;
+  parse_document(edited, name);
+  for (const KeyChange& change : changes) {
+    const std::optional<TextRange> value = range_in(edited, name, change.path);
+    if (value && change.value)
+      put_value(edited, *value, change);
+    else if (value)
+      take_out(edited, *value, change.path);
+    else if (change.value)
+      put_new(edited, name, change);
+    try {
+      if (stands(edited, name, change))
+        continue;
+    } catch (const UsageError&) { // the edit spoilt the text
+    }
+    throw UsageError(fmt::format("{}: {} cannot be put into this text (its table is missing or written in parts); "
+                                 "write {} {} by hand",
+                                 name, change.path, change.value ? change.path + " = " + *change.value : "without",
+                                 change.value ? "there" : change.path));
+  }
+  return edited;
+}
+
+} // namespace keeler

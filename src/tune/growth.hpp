@@ -1,0 +1,23 @@
+// The state that a scene comes to, and what it costs to get there.
+#pragma once
+
+#include <keeler/core/phase_progress.hpp>
+#include <keeler/particles/patch.hpp>
+#include <keeler/scene/scene.hpp>
+
+#include <vector>
+
+namespace keeler {
+
+struct Growth {
+  Patch patch;
+  double orbits = 0.0;         ///< its age
+  double contact_rate = 0.0;   ///< of a particle, in the last orbit
+  double seconds = 0.0;        ///< of the processor, all of it
+  double seconds_at_end = 0.0; ///< an orbit, over the last one
+};
+
+/// Evolves the scene's start with an automatic step and the cheapest solver that is of use.
+Growth grow(const Scene& scene, double orbits, PhaseProgress& progress);
+
+} // namespace keeler

@@ -1,0 +1,63 @@
+#include <keeler/tune/tune.hpp>
+
+#include <keeler/core/words.hpp>
+
+#include <fmt/format.h>
+
+namespace keeler {
+namespace {
+
+std::string per_cent(double share) {
+  return figures(100.0 * share, 2) + " %";
+}
+
+std::string with_point(double number) {
+  const std::string digits = fmt::format("{}", number);
+  return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
+}
+
+void add_gravity(std::vector<KeyChange>& keys, const Tuning& tuning, const TuneSettings& settings) {
+  using Solver = GravitySettings::Solver;
+  const GravityBenchRow& row = tuning.gravity[tuning.chosen_gravity];
+  const GravitySettings& gravity = row.choice.settings;
+  const std::string error =
+      fmt::format("an rms force error of {} was measured (at most {}{})", per_cent(row.errors.rms),
+                  per_cent(settings.force_error), tuning.meets_force_error ? "" : ", which nothing meets");
+  keys.push_back({"gravity.solver", fmt::format("\"{}\"", row.choice.solver), "tune: " + error});
+  const bool tree = gravity.solver == Solver::tree, fft = gravity.solver == Solver::fft;
+  keys.push_back({"gravity.force_error", fft ? std::optional(with_point(gravity.force_error)) : std::nullopt, ""});
+  keys.push_back({"gravity.opening_angle", tree ? std::optional(with_point(gravity.opening_angle)) : std::nullopt, ""});
+  keys.push_back({"gravity.mesh_spacing", std::nullopt, ""});
+  if (fft) {
+    keys.push_back({"gravity.images", std::nullopt, ""});
+    keys.push_back({"gravity.image_rings", std::nullopt, ""});
+  }
+}
+
+void add_kicks(std::vector<KeyChange>& keys, const Tuning& tuning, const TuneSettings& settings) {
+  const KickProbe& kicks = tuning.kicks[tuning.chosen_kicks];
+  keys.push_back(
+      {"gravity.kick_every", fmt::format("{}", tuning.steps[tuning.chosen_step].drifts),
+       fmt::format("tune: a kick each {:g} orbits makes {} of the contacts; the loss exceeds the work of the "
+                   "shear by about {} (at most {}{})",
+                   kicks.interval, per_cent(kicks.unresolved), per_cent(kicks.physics_error()),
+                   per_cent(settings.physics_error), tuning.meets_physics_error ? "" : ", which no interval meets")});
+}
+
+} // namespace
+
+std::vector<KeyChange> chosen_keys(const Tuning& tuning, const TuneSettings& settings, const Scene& scene) {
+  std::vector<KeyChange> keys = {{"quality", std::nullopt, ""}};
+  if (scene.gravity) {
+    add_gravity(keys, tuning, settings);
+    add_kicks(keys, tuning, settings);
+  }
+  const StepProbe& step = tuning.steps[tuning.chosen_step];
+  keys.push_back({"time.step", with_point(step.step),
+                  fmt::format("tune: {} processor seconds an orbit in the state after {:g} orbits, {} contacts a "
+                              "particle and drift",
+                              figures(step.seconds, 2), tuning.orbits, figures(step.contacts, 2))});
+  return keys;
+}
+
+} // namespace keeler

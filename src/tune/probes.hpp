@@ -1,0 +1,25 @@
+// Short runs from one state: what a kick interval makes, what a step costs, what threads gain.
+#pragma once
+
+#include <keeler/core/phase_progress.hpp>
+#include <keeler/particles/patch.hpp>
+#include <keeler/tune/tune.hpp>
+
+#include <vector>
+
+namespace keeler {
+
+/// The scene with another step and kick interval, which without self-gravity is the step.
+Scene with_steps(Scene scene, double step, int drifts);
+
+/// Over a quarter of an orbit.
+KickProbe probe_kicks(const Scene& scene, const Patch& patch, double interval, int drifts);
+
+/// Of the kick interval divided into so many drifts each, in turns.
+std::vector<StepProbe> probe_steps(const Scene& scene, const Patch& patch, double interval,
+                                   const std::vector<int>& drifts, PhaseProgress& progress);
+
+/// On 1, 2, 4 … threads and the most.
+std::vector<ThreadProbe> probe_threads(const Scene& scene, const Patch& patch, int most, PhaseProgress& progress);
+
+} // namespace keeler

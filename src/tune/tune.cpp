@@ -1,0 +1,194 @@
+#include <keeler/tune/tune.hpp>
+
+#include "growth.hpp"
+#include "probes.hpp"
+
+#include <keeler/bench/yardsticks.hpp>
+#include <keeler/core/threads.hpp>
+#include <keeler/scene/estimate.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+// Orbits. A tenth of an orbit is a whole number of each, so files fall where one asks for them.
+constexpr std::array<double, 10> kick_intervals = {1e-3, 1.25e-3, 2e-3,  2.5e-3,  4e-3,
+                                                   5e-3, 6.25e-3, 10e-3, 12.5e-3, 20e-3};
+constexpr std::size_t first_probed = 6;
+constexpr double usual_contacts = 0.3;                     // of a particle in a drift: near the cheapest
+constexpr double few_contacts = 0.04, many_contacts = 1.2; // where the cheapest is looked for
+constexpr std::size_t most_direct = 3000;                  // particles
+constexpr int gravity_repeats = 3;
+constexpr double least_gain = 1.15; // of twice the threads
+
+double orbits_of(const Scene& scene) {
+  return static_cast<double>(scene.time.end_step) * scene.time.step;
+}
+
+GravityChoice choice(const Scene& scene, GravitySettings::Solver solver, std::size_t particles, double parameter) {
+  GravitySettings settings;
+  settings.solver = solver;
+  settings.images = scene.gravity->images;
+  if (solver == GravitySettings::Solver::tree)
+    settings.opening_angle = parameter;
+  else if (solver == GravitySettings::Solver::fft)
+    settings.force_error = parameter;
+  return choice_of(settings, particles);
+}
+
+// What a scene's keys can say, about the error that is asked for. Exactly n rings of images are physics, which the mesh
+// does not have.
+std::vector<GravityChoice> gravity_candidates(const Scene& scene, std::size_t particles, double force_error) {
+  using Solver = GravitySettings::Solver;
+  std::vector<GravityChoice> candidates;
+  if (particles <= most_direct)
+    candidates.push_back(choice(scene, Solver::direct, particles, 0.0));
+  for (const double opening_angle : {0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9})
+    candidates.push_back(choice(scene, Solver::tree, particles, opening_angle));
+  if (scene.gravity->images.far)
+    for (const double factor : {0.5, 0.7, 1.0, 1.4, 2.0, 2.8})
+      candidates.push_back(choice(scene, Solver::fft, particles, std::clamp(factor * force_error, 1e-5, 0.1)));
+  return candidates;
+}
+
+void choose_gravity(Tuning& tuning, double force_error) {
+  const auto error = [&](std::size_t k) { return tuning.gravity[k].errors.rms; };
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < tuning.gravity.size(); ++k) {
+    const bool meets = error(k) <= force_error, best_meets = error(best) <= force_error;
+    const bool cheaper = tuning.gravity[k].ns_per_particle < tuning.gravity[best].ns_per_particle;
+    if (meets ? !best_meets || cheaper : !best_meets && error(k) < error(best))
+      best = k;
+  }
+  tuning.chosen_gravity = best;
+  tuning.meets_force_error = error(best) <= force_error;
+}
+
+int usual_drifts(double interval, double contact_rate) {
+  const double drifts = interval * contact_rate / usual_contacts;
+  return 1 << static_cast<int>(std::lround(std::clamp(std::log2(std::max(1.0, drifts)), 0.0, 9.0)));
+}
+
+// Longer intervals as long as they meet the tolerance, or shorter ones until one does.
+void choose_kicks(Tuning& tuning, const Scene& scene, const Growth& growth, double physics_error,
+                  PhaseProgress& progress) {
+  progress.begin("kick intervals", 4.0);
+  const auto meets = [&](std::size_t k) {
+    const double interval = kick_intervals[k];
+    tuning.kicks.push_back(probe_kicks(scene, growth.patch, interval, usual_drifts(interval, growth.contact_rate)));
+    progress.add(1.0);
+    return tuning.kicks.back().physics_error() <= physics_error;
+  };
+  std::size_t k = first_probed;
+  tuning.meets_physics_error = meets(k);
+  if (tuning.meets_physics_error) {
+    while (k + 1 < kick_intervals.size() && meets(k + 1))
+      ++k;
+    tuning.chosen_kicks = k - first_probed;
+    return;
+  }
+  while (k > 0 && !tuning.meets_physics_error)
+    tuning.meets_physics_error = meets(--k);
+  tuning.chosen_kicks = tuning.kicks.size() - 1;
+}
+
+// Into so many drifts the interval is divided, by powers of two.
+std::vector<int> drift_candidates(double interval, double contact_rate) {
+  std::vector<int> candidates;
+  for (int drifts = 1; drifts <= 512; drifts *= 2)
+    if (const double contacts = interval * contact_rate / drifts; contacts >= few_contacts && contacts <= many_contacts)
+      candidates.push_back(drifts);
+  if (candidates.empty())
+    candidates.push_back(usual_drifts(interval, contact_rate));
+  return candidates;
+}
+
+// Of those that cost the same, but for the noise of the clock, the longest.
+std::size_t cheapest_step(const std::vector<StepProbe>& steps) {
+  constexpr double noise = 1.03;
+  double least = steps.front().seconds;
+  for (const StepProbe& probe : steps)
+    least = std::min(least, probe.seconds);
+  std::size_t best = 0; // the longest comes first
+  while (steps[best].seconds > noise * least)
+    ++best;
+  return best;
+}
+
+void choose_step(Tuning& tuning, const Scene& scene, const Growth& growth, double interval, PhaseProgress& progress) {
+  tuning.steps = probe_steps(scene, growth.patch, interval, drift_candidates(interval, growth.contact_rate), progress);
+  tuning.chosen_step = cheapest_step(tuning.steps);
+}
+
+void choose_threads(Tuning& tuning) {
+  ThreadProbe best = tuning.threads.front();
+  for (const ThreadProbe& probe : tuning.threads)
+    if (probe.speedup >= least_gain * best.speedup)
+      best = probe;
+  tuning.chosen_threads = best.threads;
+}
+
+// The way to the state that was probed costs what it did, times what the settings change at its end.
+void predict(Tuning& tuning, const Scene& scene, const Growth& growth) {
+  const double an_orbit = tuning.steps[tuning.chosen_step].seconds, whole = orbits_of(scene);
+  const double until_probed = std::min(1.0, whole / growth.orbits) * growth.seconds * an_orbit / growth.seconds_at_end;
+  const double steps = until_probed + std::max(0.0, whole - growth.orbits) * an_orbit;
+  double files = 0.0;
+  if (!scene.start_from) {
+    const RunEstimate estimate = estimate_run(scene, pair_yardstick(bench_seconds));
+    files = estimate.start + estimate.output;
+  }
+  double speedup = 1.0;
+  for (const ThreadProbe& probe : tuning.threads)
+    if (probe.threads == tuning.chosen_threads)
+      speedup = probe.speedup;
+  tuning.processor_seconds = steps + files;
+  tuning.wall_seconds = steps / speedup + files;
+}
+
+// On one thread, whose processor time other work on the machine changes least.
+class OneThread {
+public:
+  OneThread() { set_threads(1); }
+  ~OneThread() { set_threads(before_); }
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+
+private:
+  int before_ = threads();
+};
+
+} // namespace
+
+Tuning tune(const Scene& scene, const TuneSettings& settings) {
+  const OneThread measured;
+  PhaseProgress progress(settings.progress);
+  const double usual = scene.gravity ? 4.0 : 8.0; // wakes stand and have passed their overshoot
+  const Growth growth = grow(scene, std::min(settings.orbits.value_or(usual), orbits_of(scene)), progress);
+  Tuning tuning;
+  tuning.particles = growth.patch.size();
+  tuning.orbits = growth.orbits;
+  Scene chosen = scene;
+  double interval = kick_intervals.back();
+  if (scene.gravity) {
+    tuning.gravity = bench_gravity_of(growth.patch, gravity_candidates(scene, tuning.particles, settings.force_error),
+                                      gravity_repeats, progress)
+                         .rows;
+    choose_gravity(tuning, settings.force_error);
+    chosen.gravity = tuning.gravity[tuning.chosen_gravity].choice.settings;
+    choose_kicks(tuning, chosen, growth, settings.physics_error, progress);
+    interval = tuning.kicks[tuning.chosen_kicks].interval;
+  }
+  choose_step(tuning, chosen, growth, interval, progress);
+  const StepProbe& step = tuning.steps[tuning.chosen_step];
+  chosen = with_steps(chosen, step.step, step.drifts);
+  tuning.threads = probe_threads(chosen, growth.patch, settings.most_threads, progress);
+  choose_threads(tuning);
+  predict(tuning, scene, growth);
+  return tuning;
+}
+
+} // namespace keeler

@@ -1,0 +1,95 @@
+// What tune chooses meets the tolerances and is the cheapest of what does; its keys are a scene's.
+#include <keeler/scene/scene.hpp>
+#include <keeler/tune/tune.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace keeler;
+
+namespace {
+
+const std::string text = R"(
+planet.preset = "saturn-a-ring"
+[box]
+size = [50, 50]
+[particles]
+count = 400
+density = 450
+sizes = { law = "equal", radius = 1 }
+[gravity]
+solver = "tree"
+[time]
+end = 0.5
+)";
+
+Tuning tuned(const TuneSettings& settings) {
+  return tune(parse_scene(text, "s.toml"), settings);
+}
+
+} // namespace
+
+TEST_CASE("the choices meet the tolerances, and nothing that was measured and meets them is cheaper") {
+  const TuneSettings settings{.force_error = 2e-3, .physics_error = 0.05, .orbits = 0.3};
+  const Tuning t = tuned(settings);
+  CHECK(t.particles == 400);
+  CHECK(t.orbits >= 0.3);
+  REQUIRE(t.meets_force_error);
+  const GravityBenchRow& gravity = t.gravity[t.chosen_gravity];
+  CHECK(gravity.errors.rms <= settings.force_error);
+  for (const GravityBenchRow& row : t.gravity)
+    CHECK((row.errors.rms > settings.force_error || row.ns_per_particle >= gravity.ns_per_particle));
+  REQUIRE(t.meets_physics_error);
+  const KickProbe& kicks = t.kicks[t.chosen_kicks];
+  CHECK(kicks.physics_error() <= settings.physics_error);
+  for (const KickProbe& probe : t.kicks)
+    CHECK((probe.physics_error() > settings.physics_error || probe.interval <= kicks.interval));
+  for (const StepProbe& probe : t.steps) {
+    CHECK(probe.step * probe.drifts == doctest::Approx(kicks.interval));
+    CHECK(probe.seconds > 0.0);
+    CHECK(1.04 * probe.seconds > t.steps[t.chosen_step].seconds);
+  }
+  CHECK(t.processor_seconds > 0.0);
+  CHECK(t.wall_seconds == t.processor_seconds);
+  CHECK(t.chosen_threads == 1);
+}
+
+TEST_CASE("tolerances that nothing meets are said, and the most accurate is chosen") {
+  const Tuning t = tuned({.force_error = 1e-5, .physics_error = 1e-9, .orbits = 0.05});
+  if (!t.meets_force_error)
+    for (const GravityBenchRow& row : t.gravity)
+      CHECK(row.errors.rms >= t.gravity[t.chosen_gravity].errors.rms);
+  if (!t.meets_physics_error)
+    CHECK(t.kicks[t.chosen_kicks].interval == 1e-3);
+}
+
+TEST_CASE("the keys say the choices, in the text of the scene") {
+  Tuning t;
+  t.orbits = 4.0;
+  GravityBenchRow row;
+  GravitySettings fft;
+  fft.solver = GravitySettings::Solver::fft;
+  fft.force_error = 5e-3;
+  row.choice = {"fft", "force_error 0.005", "", 0.0, fft};
+  row.errors.rms = 2e-3;
+  t.gravity = {row};
+  t.kicks = {{5e-3, 0.006}};
+  t.steps = {{1.25e-3, 4, 0.3, 2.0}};
+  const Scene scene = parse_scene(text, "s.toml");
+  for (int again = 0; again < 2; ++again) {
+    const std::string edited = edit_scene(text, "s.toml", chosen_keys(t, {}, scene));
+    const Scene tuned_scene = parse_scene(edited, "t.toml");
+    CHECK(tuned_scene.gravity->solver == GravitySettings::Solver::fft);
+    CHECK(tuned_scene.gravity->force_error == 5e-3);
+    CHECK(tuned_scene.gravity->kick_every == 4);
+    CHECK(tuned_scene.time.step == 1.25e-3);
+    CHECK(edited.find("# tune: an rms force error of 0.2 %") != std::string::npos);
+    CHECK(edit_scene(edited, "t.toml", chosen_keys(t, {}, scene)) == edited);
+  }
+  Tuning none;
+  none.steps = {{5e-3, 1, 0.3, 2.0}};
+  const Scene smooth = parse_scene(text, "s.toml", {"time.step=1e-3"});
+  Scene without = smooth;
+  without.gravity.reset();
+  for (const KeyChange& key : chosen_keys(none, {}, without))
+    CHECK(key.path.find("gravity") == std::string::npos);
+}
