@@ -13,11 +13,11 @@ struct Growth {
   Patch patch;
   double orbits = 0.0;         ///< its age
   double contact_rate = 0.0;   ///< of a particle, in the last orbit
-  double seconds = 0.0;        ///< of the processor, all of it
+  double seconds = 0.0;        ///< all of it; processor time on one thread, wall time on several
   double seconds_at_end = 0.0; ///< an orbit, over the last one
 };
 
-/// Evolves the scene's start with an automatic step and the cheapest solver that is of use.
+/// Evolves the scene's start on all threads, with an automatic step and the cheapest solver that is of use.
 Growth grow(const Scene& scene, double orbits, PhaseProgress& progress);
 
 } // namespace keeler

@@ -164,10 +164,10 @@ private:
 } // namespace
 
 Tuning tune(const Scene& scene, const TuneSettings& settings) {
-  const OneThread measured;
   PhaseProgress progress(settings.progress);
   const double usual = scene.gravity ? 4.0 : 8.0; // wakes stand and have passed their overshoot
   const Growth growth = grow(scene, std::min(settings.orbits.value_or(usual), orbits_of(scene)), progress);
+  const OneThread measured;
   Tuning tuning;
   tuning.particles = growth.patch.size();
   tuning.orbits = growth.orbits;
