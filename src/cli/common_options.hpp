@@ -4,10 +4,12 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/words.hpp>
+#include <keeler/files/files.hpp>
 
 #include <CLI/CLI.hpp>
 
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 
 namespace keeler {
@@ -33,6 +35,18 @@ inline CLI::Validator number_between(double low, double high, const std::string&
                : "'" + text + "' is not " + what + " from " + figures(low) + " to " + figures(high);
   };
   return CLI::Validator(refusal, "");
+}
+
+/// Refuses to make a file ("a state") where there is a folder, where there is one unless `force`, or where none can be
+/// made. Throws UsageError, IoError.
+inline void require_new_file(const std::string& path, bool force, const std::string& what) {
+  namespace fs = std::filesystem;
+  if (fs::is_directory(path))
+    throw UsageError("'" + path + "' is a folder (" + what + " is one file); name a file in it");
+  if (fs::exists(path) && !force)
+    throw UsageError("'" + path + "' exists already (" + what +
+                     " is never overwritten unasked); name another file or add --force");
+  require_writable_folder(fs::absolute(path).parent_path(), path);
 }
 
 /// --threads N.

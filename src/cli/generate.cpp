@@ -8,14 +8,12 @@
 
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/words.hpp>
-#include <keeler/files/files.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/states/clumped.hpp>
 #include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 
 namespace keeler {
@@ -28,14 +26,6 @@ struct GenerateOptions {
   SettleCriterion criterion;
   ThreadOption threads;
 };
-
-void refuse_if_taken(const GenerateOptions& options) {
-  if (std::filesystem::is_directory(options.output))
-    throw UsageError(fmt::format("'{}' is a folder (a state is one file); name a file in it", options.output));
-  if (std::filesystem::exists(options.output) && !options.force)
-    throw UsageError(fmt::format("'{}' exists already (a state is never overwritten); name another file or add --force",
-                                 options.output));
-}
 
 // Signals are heeded at once: there is nothing that could be kept.
 template<class Make> auto unless_stopped(const Make& make) {
@@ -87,8 +77,7 @@ void print_doubts(const Scene& scene, const Patch& patch) {
 ExitCode generate(const GenerateOptions& options, const std::vector<std::string>& arguments) {
   options.threads.apply();
   const Scene scene = options.scene.load();
-  refuse_if_taken(options);
-  require_writable_folder(std::filesystem::absolute(options.output).parent_path(), options.output);
+  require_new_file(options.output, options.force, "a state");
   SnapshotMeta meta{scene.resolved, collect_provenance(arguments)};
   Patch patch;
   if (options.clumped) {

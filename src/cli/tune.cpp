@@ -17,13 +17,10 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 
 namespace keeler {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct TuneOptions {
   SceneArguments scene;
@@ -51,11 +48,7 @@ void refuse_what_cannot_be_written(const TuneOptions& options) {
   if (!options.scene.overrides.empty())
     throw UsageError("--output cannot stand beside --set (the file would not have what was tuned); write the keys into "
                      "the scene first");
-  if (fs::is_directory(*options.output))
-    throw UsageError(fmt::format("'{}' is a folder (a scene is one file); name a file in it", *options.output));
-  if (fs::exists(*options.output) && !options.force)
-    throw UsageError(fmt::format("'{}' exists already; name another file or add --force", *options.output));
-  require_writable_folder(fs::absolute(*options.output).parent_path(), *options.output);
+  require_new_file(*options.output, options.force, "a scene");
 }
 
 Tuning measure(const Scene& scene, TuneSettings settings) {
