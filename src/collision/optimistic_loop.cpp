@@ -224,12 +224,13 @@ std::uint64_t OptimisticLoop::most_partners() const {
 }
 
 std::size_t OptimisticLoop::bytes() const {
-  std::size_t total =
-      newest_.capacity() * sizeof(std::uint32_t) + barred_.capacity() + order_.capacity() * sizeof(order_[0]);
+  std::size_t total = newest_.capacity() * sizeof(std::uint32_t) + barred_.capacity() +
+                      order_.capacity() * sizeof(order_[0]) + domains_.capacity() * sizeof(Domain);
   for (const Domain& d : domains_)
     total += (d.given.capacity() + d.aside.capacity() + d.deferred.capacity()) * sizeof(Event) + d.events.bytes() +
              d.barred.capacity() * sizeof(Barred) + d.changes.capacity() * sizeof(Change) +
-             d.contacts.capacity() * sizeof(Contact) + d.records.capacity() * sizeof(CollisionRecord);
+             d.contacts.capacity() * sizeof(Contact) + d.is_rolled_back.capacity() +
+             d.touched.capacity() * sizeof(std::uint32_t);
   return total;
 }
 

@@ -263,12 +263,15 @@ void NeighbourLists::release() {
 }
 
 std::size_t NeighbourLists::bytes() const {
-  std::size_t total = cells_.bytes() + bytes_of(lines_) + bytes_of(ranges_) + bytes_of(entries_);
-  total +=
-      bytes_of(references_) + bytes_of(touched_) + bytes_of(is_touched_) + bytes_of(is_leaving_) + bytes_of(is_anew_);
-  for (const std::vector<Pairs>* all : {&pairs_, &near_})
+  std::size_t total =
+      cells_.bytes() + bytes_of(lines_) + bytes_of(references_) + bytes_of(ranges_) + bytes_of(entries_);
+  total += bytes_of(touched_) + bytes_of(is_touched_) + bytes_of(leaving_) + bytes_of(is_leaving_) + bytes_of(anew_) +
+           bytes_of(is_anew_);
+  for (const std::vector<Pairs>* all : {&pairs_, &near_}) {
+    total += bytes_of(*all);
     for (const Pairs& pairs : *all)
       total += bytes_of(pairs);
+  }
   return total;
 }
 
