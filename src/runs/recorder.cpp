@@ -101,7 +101,10 @@ std::optional<GravityEnergy> Recorder::measure_gravity(const Simulation& simulat
   if (!gravity_meter_ || (step > 0 && step / every == (step - scene_.output.series_every) / every))
     return std::nullopt;
   const Stopwatch watch(costs_.stresses);
-  return gravity_meter_->measure(simulation.boundary());
+  const std::optional<GravityEnergy> gravity = gravity_meter_->measure(simulation.boundary());
+  if (scene_.output.series_every == 0)
+    gravity_meter_.reset(); // there will be no other row
+  return gravity;
 }
 
 void Recorder::check_forces(const Simulation& simulation) {

@@ -14,15 +14,22 @@ namespace keeler::test {
 
 inline std::atomic<std::int64_t> bytes_held{0};
 
-/// The size of a block stands right before it.
-inline void* allocate_counted(std::size_t size, std::size_t alignment) {
+/// Null when there is no memory. The size of a block stands right before it.
+inline void* try_to_allocate(std::size_t size, std::size_t alignment) noexcept {
   const std::size_t head = std::max(alignment, alignof(std::max_align_t));
   void* const whole = std::aligned_alloc(head, (size + 2 * head - 1) / head * head);
   if (!whole)
-    throw std::bad_alloc();
+    return nullptr;
   std::byte* const block = static_cast<std::byte*>(whole) + head;
   std::memcpy(block - sizeof size, &size, sizeof size);
   bytes_held += static_cast<std::int64_t>(size);
+  return block;
+}
+
+inline void* allocate_counted(std::size_t size, std::size_t alignment) {
+  void* const block = try_to_allocate(size, alignment);
+  if (!block)
+    throw std::bad_alloc();
   return block;
 }
 
@@ -42,6 +49,12 @@ void* operator new(std::size_t size) {
 }
 void* operator new(std::size_t size, std::align_val_t alignment) {
   return keeler::test::allocate_counted(size, static_cast<std::size_t>(alignment));
+}
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  return keeler::test::try_to_allocate(size, 1);
+}
+void* operator new(std::size_t size, std::align_val_t alignment, const std::nothrow_t&) noexcept {
+  return keeler::test::try_to_allocate(size, static_cast<std::size_t>(alignment));
 }
 void operator delete(void* block) noexcept {
   keeler::test::free_counted(block, 1);
