@@ -318,6 +318,7 @@ DriftCosts DriftEngine::costs() const {
 std::size_t DriftEngine::bytes() const {
   std::size_t total = particles_->bodies.capacity() * sizeof(Body) + particles_->ids.capacity() * sizeof(std::uint64_t);
   total += lists_.bytes() + optimistic_.bytes() + events_.bytes() + so_far_.bytes();
+  total += touched_.capacity() * sizeof(std::uint32_t);
   total += particles_->size() * finder().bytes_per_particle();
   for (const std::vector<Candidate>& block : candidates_)
     total += block.capacity() * sizeof(Candidate) + sizeof(std::vector<Candidate>);

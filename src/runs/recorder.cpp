@@ -40,7 +40,7 @@ Recorder::Recorder(const RunFolder& folder, const Scene& scene, const std::vecto
     : folder_(folder), scene_(scene), provenance_(collect_provenance(arguments)), counters_(std::move(counters)),
       columns_(series_columns_of(scene)), series_(open_series(folder, names_of(columns_), resumed_at)) {
   write_text(folder_.scene(), scene_.resolved);
-  if (scene_.gravity)
+  if (measures_gravity(scene_))
     gravity_meter_.emplace(*scene_.gravity, scene_.planet.orbital_frequency);
   if (!scene_.output.collisions)
     return;
@@ -98,12 +98,13 @@ void Recorder::sample(const Simulation& simulation) {
 // In the first row at or after each multiple of its interval: what is due follows from the step alone.
 std::optional<GravityEnergy> Recorder::measure_gravity(const Simulation& simulation) {
   const std::int64_t step = simulation.state().step, every = scene_.output.stress_every;
-  if (!gravity_meter_ || every == 0)
-    return std::nullopt;
-  if (step > 0 && step / every == (step - scene_.output.series_every) / every)
+  if (!gravity_meter_ || (step > 0 && step / every == (step - scene_.output.series_every) / every))
     return std::nullopt;
   const Stopwatch watch(costs_.stresses);
-  return gravity_meter_->measure(simulation.boundary());
+  const std::optional<GravityEnergy> gravity = gravity_meter_->measure(simulation.boundary());
+  if (scene_.output.series_every == 0)
+    gravity_meter_.reset(); // there will be no other row
+  return gravity;
 }
 
 void Recorder::check_forces(const Simulation& simulation) {

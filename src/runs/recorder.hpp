@@ -75,7 +75,7 @@ private:
   std::vector<SeriesColumn> columns_;
   Series series_;
   std::optional<ContactLog> contact_log_;
-  std::optional<GravityMeter> gravity_meter_; // only with self-gravity
+  std::optional<GravityMeter> gravity_meter_; // only where the series has it
   ForceChecks force_checks_;
   OutputCosts costs_;
 };

@@ -37,10 +37,6 @@ bool may_overlap(const Scene& scene) {
 
 constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 
-bool measures_gravity(const Scene& scene) {
-  return scene.gravity && scene.output.stress_every > 0 && has_energy_meter(*scene.gravity);
-}
-
 const SeriesColumn all_columns[] = {
     {"time_orbits", "orbits", "time since the run began", [](Sample s) { return s.simulation.orbits(); }},
     {"dispersion_x_m_s", "m/s", "radial velocity dispersion, weighted by mass",
@@ -118,6 +114,10 @@ std::vector<std::string> names_of(std::span<const SeriesColumn> columns) {
   for (const SeriesColumn& column : columns)
     names.emplace_back(column.name);
   return names;
+}
+
+bool measures_gravity(const Scene& scene) {
+  return scene.gravity && scene.output.stress_every > 0 && has_energy_meter(*scene.gravity);
 }
 
 std::vector<double> values_of(std::span<const SeriesColumn> columns, const SeriesSample& sample) {

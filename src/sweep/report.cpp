@@ -59,11 +59,6 @@ Table table_of_points(const Grid& grid, const Plan& plan, const std::vector<Poin
   return table;
 }
 
-std::size_t count_of(const std::vector<RunRow>& runs, RunStatus status) {
-  return static_cast<std::size_t>(
-      std::count_if(runs.begin(), runs.end(), [&](const RunRow& run) { return run.status == status; }));
-}
-
 } // namespace
 
 void write_report(const Grid& grid, const Plan& plan, const std::vector<RunRow>& runs,

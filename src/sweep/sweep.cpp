@@ -12,7 +12,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <set>
 
 namespace keeler {
@@ -63,11 +62,6 @@ void write_tables(const Grid& grid, const Plan& plan, const SweepFolder& folder,
   if (figure == Figure::nothing_to_draw && !grid.plot.x.empty())
     notice(fmt::format("no run has {}, so there is no figure; name another y under [plot]", grid.plot.y));
   write_report(grid, plan, runs, points, folder, figure);
-}
-
-std::size_t count_of(const std::vector<RunRow>& runs, RunStatus status) {
-  return static_cast<std::size_t>(
-      std::count_if(runs.begin(), runs.end(), [&](const RunRow& run) { return run.status == status; }));
 }
 
 } // namespace

@@ -5,6 +5,7 @@
 #include <keeler/report/csv.hpp>
 #include <keeler/runs/run_stage.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace keeler {
@@ -61,6 +62,11 @@ Estimate seed_mean(std::span<const Estimate> seeds) {
     values.push_back(seed.value);
   const Scatter scatter = scatter_of(values);
   return {scatter.mean, scatter.deviation / std::sqrt(static_cast<double>(scatter.count))};
+}
+
+std::size_t count_of(const std::vector<RunRow>& runs, RunStatus status) {
+  return static_cast<std::size_t>(
+      std::count_if(runs.begin(), runs.end(), [&](const RunRow& run) { return run.status == status; }));
 }
 
 std::vector<RunRow> run_rows(const Grid& grid, const Plan& plan, const SweepFolder& folder) {

@@ -26,6 +26,8 @@ struct RunRow {
   std::optional<RunNumbers> numbers;
 };
 
+std::size_t count_of(const std::vector<RunRow>& runs, RunStatus status);
+
 /// A point of the grid: means over its finished runs.
 struct PointRow {
   const GridPoint* point = nullptr;

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <iterator>
 #include <memory>
@@ -96,8 +97,10 @@ private:
     const std::size_t seeds = plan_.runs.size() / plan_.points.size();
     std::vector<std::size_t> order;
     for (std::size_t s = 0; s < seeds; ++s)
-      for (std::size_t p = 0; p < plan_.points.size(); ++p)
+      for (std::size_t p = 0; p < plan_.points.size(); ++p) {
+        assert(plan_.runs[p * seeds + s].point == p);
         order.push_back(p * seeds + s);
+      }
     return order;
   }
 

@@ -128,7 +128,8 @@ std::vector<Row> restitution(double value) {
       overlap = std::max(overlap, largest_overlap(ring.patch()).depth);
   }
   const double open = epicyclic(ring) - start - epicyclic_gain(ring.tally, ring.frequencies);
-  return {at_least(state, "contacts of a particle", 2.0 * static_cast<double>(contacts) / 40.0, 1e4, "as asked"),
+  return {at_least(state, "contacts of a particle", 2.0 * static_cast<double>(contacts) / 40.0, 1e4,
+                   "so many that roundings of one sign would show"),
           at_most(state, "energy that the budget leaves open, over the energy", std::fabs(open) / largest, 2e-12,
                   "2e-16 for each contact of a particle: a rounding each, of one sign where all radii are 1 m"),
           at_most(state, "deepest overlap over the radius sum", overlap, 1e-13, "rounding of places")};

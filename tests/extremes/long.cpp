@@ -77,7 +77,7 @@ std::vector<Row> many_particles() {
   }
   const double bytes = peak_memory(words);
   return {at_most(e.state, "largest memory of the program (VmHWM), GiB", bytes / std::pow(1024.0, 3), 12.0,
-                  "as asked: start, three steps, snapshots and a checkpoint"),
+                  "what a workstation of 16 GiB can spare: start, three steps, snapshots and a checkpoint"),
           at_most(e.state, "the same a particle, bytes", bytes / 1e7, 12.0 * std::pow(1024.0, 3) / 1e7, "the same")};
 }
 

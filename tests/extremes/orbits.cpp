@@ -94,7 +94,7 @@ std::vector<Row> frequencies_of_runs() {
 std::vector<Row> least_numbers() {
   std::vector<Row> rows;
   for (const auto& [name, value] : {std::pair("−0", -0.0), {"denormals", denormal}}) {
-    const State state{name, "60 circles in one plane with e and i of it, 30 steps of 1e-2 orbit"};
+    const State state{name, "60 circles in one plane with all e and i that small, 30 steps of 1e-2 orbit"};
     Ring ring = circles(value, value), zero = circles(0.0, 0.0);
     const AgainstPlain course = against_plain(ring, {}, 30);
     against_plain(zero, {}, 30);

@@ -35,8 +35,12 @@ Row exactly(const State& state, const std::string& what, double value, double ex
 }
 
 Row refused(const State& state, const std::function<void()>& attempt, int code, const std::vector<std::string>& words) {
-  Row result{state.name, "no error", fmt::format("exit {}; says \"{}\"", code, fmt::join(words, "\", \"")),
-             false,      "",         state.made_by};
+  Row result{state.name,
+             "no error",
+             fmt::format("exit {}; says \"{}\"", code, fmt::join(words, "\", \"")),
+             false,
+             "its message says why",
+             state.made_by};
   try {
     attempt();
   } catch (const Error& error) {

@@ -47,7 +47,11 @@ bool read_options(int count, char** words, Options& options) {
   return !(options.quick && options.extra);
 }
 
-using Sections = std::map<std::string, std::vector<Shown>>;
+struct Section {
+  std::vector<Shown> rows;
+  bool whole = true; // all its subjects were measured
+};
+using Sections = std::map<std::string, Section>;
 
 std::string table(const std::vector<std::string>& columns, const std::vector<Shown>& rows) {
   std::string text = fmt::format("| {} |\n|", fmt::join(columns, " | "));
@@ -77,7 +81,8 @@ std::string written(const Page& page, const std::vector<Subject>& subjects, cons
       continue;
     last = subject.section;
     const auto found = measured.find(last);
-    const std::string rows = found == measured.end() ? section_of(before, last) : table(page.columns, found->second);
+    const bool renewed = found != measured.end() && found->second.whole;
+    const std::string rows = renewed ? table(page.columns, found->second.rows) : section_of(before, last);
     if (!rows.empty())
       text += fmt::format("\n## {}\n\n{}", last, rows);
   }
@@ -98,13 +103,20 @@ std::vector<Shown> measure(const Subject& subject) {
 int measure_all(const Options& options, const std::vector<Subject>& subjects, const Page& page) {
   Sections sections;
   std::map<Verdict, int> counts;
-  for (const Subject& subject : subjects)
-    if (options.selects(subject))
-      for (Shown& row : measure(subject)) {
-        ++counts[row.verdict];
-        sections[subject.section].push_back(std::move(row));
-      }
-  if (sections.empty()) {
+  bool any = false;
+  for (const Subject& subject : subjects) {
+    Section& section = sections[subject.section];
+    if (!options.selects(subject)) {
+      section.whole = false;
+      continue;
+    }
+    any = true;
+    for (Shown& row : measure(subject)) {
+      ++counts[row.verdict];
+      section.rows.push_back(std::move(row));
+    }
+  }
+  if (!any) {
     fmt::print(stderr, "no such subject; the names are:\n");
     for (const Subject& subject : subjects)
       fmt::print(stderr, "  {}\n", subject.name);

@@ -17,7 +17,7 @@ Row balance_row(const std::string& what, const Ran& ran, double since) {
           .error = t.balance->error,
           .expected = 1.0,
           .tolerance = 0.03,
-          .tolerance_is = "as asked of the health number",
+          .tolerance_is = "several times what rounding and kicks leave open",
           .source = law,
           .command = fmt::format("{}; keeler analyze DIR --since {}", ran.command, since)};
 }

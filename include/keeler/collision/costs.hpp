@@ -28,7 +28,8 @@ struct DriftCosts {
   std::uint64_t rolled_back = 0;  ///< contacts, because a deferred one had a say in them
   std::uint64_t widest_list = 0;  ///< most partners of one particle within one search
 
-  std::size_t bytes_per_particle = 0; ///< held by the drift phase now, the particles themselves included
+  /// Held by the drift phase now, the particles themselves included; without the records that an observer asks for.
+  std::size_t bytes_per_particle = 0;
 };
 
 } // namespace keeler

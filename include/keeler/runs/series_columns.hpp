@@ -41,6 +41,9 @@ std::span<const SeriesColumn> series_columns();
 /// Those that a scene has.
 std::vector<SeriesColumn> series_columns_of(const Scene& scene);
 
+/// Whether rows of the series have the energy and the stress of gravity.
+bool measures_gravity(const Scene& scene);
+
 std::vector<std::string> names_of(std::span<const SeriesColumn> columns);
 std::vector<double> values_of(std::span<const SeriesColumn> columns, const SeriesSample& sample);
 

@@ -1,0 +1,166 @@
+// Only what a scene requires: an option that is off holds no memory, makes no object and does no work. What is held is
+// counted by the program's allocations, work by its own counters: a stopwatch that never ran stands at 0.
+#include "counted_heap.hpp"
+#include "recorder.hpp"
+
+#include "unit/files/disk.hpp"
+
+#include <keeler/core/threads.hpp>
+#include <keeler/core/units.hpp>
+#include <keeler/runs/run.hpp>
+#include <keeler/states/initial.hpp>
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+using namespace keeler;
+using namespace keeler::test;
+
+namespace {
+
+// Optical depth 1, and nothing that can be left out.
+Scene bare_scene(std::size_t count, const std::vector<std::string>& more = {}) {
+  const double side = std::sqrt(pi * static_cast<double>(count));
+  return parse_scene(fmt::format("planet.orbital_frequency = 1.9565e-4\n"
+                                 "box.size = [{0}, {0}]\n"
+                                 "particles = {{ count = {1}, density = 900.0, sizes = {{ law = \"equal\", radius = "
+                                 "1.0 }} }}\n"
+                                 "time = {{ step = 1e-2, end = 0.1 }}\n"
+                                 "output = {{ series_every = 0, checkpoint_every_minutes = 0 }}\n",
+                                 side, count),
+                     "test scene", more);
+}
+
+// After some steps.
+struct Held {
+  std::size_t particles = 0;
+  double all = 0.0;   // bytes a particle by the simulation
+  double drift = 0.0; // of these what the drift tells of itself, the particles included
+  TimeSplit split;
+  std::size_t forces = 0;
+};
+
+Held held_by(const Scene& scene, DriftObserver* observer = nullptr) {
+  const Patch start = initial_patch(scene);
+  const std::int64_t before = bytes_held;
+  Simulation simulation(scene, start);
+  simulation.drift().observe(observer);
+  for (int k = 0; k < 15; ++k)
+    simulation.advance();
+  const auto count = static_cast<double>(start.size());
+  return {start.size(), static_cast<double>(bytes_held - before) / count,
+          static_cast<double>(simulation.drift().costs().bytes_per_particle), simulation.time_split(),
+          simulation.state().forces.capacity()};
+}
+
+struct TakesRecords final : DriftObserver {
+  std::size_t count = 0;
+  bool looks_on() const override { return false; }
+  bool wants_records() const override { return true; }
+  void recorded(std::span<const CollisionRecord> records) override { count += records.size(); }
+};
+
+constexpr std::size_t many = 20000;
+constexpr double slack = 2.0; // bytes a particle: what does not grow with their number, and rounding
+
+} // namespace
+
+TEST_CASE("a scene that asks for nothing more holds what the drift tells, and nothing else") {
+  set_threads(1);
+  const Held bare = held_by(bare_scene(many));
+  CAPTURE(bare.all);
+  CAPTURE(bare.drift);
+  CHECK(std::fabs(bare.all - bare.drift) < slack);
+  CHECK(bare.forces == 0);
+  CHECK(bare.split.forces.empty());
+  CHECK(bare.split.kick == 0.0);
+}
+
+TEST_CASE("a force holds one acceleration a particle, which a scene without it does not") {
+  set_threads(1);
+  const Held pushed = held_by(bare_scene(many, {"constant_acceleration.radial=1e-9"}));
+  CHECK(pushed.all - pushed.drift == doctest::Approx(sizeof(Vec3)).epsilon(slack / sizeof(Vec3)));
+  CHECK(pushed.split.forces.size() == 1);
+  CHECK(pushed.split.kick > 0.0);
+  CHECK(pushed.split.force("gravity") == 0.0);
+}
+
+TEST_CASE("records of contacts are held for whom asks, and for nobody else") {
+  set_threads(1);
+  TakesRecords observer;
+  const Held recorded = held_by(bare_scene(many), &observer);
+  CHECK(observer.count > many / 4);
+  CHECK(recorded.all - recorded.drift > 2.0 * slack);
+  struct Idle final : DriftObserver {
+    bool looks_on() const override { return false; }
+    void recorded(std::span<const CollisionRecord>) override { FAIL("nobody asked"); }
+  } idle;
+  const Held unrecorded = held_by(bare_scene(many), &idle);
+  CHECK(std::fabs(unrecorded.all - unrecorded.drift) < slack);
+}
+
+namespace {
+
+// What a recorder holds after some steps, as a run asks it: bytes that are free when it is gone.
+double held_by_recorder(const std::filesystem::path& folder, const Scene& scene) {
+  RunFolder run(folder);
+  run.make();
+  Simulation simulation(scene, initial_patch(scene));
+  std::optional<Recorder> recorder(std::in_place, run, scene, std::vector<std::string>{}, OutputCounters{},
+                                   std::nullopt);
+  recorder->sample(simulation);
+  recorder->watch(simulation);
+  for (int k = 0; k < 3; ++k) {
+    simulation.advance();
+    recorder->contacts();
+  }
+  CHECK((recorder->costs().stresses > 0.0) == measures_gravity(scene));
+  CHECK((recorder->costs().contacts > 0.0) == scene.output.collisions.has_value());
+  const std::int64_t with = bytes_held;
+  recorder.reset();
+  return static_cast<double>(with - bytes_held);
+}
+
+} // namespace
+
+TEST_CASE("what a recorder holds grows with the particles where it measures gravity or logs contacts, and only there") {
+  const TemporaryFolder work;
+  const auto growth = [&](const std::vector<std::string>& more) {
+    const double few = held_by_recorder(work / "few", bare_scene(many / 10, more));
+    return held_by_recorder(work / "all", bare_scene(many, more)) - few;
+  };
+  const std::string gravity = "gravity.solver=fft";
+  CHECK(growth({}) < 1000.0);
+  CHECK(growth({gravity, "output.stress_every=0"}) < 1000.0);
+  CHECK(growth({gravity, "output.stress_every=0.1"}) < 1000.0); // there is one row of the series, at the start
+  CHECK(growth({gravity, "output.stress_every=0.1", "output.series_every=0.01"}) > many);
+  CHECK(growth({"output.collisions.share=1"}) > many);
+}
+
+TEST_CASE("a run of a scene that asks for nothing more spends no time on it and writes no file for it") {
+  const TemporaryFolder work;
+  const std::filesystem::path folder = work / "run";
+  RunRequests requests;
+  RunOptions options;
+  options.folder = folder;
+  start_run(bare_scene(500), options, requests);
+  const nlohmann::json summary = nlohmann::json::parse(read_text(folder / "summary.json"));
+  for (const char* const part : {"gravity_s", "stresses_s", "contacts_s", "force_checks_s"}) {
+    CAPTURE(part);
+    CHECK(summary["split"][part] == 0.0);
+  }
+  CHECK(summary["force_error"].is_null());
+  CHECK(summary["energy_j"]["kick_work_of"].empty());
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  CHECK(names == std::vector<std::string>{"checkpoint_000000.h5", "log.jsonl", "scene.toml", "series.csv",
+                                          "snap_000000.hdf", "snap_000001.hdf", "summary.json"});
+}
