@@ -1,6 +1,7 @@
 #include "summary.hpp"
 
 #include <keeler/cells/overlap.hpp>
+#include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/files/files.hpp>
 
@@ -95,6 +96,8 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scen
   json["energy_balance"] = energy_balance(transport);
   json["wall_s"] = cost.wall_s;
   json["cpu_s"] = cost.cpu_s;
+  json["orbits_done"] = orbits - cost.first_orbit;
+  json["peak_memory_bytes"] = peak_memory();
   json["split"] = {{"start_s", cost.start_s},
                    {"drift_s", split.drift},
                    {"gravity_s", split.force("gravity")},

@@ -1,8 +1,11 @@
-// Wall time spent in a scope, and the processor time of this process.
+// Wall time spent in a scope; the processor time and the memory of this process.
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <ctime>
+
+#include <sys/resource.h>
 
 namespace keeler {
 
@@ -26,6 +29,13 @@ inline double cpu_seconds() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// The most memory (bytes) that this process has had in use at once.
+inline std::int64_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return std::int64_t{1024} * usage.ru_maxrss;
 }
 
 } // namespace keeler
