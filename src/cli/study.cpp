@@ -4,6 +4,7 @@
 #include "messages.hpp"
 #include "progress_line.hpp"
 #include "signals.hpp"
+#include "study_scene.hpp"
 
 #include <keeler/core/interrupt.hpp>
 #include <keeler/study/finders/study.hpp>
@@ -91,6 +92,7 @@ void add_study(CLI::App& program, Action& action, const std::vector<std::string>
   command.require_subcommand(1);
   add_finders(command, action, arguments);
   add_gravity(command, action, arguments);
+  add_scene_studies(command, action, arguments);
 }
 
 } // namespace keeler

@@ -14,9 +14,9 @@ namespace {
 
 using Solver = GravitySettings::Solver;
 
-constexpr double thousandth = 1e-3;      // of an orbit
-constexpr int most_steps_a_kick = 1000;  // as gravity.kick_every allows
-constexpr double automatic_kick = 4e-3;  // orbits, about what an automatic step has in wakes
+constexpr double thousandth = 1e-3;     // of an orbit
+constexpr int most_steps_a_kick = 1000; // as gravity.kick_every allows
+constexpr double automatic_kick = 4e-3; // orbits, about what an automatic step has in wakes
 
 std::vector<std::string> step_overrides(const Scene& scene, const Kicks& kicks) {
   std::vector<std::string> overrides = {fmt::format("time.step={}", kicks.step)};
@@ -38,8 +38,8 @@ StudyChoices step_choices(const Scene& scene, bool quick) {
                                                  : scene.time.step * scene.gravity->kick_every;
   StudyChoices all{{}, 0};
   for (const double step : quick ? std::vector{1.0, 4.0} : std::vector{0.25, 0.5, 1.0, 2.0, 4.0, 8.0})
-    all.choices.push_back({fmt::format("step-{:g}", step * thousandth),
-                           step_overrides(scene, kicks_of(step * thousandth, interval))});
+    all.choices.push_back(
+        {fmt::format("step-{:g}", step * thousandth), step_overrides(scene, kicks_of(step * thousandth, interval))});
   all.choices.push_back(automatic_step(scene, "step-auto"));
   return all;
 }
@@ -64,11 +64,11 @@ StudyChoices mesh_choices(const Scene& scene, bool quick) {
   StudyChoices all;
   if (scene.gravity->images.far) // the mesh is periodic: with some rings of images alone it is another force
     for (const double error : quick ? std::vector{1e-3, 1e-2} : std::vector{3e-4, 1e-3, 2e-3, 5e-3, 1e-2, 3e-2})
-      all.choices.push_back({fmt::format("fft-{:g}", error),
-                             {"gravity.solver=\"fft\"", fmt::format("gravity.force_error={}", error)}});
+      all.choices.push_back(
+          {fmt::format("fft-{:g}", error), {"gravity.solver=\"fft\"", fmt::format("gravity.force_error={}", error)}});
   for (const double angle : quick ? std::vector{0.6} : std::vector{0.3, 0.45, 0.6, 0.75, 0.9})
-    all.choices.push_back({fmt::format("tree-{:g}", angle),
-                           {"gravity.solver=\"tree\"", fmt::format("gravity.opening_angle={}", angle)}});
+    all.choices.push_back(
+        {fmt::format("tree-{:g}", angle), {"gravity.solver=\"tree\"", fmt::format("gravity.opening_angle={}", angle)}});
   return all;
 }
 
@@ -77,10 +77,9 @@ StudyChoices box_choices(const Scene& scene, bool quick) {
   for (const double factor : quick ? std::vector{0.7, 1.0} : std::vector{0.5, 0.7, 1.0, 1.4, 2.0}) {
     const auto count = std::llround(static_cast<double>(scene.particles.count) * factor * factor);
     if (count > 0)
-      all.choices.push_back(
-          {fmt::format("box-{:g}", factor),
-           {fmt::format("box.size=[{}, {}]", factor * scene.size_x, factor * scene.size_y),
-            fmt::format("particles.count={}", count)}});
+      all.choices.push_back({fmt::format("box-{:g}", factor),
+                             {fmt::format("box.size=[{}, {}]", factor * scene.size_x, factor * scene.size_y),
+                              fmt::format("particles.count={}", count)}});
   }
   all.reference = all.choices.size() - 1;
   return all;

@@ -38,7 +38,8 @@ std::string last_snapshot(const fs::path& folder) {
   return *std::max_element(files.begin(), files.end());
 }
 
-PlannedRun setting_run(const StudyPlan& plan, std::size_t choice, std::size_t k, const std::optional<std::string>& from) {
+PlannedRun setting_run(const StudyPlan& plan, std::size_t choice, std::size_t k,
+                       const std::optional<std::string>& from) {
   const std::uint64_t seed = plan.scene.particles.seed + k;
   std::vector<std::string> overrides = plan.choices.choices[choice].overrides;
   overrides.insert(overrides.end(), output.begin(), output.end());
