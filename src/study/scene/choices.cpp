@@ -107,19 +107,18 @@ std::string from_name(double radius) {
   return fmt::format("from-{:.3g}", radius);
 }
 
-void add_cuts(const Scene& scene, const std::vector<double>& cuts, std::vector<StudyChoice>& choices) {
+// Of a law with a density by its keys; of listed sizes as a table of those that are left.
+StudyChoice cut_from(const Scene& scene, double cut) {
   const SizeLaw& law = scene.particles.sizes;
-  if (law.listed == 0) {
-    for (const double cut : cuts)
-      choices.push_back(with_sizes(scene, from_name(cut), fmt::format("particles.sizes.min={}", cut)));
-    return;
-  }
+  if (law.listed == 0)
+    return with_sizes(scene, from_name(cut), fmt::format("particles.sizes.min={}", cut));
   std::map<double, std::size_t> counts;
   for (const double radius : draw_radii(law, scene.particles.count, scene.particles.seed))
     ++counts[radius];
-  for (const double cut : cuts)
-    if (const auto first = counts.lower_bound(cut); first != counts.begin())
-      choices.push_back(with_sizes(scene, from_name(first->first), table_from(counts, cut)));
+  auto first = counts.lower_bound(cut);
+  if (first == counts.end()) // the largest sizes are so rare that none is drawn
+    --first;
+  return with_sizes(scene, from_name(first->first), table_from(counts, first->first));
 }
 
 StudyChoices size_choices(const Scene& scene, bool quick) {
@@ -130,10 +129,10 @@ StudyChoices size_choices(const Scene& scene, bool quick) {
                                  "3, min = {:g}, max = {:g} }}'",
                                  law.smallest, 0.5 * law.smallest, 2.0 * law.smallest));
   StudyChoices all{{{"whole", {}}}, 0};
-  std::vector<double> cuts;
   for (const double part : quick ? std::vector{0.4} : std::vector{0.2, 0.4, 0.6})
-    cuts.push_back(law.smallest * std::pow(law.largest / law.smallest, part));
-  add_cuts(scene, cuts, all.choices);
+    if (StudyChoice cut = cut_from(scene, law.smallest * std::pow(law.largest / law.smallest, part));
+        cut.name != all.choices.back().name) // as many sizes of a list can be left by two cuts
+      all.choices.push_back(std::move(cut));
   const double radius = law.mean_power(3) / law.mean_power(2); // with it both densities stay
   all.choices.push_back(
       with_sizes(scene, "equal", fmt::format("particles.sizes={{ law = \"equal\", radius = {} }}", radius)));

@@ -42,14 +42,17 @@ std::string what_changes(const StudyPlan& plan) {
   return {};
 }
 
+std::string in_orbits(double orbits) {
+  return fmt::format("{:g} orbit{}", orbits, orbits == 1.0 ? "" : "s");
+}
+
 std::string how_started(const StudyPlan& plan) {
   if (shares_start(plan.kind))
-    return fmt::format(
-        "Each of {} grows one state, {:g} orbits from the scene's own start. All settings go on from the "
-        "state of their seed for {:g} orbits and are measured from orbit {:g} of these on. Contacts make "
-        "runs of one state independent within a fraction of an orbit, so they are compared as "
-        "independent ones.",
-        counted(plan.seeds, "seed"), plan.grow_orbits, plan.orbits, plan.since());
+    return fmt::format("Each of {} grows one state, {} from the scene's own start. All settings go on from the "
+                       "state of their seed for {} and are measured from orbit {:g} of these on. Contacts make "
+                       "runs of one state independent within a fraction of an orbit, so they are compared as "
+                       "independent ones.",
+                       counted(plan.seeds, "seed"), in_orbits(plan.grow_orbits), in_orbits(plan.orbits), plan.since());
   return fmt::format("The setting changes the state itself, so there is no common one: each run has the scene's own "
                      "start and ends at orbit {:g}, measured from orbit {:g} on. There are {} of each.",
                      plan.end(), plan.since(), counted(plan.seeds, "seed"));
