@@ -5,6 +5,7 @@
 
 #include <keeler/batch/workers.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/stopwatch.hpp>
 #include <keeler/runs/folder_lock.hpp>
 #include <keeler/scene/doubts.hpp>
 
@@ -31,15 +32,16 @@ void tell_doubts(const StudyPlan& plan, const SceneStudySettings& settings) {
     settings.notice("note: " + text);
 }
 
-// The runs of one stage; false: stopped on request.
+// The runs of one stage; false: stopped on request. `watch`: since the study began.
 bool carry_out(const std::vector<PlannedRun>& runs, const std::string& stage, const RunFolders& folders, Claims& claims,
-               const SceneStudySettings& settings, const RunRequests& requests) {
+               const Stopwatch& watch, const SceneStudySettings& settings, const RunRequests& requests) {
   folders.refuse_changed(runs, settings.scene + ":1:1");
   WorkOptions work;
   work.jobs = settings.jobs;
   work.notice = settings.notice;
   work.progress = [&](Progress progress) {
     progress.what = stage + ": " + progress.what;
+    progress.elapsed_s = watch.elapsed();
     settings.progress(progress);
   };
   work_on(runs, folders, claims, work, requests);
@@ -82,13 +84,15 @@ SceneStudyResult study_scene(const SceneStudySettings& settings, const RunReques
   folders.make();
   Claims claims(folders.claims());
   tell_doubts(plan, settings);
+  double elapsed = 0.0;
+  const Stopwatch watch(elapsed);
 
   const std::vector<PlannedRun> growth = growth_runs(plan);
-  if (!growth.empty() && !carry_out(growth, "states", folders, claims, settings, requests))
+  if (!growth.empty() && !carry_out(growth, "states", folders, claims, watch, settings, requests))
     return {.stopped = true};
   require_states(growth, folders);
   const std::vector<PlannedRun> runs = setting_runs(plan, folders);
-  if (!carry_out(runs, "settings", folders, claims, settings, requests))
+  if (!carry_out(runs, "settings", folders, claims, watch, settings, requests))
     return {.stopped = true};
   return {.failed = write_results(plan, runs, folders, made, settings)};
 }
