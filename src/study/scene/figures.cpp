@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace keeler {
@@ -43,8 +44,20 @@ std::string balance_differences(const StudyMeans& means) {
   return data;
 }
 
+// Wider than the points, so that their names have room.
+std::string range_of_costs(const StudyMeans& means) {
+  constexpr double left = 1.2, right = 1.6;
+  double least = HUGE_VAL, most = 0.0;
+  for (const SettingMeans& setting : means.settings)
+    if (const double cost = setting.scatter[number_at("cpu_s_per_orbit")].mean; !std::isnan(cost)) {
+      least = std::min(least, cost);
+      most = std::max(most, cost);
+    }
+  return fmt::format("set xrange [{}:{}]\n", least / left, most * right);
+}
+
 constexpr const char* points = "'pareto.dat' using 1:2:3 with yerrorbars lw 2 pt 7 lc rgb '#1f77b4' notitle, '' using "
-                               "1:2:4 with labels offset 0,1.1 noenhanced notitle\n";
+                               "1:2:4 with labels left offset 0.7,0.5 rotate by 30 noenhanced notitle\n";
 
 } // namespace
 
@@ -58,8 +71,9 @@ bool draw_study_figure(const StudyPlan& plan, const StudyMeans& means, const std
                          of_forces ? "force error" : "loss over stress: % from reference", data));
   if (data.empty())
     return false;
-  std::string script = "set logscale x\nset xlabel 'processor time per orbit (s)'\nset grid\n"
-                       "set offsets graph 0.08, graph 0.08, graph 0.1, graph 0.1\n";
+  std::string script = fmt::format("set logscale x 2\n{}set xlabel 'processor time per orbit (s)'\nset grid\n"
+                                   "set offsets 0, 0, graph 0.15, graph 0.05\n",
+                                   range_of_costs(means));
   if (of_forces)
     script += fmt::format("set logscale y\nset format y '10^{{%L}}'\nset ylabel 'rms force error'\nplot {}", points);
   else

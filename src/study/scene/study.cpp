@@ -21,8 +21,11 @@ Json options_of(const StudyPlan& plan) {
   Json choices = Json::array();
   for (const StudyChoice& choice : plan.choices.choices)
     choices.push_back(choice.name);
-  return {{"study", name_of(plan.kind)}, {"scene", plan.scene_name}, {"seeds", plan.seeds},
-          {"grow", plan.grow_orbits},    {"orbits", plan.orbits},    {"settings", choices}};
+  return {{"study", name_of(plan.kind)},
+          {"seeds", plan.seeds},
+          {"grow", plan.grow_orbits},
+          {"orbits", plan.orbits},
+          {"settings", choices}};
 }
 
 void tell_doubts(const StudyPlan& plan, const SceneStudySettings& settings) {
@@ -76,6 +79,7 @@ std::size_t write_results(const StudyPlan& plan, const std::vector<PlannedRun>& 
 SceneStudyResult study_scene(const SceneStudySettings& settings, const RunRequests& requests) {
   const StudyPlan plan = plan_study(settings);
   std::map<std::string, std::string> made = study_builder(settings.arguments);
+  made["scene"] = settings.scene;
   const Json begun = open_study_folder(settings.folder, options_of(plan), made);
   for (auto& [key, value] : made)
     value = begun.value(key, value);
