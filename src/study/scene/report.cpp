@@ -109,16 +109,20 @@ Table table_of_means(const StudyMeans& means, bool physics) {
   return table;
 }
 
+// "+0.3 ± 1.2", bold when it is beyond the scatter.
+std::string in_percent(const MeanDifference& d, double reference) {
+  const double difference = 100.0 * d.difference / reference, bound = 100.0 * d.bound / reference;
+  return fmt::format("{0}{1:+.{3}f} ± {2:.{3}f}{0}", d.within() ? "" : "**", difference, bound, bound < 0.1 ? 2 : 1);
+}
+
 Table table_of_differences(const StudyMeans& means) {
   const std::vector<std::size_t> numbers = shown(means, true);
   Table table = table_of(means, numbers, "% from the reference");
   for (std::size_t s = 0; s < means.settings.size(); ++s)
     for (const std::size_t n : numbers) {
       const MeanDifference& d = means.settings[s].from_reference[n];
-      const double percent = 100.0 / std::fabs(means.settings[means.reference].scatter[n].mean);
-      table[s + 1].push_back(!d.known() ? "–"
-                                        : fmt::format("{0}{1:+.1f} ± {2:.1f}{0}", d.within() ? "" : "**",
-                                                      percent * d.difference, percent * d.bound));
+      table[s + 1].push_back(d.known() ? in_percent(d, std::fabs(means.settings[means.reference].scatter[n].mean))
+                                       : "–");
     }
   table.erase(table.begin() + 1 + static_cast<std::ptrdiff_t>(means.reference));
   return table;
