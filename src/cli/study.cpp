@@ -4,6 +4,7 @@
 #include "messages.hpp"
 #include "progress_line.hpp"
 #include "signals.hpp"
+#include "study_scene.hpp"
 
 #include <keeler/core/interrupt.hpp>
 #include <keeler/study/finders/study.hpp>
@@ -62,6 +63,19 @@ void add_finders(CLI::App& command, Action& action, const std::vector<std::strin
   });
 }
 
+// What the command line leaves open.
+void make_quick(GravityStudySettings& settings, const CLI::App& command) {
+  const auto open = [&](const char* option) { return command.count(option) == 0; };
+  if (open("--count"))
+    settings.count = 5000;
+  if (open("--repeats"))
+    settings.repeats = 2;
+  if (open("--orbits"))
+    settings.orbits = 0.5;
+  if (open("--seeds"))
+    settings.seeds = 2;
+}
+
 void add_gravity(CLI::App& command, Action& action, const std::vector<std::string>& arguments) {
   const auto settings = std::make_shared<GravityStudySettings>();
   CLI::App& gravity = *command.add_subcommand(
@@ -75,8 +89,13 @@ void add_gravity(CLI::App& command, Action& action, const std::vector<std::strin
       ->check(positive_number());
   gravity.add_option("--seeds", settings->seeds, "runs with each solver and kick interval (default: 3)")
       ->check(positive_number());
-  gravity.callback([settings, arguments, &action] {
+  const auto quick = std::make_shared<bool>(false);
+  gravity.add_flag("--quick", *quick,
+                   "by default 5000 particles, two repeats, two seeds and half an orbit: two or three minutes");
+  gravity.callback([settings, quick, arguments, &gravity, &action] {
     settings->arguments = arguments;
+    if (*quick)
+      make_quick(*settings, gravity);
     action = [settings] {
       return carry_out(*settings, study_gravity,
                        {"report.md", "report.html", "gravity.csv", "gravity_runs.csv", "gravity.json", "figures"});
@@ -91,6 +110,7 @@ void add_study(CLI::App& program, Action& action, const std::vector<std::string>
   command.require_subcommand(1);
   add_finders(command, action, arguments);
   add_gravity(command, action, arguments);
+  add_scene_studies(command, action, arguments);
 }
 
 } // namespace keeler

@@ -33,4 +33,12 @@ std::string csv_of(const nlohmann::ordered_json& rows) {
   return csv;
 }
 
+std::string csv_with_gaps(nlohmann::ordered_json rows) {
+  for (nlohmann::ordered_json& row : rows)
+    for (auto& [name, value] : row.items())
+      if (value.is_null())
+        value = "";
+  return csv_of(rows);
+}
+
 } // namespace keeler

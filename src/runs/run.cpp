@@ -209,6 +209,7 @@ std::optional<Transport> transport_in(const RunFolder& folder, const Patch& patc
 RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& requests, const RunFolder& folder,
                    Simulation& simulation, Recorder& recorder, const Start& start) {
   const std::int64_t first_step = simulation.state().control.steps;
+  const double first_orbit = simulation.orbits();
   recorder.watch(simulation);
   Runner runner(scene, options, requests, simulation, recorder, start.watch, start.checkpoint_step);
   RunResult result;
@@ -217,8 +218,13 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
   } catch (const Interrupted&) {
     fail_given_up(options, runner.last_checkpoint(), recorder);
   }
-  const RunCost cost{first_step,   start.watch.elapsed(), cpu_seconds() - start.cpu,
-                     start.made_s, recorder.costs(),      recorder.force_checks()};
+  const RunCost cost{.first_step = first_step,
+                     .first_orbit = first_orbit,
+                     .wall_s = start.watch.elapsed(),
+                     .cpu_s = cpu_seconds() - start.cpu,
+                     .start_s = start.made_s,
+                     .output = recorder.costs(),
+                     .force_checks = recorder.force_checks()};
   const nlohmann::ordered_json summary = summarise(
       simulation, scene, transport_in(folder, simulation.patch(), scene, options), result, cost, recorder.provenance());
   write_text(folder.summary(), summary.dump(2) + "\n");

@@ -96,6 +96,7 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scen
   json["energy_balance"] = energy_balance(transport);
   json["wall_s"] = cost.wall_s;
   json["cpu_s"] = cost.cpu_s;
+  json["orbits_done"] = orbits - cost.first_orbit;
   json["peak_memory_mb"] = 1e-6 * peak_memory();
   json["split"] = {{"start_s", cost.start_s},
                    {"drift_s", split.drift},

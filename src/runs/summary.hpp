@@ -14,6 +14,7 @@ namespace keeler {
 /// What this stretch of the run took: since it began or was resumed when first_step steps were done.
 struct RunCost {
   std::int64_t first_step = 0;
+  double first_orbit = 0.0;
   double wall_s = 0.0, cpu_s = 0.0, start_s = 0.0;
   OutputCosts output;
   ForceChecks force_checks;

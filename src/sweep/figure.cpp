@@ -123,7 +123,7 @@ std::vector<PlotLine> plot_lines(const Grid& grid, const Plan& plan, const std::
   return lines;
 }
 
-Figure draw_figure(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points, const SweepFolder& folder) {
+Figure draw_figure(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points, const RunFolders& folders) {
   const std::vector<PlotLine> lines = plot_lines(grid, plan, points);
   if (lines.empty())
     return Figure::nothing_to_draw;
@@ -133,8 +133,8 @@ Figure draw_figure(const Grid& grid, const Plan& plan, const std::vector<PointRo
       data += fmt::format("{} {} {}\n", point.x, point.y, point.error);
     data += "\n\n";
   }
-  write_text(folder.path() / "figure.dat", data);
-  return plot(folder.path(), "figure", script_of(grid, plan, lines), 720, 480) ? Figure::drawn : Figure::no_gnuplot;
+  write_text(folders.path() / "figure.dat", data);
+  return plot(folders.path(), "figure", script_of(grid, plan, lines), 720, 480) ? Figure::drawn : Figure::no_gnuplot;
 }
 
 } // namespace keeler

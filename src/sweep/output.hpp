@@ -23,10 +23,10 @@ std::vector<PlotLine> plot_lines(const Grid& grid, const Plan& plan, const std::
 
 enum class Figure { drawn, nothing_to_draw, no_gnuplot };
 
-Figure draw_figure(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points, const SweepFolder& folder);
+Figure draw_figure(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points, const RunFolders& folders);
 
 /// Writes report.md.
 void write_report(const Grid& grid, const Plan& plan, const std::vector<RunRow>& runs,
-                  const std::vector<PointRow>& points, const SweepFolder& folder, Figure figure);
+                  const std::vector<PointRow>& points, const RunFolders& folders, Figure figure);
 
 } // namespace keeler

@@ -1,7 +1,6 @@
 #include "plan.hpp"
 
-#include "quantities.hpp"
-
+#include <keeler/batch/quantities.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/io/hash.hpp>
 

@@ -3,7 +3,7 @@
 
 #include "grid.hpp"
 
-#include <keeler/scene/scene.hpp>
+#include <keeler/batch/planned_run.hpp>
 
 #include <string>
 #include <vector>
@@ -16,14 +16,8 @@ struct GridPoint {
   std::vector<const GridValue*> settings; ///< of all keys of all axes, in their order; they belong to the grid
 };
 
-struct PlannedRun {
-  std::string name; ///< of its folder; it depends on the point's keys and values and on the seed, on nothing else
-  std::size_t point = 0;
-  std::uint64_t seed = 0;
-  Scene scene;
-};
-
-/// The last axis changes fastest. Runs of a point stand together, in the order of the seeds.
+/// The last axis changes fastest. Runs of a point stand together, in the order of the seeds. A run's name depends on
+/// its point's keys and values and on the seed, on nothing else.
 struct Plan {
   std::vector<GridPoint> points;
   std::vector<PlannedRun> runs;

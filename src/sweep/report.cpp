@@ -62,7 +62,7 @@ Table table_of_points(const Grid& grid, const Plan& plan, const std::vector<Poin
 } // namespace
 
 void write_report(const Grid& grid, const Plan& plan, const std::vector<RunRow>& runs,
-                  const std::vector<PointRow>& points, const SweepFolder& folder, Figure figure) {
+                  const std::vector<PointRow>& points, const RunFolders& folders, Figure figure) {
   Document report("Sweep of " + grid.file.filename().string());
   report.paragraph(fmt::format("{} of {}: {} finished, {} failed, {} not finished.", counted(runs.size(), "run"),
                                counted(plan.points.size(), "point"), count_of(runs, RunStatus::finished),
@@ -85,7 +85,7 @@ void write_report(const Grid& grid, const Plan& plan, const std::vector<RunRow>&
     report.table(table);
   }
   report.paragraph("`points.csv` and `sweep.csv` have all numbers, of points and of runs.");
-  write_text(folder.path() / "report.md", report.markdown());
+  write_text(folders.path() / "report.md", report.markdown());
 }
 
 } // namespace keeler

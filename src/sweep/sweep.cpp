@@ -1,13 +1,14 @@
 #include <keeler/sweep/sweep.hpp>
 
-#include "claims.hpp"
 #include "output.hpp"
-#include "sweep_folder.hpp"
 #include "tables.hpp"
-#include "workers.hpp"
 
+#include <keeler/batch/claims.hpp>
+#include <keeler/batch/workers.hpp>
+#include <keeler/core/error.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/report/csv.hpp>
 #include <keeler/scene/doubts.hpp>
 
 #include <fmt/format.h>
@@ -17,6 +18,7 @@
 namespace keeler {
 namespace {
 
+namespace fs = std::filesystem;
 using Notice = std::function<void(const std::string&)>;
 
 // One program at a time writes what is the folder's and no run's.
@@ -31,6 +33,17 @@ private:
   static constexpr const char* name = "the folder"; // no run's name has a blank
   Claims& claims_;
 };
+
+// The name is taken by a file, or by a folder that holds things and no sweep.
+void refuse_other_content(const RunFolders& folders) {
+  std::error_code unknown;
+  const fs::file_status status = fs::status(folders.path(), unknown);
+  if (fs::exists(status) && !fs::is_directory(status))
+    throw UsageError(fmt::format("'{}' is a file (results go into a folder); name another", folders.path().string()));
+  const bool sweep = fs::exists(folders.claims(), unknown) && !fs::exists(folders.path() / "study.json", unknown);
+  if (fs::is_directory(status) && !fs::is_empty(folders.path(), unknown) && !sweep)
+    throw UsageError(fmt::format("'{}' is not empty and holds no sweep; name another folder", folders.path().string()));
+}
 
 // What the runs would say, each thing once.
 void tell_doubts(const Plan& plan, const Notice& notice) {
@@ -48,20 +61,20 @@ void tell_doubts(const Plan& plan, const Notice& notice) {
 }
 
 // The tables of this moment, without those of a former one that they do not replace.
-void write_tables(const Grid& grid, const Plan& plan, const SweepFolder& folder, const std::vector<RunRow>& runs,
+void write_tables(const Grid& grid, const Plan& plan, const RunFolders& folders, const std::vector<RunRow>& runs,
                   const std::vector<PointRow>& points, const Notice& notice) {
   const Json run_table = runs_as_json(plan, runs), point_table = points_as_json(plan, points);
   if (!run_table.empty())
-    write_text(folder.path() / "sweep.csv", csv_with_gaps(run_table));
+    write_text(folders.path() / "sweep.csv", csv_with_gaps(run_table));
   if (point_table.empty())
     return;
-  write_text(folder.path() / "points.csv", csv_with_gaps(point_table));
-  const Figure figure = draw_figure(grid, plan, points, folder);
+  write_text(folders.path() / "points.csv", csv_with_gaps(point_table));
+  const Figure figure = draw_figure(grid, plan, points, folders);
   if (figure == Figure::no_gnuplot)
     notice("gnuplot is not there, so only the data of the figure are written (Debian: gnuplot-nox)");
   if (figure == Figure::nothing_to_draw && !grid.plot.x.empty())
     notice(fmt::format("no run has {}, so there is no figure; name another y under [plot]", grid.plot.y));
-  write_report(grid, plan, runs, points, folder, figure);
+  write_report(grid, plan, runs, points, folders, figure);
 }
 
 } // namespace
@@ -69,20 +82,21 @@ void write_tables(const Grid& grid, const Plan& plan, const SweepFolder& folder,
 SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
   const Grid grid = read_grid(settings.grid);
   const Plan plan = plan_runs(grid);
-  const SweepFolder folder(settings.folder);
-  folder.refuse_other_content(grid, plan);
-  folder.make();
-  Claims claims(folder.claims());
+  const RunFolders folders(settings.folder);
+  refuse_other_content(folders);
+  folders.refuse_changed(plan.runs, grid.file.string() + ":1:1");
+  folders.make();
+  Claims claims(folders.claims());
   {
     const SharedFiles lock(claims);
-    write_text(folder.grid(), grid.text);
+    write_text(folders.path() / "grid.toml", grid.text);
   }
-  if (const std::size_t beside = folder.runs_beside(plan); beside > 0)
+  if (const std::size_t beside = folders.runs_beside(plan.runs); beside > 0)
     settings.notice(fmt::format("note: {} in '{}' that this grid does not have stay as they are and out of the tables",
-                                counted(beside, "run"), (folder.path() / "runs").string()));
+                                counted(beside, "run"), (folders.path() / "runs").string()));
   if (!settings.tables_only) {
     tell_doubts(plan, settings.notice);
-    work_on(plan, folder, claims, {settings.jobs, settings.threads_per_run, settings.progress, settings.notice},
+    work_on(plan.runs, folders, claims, {settings.jobs, settings.threads_per_run, settings.progress, settings.notice},
             requests);
   }
   SweepResult result;
@@ -91,9 +105,9 @@ SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
   if (result.stopped)
     return result;
   const SharedFiles lock(claims);
-  const std::vector<RunRow> runs = run_rows(grid, plan, folder);
+  const std::vector<RunRow> runs = run_rows(grid, plan, folders);
   const std::vector<PointRow> points = point_rows(plan, runs);
-  write_tables(grid, plan, folder, runs, points, settings.notice);
+  write_tables(grid, plan, folders, runs, points, settings.notice);
   result.finished = count_of(runs, RunStatus::finished);
   result.failed = count_of(runs, RunStatus::failed);
   result.points = points_as_json(plan, points).dump();

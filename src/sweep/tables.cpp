@@ -2,7 +2,6 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/diagnostics/scatter.hpp>
-#include <keeler/report/csv.hpp>
 #include <keeler/runs/run_stage.hpp>
 
 #include <algorithm>
@@ -35,17 +34,17 @@ void add_values(Json& row, const std::vector<std::optional<Estimate>>& values) {
   }
 }
 
-RunRow measured_row(const Grid& grid, const PlannedRun& run, const SweepFolder& folder) {
+RunRow measured_row(const Grid& grid, const PlannedRun& run, const RunFolders& folders) {
   RunRow row;
   row.run = &run;
-  if (run_stage(folder.run(run.name)) == RunStage::finished) {
+  if (run_stage(folders.run(run.name)) == RunStage::finished) {
     row.status = RunStatus::finished;
     try {
-      row.numbers = measure_run(folder.run(run.name), run.scene, grid.since);
+      row.numbers = measure_run(folders.run(run.name), run.scene, grid.since);
     } catch (const Error& error) { // a damaged file must not take the other runs from the table
       row.reason = error.what();
     }
-  } else if (const std::optional<std::string> reason = folder.failure_of(run.name)) {
+  } else if (const std::optional<std::string> reason = folders.failure_of(run.name)) {
     row.status = RunStatus::failed;
     row.reason = *reason;
   }
@@ -69,10 +68,10 @@ std::size_t count_of(const std::vector<RunRow>& runs, RunStatus status) {
       std::count_if(runs.begin(), runs.end(), [&](const RunRow& run) { return run.status == status; }));
 }
 
-std::vector<RunRow> run_rows(const Grid& grid, const Plan& plan, const SweepFolder& folder) {
+std::vector<RunRow> run_rows(const Grid& grid, const Plan& plan, const RunFolders& folders) {
   std::vector<RunRow> rows;
   for (const PlannedRun& run : plan.runs)
-    rows.push_back(measured_row(grid, run, folder));
+    rows.push_back(measured_row(grid, run, folders));
   return rows;
 }
 
@@ -135,14 +134,6 @@ Json points_as_json(const Plan& plan, const std::vector<PointRow>& points) {
     rows.push_back(row);
   }
   return rows;
-}
-
-std::string csv_with_gaps(Json rows) {
-  for (Json& row : rows)
-    for (auto& [name, value] : row.items())
-      if (value.is_null())
-        value = "";
-  return csv_of(rows);
 }
 
 } // namespace keeler

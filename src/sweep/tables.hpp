@@ -2,8 +2,9 @@
 #pragma once
 
 #include "plan.hpp"
-#include "quantities.hpp"
-#include "sweep_folder.hpp"
+
+#include <keeler/batch/quantities.hpp>
+#include <keeler/batch/run_folders.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -40,7 +41,7 @@ struct PointRow {
 Estimate seed_mean(std::span<const Estimate> seeds);
 
 /// Measures the finished runs. They belong to the plan.
-std::vector<RunRow> run_rows(const Grid& grid, const Plan& plan, const SweepFolder& folder);
+std::vector<RunRow> run_rows(const Grid& grid, const Plan& plan, const RunFolders& folders);
 
 /// They belong to the plan.
 std::vector<PointRow> point_rows(const Plan& plan, const std::vector<RunRow>& runs);
@@ -49,8 +50,5 @@ std::vector<PointRow> point_rows(const Plan& plan, const std::vector<RunRow>& ru
 /// with a finished run.
 Json runs_as_json(const Plan& plan, const std::vector<RunRow>& runs);
 Json points_as_json(const Plan& plan, const std::vector<PointRow>& points);
-
-/// The same objects as CSV, null as nothing.
-std::string csv_with_gaps(Json rows);
 
 } // namespace keeler

@@ -14,6 +14,10 @@ struct Scatter {
 
 Scatter scatter_of(const std::vector<double>& values);
 
+/// Half the width of the interval about the mean that holds the true one in 95 % of all cases, by Student's t. NaN of
+/// fewer than two values.
+double mean_bound(const Scatter& scatter);
+
 /// Student's t for two samples of the same variance. Equal means differ by less than the bound in 95 % of all cases.
 /// NaN when either sample has fewer than two values.
 struct MeanDifference {

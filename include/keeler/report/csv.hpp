@@ -11,4 +11,7 @@ namespace keeler {
 /// or line breaks are quoted. At least one object.
 std::string csv_of(const nlohmann::ordered_json& rows);
 
+/// The same, null as nothing.
+std::string csv_with_gaps(nlohmann::ordered_json rows);
+
 } // namespace keeler

@@ -15,6 +15,12 @@ TEST_CASE("mean and deviation") {
   CHECK(std::isnan(scatter_of({}).mean));
 }
 
+TEST_CASE("the interval of a mean is Student's") {
+  CHECK(mean_bound({3, 10.0, 1.0}) == doctest::Approx(4.303 / std::sqrt(3.0)).epsilon(1e-12));
+  CHECK(mean_bound({2, 10.0, 1.0}) == doctest::Approx(12.706 / std::sqrt(2.0)).epsilon(1e-12));
+  CHECK(std::isnan(mean_bound({1, 10.0, std::nan("")})));
+}
+
 TEST_CASE("a difference beyond scatter") {
   // Two samples of three with deviations 1 and 1: t of four degrees of freedom, 2.776 √(2/3).
   const Scatter first{3, 10.0, 1.0};

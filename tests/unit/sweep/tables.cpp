@@ -2,6 +2,8 @@
 
 #include "grids.hpp"
 
+#include <keeler/report/csv.hpp>
+
 #include <doctest/doctest.h>
 
 #include <cmath>

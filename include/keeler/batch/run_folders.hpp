@@ -1,32 +1,32 @@
-// The folder of a sweep: runs/NAME, an ordinary run's folder each; scenes/NAME.toml, the scene that a run was started
-// with; failed/NAME.txt, why a run failed; grid.toml, a copy of the grid; claims; and what tables.hpp writes.
+// The folders of many runs below one folder: runs/NAME, an ordinary run's folder each; scenes/NAME.toml, the scene that
+// a run was started with; failed/NAME.txt, why a run failed; claims, which processes lock to divide the runs among
+// them.
 #pragma once
 
-#include "plan.hpp"
+#include <keeler/batch/planned_run.hpp>
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 
 namespace keeler {
 
-class SweepFolder {
+class RunFolders {
 public:
-  explicit SweepFolder(std::filesystem::path path) : path_(std::move(path)) {}
+  explicit RunFolders(std::filesystem::path path) : path_(std::move(path)) {}
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path run(const std::string& name) const { return path_ / "runs" / name; }
   std::filesystem::path scene(const std::string& name) const { return path_ / "scenes" / (name + ".toml"); }
   std::filesystem::path failure(const std::string& name) const { return path_ / "failed" / (name + ".txt"); }
-  std::filesystem::path grid() const { return path_ / "grid.toml"; }
   std::filesystem::path claims() const { return path_ / "claims"; }
 
-  /// Throws UsageError when the name is taken by a file, or by a folder that holds things and no sweep; and when one of
-  /// its runs was made with other settings than the plan's.
-  void refuse_other_content(const Grid& grid, const Plan& plan) const;
+  /// Throws UsageError when a run was made with other settings than the list's; the message begins with `place`.
+  void refuse_changed(std::span<const PlannedRun> runs, const std::string& place) const;
 
-  /// Runs that the folder holds and the plan does not.
-  std::size_t runs_beside(const Plan& plan) const;
+  /// Runs that the folder holds and the list does not.
+  std::size_t runs_beside(std::span<const PlannedRun> runs) const;
 
   /// Makes the folders. Throws IoError.
   void make() const;

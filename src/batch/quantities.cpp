@@ -1,4 +1,4 @@
-#include "quantities.hpp"
+#include <keeler/batch/quantities.hpp>
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>

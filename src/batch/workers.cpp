@@ -1,4 +1,4 @@
-#include "workers.hpp"
+#include <keeler/batch/workers.hpp>
 
 #include "child.hpp"
 
@@ -14,9 +14,11 @@
 #include <cassert>
 #include <chrono>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <optional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace keeler {
@@ -33,12 +35,25 @@ bool is_stop(const ChildEnd& end) {
   return end.code == static_cast<int>(ExitCode::stopped);
 }
 
+// The first run of each point, then the second of each: a figure of all points is there early.
+std::vector<std::size_t> seed_by_seed(std::span<const PlannedRun> runs) {
+  std::map<std::size_t, std::size_t> before; // of the same point
+  std::vector<std::pair<std::size_t, std::size_t>> places;
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    places.emplace_back(before[runs[k].point]++, k);
+  std::sort(places.begin(), places.end());
+  std::vector<std::size_t> order;
+  for (const auto& [rank, run] : places)
+    order.push_back(run);
+  return order;
+}
+
 class Workers {
 public:
-  Workers(const Plan& plan, const SweepFolder& folder, Claims& claims, const WorkOptions& options,
+  Workers(std::span<const PlannedRun> runs, const RunFolders& folders, Claims& claims, const WorkOptions& options,
           const RunRequests& requests)
-      : plan_(plan), folder_(folder), claims_(claims), options_(options), requests_(requests),
-        states_(plan.runs.size()) {
+      : runs_(runs), order_(seed_by_seed(runs)), folders_(folders), claims_(claims), options_(options),
+        requests_(requests), states_(runs.size()) {
     for (std::size_t k = 0; k < states_.size(); ++k)
       states_[k].former_failure = failure_time(k);
     look();
@@ -69,12 +84,12 @@ private:
     std::optional<fs::file_time_type> former_failure; // of the record that was there at the beginning
   };
 
-  const PlannedRun& run(std::size_t k) const { return plan_.runs[k]; }
-  fs::path path(std::size_t k) const { return folder_.run(run(k).name); }
+  const PlannedRun& run(std::size_t k) const { return runs_[k]; }
+  fs::path path(std::size_t k) const { return folders_.run(run(k).name); }
 
   std::optional<fs::file_time_type> failure_time(std::size_t k) const {
     std::error_code none;
-    const fs::file_time_type time = fs::last_write_time(folder_.failure(run(k).name), none);
+    const fs::file_time_type time = fs::last_write_time(folders_.failure(run(k).name), none);
     return none ? std::nullopt : std::optional(time);
   }
 
@@ -92,21 +107,9 @@ private:
     return true;
   }
 
-  // Points first, then seeds: a figure of all points is there early.
-  std::vector<std::size_t> order() const {
-    const std::size_t seeds = plan_.runs.size() / plan_.points.size();
-    std::vector<std::size_t> order;
-    for (std::size_t s = 0; s < seeds; ++s)
-      for (std::size_t p = 0; p < plan_.points.size(); ++p) {
-        assert(plan_.runs[p * seeds + s].point == p);
-        order.push_back(p * seeds + s);
-      }
-    return order;
-  }
-
   void start_some() {
     nothing_to_wait_for_ = true;
-    for (const std::size_t k : order())
+    for (const std::size_t k : order_)
       if (free_slots())
         consider(k);
       else
@@ -135,13 +138,13 @@ private:
   void start(std::size_t k, RunStage stage) {
     nothing_to_wait_for_ = false;
     std::error_code ignored; // it was not there, or is written anew
-    fs::remove(folder_.failure(run(k).name), ignored);
+    fs::remove(folders_.failure(run(k).name), ignored);
     states_[k].former_failure.reset();
     std::vector<std::string> words;
     if (stage == RunStage::resumable) {
       words = {"resume", path(k).string()};
     } else {
-      const fs::path scene = folder_.scene(run(k).name);
+      const fs::path scene = folders_.scene(run(k).name);
       write_text(scene, run(k).scene.resolved);
       words = {"run", scene.string(), "-o", path(k).string()};
       if (stage == RunStage::begun)
@@ -172,7 +175,7 @@ private:
     state.failed = true;
     const std::string reason =
         end.message.empty() ? fmt::format("the run ended with exit code {}", end.code) : end.message;
-    write_text(folder_.failure(run(k).name), reason + "\n");
+    write_text(folders_.failure(run(k).name), reason + "\n");
     options_.notice(fmt::format("the run {} failed: {}", run(k).name, reason));
   }
 
@@ -222,8 +225,9 @@ private:
     options_.progress(progress);
   }
 
-  const Plan& plan_;
-  const SweepFolder& folder_;
+  std::span<const PlannedRun> runs_;
+  std::vector<std::size_t> order_;
+  const RunFolders& folders_;
   Claims& claims_;
   const WorkOptions& options_;
   const RunRequests& requests_;
@@ -237,9 +241,9 @@ private:
 
 } // namespace
 
-void work_on(const Plan& plan, const SweepFolder& folder, Claims& claims, const WorkOptions& options,
+void work_on(std::span<const PlannedRun> runs, const RunFolders& folders, Claims& claims, const WorkOptions& options,
              const RunRequests& requests) {
-  Workers(plan, folder, claims, options, requests).work();
+  Workers(runs, folders, claims, options, requests).work();
 }
 
 } // namespace keeler

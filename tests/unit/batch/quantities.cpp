@@ -1,4 +1,4 @@
-#include "quantities.hpp"
+#include <keeler/batch/quantities.hpp>
 
 #include <keeler/files/files.hpp>
 
@@ -9,7 +9,7 @@
 
 using namespace keeler;
 
-TEST_CASE("every number of a sweep has a name of its own; docs/formats.md has the table") {
+TEST_CASE("every number of a batch has a name of its own; docs/formats.md has the table") {
   std::set<std::string> names;
   std::string table = "| column | its error | meaning |\n|---|---|---|\n";
   for (const QuantityName& quantity : quantities()) {

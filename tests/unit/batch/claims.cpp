@@ -1,4 +1,4 @@
-#include "claims.hpp"
+#include <keeler/batch/claims.hpp>
 
 #include "unit/files/disk.hpp"
 

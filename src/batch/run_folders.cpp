@@ -1,4 +1,4 @@
-#include "sweep_folder.hpp"
+#include <keeler/batch/run_folders.hpp>
 
 #include <keeler/core/error.hpp>
 #include <keeler/files/files.hpp>
@@ -44,7 +44,7 @@ std::string difference(const std::string& before, const std::string& now) {
   return {};
 }
 
-void refuse_changed(const Grid& grid, const PlannedRun& run, const fs::path& folder) {
+void refuse_changed_run(const PlannedRun& run, const fs::path& folder, const std::string& place) {
   const fs::path file = folder / "scene.toml";
   std::error_code unknown;
   if (!fs::exists(file, unknown))
@@ -53,27 +53,21 @@ void refuse_changed(const Grid& grid, const PlannedRun& run, const fs::path& fol
   const std::string before = parse_stored_scene(read_text(file), file.string()).resolved;
   const std::string now = parse_stored_scene(run.scene.resolved, file.string()).resolved;
   if (const std::string change = difference(before, now); !change.empty())
-    throw UsageError(fmt::format("{}:1:1: the run {} was made with {} (runs of other settings cannot stand in one "
-                                 "table); change the setting back, name another folder, or remove '{}' to make it anew",
-                                 grid.file.string(), run.name, change, folder.string()));
+    throw UsageError(fmt::format("{}: the run {} was made with {} (runs of other settings cannot stand in one table); "
+                                 "change the setting back, name another folder, or remove '{}' to make it anew",
+                                 place, run.name, change, folder.string()));
 }
 
 } // namespace
 
-void SweepFolder::refuse_other_content(const Grid& grid, const Plan& plan) const {
-  std::error_code unknown;
-  const fs::file_status status = fs::status(path_, unknown);
-  if (fs::exists(status) && !fs::is_directory(status))
-    throw UsageError(fmt::format("'{}' is a file (results go into a folder); name another", path_.string()));
-  if (fs::is_directory(status) && !fs::is_empty(path_, unknown) && !fs::exists(claims(), unknown))
-    throw UsageError(fmt::format("'{}' is not empty and holds no sweep; name another folder", path_.string()));
-  for (const PlannedRun& planned : plan.runs)
-    refuse_changed(grid, planned, run(planned.name));
+void RunFolders::refuse_changed(std::span<const PlannedRun> runs, const std::string& place) const {
+  for (const PlannedRun& planned : runs)
+    refuse_changed_run(planned, run(planned.name), place);
 }
 
-std::size_t SweepFolder::runs_beside(const Plan& plan) const {
+std::size_t RunFolders::runs_beside(std::span<const PlannedRun> runs) const {
   std::set<std::string> planned;
-  for (const PlannedRun& run : plan.runs)
+  for (const PlannedRun& run : runs)
     planned.insert(run.name);
   std::size_t count = 0;
   std::error_code unknown;
@@ -82,7 +76,7 @@ std::size_t SweepFolder::runs_beside(const Plan& plan) const {
   return count;
 }
 
-void SweepFolder::make() const {
+void RunFolders::make() const {
   for (const char* const name : {"runs", "scenes", "failed"}) {
     std::error_code error;
     fs::create_directories(path_ / name, error);
@@ -92,7 +86,7 @@ void SweepFolder::make() const {
   }
 }
 
-std::optional<std::string> SweepFolder::failure_of(const std::string& name) const {
+std::optional<std::string> RunFolders::failure_of(const std::string& name) const {
   std::error_code unknown;
   if (!fs::exists(failure(name), unknown))
     return std::nullopt;

@@ -1,5 +1,5 @@
-// What a sweep measures in each finished run. Each number is declared once, with its unit and meaning: the columns of
-// the tables, the choice of the plot and the table in docs/formats.md come from here.
+// What sweeps and studies measure in each finished run. Each number is declared once, with its unit and meaning: the
+// columns of their tables, the choice of a sweep's plot and the table in docs/formats.md come from here.
 #pragma once
 
 #include <keeler/diagnostics/time_series.hpp>

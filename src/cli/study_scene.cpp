@@ -1,0 +1,92 @@
+#include "study_scene.hpp"
+
+#include "common_options.hpp"
+#include "messages.hpp"
+#include "progress_line.hpp"
+#include "scene_arguments.hpp"
+#include "signals.hpp"
+
+#include <keeler/study/scene/study.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+namespace keeler {
+namespace {
+
+constexpr double most_seeds = 1000.0;
+
+struct SceneStudyOptions {
+  SceneArguments scene;
+  SceneStudySettings settings;
+  std::size_t jobs = 0; // 0: as many as there are threads for
+};
+
+ExitCode carry_out(SceneStudyOptions& options) {
+  SceneStudySettings& settings = options.settings;
+  settings.scene = options.scene.path;
+  settings.overrides = options.scene.overrides;
+  settings.jobs = options.jobs > 0 ? options.jobs : static_cast<std::size_t>(std::max(1, threads()));
+  SceneStudyResult result;
+  {
+    ProgressLine line;
+    settings.notice = [&](const std::string& text) { line.note(text); };
+    settings.progress = [&](const Progress& progress) { line.show(progress); };
+    result = study_scene(settings, requests_from_signals());
+  }
+  if (result.stopped) {
+    say("stopped; the same command goes on from here");
+    return ExitCode::stopped;
+  }
+  for (const char* const name : {"report.md", "report.html", "study.csv", "settings.csv", "figures"})
+    fmt::print("{}/{}\n", settings.folder.string(), name);
+  if (result.failed > 0)
+    say(fmt::format("{} missing, the report has the reasons; the same command tries again",
+                    result.failed == 1 ? "a run is" : fmt::format("{} runs are", result.failed)));
+  return result.failed > 0 ? ExitCode::run_time : ExitCode::done;
+}
+
+void add_one(CLI::App& study, Action& action, const std::vector<std::string>& arguments, SceneStudyKind kind,
+             const std::string& name, const std::string& about) {
+  const auto options = std::make_shared<SceneStudyOptions>();
+  SceneStudySettings& settings = options->settings;
+  settings.kind = kind;
+  CLI::App& command = *study.add_subcommand(name, about + "; stopped (exit 75) or killed, the same command goes on");
+  options->scene.add_to(command)->required();
+  command.add_option("-o,--output", settings.folder, "the folder for the results; a study in it is continued")
+      ->required();
+  command.add_option("--seeds", settings.seeds, "runs with each setting (default: 3)")
+      ->check(number_between(1, most_seeds, "a number of seeds"));
+  command
+      .add_option("--grow", settings.grow_orbits,
+                  "orbits before anything is compared (default: 6 with self-gravity, 10 without)")
+      ->check(positive_number());
+  command.add_option("--orbits", settings.orbits, "orbits of each run from then on (default: 6)")
+      ->check(positive_number());
+  command.add_option("--jobs", options->jobs, "runs at once, on one thread each (default: threads of the machine)")
+      ->check(number_between(1, most_threads, "a number of runs"));
+  command.add_flag("--quick", settings.quick,
+                   "few settings, and by default two seeds, an orbit to grow and two to compare: a first look");
+  command.callback([options, arguments, &action] {
+    options->settings.arguments = arguments;
+    action = [options] { return carry_out(*options); };
+  });
+}
+
+} // namespace
+
+void add_scene_studies(CLI::App& study, Action& action, const std::vector<std::string>& arguments) {
+  add_one(study, action, arguments, SceneStudyKind::step, "step",
+          "your scene with several lengths of the step: what it costs, and what it changes");
+  add_one(study, action, arguments, SceneStudyKind::kicks, "kicks",
+          "your scene with several kick intervals of self-gravity");
+  add_one(study, action, arguments, SceneStudyKind::mesh, "mesh",
+          "your scene with several accuracies of self-gravity, by mesh and by tree");
+  add_one(study, action, arguments, SceneStudyKind::box, "box", "your scene in boxes of several sizes");
+  add_one(study, action, arguments, SceneStudyKind::sizes, "sizes",
+          "your scene without the smallest particles of its distribution");
+}
+
+} // namespace keeler

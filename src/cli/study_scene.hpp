@@ -1,0 +1,14 @@
+// keeler study step, kicks, mesh, box, sizes: studies of a user's scene.
+#pragma once
+
+#include "command.hpp"
+
+#include <string>
+#include <vector>
+
+namespace keeler {
+
+/// Adds the five to `keeler study`.
+void add_scene_studies(CLI::App& study, Action& action, const std::vector<std::string>& arguments);
+
+} // namespace keeler

@@ -1,0 +1,178 @@
+#include "choices.hpp"
+
+#include <keeler/core/error.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace keeler {
+namespace {
+
+using Solver = GravitySettings::Solver;
+
+constexpr double thousandth = 1e-3;     // of an orbit
+constexpr int most_steps_a_kick = 1000; // as gravity.kick_every allows
+constexpr double automatic_kick = 4e-3; // orbits, about what an automatic step has in wakes
+
+std::vector<std::string> step_overrides(const Scene& scene, const Kicks& kicks) {
+  std::vector<std::string> overrides = {fmt::format("time.step={}", kicks.step)};
+  if (scene.gravity)
+    overrides.push_back(fmt::format("gravity.kick_every={}", kicks.every));
+  return overrides;
+}
+
+StudyChoice automatic_step(const Scene& scene, const std::string& name) {
+  StudyChoice choice{name, {"time.step=\"auto\""}};
+  if (scene.gravity)
+    choice.overrides.emplace_back("gravity.kick_every=1");
+  return choice;
+}
+
+StudyChoices step_choices(const Scene& scene, bool quick) {
+  const double interval = !scene.gravity         ? 0.0
+                          : scene.time.automatic ? automatic_kick
+                                                 : scene.time.step * scene.gravity->kick_every;
+  StudyChoices all{{}, 0};
+  for (const double step : quick ? std::vector{1.0, 4.0} : std::vector{0.25, 0.5, 1.0, 2.0, 4.0, 8.0})
+    all.choices.push_back(
+        {fmt::format("step-{:g}", step * thousandth), step_overrides(scene, kicks_of(step * thousandth, interval))});
+  all.choices.push_back(automatic_step(scene, "step-auto"));
+  return all;
+}
+
+StudyChoices kick_choices(const Scene& scene, bool quick) {
+  if (!scene.gravity)
+    throw UsageError("the scene has no self-gravity, so nothing kicks; add [gravity] to it, or study its step with "
+                     "\"keeler study step\"");
+  const double longest = scene.time.automatic ? thousandth : scene.time.step;
+  StudyChoices all{{}, 0};
+  for (const int length : quick ? std::vector{1, 8} : std::vector{1, 2, 4, 8, 16}) {
+    const double interval = length * thousandth;
+    all.choices.push_back({fmt::format("kick-{:g}", interval), step_overrides(scene, steps_in(interval, longest))});
+  }
+  all.choices.push_back(automatic_step(scene, "kick-auto"));
+  return all;
+}
+
+StudyChoices mesh_choices(const Scene& scene, bool quick) {
+  if (!scene.gravity)
+    throw UsageError("the scene has no self-gravity, so it has no solver to study; add [gravity] to it");
+  StudyChoices all;
+  if (scene.gravity->images.far) // the mesh is periodic: with some rings of images alone it is another force
+    for (const double error : quick ? std::vector{1e-3, 1e-2} : std::vector{3e-4, 1e-3, 2e-3, 5e-3, 1e-2, 3e-2})
+      all.choices.push_back(
+          {fmt::format("fft-{:g}", error), {"gravity.solver=\"fft\"", fmt::format("gravity.force_error={}", error)}});
+  for (const double angle : quick ? std::vector{0.6} : std::vector{0.3, 0.45, 0.6, 0.75, 0.9})
+    all.choices.push_back(
+        {fmt::format("tree-{:g}", angle), {"gravity.solver=\"tree\"", fmt::format("gravity.opening_angle={}", angle)}});
+  return all;
+}
+
+StudyChoices box_choices(const Scene& scene, bool quick) {
+  StudyChoices all;
+  for (const double factor : quick ? std::vector{0.7, 1.0} : std::vector{0.5, 0.7, 1.0, 1.4, 2.0}) {
+    const auto count = std::llround(static_cast<double>(scene.particles.count) * factor * factor);
+    if (count > 0)
+      all.choices.push_back({fmt::format("box-{:g}", factor),
+                             {fmt::format("box.size=[{}, {}]", factor * scene.size_x, factor * scene.size_y),
+                              fmt::format("particles.count={}", count)}});
+  }
+  all.reference = all.choices.size() - 1;
+  return all;
+}
+
+// What gravity and collisions see of a ring stays: its surface density, without gravity its optical depth.
+StudyChoice with_sizes(const Scene& scene, const std::string& name, const std::string& sizes) {
+  return {name,
+          {sizes,
+           scene.gravity ? fmt::format("particles.surface_density={}", scene.surface_density())
+                         : fmt::format("particles.optical_depth={}", scene.optical_depth()),
+           fmt::format("box.size=[{}, {}]", scene.size_x, scene.size_y)}};
+}
+
+// The scene's particles from a radius up: how many there are of each.
+std::string table_from(const std::map<double, std::size_t>& counts, double cut) {
+  std::vector<std::string> rows;
+  for (const auto& [radius, count] : counts)
+    if (radius >= cut)
+      rows.push_back(fmt::format("[{}, {}]", radius, count));
+  return fmt::format("particles.sizes={{ law = \"table\", table = [{}] }}", fmt::join(rows, ", "));
+}
+
+std::string from_name(double radius) {
+  return fmt::format("from-{:.3g}", radius);
+}
+
+// Of a law with a density by its keys; of listed sizes as a table of those that are left.
+StudyChoice cut_from(const Scene& scene, double cut) {
+  const SizeLaw& law = scene.particles.sizes;
+  if (law.listed == 0)
+    return with_sizes(scene, from_name(cut), fmt::format("particles.sizes.min={}", cut));
+  std::map<double, std::size_t> counts;
+  for (const double radius : draw_radii(law, scene.particles.count, scene.particles.seed))
+    ++counts[radius];
+  auto first = counts.lower_bound(cut);
+  if (first == counts.end()) // the largest sizes are so rare that none is drawn
+    --first;
+  return with_sizes(scene, from_name(first->first), table_from(counts, first->first));
+}
+
+StudyChoices size_choices(const Scene& scene, bool quick) {
+  const SizeLaw& law = scene.particles.sizes;
+  if (law.smallest == law.largest)
+    throw UsageError(fmt::format("all particles of the scene have one size, {:g} m, so there is nothing to cut; give "
+                                 "it a distribution, for example --set 'particles.sizes={{ law = \"power\", exponent = "
+                                 "3, min = {:g}, max = {:g} }}'",
+                                 law.smallest, 0.5 * law.smallest, 2.0 * law.smallest));
+  StudyChoices all{{{"whole", {}}}, 0};
+  for (const double part : quick ? std::vector{0.4} : std::vector{0.2, 0.4, 0.6})
+    if (StudyChoice cut = cut_from(scene, law.smallest * std::pow(law.largest / law.smallest, part));
+        cut.name != all.choices.back().name) // as many sizes of a list can be left by two cuts
+      all.choices.push_back(std::move(cut));
+  const double radius = law.mean_power(3) / law.mean_power(2); // with it both densities stay
+  all.choices.push_back(
+      with_sizes(scene, "equal", fmt::format("particles.sizes={{ law = \"equal\", radius = {} }}", radius)));
+  return all;
+}
+
+} // namespace
+
+std::string name_of(SceneStudyKind kind) {
+  constexpr const char* names[] = {"step", "kicks", "mesh", "box", "sizes"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+bool shares_start(SceneStudyKind kind) {
+  return kind != SceneStudyKind::box && kind != SceneStudyKind::sizes;
+}
+
+Kicks steps_in(double interval, double longest) {
+  const int every = std::clamp(static_cast<int>(std::ceil(interval / longest * (1.0 - 1e-12))), 1, most_steps_a_kick);
+  return {interval / every, every};
+}
+
+Kicks kicks_of(double step, double interval) {
+  return {step, static_cast<int>(std::clamp(std::round(interval / step), 1.0, double{most_steps_a_kick}))};
+}
+
+StudyChoices study_choices(SceneStudyKind kind, const Scene& scene, bool quick) {
+  switch (kind) {
+  case SceneStudyKind::step:
+    return step_choices(scene, quick);
+  case SceneStudyKind::kicks:
+    return kick_choices(scene, quick);
+  case SceneStudyKind::mesh:
+    return mesh_choices(scene, quick);
+  case SceneStudyKind::box:
+    return box_choices(scene, quick);
+  case SceneStudyKind::sizes:
+    return size_choices(scene, quick);
+  }
+  return {};
+}
+
+} // namespace keeler

@@ -1,0 +1,187 @@
+#include "report.hpp"
+
+#include "verdict.hpp"
+
+#include <keeler/core/words.hpp>
+#include <keeler/files/files.hpp>
+#include <keeler/report/csv.hpp>
+#include <keeler/report/document.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+using Table = std::vector<std::vector<std::string>>;
+
+std::string what_changes(const StudyPlan& plan) {
+  switch (plan.kind) {
+  case SceneStudyKind::step:
+    return plan.scene.gravity
+               ? "`time.step` changes, and the kick interval stays the scene's as far as whole steps divide it. A step "
+                 "longer than that interval makes the interval as long. `step-auto` chooses both by itself."
+               : "`time.step` changes. `step-auto` chooses it by itself.";
+  case SceneStudyKind::kicks:
+    return "The kick interval changes, by `gravity.kick_every`; steps are those of the scene, or shorter where they "
+           "must divide it. `kick-auto` has `time.step = \"auto\"`.";
+  case SceneStudyKind::mesh:
+    return "Solver and accuracy of self-gravity change: `fft` with `gravity.force_error`, `tree` with "
+           "`gravity.opening_angle`.";
+  case SceneStudyKind::box:
+    return "Both sides of the box are multiplied by a factor, and the number of particles by its square. Streamlines "
+           "and modes, where the scene has them, keep their number of waves.";
+  case SceneStudyKind::sizes:
+    return fmt::format(
+        "The small end of the distribution of sizes is cut off at several radii (m), and `equal` has one "
+        "radius, ⟨r³⟩/⟨r²⟩ of the scene. The {} and the box stay.",
+        plan.scene.gravity ? "surface density" : "optical depth");
+  }
+  return {};
+}
+
+std::string in_orbits(double orbits) {
+  return fmt::format("{:g} orbit{}", orbits, orbits == 1.0 ? "" : "s");
+}
+
+std::string how_started(const StudyPlan& plan) {
+  if (shares_start(plan.kind))
+    return fmt::format("Each of {} grows one state, {} from the scene's own start. All settings go on from the "
+                       "state of their seed for {} and are measured from orbit {:g} of these on. Contacts make "
+                       "runs of one state independent within a fraction of an orbit, so they are compared as "
+                       "independent ones.",
+                       counted(plan.seeds, "seed"), in_orbits(plan.grow_orbits), in_orbits(plan.orbits), plan.since());
+  return fmt::format("The setting changes the state itself, so there is no common one: each run has the scene's own "
+                     "start and ends at orbit {:g}, measured from orbit {:g} on. There are {} of each.",
+                     plan.end(), plan.since(), counted(plan.seeds, "seed"));
+}
+
+void introduce(const StudyPlan& plan, const std::map<std::string, std::string>& made, Document& document) {
+  document.paragraph(what_changes(plan));
+  document.paragraph(how_started(plan));
+  document.paragraph("Numbers are means over the seeds, ± half the width of the interval that holds the true mean in "
+                     "95 % of all cases (Student's t). Processor time and memory are those of a run on one thread.");
+  document.paragraph(fmt::format("Made by `{}` on {} ({}), {}, flags `{}`, commit {}.", made.at("command"),
+                                 made.at("processor"), made.at("host"), made.at("compiler"), made.at("flags"),
+                                 made.at("commit")));
+}
+
+std::string with_bound(const Scatter& scatter) {
+  if (scatter.count == 0)
+    return "–";
+  const double bound = mean_bound(scatter);
+  return std::isnan(bound) || bound == 0.0 ? figures(scatter.mean, 4)
+                                           : fmt::format("{} ± {}", figures(scatter.mean, 4), figures(bound, 2));
+}
+
+// Whether any setting has it.
+bool is_known(const StudyMeans& means, std::size_t number) {
+  return std::any_of(means.settings.begin(), means.settings.end(),
+                     [&](const SettingMeans& setting) { return setting.scatter[number].count > 0; });
+}
+
+// The numbers that the report shows, of cost and health or of physics.
+std::vector<std::size_t> shown(const StudyMeans& means, bool physics) {
+  std::vector<std::size_t> numbers;
+  for (std::size_t n = 0; n < study_numbers().size(); ++n)
+    if (!study_numbers()[n].title.empty() && study_numbers()[n].compared == physics && is_known(means, n))
+      numbers.push_back(n);
+  return numbers;
+}
+
+Table table_of(const StudyMeans& means, const std::vector<std::size_t>& numbers, const std::string& corner) {
+  Table table = {{corner}};
+  for (const std::size_t n : numbers)
+    table.front().push_back(study_numbers()[n].title);
+  for (std::size_t s = 0; s < means.settings.size(); ++s)
+    table.push_back({fmt::format("`{}`{}", means.settings[s].name, s == means.reference ? " (reference)" : "")});
+  return table;
+}
+
+Table table_of_means(const StudyMeans& means, bool physics) {
+  const std::vector<std::size_t> numbers = shown(means, physics);
+  Table table = table_of(means, numbers, "setting");
+  for (std::size_t s = 0; s < means.settings.size(); ++s)
+    for (const std::size_t n : numbers)
+      table[s + 1].push_back(with_bound(means.settings[s].scatter[n]));
+  return table;
+}
+
+// "+0.3 ± 1.2", bold when it is beyond the scatter.
+std::string in_percent(const MeanDifference& d, double reference) {
+  const double difference = 100.0 * d.difference / reference, bound = 100.0 * d.bound / reference;
+  return fmt::format("{0}{1:+.{3}f} ± {2:.{3}f}{0}", d.within() ? "" : "**", difference, bound, bound < 0.1 ? 2 : 1);
+}
+
+Table table_of_differences(const StudyMeans& means) {
+  const std::vector<std::size_t> numbers = shown(means, true);
+  Table table = table_of(means, numbers, "% from the reference");
+  for (std::size_t s = 0; s < means.settings.size(); ++s)
+    for (const std::size_t n : numbers) {
+      const MeanDifference& d = means.settings[s].from_reference[n];
+      table[s + 1].push_back(d.known() ? in_percent(d, std::fabs(means.settings[means.reference].scatter[n].mean))
+                                       : "–");
+    }
+  table.erase(table.begin() + 1 + static_cast<std::ptrdiff_t>(means.reference));
+  return table;
+}
+
+void show_lost_contacts(const StudyPlan& plan, Document& document) {
+  if (plan.scene.collisions.finder != "certified")
+    document.paragraph(fmt::format("The scene's finder is `{}`. A run does not know which contacts it missed; "
+                                   "`finder_gave_up` and `largest_overlap` of `study.csv` show what came of it, and "
+                                   "`keeler study finders` counts.",
+                                   plan.scene.collisions.finder));
+}
+
+void show_failed(const std::vector<SettingRun>& runs, Document& document) {
+  Table table = {{"run", "why"}};
+  for (const SettingRun& run : runs)
+    if (!run.reason.empty())
+      table.push_back({run.run->name, run.reason});
+  if (table.size() == 1)
+    return;
+  document.heading("Runs that are missing");
+  document.table(table);
+}
+
+} // namespace
+
+void write_study_tables(const StudyPlan& plan, const std::vector<SettingRun>& runs, const StudyMeans& means,
+                        const std::filesystem::path& folder) {
+  write_text(folder / "study.csv", csv_with_gaps(runs_as_json(plan, runs)));
+  write_text(folder / "settings.csv", csv_with_gaps(means_as_json(means)));
+}
+
+void write_study_report(const StudyPlan& plan, const std::vector<SettingRun>& runs, const StudyMeans& means,
+                        const std::map<std::string, std::string>& made, const std::filesystem::path& folder,
+                        bool with_figure) {
+  Document document(fmt::format("Study of the {} of {}", name_of(plan.kind), plan.scene_name));
+  introduce(plan, made, document);
+  document.heading("Verdict");
+  document.paragraph(verdict_text(means));
+  if (const std::string missed = sensitivity_text(means); !missed.empty())
+    document.paragraph(missed);
+  if (with_figure)
+    document.figure(folder / "figures", "pareto",
+                    plan.kind == SceneStudyKind::mesh
+                        ? "Force error against processor time, a point a setting."
+                        : "Loss over stress, its difference from the reference, against processor time. The reference "
+                          "has the interval of its own mean.");
+  document.heading("Cost and health");
+  document.table(table_of_means(means, false));
+  show_lost_contacts(plan, document);
+  document.heading("Physics");
+  document.table(table_of_means(means, true));
+  document.heading("Differences");
+  document.paragraph("Bold ones are beyond the scatter.");
+  document.table(table_of_differences(means));
+  show_failed(runs, document);
+  document.paragraph("`study.csv` has all numbers of each run, `settings.csv` those of each setting.");
+  write_text(folder / "report.md", document.markdown());
+  write_text(folder / "report.html", document.html());
+}
+
+} // namespace keeler

@@ -1,0 +1,228 @@
+#include "results.hpp"
+
+#include <keeler/batch/quantities.hpp>
+#include <keeler/core/error.hpp>
+#include <keeler/core/units.hpp>
+#include <keeler/diagnostics/occultation.hpp>
+#include <keeler/files/files.hpp>
+#include <keeler/io/series.hpp>
+#include <keeler/runs/run_stage.hpp>
+#include <keeler/runs/stored_patches.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace keeler {
+namespace {
+
+namespace fs = std::filesystem;
+using Maybe = std::optional<double>;
+
+constexpr std::size_t rays = 200000; // of each snapshot
+constexpr double footprint = 10.0;   // m; of no account for the mean
+constexpr double last_orbits = 1.0;  // whose snapshots the rays cross
+
+// What the report shows of the numbers that sweeps measure.
+const std::map<std::string, std::string> compared_quantities = {
+    {"energy_balance", "loss over stress"},
+    {"translational_viscosity_r2_omega", "translational viscosity (r² Ω)"},
+    {"collisional_viscosity_r2_omega", "collisional viscosity (r² Ω)"},
+    {"gravitational_viscosity_r2_omega", "gravitational viscosity (r² Ω)"},
+    {"dispersion_x_r_omega", "c_x (r Ω)"},
+    {"dispersion_z_r_omega", "c_z (r Ω)"},
+    {"collisions_per_particle_orbit", "collisions per particle and orbit"},
+    {"wake_wavelength_m", "wake wavelength (m)"},
+    {"wake_contrast", "wake contrast"}};
+
+std::vector<StudyNumber> make_numbers() {
+  std::vector<StudyNumber> all = {
+      {"cpu_s_per_orbit", "processor time of an orbit, s", "processor s per orbit", false},
+      {"peak_memory_mb", "the most memory in use, 10⁶ bytes", "memory (MB)", false},
+      {"step_orbits", "length of a step, orbits; of an automatic one the mean", "step (orbits)", false},
+      {"kick_interval_orbits", "from kick to kick, orbits; of an automatic step the mean; only with self-gravity",
+       "kick interval (orbits)", false},
+      {"force_error", "rms error of self-gravity at the end, over the rms acceleration", "force error", false},
+      {"unresolved_contacts_share", "as in `summary.json`", "unresolved contacts", false},
+      {"finder_gave_up", "as in `summary.json`", "", false},
+      {"largest_overlap", "as in `summary.json`", "", false},
+      {"transmission", "vertical, of the snapshots of the last orbit", "vertical transmission", true}};
+  for (const QuantityName& quantity : quantities()) {
+    const auto title = compared_quantities.find(quantity.column());
+    const bool compared = title != compared_quantities.end();
+    all.push_back({quantity.column(), quantity.meaning, compared ? title->second : std::string(), compared});
+  }
+  return all;
+}
+
+Maybe number_in(const Json& json, const std::string& key) {
+  return json.is_object() && json.contains(key) && json.at(key).is_number() ? Maybe(json.at(key).get<double>())
+                                                                            : std::nullopt;
+}
+
+// Over the measured rows of series.csv; none without the column.
+Maybe series_mean(const SeriesTable& series, const std::string& column, double since) {
+  const std::vector<double>* const values = series.find(column);
+  if (!values)
+    return std::nullopt;
+  const std::vector<double>& orbits = series.of("time_orbits");
+  double sum = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < values->size(); ++k)
+    if (orbits[k] >= since)
+      sum += (*values)[k], count += 1.0;
+  return count > 0.0 ? Maybe(sum / count) : std::nullopt;
+}
+
+Maybe transmission_of(const fs::path& folder) {
+  const std::vector<Patch> patches = load_patches(folder, last_orbits).patches;
+  return occultation(patches, RayLattice(patches.front().box, rays, footprint), {pi / 2.0, 0.0}).transmission.value;
+}
+
+std::vector<Maybe> values_of(const StudyPlan& plan, const PlannedRun& run, const fs::path& folder) {
+  const Json summary = Json::parse(read_text(folder / "summary.json"), nullptr, false);
+  const SeriesTable series = read_series(folder / "series.csv");
+  std::map<std::string, Maybe> known;
+  const Maybe cpu = number_in(summary, "cpu_s"), orbits = number_in(summary, "orbits_done"),
+              memory = number_in(summary, "peak_memory_mb");
+  if (cpu && orbits && *orbits > 0.0)
+    known["cpu_s_per_orbit"] = *cpu / *orbits;
+  if (memory)
+    known["peak_memory_mb"] = *memory;
+  const Scene& scene = run.scene;
+  const auto chosen = [&](const char* column, double fixed) {
+    return scene.time.automatic ? series_mean(series, column, plan.since()) : Maybe(fixed);
+  };
+  known["step_orbits"] = chosen("step_orbits", scene.time.step);
+  if (scene.gravity)
+    known["kick_interval_orbits"] = chosen("kick_interval_orbits", scene.time.step * scene.gravity->kick_every);
+  known["force_error"] = number_in(summary.value("force_error", Json()), "rms");
+  for (const char* const key : {"unresolved_contacts_share", "finder_gave_up", "largest_overlap"})
+    known[key] = number_in(summary, key);
+  known["transmission"] = transmission_of(folder);
+  const RunNumbers numbers = measure_run(folder, scene, plan.since());
+  for (std::size_t k = 0; k < numbers.values.size(); ++k)
+    if (const std::optional<Estimate>& value = numbers.values[k]; value && std::isfinite(value->value))
+      known[quantities()[k].column()] = value->value;
+  std::vector<Maybe> values;
+  for (const StudyNumber& number : study_numbers())
+    values.push_back(known[number.column]);
+  return values;
+}
+
+Json or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+std::size_t smallest_force_error(const std::vector<SettingMeans>& settings) {
+  const std::size_t error = number_at("force_error");
+  std::size_t best = 0;
+  for (std::size_t k = 0; k < settings.size(); ++k)
+    if (const double mean = settings[k].scatter[error].mean;
+        !std::isnan(mean) && !(settings[best].scatter[error].mean <= mean))
+      best = k;
+  return best;
+}
+
+} // namespace
+
+const std::vector<StudyNumber>& study_numbers() {
+  static const std::vector<StudyNumber> numbers = make_numbers();
+  return numbers;
+}
+
+std::size_t number_at(const std::string& column) {
+  const std::vector<StudyNumber>& all = study_numbers();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const StudyNumber& n) { return n.column == column; });
+  return static_cast<std::size_t>(found - all.begin());
+}
+
+std::vector<SettingRun> measure_runs(const StudyPlan& plan, const std::vector<PlannedRun>& runs,
+                                     const RunFolders& folders) {
+  std::vector<SettingRun> measured;
+  for (const PlannedRun& run : runs) {
+    SettingRun row;
+    row.run = &run;
+    row.finished = run_stage(folders.run(run.name)) == RunStage::finished;
+    try {
+      if (row.finished)
+        row.values = values_of(plan, run, folders.run(run.name));
+      else
+        row.reason = folders.failure_of(run.name).value_or("not finished");
+    } catch (const Error& error) { // a damaged file must not take the other runs from the table
+      row.reason = error.what();
+    }
+    measured.push_back(std::move(row));
+  }
+  return measured;
+}
+
+StudyMeans means_of(const StudyChoices& choices, const std::vector<SettingRun>& runs) {
+  const std::size_t count = study_numbers().size();
+  StudyMeans means;
+  for (std::size_t s = 0; s < choices.choices.size(); ++s) {
+    SettingMeans& setting = means.settings.emplace_back();
+    setting.name = choices.choices[s].name;
+    std::vector<std::vector<double>> values(count);
+    for (const SettingRun& run : runs)
+      if (run.run->point == s && !run.values.empty()) {
+        ++setting.finished;
+        for (std::size_t n = 0; n < count; ++n)
+          if (run.values[n])
+            values[n].push_back(*run.values[n]);
+      }
+    for (const std::vector<double>& of_number : values)
+      setting.scatter.push_back(scatter_of(of_number));
+  }
+  means.reference = choices.reference.value_or(smallest_force_error(means.settings));
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t s = 0; s < means.settings.size(); ++s)
+    for (std::size_t n = 0; n < count; ++n)
+      means.settings[s].from_reference.push_back(
+          s != means.reference && study_numbers()[n].compared
+              ? mean_difference(means.settings[means.reference].scatter[n], means.settings[s].scatter[n])
+              : MeanDifference{unknown, unknown});
+  return means;
+}
+
+Json runs_as_json(const StudyPlan& plan, const std::vector<SettingRun>& runs) {
+  Json rows = Json::array();
+  for (const SettingRun& run : runs) {
+    Json row;
+    row["run"] = run.run->name;
+    row["setting"] = plan.choices.choices[run.run->point].name;
+    row["seed"] = run.run->seed;
+    row["status"] = run.finished ? "finished" : "failed";
+    row["reason"] = run.reason.empty() ? Json(nullptr) : Json(run.reason);
+    for (std::size_t n = 0; n < study_numbers().size(); ++n)
+      row[study_numbers()[n].column] = !run.values.empty() && run.values[n] ? or_null(*run.values[n]) : Json(nullptr);
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Json means_as_json(const StudyMeans& means) {
+  Json rows = Json::array();
+  for (std::size_t s = 0; s < means.settings.size(); ++s) {
+    const SettingMeans& setting = means.settings[s];
+    Json row;
+    row["setting"] = setting.name;
+    row["runs"] = setting.finished;
+    row["reference"] = s == means.reference;
+    for (std::size_t n = 0; n < study_numbers().size(); ++n) {
+      const std::string& column = study_numbers()[n].column;
+      const Scatter& reference = means.settings[means.reference].scatter[n];
+      const double percent = 100.0 / std::fabs(reference.mean);
+      row[column] = or_null(setting.scatter[n].mean);
+      row[column + "_bound"] = or_null(mean_bound(setting.scatter[n]));
+      if (!study_numbers()[n].compared)
+        continue;
+      row[column + "_difference_percent"] = or_null(percent * setting.from_reference[n].difference);
+      row[column + "_difference_bound_percent"] = or_null(percent * setting.from_reference[n].bound);
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+} // namespace keeler

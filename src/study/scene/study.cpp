@@ -1,0 +1,104 @@
+#include <keeler/study/scene/study.hpp>
+
+#include "report.hpp"
+#include "study_folder.hpp"
+
+#include <keeler/batch/workers.hpp>
+#include <keeler/core/error.hpp>
+#include <keeler/core/stopwatch.hpp>
+#include <keeler/runs/folder_lock.hpp>
+#include <keeler/scene/doubts.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace keeler {
+namespace {
+
+// A folder that was begun with others does not go on. What the scene says is compared with the runs that are there.
+Json options_of(const StudyPlan& plan) {
+  Json choices = Json::array();
+  for (const StudyChoice& choice : plan.choices.choices)
+    choices.push_back(choice.name);
+  return {{"study", name_of(plan.kind)},
+          {"seeds", plan.seeds},
+          {"grow", plan.grow_orbits},
+          {"orbits", plan.orbits},
+          {"settings", choices}};
+}
+
+void tell_doubts(const StudyPlan& plan, const SceneStudySettings& settings) {
+  for (const std::string& text : plan.scene.notices)
+    settings.notice("note: " + text);
+  for (const std::string& text : doubts(plan.scene))
+    settings.notice("note: " + text);
+}
+
+// The runs of one stage; false: stopped on request. `watch`: since the study began.
+bool carry_out(const std::vector<PlannedRun>& runs, const std::string& stage, const RunFolders& folders, Claims& claims,
+               const Stopwatch& watch, const SceneStudySettings& settings, const RunRequests& requests) {
+  folders.refuse_changed(runs, settings.scene + ":1:1");
+  WorkOptions work;
+  work.jobs = settings.jobs;
+  work.notice = settings.notice;
+  work.progress = [&](Progress progress) {
+    progress.what = stage + ": " + progress.what;
+    progress.elapsed_s = watch.elapsed();
+    settings.progress(progress);
+  };
+  work_on(runs, folders, claims, work, requests);
+  return !requests.stop;
+}
+
+void require_states(const std::vector<PlannedRun>& runs, const RunFolders& folders) {
+  for (const PlannedRun& run : runs)
+    if (const std::optional<std::string> reason = folders.failure_of(run.name))
+      throw Error(
+          ExitCode::run_time,
+          fmt::format("the state of seed {} could not be grown: {}; correct that, then the same command goes on",
+                      run.seed, *reason));
+}
+
+std::size_t write_results(const StudyPlan& plan, const std::vector<PlannedRun>& runs, const RunFolders& folders,
+                          const std::map<std::string, std::string>& made, const SceneStudySettings& settings) {
+  const std::vector<SettingRun> measured = measure_runs(plan, runs, folders);
+  const StudyMeans means = means_of(plan.choices, measured);
+  write_study_tables(plan, measured, means, folders.path());
+  const bool drawn = draw_study_figure(plan, means, folders.path());
+  if (!drawn)
+    settings.notice("there is no figure, only its data: gnuplot is not there (Debian: gnuplot-nox), or no setting has "
+                    "what it shows");
+  write_study_report(plan, measured, means, made, folders.path(), drawn);
+  return static_cast<std::size_t>(
+      std::count_if(measured.begin(), measured.end(), [](const SettingRun& run) { return run.values.empty(); }));
+}
+
+} // namespace
+
+SceneStudyResult study_scene(const SceneStudySettings& settings, const RunRequests& requests) {
+  const StudyPlan plan = plan_study(settings);
+  std::map<std::string, std::string> made = study_builder(settings.arguments);
+  made["scene"] = settings.scene;
+  const Json begun = open_study_folder(settings.folder, options_of(plan), made);
+  for (auto& [key, value] : made)
+    value = begun.value(key, value);
+  const FolderLock lock(settings.folder);
+  const RunFolders folders(settings.folder);
+  folders.make();
+  Claims claims(folders.claims());
+  tell_doubts(plan, settings);
+  double elapsed = 0.0;
+  const Stopwatch watch(elapsed);
+
+  const std::vector<PlannedRun> growth = growth_runs(plan);
+  if (!growth.empty() && !carry_out(growth, "states", folders, claims, watch, settings, requests))
+    return {.stopped = true};
+  require_states(growth, folders);
+  const std::vector<PlannedRun> runs = setting_runs(plan, folders);
+  if (!carry_out(runs, "settings", folders, claims, watch, settings, requests))
+    return {.stopped = true};
+  return {.failed = write_results(plan, runs, folders, made, settings)};
+}
+
+} // namespace keeler

@@ -1,0 +1,116 @@
+#include "scene/verdict.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <deque>
+
+using namespace keeler;
+
+namespace {
+
+// Made-up runs of some settings with three seeds: the reference first.
+class MadeUp {
+public:
+  // Values of the three seeds are the mean, and that ± the deviation.
+  void add(const std::string& name, double cpu, double balance, double balance_deviation, double dispersion,
+           double force_error = 1e-3) {
+    choices_.choices.push_back({name, {}});
+    for (const double side : {-1.0, 0.0, 1.0}) {
+      PlannedRun& planned = planned_.emplace_back();
+      planned.point = choices_.choices.size() - 1;
+      SettingRun run;
+      run.run = &planned;
+      run.finished = true;
+      run.values.resize(study_numbers().size());
+      run.values[number_at("cpu_s_per_orbit")] = cpu;
+      run.values[number_at("energy_balance")] = balance + side * balance_deviation;
+      run.values[number_at("dispersion_x_r_omega")] = dispersion * (1.0 + 0.01 * side);
+      run.values[number_at("force_error")] = force_error;
+      runs_.push_back(run);
+    }
+  }
+
+  void fail_last() { runs_.back().values.clear(); }
+
+  StudyMeans means(std::optional<std::size_t> reference = 0) {
+    choices_.reference = reference;
+    return means_of(choices_, runs_);
+  }
+
+private:
+  StudyChoices choices_;
+  std::deque<PlannedRun> planned_;
+  std::vector<SettingRun> runs_;
+};
+
+} // namespace
+
+TEST_CASE("means and differences of settings have Student's intervals") {
+  MadeUp study;
+  study.add("fine", 8.0, 1.0, 0.001, 5.0);
+  study.add("coarse", 2.0, 1.01, 0.002, 5.0);
+  const StudyMeans means = study.means();
+  const std::size_t balance = number_at("energy_balance");
+  CHECK(mean_bound(means.settings[0].scatter[balance]) == doctest::Approx(4.303 * 0.001 / std::sqrt(3.0)));
+  const MeanDifference& d = means.settings[1].from_reference[balance];
+  CHECK(d.difference == doctest::Approx(0.01));
+  CHECK(d.bound == doctest::Approx(2.776 * std::sqrt(0.5 * (1e-6 + 4e-6) * 2.0 / 3.0)));
+  CHECK_FALSE(means.settings[0].from_reference[balance].known());
+  CHECK_FALSE(means.settings[1].from_reference[number_at("cpu_s_per_orbit")].known());
+  const Json rows = means_as_json(means);
+  CHECK(rows[1]["energy_balance_difference_percent"].get<double>() == doctest::Approx(1.0));
+  CHECK(rows[0]["energy_balance_difference_percent"].is_null());
+  CHECK(rows[0]["reference"] == true);
+}
+
+TEST_CASE("the cheapest setting that cannot be told from the reference is chosen") {
+  MadeUp study;
+  study.add("fine", 8.0, 1.0, 0.001, 5.0);
+  study.add("middle", 4.0, 1.01, 0.001, 5.05);
+  study.add("cheap", 2.0, 1.03, 0.001, 5.0);
+  study.add("cheapest", 1.0, 1.0, 0.001, 6.0);
+  const StudyMeans means = study.means();
+  CHECK(cheapest_acceptable(means) == 1);
+  CHECK(verdict_on(means, 1).acceptable());
+  CHECK(verdict_on(means, 1).balance_shown());
+  CHECK_FALSE(verdict_on(means, 2).acceptable());
+  CHECK(verdict_on(means, 2).beyond.empty());
+  CHECK(verdict_on(means, 3).beyond == std::vector<std::string>{"c_x (r Ω)"});
+  const std::string text = verdict_text(means);
+  CHECK(text.find("`middle`: 4 s of processor time per orbit, 2 times the speed") != text.npos);
+  CHECK(text.find("so it is within 2 %") != text.npos);
+  CHECK(text.find("`cheap` is cheaper and differs in loss over stress by +3.0 %") != text.npos);
+  CHECK(text.find("`cheapest` is cheaper and differs in c_x (r Ω)") != text.npos);
+}
+
+TEST_CASE("not told apart is not called the same") {
+  MadeUp study;
+  study.add("fine", 8.0, 1.0, 0.02, 5.0);
+  study.add("coarse", 2.0, 1.01, 0.02, 5.0);
+  const StudyMeans means = study.means();
+  CHECK(cheapest_acceptable(means) == 1);
+  CHECK_FALSE(verdict_on(means, 1).balance_shown());
+  CHECK(verdict_text(means).find("a difference of up to 5.5 % is not excluded") != std::string::npos);
+  CHECK(sensitivity_text(means).find("loss over stress 4.5 %") != std::string::npos);
+}
+
+TEST_CASE(
+    "without a reference of the study it is the setting with the smallest force error; failed runs do not count") {
+  MadeUp study;
+  study.add("a", 1.0, 1.0, 0.01, 5.0, 3e-3);
+  study.add("b", 2.0, 1.0, 0.01, 5.0, 1e-4);
+  study.add("c", 3.0, 1.0, 0.01, 5.0, 2e-4);
+  study.fail_last();
+  const StudyMeans means = study.means(std::nullopt);
+  CHECK(means.reference == 1);
+  CHECK(means.settings[2].finished == 2);
+}
+
+TEST_CASE("where nothing was finished nothing is said") {
+  StudyChoices none;
+  none.choices = {{"a", {}}, {"b", {}}};
+  const StudyMeans means = means_of(none, {});
+  CHECK(verdict_text(means).find("nothing can be said") != std::string::npos);
+  CHECK(sensitivity_text(means).empty());
+}
