@@ -165,11 +165,12 @@ void write_study_report(const StudyPlan& plan, const std::vector<SettingRun>& ru
   if (const std::string missed = sensitivity_text(means); !missed.empty())
     document.paragraph(missed);
   if (with_figure)
-    document.figure(folder / "figures", "pareto",
-                    plan.kind == SceneStudyKind::mesh
-                        ? "Force error against processor time, a point a setting."
-                        : "Loss over stress, its difference from the reference, against processor time. The reference "
-                          "has the interval of its own mean.");
+    document.figure(
+        folder / "figures", "pareto",
+        plan.kind == SceneStudyKind::mesh
+            ? "Force error against processor time, a point a setting."
+            : "Difference from the reference against processor time, a point a setting. The reference has the "
+              "interval of its own mean.");
   document.heading("Cost and health");
   document.table(table_of_means(means, false));
   show_lost_contacts(plan, document);

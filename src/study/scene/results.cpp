@@ -24,14 +24,14 @@ constexpr std::size_t rays = 200000; // of each snapshot
 constexpr double footprint = 10.0;   // m; of no account for the mean
 constexpr double last_orbits = 1.0;  // whose snapshots the rays cross
 
-// What the report shows of the numbers that sweeps measure.
+// What the report shows of the numbers that sweeps measure; in SI, since a study of sizes changes r.
 const std::map<std::string, std::string> compared_quantities = {
     {"energy_balance", "loss over stress"},
-    {"translational_viscosity_r2_omega", "translational viscosity (r² Ω)"},
-    {"collisional_viscosity_r2_omega", "collisional viscosity (r² Ω)"},
-    {"gravitational_viscosity_r2_omega", "gravitational viscosity (r² Ω)"},
-    {"dispersion_x_r_omega", "c_x (r Ω)"},
-    {"dispersion_z_r_omega", "c_z (r Ω)"},
+    {"translational_viscosity_m2_s", "translational viscosity (m²/s)"},
+    {"collisional_viscosity_m2_s", "collisional viscosity (m²/s)"},
+    {"gravitational_viscosity_m2_s", "gravitational viscosity (m²/s)"},
+    {"dispersion_x_m_s", "c_x (m/s)"},
+    {"dispersion_z_m_s", "c_z (m/s)"},
     {"collisions_per_particle_orbit", "collisions per particle and orbit"},
     {"wake_wavelength_m", "wake wavelength (m)"},
     {"wake_contrast", "wake contrast"}};
@@ -176,12 +176,13 @@ StudyMeans means_of(const StudyChoices& choices, const std::vector<SettingRun>& 
   }
   means.reference = choices.reference.value_or(smallest_force_error(means.settings));
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<Scatter>& reference = means.settings[means.reference].scatter;
   for (std::size_t s = 0; s < means.settings.size(); ++s)
-    for (std::size_t n = 0; n < count; ++n)
-      means.settings[s].from_reference.push_back(
-          s != means.reference && study_numbers()[n].compared
-              ? mean_difference(means.settings[means.reference].scatter[n], means.settings[s].scatter[n])
-              : MeanDifference{unknown, unknown});
+    for (std::size_t n = 0; n < count; ++n) // what is 0, as gravity's stress where there is none, has no per cent
+      means.settings[s].from_reference.push_back(s != means.reference && study_numbers()[n].compared &&
+                                                         reference[n].mean != 0.0
+                                                     ? mean_difference(reference[n], means.settings[s].scatter[n])
+                                                     : MeanDifference{unknown, unknown});
   return means;
 }
 

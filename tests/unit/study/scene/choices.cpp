@@ -87,7 +87,7 @@ TEST_CASE("a study of kicks has its intervals whatever the scene's step is, and 
 TEST_CASE("a study of solvers leaves the mesh out where only some rings of images act") {
   const Scene scene = scene_with({"gravity.solver=\"fft\""});
   const StudyChoices all = study_choices(SceneStudyKind::mesh, scene, false);
-  CHECK(all.choices.size() == 11);
+  CHECK(all.choices.size() == 10);
   CHECK_FALSE(all.reference.has_value());
   CHECK(with(scene, all.choices.front()).gravity->force_error == 3e-4);
   CHECK(with(scene, all.choices.back()).gravity->opening_angle == 0.9);

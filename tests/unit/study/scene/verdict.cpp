@@ -25,7 +25,7 @@ public:
       run.values.resize(study_numbers().size());
       run.values[number_at("cpu_s_per_orbit")] = cpu;
       run.values[number_at("energy_balance")] = balance + side * balance_deviation;
-      run.values[number_at("dispersion_x_r_omega")] = dispersion * (1.0 + 0.01 * side);
+      run.values[number_at("dispersion_x_m_s")] = dispersion * (1.0 + 0.01 * side);
       run.values[number_at("force_error")] = force_error;
       runs_.push_back(run);
     }
@@ -76,12 +76,12 @@ TEST_CASE("the cheapest setting that cannot be told from the reference is chosen
   CHECK(verdict_on(means, 1).balance_shown());
   CHECK_FALSE(verdict_on(means, 2).acceptable());
   CHECK(verdict_on(means, 2).beyond.empty());
-  CHECK(verdict_on(means, 3).beyond == std::vector<std::string>{"c_x (r Ω)"});
+  CHECK(verdict_on(means, 3).beyond == std::vector<std::string>{"c_x (m/s)"});
   const std::string text = verdict_text(means);
   CHECK(text.find("`middle`: 4 s of processor time per orbit, 2 times the speed") != text.npos);
   CHECK(text.find("so it is within 2 %") != text.npos);
   CHECK(text.find("`cheap` is cheaper and differs in loss over stress by +3.0 %") != text.npos);
-  CHECK(text.find("`cheapest` is cheaper and differs in c_x (r Ω)") != text.npos);
+  CHECK(text.find("`cheapest` is cheaper and differs in c_x (m/s)") != text.npos);
 }
 
 TEST_CASE("not told apart is not called the same") {
