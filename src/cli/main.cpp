@@ -34,6 +34,16 @@ int end_with(ExitCode code) {
   return static_cast<int>(code);
 }
 
+// The command of the arguments as far as it was understood: "keeler bench drift".
+std::string asked_command(const CLI::App& program) {
+  std::string name = "keeler";
+  for (const CLI::App* app = &program; !app->get_subcommands().empty();) {
+    app = app->get_subcommands().front();
+    name += " " + app->get_name();
+  }
+  return name;
+}
+
 int run(int argc, char** argv) {
   CLI::App program("Keeler simulates a self-gravitating patch of a planetary ring.", "keeler");
   program.set_version_flag("--version", "keeler " + program_version());
@@ -57,7 +67,7 @@ int run(int argc, char** argv) {
     program.exit(asked);
     return end_with(ExitCode::done);
   } catch (const CLI::ParseError& error) {
-    throw UsageError(fmt::format("{}; \"keeler --help\" lists what can be asked", error.what()));
+    throw UsageError(fmt::format("{}; \"{} --help\" lists what can be asked", error.what(), asked_command(program)));
   }
   if (!action)
     throw UsageError("no command is given; \"keeler --help\" lists the commands");

@@ -42,6 +42,19 @@ TuneSettings tolerances(const TuneOptions& options) {
   return settings;
 }
 
+// The text stays as it is, and files in it are relative to where it stands.
+void require_same_files(const std::string& text, const Scene& scene, const std::string& output) {
+  bool same = false;
+  try {
+    same = parse_scene(text, output).resolved == scene.resolved;
+  } catch (const UsageError&) { // a file is not there
+  }
+  if (!same)
+    throw UsageError(fmt::format("'{}' would not find the files that the scene names (their paths are relative to the "
+                                 "scene's folder); write it into that folder",
+                                 output));
+}
+
 void refuse_what_cannot_be_written(const TuneOptions& options) {
   if (!options.output)
     return;
@@ -79,6 +92,7 @@ nlohmann::ordered_json as_json(const Tuning& t, const std::vector<KeyChange>& ke
   for (const KickProbe& probe : t.kicks)
     json["kicks"].push_back({{"kick_interval_orbits", probe.interval},
                              {"unresolved_contacts_share", probe.unresolved},
+                             {"unresolved_contacts_share_error", probe.unresolved_error},
                              {"physics_error", probe.physics_error()}});
   json["steps"] = nlohmann::ordered_json::array();
   for (const StepProbe& probe : t.steps)
@@ -105,7 +119,7 @@ const char* mark(bool chosen) {
 }
 
 void print_text(const Tuning& t) {
-  fmt::print("{} in the state after {:g} orbits, one thread\n", counted(t.particles, "particle"), t.orbits);
+  fmt::print("{} in states up to {:.3g} orbits old, one thread\n", counted(t.particles, "particle"), t.orbits);
   if (!t.gravity.empty())
     fmt::print("\n{:<8}{:<22}{:>14}{:>18}\n", "solver", "settings", "force error", "ns a particle");
   for (std::size_t k = 0; k < t.gravity.size(); ++k)
@@ -114,7 +128,8 @@ void print_text(const Tuning& t) {
   if (!t.kicks.empty())
     fmt::print("\n{:<22}{:>22}{:>18}\n", "kick interval, orbits", "contacts by kicks", "loss over work");
   for (std::size_t k = 0; k < t.kicks.size(); ++k)
-    fmt::print("{:<22g}{:>20.2g} %{:>+16.2g} %{}\n", t.kicks[k].interval, 100.0 * t.kicks[k].unresolved,
+    fmt::print("{:<22g}{:>22}{:>+16.2g} %{}\n", t.kicks[k].interval,
+               fmt::format("{:.2g} +- {:.1g} %", 100.0 * t.kicks[k].unresolved, 100.0 * t.kicks[k].unresolved_error),
                100.0 * t.kicks[k].physics_error(), mark(k == t.chosen_kicks));
   fmt::print("\n{:<16}{:>16}{:>28}{:>28}\n", "step, orbits", "drifts a kick", "contacts a particle, drift",
              "processor s an orbit");
@@ -153,6 +168,8 @@ ExitCode tune_scene(const TuneOptions& options) {
   const Scene scene = options.scene.load();
   refuse_what_cannot_be_written(options);
   const std::string text = read_input(options.scene.path, options.scene.path);
+  if (options.output)
+    require_same_files(text, scene, *options.output);
   const Tuning tuning = measure(scene, settings);
   const std::vector<KeyChange> keys = chosen_keys(tuning, settings, scene);
   if (options.json)

@@ -11,9 +11,9 @@
 namespace keeler {
 namespace {
 
-constexpr double usual_hill = 0.94;    // where the intervals were measured
-constexpr double cheapest_drift = 0.3; // contacts that a particle has in it
-constexpr double longest_drift = 8e-3; // orbits; longer ones cost no less, even in a sparse patch
+constexpr double usual_hill = 0.94;                           // where the intervals were measured
+constexpr double cheapest_drift = 0.3;                        // contacts that a particle has in it
+constexpr double shortest_drift = 5e-4, longest_drift = 8e-3; // orbits; shorter and longer ones cost no less
 
 double contacts_an_orbit(const Scene& scene) {
   constexpr double in_wakes = 230.0, in_a_layer = 20.0; // of a state from a file
@@ -86,7 +86,7 @@ void resolve_times_of_quality(Scene& scene, Settings& settings) {
     return;
   const bool has_forces = scene.gravity || !scene.external_forces.empty();
   const double interval = has_forces ? kick_interval_of(*quality, scene) : longest_drift;
-  const double cheapest = std::min(longest_drift, cheapest_drift / contacts_an_orbit(scene));
+  const double cheapest = std::clamp(cheapest_drift / contacts_an_orbit(scene), shortest_drift, longest_drift);
   std::int64_t drifts = scene.gravity ? drifts_in(interval, cheapest) : 1;
   if (settings.given("time.step"))
     drifts = std::clamp<std::int64_t>(std::llround(interval / settings.number("time.step")), 1, 1000);

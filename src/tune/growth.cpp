@@ -10,6 +10,7 @@ namespace keeler {
 namespace {
 
 constexpr double force_error = 1e-2;
+constexpr int instants = 3; // of the last orbit, or of the last half of a shorter time
 
 // The same physics, to get somewhere.
 Scene coarse(Scene scene) {
@@ -29,30 +30,36 @@ std::uint64_t contacts_of(const Simulation& simulation) {
   return simulation.state().collisions.fast + simulation.state().collisions.slow;
 }
 
+// To a tick where the longest steps end: there the state stands with both halves of its kicks.
+void run_until(Simulation& simulation, double orbits, PhaseProgress& progress) {
+  while (simulation.orbits() < orbits || simulation.state().step % TimeSettings::longest != 0) {
+    const double before = simulation.orbits();
+    simulation.advance();
+    progress.add(simulation.orbits() - before);
+  }
+}
+
 } // namespace
 
 Growth grow(const Scene& scene, double orbits, PhaseProgress& progress) {
   progress.begin("the state that is probed", orbits);
   Simulation simulation(coarse(scene), initial_patch(scene));
   Growth growth;
-  const double last = std::max(0.0, orbits - 1.0), begin = bench_seconds();
+  const double last = std::min(1.0, 0.5 * orbits), begin = bench_seconds();
   double begin_last = begin, from = 0.0;
   std::uint64_t contacts = 0;
-  // to a tick where the longest steps end: there the state stands with both halves of its kicks
-  while (simulation.orbits() < orbits || simulation.state().step % TimeSettings::longest != 0) {
-    if (simulation.orbits() <= last) {
-      begin_last = bench_seconds();
-      from = simulation.orbits();
-      contacts = contacts_of(simulation);
-    }
-    const double before = simulation.orbits();
-    simulation.advance();
-    progress.add(simulation.orbits() - before);
+  for (int k = 0; k < instants; ++k) {
+    run_until(simulation, orbits - last * (instants - 1 - k) / (instants - 1), progress);
+    growth.states.push_back(simulation.patch());
+    if (k > 0)
+      continue;
+    begin_last = bench_seconds();
+    from = simulation.orbits();
+    contacts = contacts_of(simulation);
   }
-  growth.patch = simulation.patch();
   growth.orbits = simulation.orbits();
   const double time = growth.orbits - from,
-               particles = static_cast<double>(std::max<std::size_t>(1, growth.patch.size()));
+               particles = static_cast<double>(std::max<std::size_t>(1, growth.states.back().size()));
   growth.contact_rate = 2.0 * static_cast<double>(contacts_of(simulation) - contacts) / (particles * time);
   growth.seconds = bench_seconds() - begin;
   growth.seconds_at_end = (bench_seconds() - begin_last) / time;

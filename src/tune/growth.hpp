@@ -10,7 +10,7 @@
 namespace keeler {
 
 struct Growth {
-  Patch patch;
+  std::vector<Patch> states;   ///< of its last orbit, the last one at its end: in a small box wakes come and go
   double orbits = 0.0;         ///< its age
   double contact_rate = 0.0;   ///< of a particle, in the last orbit
   double seconds = 0.0;        ///< all of it; processor time on one thread, wall time on several

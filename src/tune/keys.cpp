@@ -23,10 +23,13 @@ void add_gravity(std::vector<KeyChange>& keys, const Tuning& tuning, const TuneS
   const std::string error =
       fmt::format("an rms force error of {} was measured (at most {}{})", per_cent(row.errors.rms),
                   per_cent(settings.force_error), tuning.meets_force_error ? "" : ", which nothing meets");
-  keys.push_back({"gravity.solver", fmt::format("\"{}\"", row.choice.solver), "tune: " + error});
   const bool tree = gravity.solver == Solver::tree, fft = gravity.solver == Solver::fft;
-  keys.push_back({"gravity.force_error", fft ? std::optional(with_point(gravity.force_error)) : std::nullopt, ""});
-  keys.push_back({"gravity.opening_angle", tree ? std::optional(with_point(gravity.opening_angle)) : std::nullopt, ""});
+  const std::string comment = "tune: " + error;
+  keys.push_back({"gravity.solver", fmt::format("\"{}\"", row.choice.solver), tree || fft ? "" : comment});
+  keys.push_back(
+      {"gravity.force_error", fft ? std::optional(with_point(gravity.force_error)) : std::nullopt, fft ? comment : ""});
+  keys.push_back({"gravity.opening_angle", tree ? std::optional(with_point(gravity.opening_angle)) : std::nullopt,
+                  tree ? comment : ""});
   keys.push_back({"gravity.mesh_spacing", std::nullopt, ""});
   if (fft) {
     keys.push_back({"gravity.images", std::nullopt, ""});
@@ -54,7 +57,7 @@ std::vector<KeyChange> chosen_keys(const Tuning& tuning, const TuneSettings& set
   }
   const StepProbe& step = tuning.steps[tuning.chosen_step];
   keys.push_back({"time.step", with_point(step.step),
-                  fmt::format("tune: {} processor seconds an orbit in the state after {:g} orbits, {} contacts a "
+                  fmt::format("tune: {} processor seconds an orbit in the state after {:.3g} orbits, {} contacts a "
                               "particle and drift",
                               figures(step.seconds, 2), tuning.orbits, figures(step.contacts, 2))});
   return keys;

@@ -3,19 +3,19 @@
 #include <keeler/bench/median.hpp>
 #include <keeler/bench/yardsticks.hpp>
 #include <keeler/core/threads.hpp>
+#include <keeler/diagnostics/scatter.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 namespace keeler {
 namespace {
 
-constexpr double settling = 0.05, counting = 0.25; // orbits of a probe of kicks
+constexpr double settling = 0.05, counting = 0.15; // orbits of a probe of kicks, from each state
 constexpr double untimed = 0.02, timed = 0.03;     // at least, of each lap of a probe of steps
 constexpr double enough_seconds = 0.15;            // of a lap
-constexpr int laps = 3;
+constexpr int laps = 3;                            // of a probe of threads
 
 std::uint64_t contacts_of(const CollisionTally& tally) {
   return tally.fast + tally.slow;
@@ -31,34 +31,23 @@ void run(Simulation& simulation, double orbits, int drifts) {
   while (simulation.orbits() < end);
 }
 
-// One candidate, which goes on from lap to lap.
-struct Candidate {
-  StepProbe probe;
-  std::unique_ptr<Simulation> simulation;
-  std::vector<double> seconds; // an orbit
-  std::uint64_t contacts = 0;
-  double orbits = 0.0;
-
-  void measure() {
-    const CollisionTally before = simulation->state().collisions;
-    const double start = bench_seconds(), from = simulation->orbits();
-    do
-      run(*simulation, timed, probe.drifts);
-    while (bench_seconds() - start < enough_seconds);
-    const double passed = simulation->orbits() - from;
-    seconds.push_back((bench_seconds() - start) / passed);
-    contacts += contacts_of(simulation->state().collisions) - contacts_of(before);
-    orbits += passed;
-  }
-
-  StepProbe result() const {
-    StepProbe done = probe;
-    done.seconds = median(seconds);
-    const double particles = static_cast<double>(std::max<std::size_t>(1, simulation->state().particles.size()));
-    done.contacts = 2.0 * static_cast<double>(contacts) * probe.step / (particles * orbits);
-    return done;
-  }
+// Seconds an orbit of one lap, and the contacts in it.
+struct Lap {
+  double seconds = 0.0, contacts = 0.0, orbits = 0.0;
 };
+
+Lap lap_of(const Scene& scene, const Patch& state, const StepProbe& probe) {
+  Simulation simulation(with_steps(scene, probe.step, probe.drifts), state);
+  run(simulation, untimed, probe.drifts);
+  const std::uint64_t before = contacts_of(simulation.state().collisions);
+  const double start = bench_seconds(), from = simulation.orbits();
+  do
+    run(simulation, timed, probe.drifts);
+  while (bench_seconds() - start < enough_seconds);
+  const double passed = simulation.orbits() - from;
+  return {(bench_seconds() - start) / passed, static_cast<double>(contacts_of(simulation.state().collisions) - before),
+          passed};
+}
 
 } // namespace
 
@@ -70,35 +59,36 @@ Scene with_steps(Scene scene, double step, int drifts) {
   return scene;
 }
 
-KickProbe probe_kicks(const Scene& scene, const Patch& patch, double interval, int drifts) {
-  Simulation simulation(with_steps(scene, interval / drifts, drifts), patch);
-  run(simulation, settling, drifts);
-  const CollisionTally before = simulation.state().collisions;
-  run(simulation, counting, drifts);
-  const CollisionTally after = simulation.state().collisions;
-  const auto contacts = static_cast<double>(contacts_of(after) - contacts_of(before));
-  return {interval, static_cast<double>(after.unresolved - before.unresolved) / std::max(1.0, contacts)};
+KickProbe probe_kicks(const Scene& scene, const std::vector<Patch>& states, double interval, int drifts) {
+  std::vector<double> shares;
+  for (const Patch& state : states) {
+    Simulation simulation(with_steps(scene, interval / drifts, drifts), state);
+    run(simulation, settling, drifts);
+    const CollisionTally before = simulation.state().collisions;
+    run(simulation, counting, drifts);
+    const CollisionTally after = simulation.state().collisions;
+    const auto contacts = static_cast<double>(contacts_of(after) - contacts_of(before));
+    shares.push_back(static_cast<double>(after.unresolved - before.unresolved) / std::max(1.0, contacts));
+  }
+  const Scatter scatter = scatter_of(shares);
+  return {interval, scatter.mean, scatter.deviation / std::sqrt(static_cast<double>(states.size()))};
 }
 
-std::vector<StepProbe> probe_steps(const Scene& scene, const Patch& patch, double interval,
+std::vector<StepProbe> probe_steps(const Scene& scene, const std::vector<Patch>& states, double interval,
                                    const std::vector<int>& drifts, PhaseProgress& progress) {
-  progress.begin("steps", static_cast<double>(drifts.size()) * (laps + 1));
-  std::vector<Candidate> candidates;
-  for (const int count : drifts) {
-    Candidate& added = candidates.emplace_back();
-    added.probe = {interval / count, count};
-    added.simulation = std::make_unique<Simulation>(with_steps(scene, interval / count, count), patch);
-    run(*added.simulation, untimed, count);
-    progress.add(1.0);
-  }
-  for (int lap = 0; lap < laps; ++lap)
-    for (Candidate& candidate : candidates) {
-      candidate.measure();
+  progress.begin("steps", static_cast<double>(drifts.size() * states.size()));
+  std::vector<StepProbe> probes;
+  for (const int count : drifts)
+    probes.push_back({interval / count, count, 0.0, 0.0});
+  const double particles = static_cast<double>(std::max<std::size_t>(1, states.back().size()));
+  const double share = 1.0 / static_cast<double>(states.size());
+  for (const Patch& state : states)
+    for (StepProbe& probe : probes) {
+      const Lap lap = lap_of(scene, state, probe);
+      probe.seconds += share * lap.seconds;
+      probe.contacts += share * 2.0 * lap.contacts * probe.step / (particles * lap.orbits);
       progress.add(1.0);
     }
-  std::vector<StepProbe> probes;
-  for (const Candidate& candidate : candidates)
-    probes.push_back(candidate.result());
   return probes;
 }
 

@@ -1,4 +1,4 @@
-// Short runs from one state: what a kick interval makes, what a step costs, what threads gain.
+// Short runs from the states of a growth: what a kick interval makes, what a step costs, what threads gain.
 #pragma once
 
 #include <keeler/core/phase_progress.hpp>
@@ -12,11 +12,11 @@ namespace keeler {
 /// The scene with another step and kick interval, which without self-gravity is the step.
 Scene with_steps(Scene scene, double step, int drifts);
 
-/// Over a quarter of an orbit.
-KickProbe probe_kicks(const Scene& scene, const Patch& patch, double interval, int drifts);
+/// A sixth of an orbit from each state.
+KickProbe probe_kicks(const Scene& scene, const std::vector<Patch>& states, double interval, int drifts);
 
-/// Of the kick interval divided into so many drifts each, in turns.
-std::vector<StepProbe> probe_steps(const Scene& scene, const Patch& patch, double interval,
+/// Of the kick interval divided into so many drifts each, in turns, from each state.
+std::vector<StepProbe> probe_steps(const Scene& scene, const std::vector<Patch>& states, double interval,
                                    const std::vector<int>& drifts, PhaseProgress& progress);
 
 /// On 1, 2, 4 … threads and the most.

@@ -24,8 +24,9 @@ struct TuneSettings {
 
 /// What a kick interval makes.
 struct KickProbe {
-  double interval = 0.0;   ///< orbits
-  double unresolved = 0.0; ///< share of the contacts that are slower than a kick of the pair's own gravity
+  double interval = 0.0;         ///< orbits
+  double unresolved = 0.0;       ///< share of the contacts that are slower than a kick of the pair's own gravity
+  double unresolved_error = 0.0; ///< standard error, by the scatter of the states that were probed
 
   /// What the loss exceeds the work by, as measured in wakes (docs/dev/step.md).
   double physics_error() const { return 1.25 * unresolved; }
@@ -36,7 +37,7 @@ struct StepProbe {
   double step = 0.0;     ///< orbits
   int drifts = 1;        ///< a kick
   double contacts = 0.0; ///< a particle and drift
-  double seconds = 0.0;  ///< of the processor, an orbit: median of three, in turns with the others
+  double seconds = 0.0;  ///< of the processor, an orbit: mean over the states, in turns with the others
 };
 
 struct ThreadProbe {
@@ -46,7 +47,7 @@ struct ThreadProbe {
 
 struct Tuning {
   std::size_t particles = 0;
-  double orbits = 0.0; ///< the state's age
+  double orbits = 0.0; ///< the age of the last of the states that were probed
 
   std::vector<GravityBenchRow> gravity; ///< empty without self-gravity
   std::size_t chosen_gravity = 0;

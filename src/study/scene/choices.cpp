@@ -32,14 +32,23 @@ StudyChoice automatic_step(const Scene& scene, const std::string& name) {
   return choice;
 }
 
+// The scene's own value among those of the study, in their order.
+void add_own(std::vector<double>& values, double own) {
+  const auto same = [&](double value) { return std::fabs(value - own) < 1e-6 * own; };
+  if (std::none_of(values.begin(), values.end(), same))
+    values.insert(std::upper_bound(values.begin(), values.end(), own), own);
+}
+
 StudyChoices step_choices(const Scene& scene, bool quick) {
   const double interval = !scene.gravity         ? 0.0
                           : scene.time.automatic ? automatic_kick
                                                  : scene.time.step * scene.gravity->kick_every;
   StudyChoices all{{}, 0};
-  for (const double step : quick ? std::vector{1.0, 4.0} : std::vector{0.25, 0.5, 1.0, 2.0, 4.0, 8.0})
-    all.choices.push_back(
-        {fmt::format("step-{:g}", step * thousandth), step_overrides(scene, kicks_of(step * thousandth, interval))});
+  std::vector<double> steps = quick ? std::vector{1e-3, 4e-3} : std::vector{0.25e-3, 0.5e-3, 1e-3, 2e-3, 4e-3, 8e-3};
+  if (!scene.time.automatic)
+    add_own(steps, scene.time.step);
+  for (const double step : steps)
+    all.choices.push_back({fmt::format("step-{:g}", step), step_overrides(scene, kicks_of(step, interval))});
   all.choices.push_back(automatic_step(scene, "step-auto"));
   return all;
 }
@@ -50,10 +59,11 @@ StudyChoices kick_choices(const Scene& scene, bool quick) {
                      "\"keeler study step\"");
   const double longest = scene.time.automatic ? thousandth : scene.time.step;
   StudyChoices all{{}, 0};
-  for (const int length : quick ? std::vector{1, 8} : std::vector{1, 2, 4, 8, 16}) {
-    const double interval = length * thousandth;
+  std::vector<double> intervals = quick ? std::vector{1e-3, 8e-3} : std::vector{1e-3, 2e-3, 4e-3, 8e-3, 16e-3};
+  if (!scene.time.automatic)
+    add_own(intervals, scene.time.step * scene.gravity->kick_every);
+  for (const double interval : intervals)
     all.choices.push_back({fmt::format("kick-{:g}", interval), step_overrides(scene, steps_in(interval, longest))});
-  }
   all.choices.push_back(automatic_step(scene, "kick-auto"));
   return all;
 }
@@ -74,7 +84,7 @@ StudyChoices mesh_choices(const Scene& scene, bool quick) {
 
 StudyChoices box_choices(const Scene& scene, bool quick) {
   StudyChoices all;
-  for (const double factor : quick ? std::vector{0.7, 1.0} : std::vector{0.5, 0.7, 1.0, 1.4, 2.0}) {
+  for (const double factor : quick ? std::vector{0.7, 1.0, 1.4} : std::vector{0.5, 0.7, 1.0, 1.4, 2.0}) {
     const auto count = std::llround(static_cast<double>(scene.particles.count) * factor * factor);
     if (count > 0)
       all.choices.push_back({fmt::format("box-{:g}", factor),

@@ -48,11 +48,12 @@ std::string in_orbits(double orbits) {
 
 std::string how_started(const StudyPlan& plan) {
   if (shares_start(plan.kind))
-    return fmt::format("Each of {} grows one state, {} from the scene's own start. All settings go on from the "
-                       "state of their seed for {} and are measured from orbit {:g} of these on. Contacts make "
-                       "runs of one state independent within a fraction of an orbit, so they are compared as "
-                       "independent ones.",
-                       counted(plan.seeds, "seed"), in_orbits(plan.grow_orbits), in_orbits(plan.orbits), plan.since());
+    return fmt::format(
+        "Each of {} grows one state, {} from the scene's own start. All settings go on from the "
+        "state of their seed for {} and are measured from orbit {:g} of these on. Runs of a seed are "
+        "compared as if they were independent. Contacts make them so in dense rings; where these are few, "
+        "runs stay alike and the intervals of differences are wider than they need be.",
+        counted(plan.seeds, "seed"), in_orbits(plan.grow_orbits), in_orbits(plan.orbits), plan.since());
   return fmt::format("The setting changes the state itself, so there is no common one: each run has the scene's own "
                      "start and ends at orbit {:g}, measured from orbit {:g} on. There are {} of each.",
                      plan.end(), plan.since(), counted(plan.seeds, "seed"));
@@ -161,6 +162,10 @@ void write_study_report(const StudyPlan& plan, const std::vector<SettingRun>& ru
   Document document(fmt::format("Study of the {} of {}", name_of(plan.kind), plan.scene_name));
   introduce(plan, made, document);
   document.heading("Verdict");
+  if (plan.quick)
+    document.paragraph(
+        "**This was a quick look**: few settings, few seeds, short runs. It shows what is plainly wrong; to "
+        "choose by it, leave `--quick` out.");
   document.paragraph(verdict_text(means));
   if (const std::string missed = sensitivity_text(means); !missed.empty())
     document.paragraph(missed);

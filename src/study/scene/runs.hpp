@@ -18,6 +18,7 @@ struct StudyPlan {
   std::string scene_name; ///< for messages
   Scene scene;
   StudyChoices choices;
+  bool quick = false;
   std::size_t seeds = 3;
   double grow_orbits = 0.0, orbits = 0.0;
 

@@ -111,10 +111,11 @@ std::string verdict_text(const StudyMeans& means) {
                        "physics within the scatter.",
                        reference, cost);
   else
-    text = fmt::format("**Verdict**: the cheapest setting that cannot be told from the most accurate one, `{}`, is "
-                       "`{}`: {}, {} times the speed.",
-                       reference, means.settings[*best].name, cost,
-                       figures(cost_of(means, means.reference) / cost_of(means, *best), 3)) +
+    text = fmt::format(
+               "**Verdict**: the cheapest setting whose loss over stress is within {:g} % of that of the most accurate "
+               "one, `{}`, and whose other means cannot be told from its, is `{}`: {}, {} times the speed.",
+               100.0 * balance_tolerance, reference, means.settings[*best].name, cost,
+               figures(cost_of(means, means.reference) / cost_of(means, *best), 3)) +
            balance_words(verdict_on(means, *best));
   return text + refused_words(means, *best) + chance_words(means);
 }
