@@ -35,10 +35,10 @@ for name in report.md report.html study.csv settings.csv figures; do
   prints "study" "$work/whole/$name"
   [ -e "$work/whole/$name" ] || fail "no $name"
 done
-[ "$(wc -l <"$work/whole/study.csv")" -eq 7 ] || fail "study.csv: $(cut -c 1-100 "$work/whole/study.csv")"
-[ "$(wc -l <"$work/whole/settings.csv")" -eq 4 ] || fail "settings.csv: $(cut -c 1-100 "$work/whole/settings.csv")"
+[ "$(wc -l <"$work/whole/study.csv")" -eq 9 ] || fail "study.csv: $(cut -c 1-100 "$work/whole/study.csv")"
+[ "$(wc -l <"$work/whole/settings.csv")" -eq 5 ] || fail "settings.csv: $(cut -c 1-100 "$work/whole/settings.csv")"
 [ "$(column reference 2 "$work/whole/settings.csv")" = true ] || fail "the shortest interval is not the reference"
-[ "$(column kick_interval_orbits 3 "$work/whole/settings.csv")" = 0.008 ] || fail "no interval of 8/1000"
+[ "$(column kick_interval_orbits 4 "$work/whole/settings.csv")" = 0.008 ] || fail "no interval of 8/1000"
 for words in "**Verdict**" "could not have seen" "Cost and health" "kick-auto" "vertical transmission"; do
   grep -qF "$words" "$work/whole/report.md" || fail "the report has no '$words'"
 done
