@@ -28,7 +28,7 @@ grep -qF '"sizes": "moonlet"' "$work/out" || fail "bench: no moonlet in: $(cat "
 refuses "too few for a moonlet" "raise --count" bench drift --count 500 --sizes moonlet
 refuses "unknown sizes" "--sizes" bench drift --sizes huge
 refuses "an unknown finder" "'guess'" bench drift --finder guess
-refuses "bench without a kernel" "keeler --help" bench
+refuses "bench without a kernel" "keeler bench --help" bench
 refuses "no particles" "--count" bench drift --count 0
 
 runs 0 bench gravity --count 100 --state uniform --repeats 1 --json
