@@ -103,7 +103,7 @@ void OptimisticLoop::run(std::size_t round, Domain& domain) {
     std::sort(domain.barred.begin(), domain.barred.end(),
               [](const Barred& a, const Barred& b) { return a.time < b.time; });
     domain.events.assign(domain.given);
-    domain.changes.reserve(5 * domain.given.size() / 2);
+    domain.changes.reserve(9 * domain.given.size() / 4);
     ContactLoop loop(*step_, orbits, domain.events);
     if (orbits.is_last()) {
       for (std::size_t s = 0; s + 1 < domains_.size(); ++s)

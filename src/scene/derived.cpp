@@ -14,7 +14,7 @@ namespace {
 namespace cost {
 constexpr double program_bytes = 33e6;  // code, libraries, buffers that do not grow with N
 constexpr double file_bytes = 260.0;    // files are built in memory before they are written
-constexpr double drift_bytes = 590.0;   // lines, cells, lists, stamps, what threads note: at most 670 with state
+constexpr double drift_bytes = 580.0;   // lines, cells, lists, stamps, what threads note: at most 660 with state
 constexpr double tree_node_bytes = 120; // box, mass, centre, quadrupole, links
 constexpr double nodes_per_particle = 0.5;
 constexpr double mesh_bytes = 150.0; // some ten nodes a particle in a layer of ten radii, and the places

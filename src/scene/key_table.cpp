@@ -1,0 +1,360 @@
+#include "key_table.hpp"
+
+#include "presets.hpp"
+
+#include <keeler/collision/restitution.hpp>
+#include <keeler/contacts/finders.hpp>
+#include <keeler/forces/self_gravity.hpp>
+#include <keeler/particles/sizes.hpp>
+#include <keeler/scene/quality.hpp>
+
+namespace keeler {
+namespace {
+
+KeyRange up_to(double high) {
+  return {.low = 0, .high = high, .low_open = true};
+}
+
+// Ranges are wide, so that only slips of units lie outside: orbits of ten minutes to 20 years, patches up to a tenth of
+// a ring's distance from its planet (1e8 m), materials up to the densest metals, motions up to 1000 times the shear
+// across a particle, v_cut up to where a rebound would heat (it is at least v_cut / 1000), steps up to 0.3 orbit
+// (without forces a drift is exact, however long).
+
+std::vector<std::string> finder_names() {
+  std::vector<std::string> names;
+  for (const FinderEntry& finder : finder_table())
+    names.emplace_back(finder.name);
+  return names;
+}
+
+std::vector<std::string> quality_names() {
+  std::vector<std::string> names = {"custom"};
+  for (const Quality& quality : qualities)
+    names.emplace_back(quality.name);
+  return names;
+}
+
+// The keys of the entries of a registry of laws, of which the scene names one.
+template<class Entry>
+void add_laws(std::vector<Key>& keys, Key law, const std::string& section, const std::vector<Entry>& entries) {
+  law.path = section + ".law";
+  for (const Entry& entry : entries)
+    law.choices.emplace_back(entry.name);
+  keys.push_back(law);
+  for (const Entry& entry : entries)
+    for (Key key : entry.keys) {
+      key.path = section + "." + key.path;
+      key.only_with = {law.path, {entry.name}};
+      keys.push_back(key);
+    }
+}
+
+// The keys of a force, whose paths and conditions are relative to its table.
+void add_table(std::vector<Key>& keys, const std::string& table, const std::vector<Key>& own) {
+  for (Key key : own) {
+    key.path = table + "." + key.path;
+    if (!key.only_with.key.empty())
+      key.only_with.key = table + "." + key.only_with.key;
+    keys.push_back(key);
+  }
+}
+
+std::vector<Key> patch_keys() {
+  using enum KeyType;
+  using enum KeyEffect;
+  return {
+      {.path = "title",
+       .type = text,
+       .fallback = "\"\"",
+       .meaning = "a name for reports and pictures",
+       .effect = output},
+      {.path = "quality",
+       .type = choice,
+       .fallback = "\"custom\"",
+       .meaning = "how accurate steps, kicks and gravity are where their own keys do not say it",
+       .choices = quality_names(),
+       .effect = output},
+
+      {.path = "planet.preset",
+       .type = choice,
+       .example = "\"saturn-a-ring\"",
+       .meaning = "a place whose three frequencies are known",
+       .choices = preset_names(),
+       .alternatives = {"planet.orbital_frequency"}},
+      {.path = "planet.orbital_frequency",
+       .type = number,
+       .example = "1.3175e-4",
+       .unit = "rad/s",
+       .meaning = "orbital frequency Omega",
+       .range = {.low = 1e-8, .high = 1e-2},
+       .alternatives = {"planet.preset"}},
+      {.path = "planet.epicyclic_ratio",
+       .type = number,
+       .fallback = "1.0",
+       .unit = "Omega",
+       .meaning = "epicyclic frequency kappa",
+       .range = {.low = 0.1, .high = 2, .low_open = true, .high_open = true},
+       .only_with = {"planet.orbital_frequency", {}}},
+      {.path = "planet.vertical_ratio",
+       .type = number,
+       .fallback = "1.0",
+       .unit = "Omega",
+       .meaning = "vertical frequency nu",
+       .range = {.low = 0.1, .high = 100},
+       .only_with = {"planet.orbital_frequency", {}}},
+
+      {.path = "box.size",
+       .type = pair,
+       .example = "[245.0, 245.0]",
+       .unit = "m",
+       .meaning = "radial and azimuthal size of the patch",
+       .range = up_to(1e7),
+       .alternatives = {"box.size_in_wavelengths"},
+       .effect = start},
+      {.path = "box.size_in_wavelengths",
+       .type = pair,
+       .example = "[4, 4]",
+       .unit = "lambda_cr",
+       .meaning = "the size in Toomre wavelengths 4 pi^2 G Sigma / kappa^2",
+       .range = up_to(1e4),
+       .alternatives = {"box.size"},
+       .effect = start},
+
+      {.path = "particles.optical_depth",
+       .type = number,
+       .example = "0.5",
+       .unit = "1",
+       .meaning = "geometric optical depth, which sets the number of particles",
+       .range = up_to(100),
+       .alternatives = {"particles.surface_density", "particles.count"},
+       .effect = start},
+      {.path = "particles.surface_density",
+       .type = number,
+       .example = "400.0",
+       .unit = "kg/m^2",
+       .meaning = "surface density, which sets the number of particles",
+       .range = up_to(1e6),
+       .alternatives = {"particles.optical_depth", "particles.count"},
+       .effect = start},
+      {.path = "particles.count",
+       .type = integer,
+       .example = "10000",
+       .unit = "1",
+       .meaning = "number of particles",
+       .range = {.low = 1, .high = 1e9},
+       .alternatives = {"particles.optical_depth", "particles.surface_density"},
+       .effect = start},
+      {.path = "particles.density",
+       .type = number,
+       .example = "600.0",
+       .unit = "kg/m^3",
+       .meaning = "density of the particles' material",
+       .range = {.low = 1e-2, .high = 3e4},
+       .effect = start},
+      {.path = "particles.velocity_dispersion",
+       .type = number,
+       .fallback = "2.0",
+       .unit = "mean r Omega",
+       .meaning = "radial velocity dispersion at the start",
+       .range = up_to(1000),
+       .effect = start},
+      {.path = "particles.seed",
+       .type = integer,
+       .fallback = "1",
+       .unit = "1",
+       .meaning = "seed of all random numbers",
+       .range = KeyRange::at_least(0)},
+  };
+}
+
+std::vector<Key> streamline_keys() {
+  using enum KeyType;
+  using enum KeyEffect;
+  return {
+      {.path = "particles.streamlines.waves",
+       .type = integer,
+       .example = "1",
+       .unit = "1",
+       .meaning = "waves in the box of a pattern in the eccentricity vectors: phases at the start are 2 pi n X / L_x",
+       .range = {.low = 1, .high = 1000},
+       .effect = start},
+      {.path = "particles.streamlines.bunching",
+       .type = number,
+       .example = "0.6",
+       .unit = "1",
+       .meaning = "q = (2 pi n / L_x) e of that pattern: streamlines bunch to 1 - q of their spacing once an orbit",
+       .range = {.low = 0, .high = 0.9},
+       .effect = start},
+      {.path = "particles.streamlines.inclination",
+       .type = number,
+       .fallback = "0.0",
+       .unit = "mean r",
+       .meaning = "inclination common to all particles, which swing up and down together; rising at the start",
+       .range = {.low = 0, .high = 1000},
+       .effect = start},
+  };
+}
+
+std::vector<Key> mode_keys() {
+  const auto key = [](const char* name, const char* meaning) {
+    return Key{.path = std::string("particles.modes.") + name,
+               .type = KeyType::rows,
+               .fallback = "[]",
+               .meaning = meaning,
+               .columns = {"waves in the box", "amplitude of the relative surface density",
+                           "phase in degrees, with a crest at x = -phase/k"},
+               .effect = KeyEffect::start};
+  };
+  return {key("outward", "epicyclic waves along the radius at the start that travel outward"),
+          key("inward", "the same, inward"),
+          key("standing", "the same, standing; their density is largest at the start")};
+}
+
+std::vector<Key> collision_keys() {
+  using enum KeyType;
+  return {
+      {.path = "collisions.finder",
+       .type = choice,
+       .fallback = "\"certified\"",
+       .meaning = "how the times of contact are found",
+       .choices = finder_names()},
+      {.path = "collisions.elastic_below",
+       .type = number,
+       .fallback = "1e-2",
+       .unit = "(r_i + r_j) Omega / 2",
+       .meaning = "contacts slower than this bounce elastically, which ends inelastic collapse",
+       .range = {.low = 0, .high = 100}},
+  };
+}
+
+std::vector<Key> course_keys() {
+  using enum KeyType;
+  using enum KeyEffect;
+  return {
+      {.path = "start.from",
+       .type = path,
+       .example = "\"wakes.hdf\"",
+       .meaning = "snapshot to start from, relative to the scene file; without [start] the patch is fresh",
+       .effect = start},
+
+      {.path = "time.step",
+       .type = number,
+       .fallback = "1e-3",
+       .unit = "orbits",
+       .meaning = "length of a step; with \"auto\" it follows the state",
+       .range = {.low = 1e-9, .high = 0.3},
+       .choices = {"auto"}},
+      {.path = "time.end",
+       .type = number,
+       .example = "3.0",
+       .unit = "orbits",
+       .meaning = "length of the run, rounded to whole kicks",
+       .range = KeyRange::above(0),
+       .effect = output},
+
+      {.path = "output.series_every",
+       .type = number,
+       .fallback = "0.02",
+       .unit = "orbits",
+       .meaning = "time between rows of series.csv, rounded to whole kicks; 0: only one at the start",
+       .range = KeyRange::at_least(0),
+       .effect = output},
+      {.path = "output.stress_every",
+       .type = number,
+       .fallback = "0.1",
+       .unit = "orbits",
+       .meaning = "time between rows of series.csv with the potential energy and the gravitational viscosity; 0: none",
+       .range = KeyRange::at_least(0),
+       .effect = output},
+      {.path = "output.snapshot_every",
+       .type = number,
+       .fallback = "0.0",
+       .unit = "orbits",
+       .meaning = "time between snapshots, rounded to whole kicks; 0: only at start and end",
+       .range = KeyRange::at_least(0),
+       .effect = output},
+      {.path = "output.checkpoint_every",
+       .type = number,
+       .fallback = "0.0",
+       .unit = "orbits",
+       .meaning = "time between checkpoints, rounded to whole kicks; 0: only those below, at the end and at a stop",
+       .range = KeyRange::at_least(0),
+       .effect = output},
+      {.path = "output.checkpoint_every_minutes",
+       .type = number,
+       .fallback = "10.0",
+       .unit = "minutes",
+       .meaning = "wall time between checkpoints, besides those by checkpoint_every; 0: none by the clock",
+       .range = KeyRange::at_least(0),
+       .effect = output},
+
+      {.path = "output.collisions.min_speed",
+       .type = number,
+       .fallback = "0.0",
+       .unit = "m/s",
+       .meaning = "contacts with at least this normal speed are logged",
+       .range = KeyRange::at_least(0),
+       .effect = output},
+      {.path = "output.collisions.min_radius_sum",
+       .type = number,
+       .fallback = "0.0",
+       .unit = "m",
+       .meaning = "contacts of two particles whose radii sum up to at least this are logged",
+       .range = KeyRange::at_least(0),
+       .effect = output},
+      {.path = "output.collisions.share",
+       .type = number,
+       .fallback = "1.0",
+       .unit = "1",
+       .meaning = "share of these contacts that is logged, drawn by a hash",
+       .range = up_to(1),
+       .effect = output},
+  };
+}
+
+} // namespace
+
+std::vector<Key> make_keys() {
+  std::vector<Key> keys = patch_keys();
+  const auto add = [&](const std::vector<Key>& more) { keys.insert(keys.end(), more.begin(), more.end()); };
+  add_laws(keys,
+           {.type = KeyType::choice,
+            .example = "\"equal\"",
+            .meaning = "how sizes are distributed",
+            .effect = KeyEffect::start},
+           "particles.sizes", size_laws());
+  add(streamline_keys());
+  add(mode_keys());
+  add(collision_keys());
+  add_laws(keys,
+           {.type = KeyType::choice, .fallback = "\"bridges\"", .meaning = "how much normal speed a bounce keeps"},
+           "collisions.restitution", restitution_laws());
+  add_table(keys, "gravity", gravity_keys());
+  for (const ForceEntry& force : external_forces())
+    add_table(keys, force.table, force.keys);
+  add(course_keys());
+  return keys;
+}
+
+std::vector<Section> make_sections() {
+  std::vector<Section> sections = {
+      {.path = "planet", .needed = true, .meaning = "it says where the patch orbits"},
+      {.path = "box", .needed = true, .meaning = "it says how large the patch is", .replaced_by = "start.from"},
+      {.path = "particles", .needed = true, .meaning = "it says what is in the patch", .replaced_by = "start.from"},
+      {.path = "particles.sizes", .needed = true, .meaning = "it says how large they are", .replaced_by = "start.from"},
+      {.path = "particles.streamlines", .replaced_by = "start.from"},
+      {.path = "particles.modes", .replaced_by = "start.from"},
+      {.path = "collisions"},
+      {.path = "collisions.restitution"},
+      {.path = "gravity"},
+      {.path = "start"},
+      {.path = "time", .needed = true, .meaning = "it says how long the run is"},
+      {.path = "output"},
+      {.path = "output.collisions"},
+  };
+  for (const ForceEntry& force : external_forces())
+    sections.push_back({.path = force.table});
+  return sections;
+}
+
+} // namespace keeler
