@@ -2,6 +2,7 @@
 
 #include <keeler/simulation/simulation.hpp>
 #include <keeler/states/initial.hpp>
+#include <keeler/states/tiled.hpp>
 
 #include <fmt/format.h>
 
@@ -74,7 +75,7 @@ BenchState gravity_state(std::size_t count, GravityState kind, PhaseProgress& pr
   BenchState state{a_ring_scene(static_cast<std::size_t>(tile_count), 1), {}};
   state.patch = clumped ? evolved_with_gravity(state.scene, clumping_orbits, progress) : initial_patch(state.scene);
   if (side > 1.0)
-    state.patch = tiled(state.patch, static_cast<int>(side));
+    state.patch = tiled_patch(state.patch, static_cast<std::size_t>(side), static_cast<std::size_t>(side));
   return state;
 }
 

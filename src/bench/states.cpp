@@ -5,6 +5,7 @@
 #include <keeler/scene/derived.hpp>
 #include <keeler/simulation/simulation.hpp>
 #include <keeler/states/initial.hpp>
+#include <keeler/states/tiled.hpp>
 
 #include <fmt/format.h>
 
@@ -107,29 +108,6 @@ double middle_distance(const Patch& patch, std::size_t k) {
 
 } // namespace
 
-Patch tiled(const Patch& tile, int side) {
-  const Particles one = particles_from(tile, 0.0);
-  ShearingBox box = tile.box;
-  box.size_x *= side;
-  box.size_y *= side;
-  box.first_offset = side * tile.offset;
-  Particles all;
-  for (int nx = 0; nx < side; ++nx)
-    for (int ny = 0; ny < side; ++ny)
-      for (std::size_t k = 0; k < one.size(); ++k) {
-        Body body = one.bodies[k];
-        const Elements el = tile.box.image_of(body.elements, {nx, ny}, tile.offset);
-        body.elements =
-            box.image_of(el, box.image_into_cell(el.guiding_x, el.guiding_y, box.first_offset), box.first_offset);
-        all.ids.push_back(all.size());
-        all.bodies.push_back(body);
-      }
-  Patch patch = make_patch(all, box, box.first_offset, tile.frequencies, 0.0);
-  patch.orbital_frequency = tile.orbital_frequency;
-  patch.time_orbits = tile.time_orbits;
-  return patch;
-}
-
 Patch with_moonlet(const Patch& patch, double radius) {
   constexpr double clearance = 1e-6; // of the contact
   const double density = patch.masses.front() / std::pow(patch.radii.front(), 3);
@@ -169,7 +147,7 @@ BenchState bench_state(const DriftBenchSettings& settings, PhaseProgress& progre
   progress.begin("preparing an equilibrium", particle_orbits / recipe.step);
   state.patch = evolved(state.scene, initial_patch(state.scene), recipe.orbits, recipe.step, progress);
   if (side > 1.0)
-    state.patch = tiled(state.patch, static_cast<int>(side));
+    state.patch = tiled_patch(state.patch, static_cast<std::size_t>(side), static_cast<std::size_t>(side));
   if (moonlet)
     state.patch =
         evolved(state.scene, with_moonlet(state.patch, moonlet_radius), moonlet_orbits, recipe.step, progress);

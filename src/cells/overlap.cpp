@@ -1,7 +1,10 @@
 #include <keeler/cells/overlap.hpp>
 
 #include <keeler/cells/grid.hpp>
+#include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
+
+#include <fmt/format.h>
 
 #include <numeric>
 
@@ -49,6 +52,14 @@ Overlap largest_overlap(const Patch& patch) {
     if (candidate.depth > 0.0 && deeper(candidate, result))
       result = candidate;
   return result;
+}
+
+void require_apart(const Patch& patch, const std::string& state) {
+  const Overlap overlap = largest_overlap(patch);
+  if (overlap.depth > allowed_overlap)
+    throw InvariantError(fmt::format("particles {} and {} of {} overlap by {:.2e} of their radius sum; start from a "
+                                     "state without overlaps",
+                                     overlap.id_i, overlap.id_j, state, overlap.depth));
 }
 
 } // namespace keeler

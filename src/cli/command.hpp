@@ -26,6 +26,7 @@ void add_render(CLI::App& program, Action& action);
 void add_bench(CLI::App& program, Action& action);
 void add_study(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
 void add_sweep(CLI::App& program, Action& action);
+void add_tile(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
 void add_tune(CLI::App& program, Action& action);
 
 } // namespace keeler

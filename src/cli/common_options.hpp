@@ -7,6 +7,7 @@
 #include <keeler/files/files.hpp>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -33,6 +34,18 @@ inline CLI::Validator number_between(double low, double high, const std::string&
     return *end == '\0' && end != text.c_str() && value >= low && value <= high
                ? std::string()
                : "'" + text + "' is not " + what + " from " + figures(low) + " to " + figures(high);
+  };
+  return CLI::Validator(refusal, "");
+}
+
+/// The same for whole numbers.
+inline CLI::Validator whole_number_between(long low, long high, const std::string& what) {
+  const auto refusal = [=](const std::string& text) {
+    char* end = nullptr;
+    const long value = std::strtol(text.c_str(), &end, 10);
+    return *end == '\0' && end != text.c_str() && value >= low && value <= high
+               ? std::string()
+               : fmt::format("'{}' is not {} from {} to {}", text, what, low, high);
   };
   return CLI::Validator(refusal, "");
 }

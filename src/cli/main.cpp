@@ -52,6 +52,7 @@ int run(int argc, char** argv) {
   const std::vector<std::string> arguments(argv, argv + argc);
   add_check(program, action);
   add_generate(program, action, arguments);
+  add_tile(program, action, arguments);
   add_run(program, action, arguments);
   add_resume(program, action, arguments);
   add_info(program, action);

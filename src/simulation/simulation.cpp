@@ -17,7 +17,6 @@ namespace keeler {
 namespace {
 
 constexpr double sorting_interval = 0.1; // orbits
-constexpr double allowed_overlap = 1e-8; // of a radius sum: where the inexact finders call a root; not what they miss
 
 // What a kick of all particles did to the energy.
 struct KickSums {
@@ -32,11 +31,7 @@ struct KickSums {
 
 SimulationState first_state(const Scene& scene, const Patch& start) {
   require_sound(start);
-  const Overlap overlap = largest_overlap(start);
-  if (overlap.depth > allowed_overlap)
-    throw InvariantError(fmt::format("particles {} and {} of the initial state overlap by {:.2e} of their radius sum; "
-                                     "start from a state without overlaps",
-                                     overlap.id_i, overlap.id_j, overlap.depth));
+  require_apart(start, "the initial state");
   const double largest = start.size() ? *std::max_element(start.radii.begin(), start.radii.end()) : 0.0;
   if (!(std::min(start.box.size_x, start.box.size_y) >= 2.0 * largest))
     throw UsageError(

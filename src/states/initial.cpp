@@ -121,6 +121,7 @@ Patch patch_from_snapshot(Patch patch, const std::string& path, const Scene& sce
   patch.frequencies = scene.planet.frequencies;
   patch.box.shear = scene.planet.frequencies.shear();
   patch.time_orbits = 0.0;
+  patch.box.first_offset = patch.offset;
   return patch;
 }
 

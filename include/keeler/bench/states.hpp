@@ -1,8 +1,7 @@
 // The states that benches time: patches near their collisional equilibrium without gravity, without overlaps.
 //
-// A large state is a small one side by side with copies of itself. That is exact: images (n, m) of a tile in the
-// shearing box stand at (n L_x, m L_y − n d), so those with 0 <= n, m < k fill a box of k L_x × k L_y whose offset is
-// k d, now and at all later times. Its particles meet as those of the tile do, until rounding tells them apart.
+// A large state is a small one side by side with copies of itself (states/tiled.hpp). Its particles meet as those of the
+// small one do, until rounding tells them apart.
 #pragma once
 
 #include <keeler/bench/drift.hpp>
@@ -21,10 +20,6 @@ struct BenchState {
 
 /// Throws UsageError for an unknown finder or an impossible patch.
 BenchState bench_state(const DriftBenchSettings& settings, PhaseProgress& progress);
-
-/// side × side copies of a patch; copy c of particle k has id c N + k. The particles of each copy stand together in
-/// memory.
-Patch tiled(const Patch& tile, int side);
 
 /// Puts a sphere of the same density at rest into the middle, in place of all particles that it touches; it gets the
 /// last id. The box must be wider than 2 (radius + the largest radius).

@@ -4,6 +4,7 @@
 #include <keeler/particles/patch.hpp>
 
 #include <cstdint>
+#include <string>
 
 namespace keeler {
 
@@ -15,5 +16,12 @@ struct Overlap {
 
 /// Over all pairs and images of a patch.
 Overlap largest_overlap(const Patch& patch);
+
+/// An overlap from which no run starts, of a radius sum: contacts by the inexact finders are below it.
+inline constexpr double allowed_overlap = 1e-8;
+
+/// Throws InvariantError where particles overlap by more than that, naming the worst pair of `state` ("the initial
+/// state").
+void require_apart(const Patch& patch, const std::string& state);
 
 } // namespace keeler

@@ -7,6 +7,7 @@
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/diagnostics/wakes.hpp>
 #include <keeler/gravity/direct.hpp>
+#include <keeler/states/tiled.hpp>
 
 #include <doctest/doctest.h>
 
@@ -57,12 +58,12 @@ TEST_CASE("wakes stand in the clumped state, and its tiles feel what the patch f
   const std::vector<Vec3> of_tile = exact(tile, targets, 2);
   // measured 8e-10: the fits of the far images
   CHECK(rms_difference(exact(tile, targets, 3), of_tile) < 1e-7);
-  for (const int side : {2, 3}) {
-    const Patch large = tiled(tile, side);
-    for (const std::size_t copy : {std::size_t{0}, static_cast<std::size_t>(side * side - 1)}) {
+  for (const auto& [nx, ny] : {std::pair<std::size_t, std::size_t>{2, 2}, {3, 3}, {1, 2}, {3, 2}}) {
+    const Patch large = tiled_patch(tile, nx, ny);
+    for (const std::size_t copy : {std::size_t{0}, nx * ny - 1}) {
       std::vector<std::size_t> copies;
       for (const std::size_t k : targets)
-        copies.push_back(copy * tile.size() + k);                     // bench_states.hpp has the order
+        copies.push_back(copy * tile.size() + k);                     // tiled.hpp has the order
       CHECK(rms_difference(exact(large, copies, 1), of_tile) < 1e-5); // measured 3e-7: one ring, whose fit is coarser
     }
   }

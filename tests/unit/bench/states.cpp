@@ -2,14 +2,11 @@
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
-#include <keeler/diagnostics/energy.hpp>
 #include <keeler/diagnostics/surface.hpp>
-#include <keeler/simulation/simulation.hpp>
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <set>
 
 using namespace keeler;
 
@@ -27,44 +24,7 @@ BenchState state_of(BenchSizes sizes, std::size_t count, double optical_depth) {
   return bench_state(settings, silent);
 }
 
-double random_energy(const Patch& patch) {
-  const PatchEnergy energy = patch_energy(patch);
-  return energy.horizontal + energy.vertical;
-}
-
-bool inside(const Patch& patch, std::size_t k) {
-  const Elements el = elements_from({patch.positions[k], patch.velocities[k]}, patch.frequencies, Rotation());
-  return patch.box.image_into_cell(el.guiding_x, el.guiding_y, patch.offset) == Image{};
-}
-
 } // namespace
-
-TEST_CASE("tiles fill a larger box, and go on filling it") {
-  BenchState state = state_of(BenchSizes::equal, 400, 0.5);
-  REQUIRE(state.patch.offset > 1.0); // else it tests nothing
-  for (const int side : {2, 3}) {
-    const Patch large = tiled(state.patch, side);
-    CHECK(large.size() == state.patch.size() * side * side);
-    CHECK(std::set<std::uint64_t>(large.ids.begin(), large.ids.end()).size() == large.size());
-    std::size_t outside = 0;
-    for (std::size_t k = 0; k < large.size(); ++k)
-      outside += !inside(large, k);
-    CHECK(outside == 0);
-    CHECK(largest_overlap(large).depth < rounding);
-    CHECK(optical_depth(large) == doctest::Approx(optical_depth(state.patch)).epsilon(1e-12));
-    CHECK(random_energy(large) == doctest::Approx(random_energy(state.patch)).epsilon(1e-12));
-
-    // Every copy of a particle meets its neighbours as the particle itself does, across the edges of tiles too.
-    Simulation one(state.scene, state.patch), many(state.scene, large);
-    for (int k = 0; k < 50; ++k) {
-      one.advance();
-      many.advance();
-    }
-    CHECK(one.state().collisions.fast > 20);
-    CHECK(many.state().collisions.fast == one.state().collisions.fast * static_cast<std::uint64_t>(side * side));
-    CHECK(random_energy(many.patch()) == doctest::Approx(random_energy(one.patch())).epsilon(1e-9));
-  }
-}
 
 TEST_CASE("a large state is made of tiles") {
   const Patch patch = state_of(BenchSizes::equal, 100050, 0.05).patch; // 2 × 2

@@ -1,0 +1,64 @@
+// keeler tile: a snapshot repeated into a larger patch, as a snapshot.
+#include "command.hpp"
+#include "common_options.hpp"
+
+#include <keeler/cells/overlap.hpp>
+#include <keeler/core/words.hpp>
+#include <keeler/io/snapshot.hpp>
+#include <keeler/scene/scene.hpp>
+#include <keeler/states/initial.hpp>
+#include <keeler/states/tiled.hpp>
+
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace keeler {
+namespace {
+
+struct TileOptions {
+  std::string file, output;
+  std::size_t nx = 1, ny = 1;
+  bool force = false;
+  ThreadOption threads;
+};
+
+ExitCode tile(const TileOptions& options, const std::vector<std::string>& arguments) {
+  options.threads.apply();
+  require_new_file(options.output, options.force, "a state");
+  Snapshot snapshot = read_snapshot(options.file);
+  // No fresh start makes this state: the scene that goes with it starts from the file.
+  const Scene scene = parse_scene(snapshot.meta.scene, options.file, {}, options.output);
+  const Patch patch = patch_from_snapshot(std::move(snapshot.patch), options.file, scene);
+  require_apart(patch, "'" + options.file + "'");
+  const Patch tiled = tiled_patch(patch, options.nx, options.ny);
+  write_snapshot(options.output, tiled, {scene.resolved, collect_provenance(arguments)});
+  fmt::print("{} in {} m x {} m, {} x {} copies of {}: {}\n", counted(tiled.size(), "particle"),
+             figures(tiled.box.size_x, 5), figures(tiled.box.size_y, 5), options.nx, options.ny, options.file,
+             options.output);
+  return ExitCode::done;
+}
+
+} // namespace
+
+void add_tile(CLI::App& program, Action& action, const std::vector<std::string>& arguments) {
+  const auto options = std::make_shared<TileOptions>();
+  CLI::App& command = *program.add_subcommand("tile", "repeat a snapshot into a larger patch");
+  command.add_option("FILE", options->file, "the snapshot to repeat")->required()->type_name("");
+  const auto copies = whole_number_between(1, 10000, "a number of copies");
+  command.add_option("NX", options->nx, "copies side by side along the radius")
+      ->required()
+      ->type_name("")
+      ->check(copies);
+  command.add_option("NY", options->ny, "copies side by side along the orbit")
+      ->required()
+      ->type_name("")
+      ->check(copies);
+  command.add_option("-o,--output", options->output, "the snapshot to write; give it the ending .hdf")->required();
+  command.add_flag("--force", options->force, "replace the file if it exists");
+  options->threads.add_to(command);
+  command.callback(
+      [options, arguments, &action] { action = [options, arguments] { return tile(*options, arguments); }; });
+}
+
+} // namespace keeler
