@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <numeric>
 
 namespace keeler {
@@ -25,17 +26,15 @@ Overlap overlap_of(const Patch& patch, std::size_t low, std::size_t high, const 
   return {(sum - d.norm()) / sum, patch.ids[low], patch.ids[high]};
 }
 
-} // namespace
-
-// The larger of two particles looks for the smaller one, so that few look far.
-Overlap largest_overlap(const Patch& patch) {
+// Calls visit(i, overlap) for each pair that overlaps, from any thread. The larger of two particles, i, looks for the
+// smaller one, so that few look far.
+template<class Visit> void for_each_overlap(const Patch& patch, const Visit& visit) {
   if (patch.size() == 0)
-    return {};
+    return;
   const std::vector<double>& radii = patch.radii;
   const double mean = std::accumulate(radii.begin(), radii.end(), 0.0) / static_cast<double>(patch.size());
   PeriodicGrid grid;
   grid.build(patch.positions, patch.box, patch.offset, 2.0 * mean);
-  std::vector<Overlap> worst(patch.size());
   parallel_for(patch.size(), [&](std::size_t i) {
     const double reach = 2.0 * radii[i];
     grid.visit_near(patch.positions[i], reach, reach, [&](std::size_t j, const Image& image) {
@@ -43,15 +42,31 @@ Overlap largest_overlap(const Patch& patch) {
       if (patch.ids[j] == patch.ids[i] || radii[j] > radii[i] || (radii[j] == radii[i] && !lower))
         return;
       const Overlap here = lower ? overlap_of(patch, i, j, image) : overlap_of(patch, j, i, -image);
-      if (here.depth > 0.0 && deeper(here, worst[i]))
-        worst[i] = here;
+      if (here.depth > 0.0)
+        visit(i, here);
     });
+  });
+}
+
+} // namespace
+
+Overlap largest_overlap(const Patch& patch) {
+  std::vector<Overlap> worst(patch.size());
+  for_each_overlap(patch, [&](std::size_t i, const Overlap& here) {
+    if (deeper(here, worst[i]))
+      worst[i] = here;
   });
   Overlap result;
   for (const Overlap& candidate : worst)
     if (candidate.depth > 0.0 && deeper(candidate, result))
       result = candidate;
   return result;
+}
+
+std::size_t count_overlaps(const Patch& patch, double depth) {
+  std::atomic<std::size_t> count = 0;
+  for_each_overlap(patch, [&](std::size_t, const Overlap& here) { count += here.depth > depth ? 1 : 0; });
+  return count;
 }
 
 void require_apart(const Patch& patch, const std::string& state) {

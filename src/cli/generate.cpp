@@ -1,4 +1,4 @@
-// keeler generate: an initial state, as a snapshot in double precision.
+// keeler generate: an initial state, of a scene or of a table of particles, as a snapshot in double precision.
 #include "command.hpp"
 #include "common_options.hpp"
 #include "messages.hpp"
@@ -6,10 +6,12 @@
 #include "scene_arguments.hpp"
 #include "signals.hpp"
 
+#include <keeler/cells/overlap.hpp>
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/states/clumped.hpp>
+#include <keeler/states/from_table.hpp>
 #include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
@@ -22,7 +24,8 @@ namespace {
 struct GenerateOptions {
   SceneArguments scene;
   std::string output;
-  bool clumped = false, force = false;
+  std::string table;
+  bool clumped = false, relax = false, force = false;
   SettleCriterion criterion;
   ThreadOption threads;
 };
@@ -74,8 +77,47 @@ void print_doubts(const Scene& scene, const Patch& patch) {
     fmt::print("note: {}\n", doubt);
 }
 
+// Overlaps that a run would refuse are reported, or removed where the user asks for it.
+void part(Patch& patch, const GenerateOptions& options, const ParticleTable& table) {
+  const std::size_t overlaps = count_overlaps(patch, allowed_overlap);
+  if (overlaps == 0)
+    return;
+  const Overlap worst = largest_overlap(patch);
+  const std::string found =
+      fmt::format("{} of particles overlap, worst those of {} and {}, by {:.2g} of their radius sum",
+                  counted(overlaps, "pair"), table.place_of(worst.id_i), table.place_of(worst.id_j), worst.depth);
+  if (!options.relax)
+    throw InvariantError(found + "; correct them, or move them apart by --relax");
+  const Relaxation moved = unless_stopped([&] { return relax(patch); });
+  fmt::print("{}; moved {} apart, by {} m at most\n", found, counted(moved.moved, "particle"),
+             figures(moved.farthest, 3));
+}
+
+void print_written(const Patch& patch, const std::string& output) {
+  fmt::print("{} in {} m x {} m, no overlaps: {}\n", counted(patch.size(), "particle"), figures(patch.box.size_x, 5),
+             figures(patch.box.size_y, 5), output);
+}
+
+ExitCode generate_from_table(const GenerateOptions& options, const std::vector<std::string>& arguments) {
+  const TableScene of = load_table_scene(options.scene.path, options.scene.overrides);
+  require_new_file(options.output, options.force, "a state");
+  const ParticleTable table = read_particle_table(options.table);
+  Patch patch = patch_from_table(table, of);
+  part(patch, options, table);
+  if (table.velocities.empty())
+    say("note: the table has no velocities: all orbits are circular");
+  // No fresh start makes this state: the scene that goes with it starts from the file.
+  const Scene scene = parse_scene(of.scene.resolved, options.scene.path, {}, options.output);
+  print_doubts(scene, patch);
+  write_snapshot(options.output, patch, {scene.resolved, collect_provenance(arguments)});
+  print_written(patch, options.output);
+  return ExitCode::done;
+}
+
 ExitCode generate(const GenerateOptions& options, const std::vector<std::string>& arguments) {
   options.threads.apply();
+  if (!options.table.empty())
+    return generate_from_table(options, arguments);
   const Scene scene = options.scene.load();
   require_new_file(options.output, options.force, "a state");
   SnapshotMeta meta{scene.resolved, collect_provenance(arguments)};
@@ -92,8 +134,7 @@ ExitCode generate(const GenerateOptions& options, const std::vector<std::string>
     say(notice);
   print_doubts(scene, patch);
   write_snapshot(options.output, patch, meta);
-  fmt::print("{} in {} m x {} m, no overlaps: {}\n", counted(patch.size(), "particle"), figures(patch.box.size_x, 5),
-             figures(patch.box.size_y, 5), options.output);
+  print_written(patch, options.output);
   return ExitCode::done;
 }
 
@@ -111,6 +152,10 @@ void add_generate(CLI::App& program, Action& action, const std::vector<std::stri
                   "give up when wakes have not settled by then (default: 30)")
       ->check(CLI::Range(0.0, 200.0).description(""))
       ->needs(&clumped);
+  CLI::Option& table = *command.add_option("--from-table", options->table,
+                                           "the particles are those of this table (CSV or HDF5) in the scene's box");
+  table.excludes(&clumped);
+  command.add_flag("--relax", options->relax, "move particles of the table that overlap apart")->needs(&table);
   command.add_flag("--force", options->force, "replace the file if it exists");
   options->threads.add_to(command);
   command.callback(

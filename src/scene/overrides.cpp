@@ -90,6 +90,28 @@ void apply_start(Document& document, const std::string& snapshot, std::vector<st
   apply(document, path, {{path, place, place, snapshot, true}}, place, notices);
 }
 
+void apply_table(Document& document) {
+  if (const Entry* entry = find_entry(document, "start.from"))
+    fail_at(entry->value_place, "start.from cannot stand beside a table of particles (either is the start); remove one "
+                                "of the two");
+  if (const Entry* entry = find_entry(document, "box.size_in_wavelengths"))
+    fail_at(entry->value_place, "box.size_in_wavelengths cannot stand beside a table of particles (the wavelength "
+                                "follows from a surface density that the scene asks for); give box.size");
+  document.erase(std::remove_if(document.begin(), document.end(),
+                                [](const Entry& entry) {
+                                  return is_within(entry.path, "particles") && entry.path != "particles" &&
+                                         entry.path != "particles.density" &&
+                                         (find_key(entry.path) || find_section(entry.path));
+                                }),
+                 document.end());
+  std::vector<std::string> none;
+  const auto set = [&](const char* key, const char* value) { apply_override(document, {key, value, key, key}, none); };
+  set("particles.count", "1");
+  set("particles.sizes", "{ law = \"equal\", radius = 1e-6 }");
+  if (!find_entry(document, "particles.density"))
+    set("particles.density", "1000.0");
+}
+
 void apply_override(Document& document, const Override& by, std::vector<std::string>& notices) {
   Document entries = parse_override_value(by.value, by.key, by.value_place);
   entries.front().key_place = by.key_place;

@@ -20,4 +20,8 @@ void apply_overrides(Document& document, const std::vector<std::string>& overrid
 /// The same for the snapshot of --from.
 void apply_start(Document& document, const std::string& snapshot, std::vector<std::string>& notices);
 
+/// Makes a scene complete whose particles a table gives: of what it says of particles only the density stays, and what
+/// it must say gets values that nobody reads. Throws UsageError where the table leaves the box or the start undefined.
+void apply_table(Document& document);
+
 } // namespace keeler

@@ -171,6 +171,18 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::v
   return read_scene(std::move(document), name, Purpose::start, std::move(notices));
 }
 
+TableScene load_table_scene(const std::string& path, const std::vector<std::string>& overrides) {
+  Document document = parse_document(read_input(path, path), path);
+  std::vector<std::string> notices;
+  apply_overrides(document, overrides, notices);
+  const bool has_density = find_entry(document, "particles.density") != nullptr;
+  apply_table(document);
+  TableScene of{read_scene(std::move(document), path, Purpose::start, std::move(notices)), {}};
+  if (has_density)
+    of.density = of.scene.particles.density;
+  return of;
+}
+
 Scene load_varied_scene(const std::string& path, const std::vector<Override>& overrides) {
   Document document = parse_document(read_input(path, path), path);
   std::vector<std::string> notices;

@@ -1,5 +1,6 @@
 #include <keeler/states/initial.hpp>
 
+#include "particle_fault.hpp"
 #include "placing.hpp"
 
 #include <keeler/core/error.hpp>
@@ -35,10 +36,7 @@ void require_same_planet(const Patch& patch, const Scene& scene, const std::stri
 // A start file may hold what no scene may ask for: the ranges of the keys hold for it as well.
 void require_physical(const Patch& patch, const std::string& path) {
   require_sound(patch);
-  const KeyRange &sizes = find_key("box.size")->range, &radii = find_key("particles.sizes.radius")->range,
-                 &densities = find_key("particles.density")->range;
-  const KeyRange places = {.high = sizes.high};
-  const KeyRange speeds = {.high = 1000.0}; // m/s beyond the shear: a ring's orbits have 10 to 20 km/s
+  const KeyRange& sizes = find_key("box.size")->range;
   if (!sizes.contains(patch.box.size_x) || !sizes.contains(patch.box.size_y))
     throw InvariantError(fmt::format("the box of '{}' is {} m x {} m (a patch has sizes {}); take another state", path,
                                      figures(patch.box.size_x, 4), figures(patch.box.size_y, 4), sizes.words()));
@@ -49,22 +47,10 @@ void require_physical(const Patch& patch, const std::string& path) {
         fmt::format("the box of '{}' is {} m x {} m, more than {:g} times as long as wide; take another "
                     "state",
                     path, figures(patch.box.size_x, 4), figures(patch.box.size_y, 4), most_oblong));
-  for (std::size_t k = 0; k < patch.size(); ++k) {
-    const auto require = [&](const KeyRange& range, const char* what, double value) {
-      if (!range.contains(value))
-        throw InvariantError(
-            fmt::format("particle {} of '{}' has {} of {} (possible is {}); correct it or take another "
-                        "state",
-                        patch.ids[k], path, what, figures(value, 3), range.words()));
-    };
-    const double radius = patch.radii[k];
-    const Vec3 shear(0.0, -patch.box.shear * patch.positions[k].x(), 0.0);
-    require(radii, "a radius (m)", radius);
-    require(densities, "a density (kg/m^3, by its mass and radius)",
-            patch.masses[k] / (4.0 / 3.0 * pi * radius * radius * radius));
-    require(places, "a coordinate (m)", patch.positions[k].cwiseAbs().maxCoeff());
-    require(speeds, "a speed (m/s, beyond the shear)", (patch.velocities[k] - shear).norm() * patch.orbital_frequency);
-  }
+  for (std::size_t k = 0; k < patch.size(); ++k)
+    if (const std::string fault = particle_fault(patch, k); !fault.empty())
+      throw InvariantError(
+          fmt::format("particle {} of '{}' has {}; correct it or take another state", patch.ids[k], path, fault));
 }
 
 // What the radii that were drawn add to the layer's height²: 1.7 τ R², with the R of the crowd.

@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <tuple>
 
 namespace keeler {
 namespace {
@@ -56,7 +55,7 @@ void Placing::run(const std::function<void(double)>& progress) {
     work += static_cast<double>(octave.last);
   for (const Octave& octave : octaves_) {
     draw(octave);
-    sort_by_place();
+    sort_by_place(spheres_, box);
     const double part = static_cast<double>(octave.last) / work;
     int round = 0;
     const auto after_sweep = [&](int sweeps) { // nobody knows how many there will be
@@ -154,15 +153,6 @@ void Placing::redraw_caught(int round) {
     spheres_[k].place = places[k];
     spheres_[k].height = places[k].z();
   }
-}
-
-// In strips along y, a few particles wide.
-void Placing::sort_by_place() {
-  const double width = 2.0 * std::sqrt(request_.box.area() / static_cast<double>(spheres_.size()));
-  const auto strip = [&](const Sphere& sphere) { return std::floor(sphere.place.x() / width); };
-  std::sort(spheres_.begin(), spheres_.end(), [&](const Sphere& a, const Sphere& b) {
-    return std::tuple(strip(a), a.place.y(), a.particle) < std::tuple(strip(b), b.place.y(), b.particle);
-  });
 }
 
 std::vector<Vec3> Placing::places() const {

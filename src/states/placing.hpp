@@ -35,7 +35,6 @@ private:
   bool is_free(const Vec3& place, double radius, const SizeLevels& larger) const;
   Vec3 draw_place(RandomStream random, double radius, const SizeLevels& larger) const;
   void redraw_caught(int round);
-  void sort_by_place();
 
   const UniformRequest& request_;
   double crowd_volume_;

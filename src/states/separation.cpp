@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <tuple>
 
 namespace keeler {
 namespace {
@@ -108,6 +109,14 @@ private:
 };
 
 } // namespace
+
+void sort_by_place(std::vector<Sphere>& spheres, const ShearingBox& box) {
+  const double width = 2.0 * std::sqrt(box.area() / static_cast<double>(spheres.size()));
+  const auto strip = [&](const Sphere& sphere) { return std::floor(sphere.place.x() / width); };
+  std::sort(spheres.begin(), spheres.end(), [&](const Sphere& a, const Sphere& b) {
+    return std::tuple(strip(a), a.place.y(), a.particle) < std::tuple(strip(b), b.place.y(), b.particle);
+  });
+}
 
 bool separate(std::vector<Sphere>& spheres, const ShearingBox& box, double offset, int most_sweeps,
               const std::function<void(int)>& after_sweep) {

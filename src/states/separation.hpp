@@ -14,8 +14,11 @@
 
 namespace keeler {
 
+/// In strips along y, a few spheres wide: neighbours in space become neighbours in memory.
+void sort_by_place(std::vector<Sphere>& spheres, const ShearingBox& box);
+
 /// Moves the spheres until each pair is farther apart than contact by at least 2 × 10⁻⁵ of the smaller radius, in about
-/// a hundred sweeps over all of them. Spheres that are neighbours in space should be neighbours in memory. Calls
+/// a hundred sweeps over all of them. Spheres should be sorted by place. Calls
 /// after_sweep(number of sweeps so far). False when overlaps are left after so many sweeps. Throws Interrupted.
 /// The bits do not depend on the number of threads.
 bool separate(std::vector<Sphere>& spheres, const ShearingBox& box, double offset, int most_sweeps,

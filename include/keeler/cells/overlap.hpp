@@ -3,6 +3,7 @@
 
 #include <keeler/particles/patch.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -16,6 +17,9 @@ struct Overlap {
 
 /// Over all pairs and images of a patch.
 Overlap largest_overlap(const Patch& patch);
+
+/// How many pairs overlap by more than `depth`.
+std::size_t count_overlaps(const Patch& patch, double depth);
 
 /// An overlap from which no run starts, of a radius sum: contacts by the inexact finders are below it.
 inline constexpr double allowed_overlap = 1e-8;

@@ -137,6 +137,16 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::v
 /// Longest side over shortest that a box may have: gravity sums as many images one by one.
 inline constexpr double most_oblong = 1000.0;
 
+/// A scene whose particles a table gives; what it says of them itself does not matter, and may be missing, but for the
+/// density of the material.
+struct TableScene {
+  Scene scene;                   ///< its particles mean nothing
+  std::optional<double> density; ///< kg/m³, where the scene has it
+};
+
+/// As load_scene(); the scene has box.size, and no start.from.
+TableScene load_table_scene(const std::string& path, const std::vector<std::string>& overrides);
+
 /// The scene in a snapshot or checkpoint, for what exists already: the box, the sizes and whatever else only the start
 /// needed are not read (their ranges alone are checked), so a file of radii or a start file may be gone.
 Scene parse_stored_scene(const std::string& text, const std::string& name);

@@ -1,0 +1,149 @@
+#include <keeler/files/columns.hpp>
+
+#include <keeler/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+namespace keeler {
+namespace {
+
+constexpr std::string_view blanks = " \t\r";
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(blanks);
+  return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::optional<double> number_of(std::string_view word) {
+  if (word.starts_with('+')) // from_chars takes none
+    word.remove_prefix(1);
+  double number = 0.0;
+  const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), number);
+  return fault == std::errc{} && end == word.data() + word.size() ? std::optional(number) : std::nullopt;
+}
+
+// What parts the fields of a line; a blank stands for any number of blanks and tabs.
+char separator_of(std::string_view line) {
+  for (const char separator : {',', ';'})
+    if (line.find(separator) != line.npos)
+      return separator;
+  return ' ';
+}
+
+// Hands over field after field of a line that holds at least one.
+template<class Visit> void for_each_field(std::string_view line, char separator, const Visit& visit) {
+  const std::string_view ends = separator == ' ' ? std::string_view(" \t") : std::string_view(&separator, 1);
+  for (line = trimmed(line);;) {
+    const std::size_t end = line.find_first_of(ends);
+    visit(trimmed(line.substr(0, end)));
+    if (end == line.npos)
+      return;
+    line.remove_prefix(end + 1);
+    if (separator == ' ')
+      line = trimmed(line);
+  }
+}
+
+class Parser {
+public:
+  Parser(std::string_view text, const std::string& name) : rest_(text), name_(name) {
+    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+    if (rest_.starts_with(byte_order_mark))
+      rest_.remove_prefix(byte_order_mark.size());
+  }
+
+  Columns run() {
+    while (next_line()) {
+      if (line_.empty())
+        continue;
+      if (line_.front() == '#') {
+        comment_ = trimmed(line_.substr(1));
+        comment_line_ = number_;
+      } else if (!columns_.names.empty()) {
+        read_row();
+      } else {
+        read_first();
+      }
+    }
+    return std::move(columns_);
+  }
+
+private:
+  [[noreturn]] void fail(const std::string& message) const {
+    throw UsageError(fmt::format("{}:{}: {}", name_, number_, message));
+  }
+
+  bool next_line() {
+    if (rest_.empty())
+      return false;
+    const std::size_t end = rest_.find('\n');
+    line_ = trimmed(rest_.substr(0, end));
+    rest_.remove_prefix(end == rest_.npos ? rest_.size() : end + 1);
+    ++number_;
+    return true;
+  }
+
+  // The names, or numbers whose names stood in the last comment.
+  void read_first() {
+    const char separator = separator_of(line_);
+    bool is_number = false;
+    for_each_field(line_, separator, [&](std::string_view field) { is_number = is_number || number_of(field); });
+    if (!is_number)
+      return read_names(line_, number_);
+    if (comment_.empty())
+      fail("the first row has numbers (it must name the columns); put a line of names above it");
+    read_names(comment_, comment_line_);
+    read_row();
+  }
+
+  void read_names(std::string_view line, std::size_t number) {
+    separator_ = separator_of(line);
+    for_each_field(line, separator_, [&](std::string_view field) {
+      if (field.size() > 1 && field.front() == '"' && field.back() == '"')
+        field = trimmed(field.substr(1, field.size() - 2));
+      columns_.names.emplace_back(field);
+    });
+    columns_.values.resize(columns_.names.size());
+    columns_.header_line = number;
+  }
+
+  void read_row() {
+    const std::size_t count = columns_.names.size();
+    std::size_t column = 0;
+    for_each_field(line_, separator_, [&](std::string_view field) {
+      if (column < count) {
+        const std::optional<double> number = number_of(field);
+        if (!number)
+          fail(field.empty()
+                   ? fmt::format("{} has no value (every row needs all columns); fill it in or remove the row",
+                                 columns_.names[column])
+                   : fmt::format("{} is '{}' (it must be a number); correct it or remove the row",
+                                 columns_.names[column], field));
+        columns_.values[column].push_back(*number);
+      }
+      ++column;
+    });
+    if (column != count)
+      fail(fmt::format("the row has {} of {} values (line {} names the columns); correct or remove it", column, count,
+                       columns_.header_line));
+    columns_.lines.push_back(number_);
+  }
+
+  std::string_view rest_, line_, comment_;
+  const std::string& name_;
+  std::size_t number_ = 0, comment_line_ = 0;
+  char separator_ = ',';
+  Columns columns_;
+};
+
+} // namespace
+
+Columns parse_columns(std::string_view text, const std::string& name) {
+  return Parser(text, name).run();
+}
+
+} // namespace keeler

@@ -1,0 +1,119 @@
+#include <keeler/io/particle_table.hpp>
+
+#include "hdf5.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/files/columns.hpp>
+#include <keeler/files/files.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+namespace keeler {
+namespace {
+
+constexpr std::array<const char*, 8> known = {"x", "y", "z", "vx", "vy", "vz", "r", "m"};
+constexpr std::size_t first_velocity = 3, radius = 6, mass = 7;
+
+// By column of `known`; empty where the table does not have it.
+using KnownColumns = std::array<std::vector<double>, known.size()>;
+
+// `place` is where the names stand.
+KnownColumns sort_out(const std::vector<std::string>& names, std::vector<std::vector<double>> values,
+                      const std::string& place) {
+  const auto fail = [&](const std::string& message) {
+    throw UsageError(fmt::format("{}: {} (the columns are x y z vx vy vz r, and m)", place, message));
+  };
+  std::array<bool, known.size()> has{};
+  KnownColumns columns;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto column = static_cast<std::size_t>(std::find(known.begin(), known.end(), names[k]) - known.begin());
+    if (column == known.size())
+      fail(fmt::format("unknown column '{}'; rename or remove it", names[k]));
+    if (has[column])
+      fail(fmt::format("two columns '{}'; remove one of them", names[k]));
+    has[column] = true;
+    columns[column] = std::move(values[k]);
+  }
+  const bool any_velocity = has[first_velocity] || has[first_velocity + 1] || has[first_velocity + 2];
+  for (std::size_t column = 0; column < mass; ++column)
+    if (!has[column] && (column < first_velocity || column == radius || any_velocity))
+      fail(fmt::format("the column '{}' is missing; add it", known[column]));
+  return columns;
+}
+
+std::vector<Vec3> as_vectors(const KnownColumns& columns, std::size_t first) {
+  std::vector<Vec3> vectors(columns[first].size());
+  for (std::size_t k = 0; k < vectors.size(); ++k)
+    vectors[k] = Vec3(columns[first][k], columns[first + 1][k], columns[first + 2][k]);
+  return vectors;
+}
+
+ParticleTable table_of(const std::string& file, KnownColumns columns, std::vector<std::size_t> lines) {
+  if (columns[radius].empty())
+    throw UsageError(fmt::format("{}: the table is empty (a start needs a particle); add a row for each", file));
+  return {file,
+          as_vectors(columns, 0),
+          as_vectors(columns, first_velocity),
+          std::move(columns[radius]),
+          std::move(columns[mass]),
+          std::move(lines)};
+}
+
+ParticleTable read_text_table(std::span<const std::byte> bytes, const std::string& file) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  Columns columns = parse_columns(text, file);
+  if (columns.names.empty())
+    throw UsageError(fmt::format("{}: the table is empty (not even columns are named); begin with a line \"{}\"", file,
+                                 fmt::join(known, ",")));
+  const std::string header = fmt::format("{}:{}", file, columns.header_line);
+  return table_of(file, sort_out(columns.names, std::move(columns.values), header), std::move(columns.lines));
+}
+
+ParticleTable read_hdf5_table(std::span<const std::byte> bytes, const std::string& file) {
+  const hdf5::Handle image = hdf5::open_image(bytes);
+  const std::vector<std::string> names = hdf5::names_in(image);
+  if (std::find(names.begin(), names.end(), "PartType1") != names.end())
+    throw UsageError(fmt::format("{}: it is a snapshot, not a table; start from it by start.from or --from", file));
+  sort_out(names, std::vector<std::vector<double>>(names.size()), file); // before anything is taken to be an array
+  std::vector<std::vector<double>> values;
+  for (const std::string& name : names) {
+    const hdf5::Handle dataset = hdf5::open_dataset(image, name);
+    const hdf5::Layout layout = hdf5::layout_of_dataset(dataset);
+    const bool numbers =
+        layout.type.starts_with("float") || layout.type.starts_with("int") || layout.type.starts_with("uint");
+    if (!numbers || layout.shape.size() != 1)
+      throw UsageError(
+          fmt::format("{}: {} is no list of numbers (an array of one dimension); write it as such", file, name));
+    if (!values.empty() && values.front().size() != layout.count())
+      throw UsageError(fmt::format("{}: {} has {} values, {} has {} (a value a particle); make them equally long", file,
+                                   name, layout.count(), names.front(), values.front().size()));
+    values.emplace_back(layout.count());
+    hdf5::read_dataset(dataset, hdf5::native_type<double>(), values.back().data());
+  }
+  return table_of(file, sort_out(names, std::move(values), file), {});
+}
+
+} // namespace
+
+std::string ParticleTable::place_of(std::size_t particle) const {
+  return lines.empty() ? fmt::format("{}, row {}", file, particle) : fmt::format("{}:{}", file, lines[particle]);
+}
+
+ParticleTable read_particle_table(const std::filesystem::path& file) {
+  const std::vector<std::byte> bytes = read_file(file);
+  constexpr std::string_view signature = "\x89HDF\r\n\x1a\n";
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (!text.starts_with(signature))
+    return read_text_table(bytes, file.string());
+  try {
+    return read_hdf5_table(bytes, file.string());
+  } catch (const IoError& error) {
+    throw IoError(fmt::format("cannot read '{}' as HDF5: {}", file.string(), error.what()));
+  }
+}
+
+} // namespace keeler

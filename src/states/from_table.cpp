@@ -1,0 +1,100 @@
+#include <keeler/states/from_table.hpp>
+
+#include "particle_fault.hpp"
+#include "separation.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/threads.hpp>
+#include <keeler/core/units.hpp>
+#include <keeler/core/words.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace keeler {
+namespace {
+
+[[noreturn]] void fail(const ParticleTable& table, std::size_t k, const std::string& fault) {
+  throw UsageError(fmt::format("{}: the particle has {}; correct it or remove the row", table.place_of(k), fault));
+}
+
+// In snapshots the guiding centres are in the cell in the middle of a step, so some stand a little outside: a tenth of
+// the box is more than the shear makes in the longest half step of an automatic run.
+bool inside(const Patch& patch, std::size_t k) {
+  constexpr double reach = 0.6; // of the sides
+  const auto within = [&](double x, double y) {
+    return std::fabs(x) <= reach * patch.box.size_x && std::fabs(y) <= reach * patch.box.size_y;
+  };
+  const State state{patch.positions[k], patch.velocities[k]};
+  const Elements el = elements_from(state, patch.frequencies, Rotation());
+  return within(state.position.x(), state.position.y()) || within(el.guiding_x, el.guiding_y);
+}
+
+} // namespace
+
+Patch patch_from_table(const ParticleTable& table, const TableScene& of) {
+  const Scene& scene = of.scene;
+  if (table.masses.empty() && !of.density)
+    throw UsageError(
+        fmt::format("{}: no column m, and the scene has no particles.density (one of them gives the masses); "
+                    "add either",
+                    table.file));
+  Patch patch;
+  patch.frequencies = scene.planet.frequencies;
+  patch.orbital_frequency = scene.planet.orbital_frequency;
+  patch.box = {scene.size_x, scene.size_y, scene.planet.frequencies.shear(), 0.0};
+  patch.positions = table.places;
+  patch.radii = table.radii;
+  patch.masses = table.masses;
+  if (patch.masses.empty())
+    for (const double radius : patch.radii)
+      patch.masses.push_back(4.0 / 3.0 * pi * *of.density * radius * radius * radius);
+  for (std::size_t k = 0; k < table.size(); ++k)
+    patch.velocities.push_back(table.velocities.empty() ? Vec3(0.0, -patch.box.shear * table.places[k].x(), 0.0)
+                                                        : Vec3(table.velocities[k] / patch.orbital_frequency));
+  patch.ids.resize(table.size());
+  std::iota(patch.ids.begin(), patch.ids.end(), std::uint64_t{0});
+  const double narrow = std::min(patch.box.size_x, patch.box.size_y);
+  for (std::size_t k = 0; k < patch.size(); ++k) {
+    if (const std::string fault = particle_fault(patch, k); !fault.empty())
+      fail(table, k, fault);
+    if (2.0 * patch.radii[k] > narrow)
+      fail(table, k,
+           fmt::format("a diameter of {} m, more than the box is wide ({} m)", figures(2.0 * patch.radii[k], 4),
+                       figures(narrow, 4)));
+    if (!inside(patch, k))
+      fail(table, k,
+           fmt::format("x = {}, y = {} outside the box of {} m x {} m about 0 (as has its guiding centre)",
+                       figures(patch.positions[k].x()), figures(patch.positions[k].y()), figures(patch.box.size_x),
+                       figures(patch.box.size_y)));
+  }
+  return patch;
+}
+
+Relaxation relax(Patch& patch) {
+  constexpr int most_sweeps = 4000;
+  std::vector<Sphere> spheres(patch.size());
+  for (std::size_t k = 0; k < patch.size(); ++k)
+    spheres[k] = {patch.positions[k], patch.radii[k], patch.positions[k].z(), static_cast<std::uint32_t>(k)};
+  sort_by_place(spheres, patch.box);
+  if (!separate(spheres, patch.box, patch.offset, most_sweeps, [](int) {}))
+    throw InvariantError(
+        fmt::format("particles still overlap after {} sweeps of moving them apart (the patch is too dense "
+                    "somewhere); thin it out there or take smaller radii",
+                    most_sweeps));
+  Relaxation result;
+  for (const Sphere& sphere : spheres) {
+    Vec3& place = patch.positions[sphere.particle];
+    const Vec3 shift = sphere.place - place;
+    result.moved += shift != Vec3::Zero();
+    result.farthest = std::max(result.farthest, shift.norm());
+    patch.velocities[sphere.particle].y() -= patch.box.shear * shift.x();
+    place = sphere.place;
+  }
+  return result;
+}
+
+} // namespace keeler

@@ -1,0 +1,40 @@
+#include "particle_fault.hpp"
+
+#include <keeler/core/units.hpp>
+#include <keeler/core/words.hpp>
+#include <keeler/scene/keys.hpp>
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace keeler {
+
+std::string particle_fault(const Patch& patch, std::size_t k) {
+  static const KeyRange radii = find_key("particles.sizes.radius")->range,
+                        densities = find_key("particles.density")->range,
+                        places = {.high = find_key("box.size")->range.high},
+                        speeds = {.high = 1000.0}; // m/s beyond the shear: a ring's orbits have 10 to 20 km/s
+  const Vec3 &place = patch.positions[k], &velocity = patch.velocities[k];
+  if (!place.allFinite() || !velocity.allFinite())
+    return "a place or a velocity that is not finite";
+  struct Quantity {
+    const KeyRange& range;
+    const char* what;
+    double value;
+  };
+  const double radius = patch.radii[k];
+  const Vec3 shear(0.0, -patch.box.shear * place.x(), 0.0);
+  const std::array<Quantity, 4> quantities = {
+      {{radii, "a radius (m)", radius},
+       {densities, "a density (kg/m^3, by its mass and radius)",
+        patch.masses[k] / (4.0 / 3.0 * pi * radius * radius * radius)},
+       {places, "a coordinate (m)", place.cwiseAbs().maxCoeff()},
+       {speeds, "a speed (m/s, beyond the shear)", (velocity - shear).norm() * patch.orbital_frequency}}};
+  for (const Quantity& q : quantities)
+    if (!q.range.contains(q.value))
+      return fmt::format("{} of {} (possible is {})", q.what, figures(q.value, 3), q.range.words());
+  return {};
+}
+
+} // namespace keeler

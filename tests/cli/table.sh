@@ -1,0 +1,93 @@
+#!/bin/bash
+# table.sh KEELER SOURCE_DIR: a start from a user's own table of particles, and everything that may be wrong with one.
+# shellcheck source=tests/cli/helpers.sh
+source "$(dirname "$0")/helpers.sh"
+cat >"$work/scene.toml" <<END
+[planet]
+orbital_frequency = 1.95e-4
+[box]
+size = [60, 40]
+[collisions]
+restitution = { law = "constant", value = 0.5 }
+[time]
+end = 0.01
+END
+cat >"$work/good.csv" <<END
+x,y,z,vx,vy,vz,r,m
+0,0,0,0,0,0,1,4000
+10,5,0.5,1e-4,-2.925e-3,0,2,30000
+
+-20,15,0,0,5.85e-3,1e-4,1.5,13000
+END
+
+# made LINE...: a table of these lines
+made() { printf '%s\n' "$@" >"$work/table.csv"; }
+# refused CODE NAME WORDS: that table
+refused() {
+  refuses_with "$1" "$2" "$3" generate "$work/scene.toml" --from-table "$work/table.csv" -o "$work/none.hdf"
+  [ -e "$work/none.hdf" ] && fail "$2: wrote a state"
+}
+
+runs 0 generate "$work/scene.toml" --from-table "$work/good.csv" -o "$work/good.hdf"
+prints "a good table" "3 particles in 60 m x 40 m, no overlaps: $work/good.hdf"
+accepts "info" info "$work/good.hdf" --json
+prints "the scene in the file starts from it" "from = \\\"$work/good.hdf\\\""
+runs 0 run "$work/scene.toml" --from "$work/good.hdf" -o "$work/run"
+prints "run" "3 particles"
+
+made x,y,z,r 0,0,0,1 10,0,0,1
+refused 2 "no masses" "no column m, and the scene has no particles.density"
+runs 0 generate "$work/scene.toml" --set particles.density=900 --from-table "$work/table.csv" -o "$work/circular.hdf"
+grep -qF "note: the table has no velocities: all orbits are circular" "$work/err" || fail "circular: $(cat "$work/err")"
+
+made x,y,r,m 0,0,1,4000
+refused 2 "a column missing" "table.csv:1: the column 'z' is missing; add it (the columns are x y z vx vy vz r, and m)"
+made x,y,z,vx,r,m 0,0,0,0,1,4000
+refused 2 "half of the velocities" "table.csv:1: the column 'vy' is missing"
+made id,x,y,z,r,m 0,0,0,0,1,4000
+refused 2 "an unknown column" "table.csv:1: unknown column 'id'; rename or remove it"
+made x,y,z,r,m 0,0,0,1,4000 5,5,5,nan,4000
+refused 2 "nan" "table.csv:3: the particle has a radius (m) of nan"
+made x,y,z,r,m 0,nan,0,1,4000
+refused 2 "a place that is nan" "table.csv:2: the particle has a place or a velocity that is not finite"
+made x,y,z,r,m 0,0,0,-1,4000
+refused 2 "a negative radius" "table.csv:2: the particle has a radius (m) of -1 (possible is from 1e-6 to 1000000); correct it"
+made x,y,z,r,m 0,0,0,1,0
+refused 2 "no mass" "table.csv:2: the particle has a density (kg/m^3, by its mass and radius) of 0"
+made x,y,z,r,m 0,0,0,1,4000 300,0,0,1,4000
+refused 2 "outside" "table.csv:3: the particle has x = 300, y = 0 outside the box of 60 m x 40 m about 0"
+made x,y,z,r,m
+refused 2 "an empty table" "table.csv: the table is empty (a start needs a particle); add a row for each"
+: >"$work/table.csv"
+refused 2 "an empty file" "table.csv: the table is empty (not even columns are named)"
+made x,y,z,r,m 0,0,0,1,4000 1,2,3
+refused 2 "a short row" "table.csv:3: the row has 3 of 5 values (line 1 names the columns); correct or remove it"
+made x,y,z,r,m 0,0,zero,1,4000
+refused 2 "a word" "table.csv:2: z is 'zero' (it must be a number)"
+made 0,0,0,1,4000
+refused 2 "no names" "table.csv:1: the first row has numbers (it must name the columns)"
+made x,y,z,r,m 0,0,0,100,4e9
+refused 2 "a particle wider than the box" "table.csv:2: the particle has a diameter of 200 m, more than the box is wide (40 m)"
+rm "$work/table.csv"
+refused 4 "no file" "table.csv"
+printf '\211HDF\r\n\032\nrubbish' >"$work/table.csv"
+refused 4 "damaged HDF5" "as HDF5"
+
+made x,y,z,r,m 0,0,0,1,4000 1.5,0,0,1,4000 10,10,0,1,4000 29.9,0,0,1,4000 -29.9,0,0,1,4000
+refused 3 "overlaps" "2 pairs of particles overlap, worst those of $work/table.csv:5 and $work/table.csv:6, by 0.9 of their radius sum; correct them, or move them apart by --relax"
+runs 0 generate "$work/scene.toml" --from-table "$work/table.csv" --relax -o "$work/relaxed.hdf"
+prints "relaxed" "2 pairs of particles overlap"
+prints "relaxed" "moved 4 particles apart, by "
+runs 0 run "$work/scene.toml" --from "$work/relaxed.hdf" -o "$work/relaxed"
+
+made x,y,z,r,m 0,0,0,1,4000
+refuses "a start beside it" "start.from cannot stand beside a table of particles" \
+  generate "$work/scene.toml" --set start.from="$work/good.hdf" --from-table "$work/table.csv" -o "$work/none.hdf"
+sed 's/^size = .*/size_in_wavelengths = [4, 4]/' "$work/scene.toml" >"$work/wavelengths.toml"
+refuses "a box in wavelengths" "box.size_in_wavelengths cannot stand beside a table" \
+  generate "$work/wavelengths.toml" --from-table "$work/table.csv" -o "$work/none.hdf"
+refuses "--relax alone" "--relax requires --from-table" generate "$work/scene.toml" --relax -o "$work/none.hdf"
+refuses "an existing file" "exists already" generate "$work/scene.toml" --from-table "$work/table.csv" -o "$work/good.hdf"
+[ -e "$work/none.hdf" ] && fail "a refused state was written"
+
+report

@@ -1,0 +1,103 @@
+#include "hdf5.hpp"
+
+#include <keeler/io/particle_table.hpp>
+
+#include <keeler/core/error.hpp>
+#include <keeler/files/files.hpp>
+
+#include <doctest/doctest.h>
+
+#include <functional>
+
+using namespace keeler;
+
+namespace {
+
+const std::filesystem::path file = std::filesystem::temp_directory_path() / "keeler-test-table";
+
+ParticleTable table_of(const std::string& text) {
+  write_text(file, text);
+  return read_particle_table(file);
+}
+
+ParticleTable table_of(const std::function<void(const hdf5::Handle&)>& fill) {
+  const hdf5::Handle image = hdf5::create_image();
+  fill(image);
+  write_file(file, hdf5::image_of(image));
+  return read_particle_table(file);
+}
+
+// Without the path of the file.
+template<class Content> std::string fault(const Content& content) {
+  try {
+    table_of(content);
+  } catch (const UsageError& error) {
+    const std::string text = error.what();
+    CHECK(text.find(file.string()) == 0);
+    return text.substr(file.string().size());
+  }
+  return {};
+}
+
+void write_all(const hdf5::Handle& image, const std::vector<std::string>& names) {
+  double value = 1.0;
+  for (const std::string& name : names) {
+    hdf5::write_dataset(image, name, std::vector<double>{value, 10.0 * value});
+    value += 1.0;
+  }
+}
+
+} // namespace
+
+TEST_CASE("columns of a table may stand in any order, in either format") {
+  for (const ParticleTable& table : {table_of("m,r,vz,vy,vx,z,y,x\n1,2,3,4,5,6,7,8\n10,20,30,40,50,60,70,80\n"),
+                                     table_of([](const hdf5::Handle& image) {
+                                       write_all(image, {"m", "r", "vz", "vy", "vx", "z", "y", "x"});
+                                     })}) {
+    REQUIRE(table.size() == 2);
+    CHECK(table.places[0] == Vec3(8, 7, 6));
+    CHECK(table.velocities[1] == Vec3(50, 40, 30));
+    CHECK(table.radii == std::vector<double>{2, 20});
+    CHECK(table.masses == std::vector<double>{1, 10});
+  }
+  CHECK(table_of("x y z r\n1 2 3 4\n").velocities.empty());
+  CHECK(table_of("x y z r\n1 2 3 4\n").masses.empty());
+  CHECK(table_of("x y z r\n\n1 2 3 4\n").place_of(0) == file.string() + ":3");
+  CHECK(table_of([](const hdf5::Handle& image) {
+          write_all(image, {"r", "x", "y", "z"});
+        }).place_of(1) == file.string() + ", row 1");
+  std::filesystem::remove(file);
+}
+
+TEST_CASE("a table of other columns is refused") {
+  const std::string columns = " (the columns are x y z vx vy vz r, and m)";
+  CHECK(fault(std::string("x,y,r\n1,2,3\n")) == ":1: the column 'z' is missing; add it" + columns);
+  CHECK(fault(std::string("x,y,z,m\n1,2,3,4\n")) == ":1: the column 'r' is missing; add it" + columns);
+  CHECK(fault(std::string("x,y,z,vx,vy,r\n1,2,3,4,5,6\n")) == ":1: the column 'vz' is missing; add it" + columns);
+  CHECK(fault(std::string("id,x,y,z,r\n0,1,2,3,4\n")) == ":1: unknown column 'id'; rename or remove it" + columns);
+  CHECK(fault(std::string("x,y,z,r,x\n1,2,3,4,5\n")) == ":1: two columns 'x'; remove one of them" + columns);
+  CHECK(fault(std::string("x,y,z,r\n")) == ": the table is empty (a start needs a particle); add a row for each");
+  CHECK(fault(std::string("\n# nothing\n")) ==
+        ": the table is empty (not even columns are named); begin with a line \"x,y,z,vx,vy,vz,r,m\"");
+
+  using Image = const hdf5::Handle&;
+  const auto arrays = [&](const std::function<void(Image)>& fill) { return fault(fill); };
+  CHECK(arrays([](Image image) {
+          write_all(image, {"x", "y", "z"});
+        }) == ": the column 'r' is missing; add it" + columns);
+  CHECK(arrays([](Image image) {
+          write_all(image, {"x", "y", "z", "r"});
+          hdf5::create_group(image, "more");
+        }) == ": unknown column 'more'; rename or remove it" + columns);
+  CHECK(arrays([](Image image) {
+          write_all(image, {"r", "x", "y"});
+          hdf5::write_dataset(image, "z", std::vector<double>(3));
+        }) == ": z has 3 values, r has 2 (a value a particle); make them equally long");
+  CHECK(arrays([](Image image) {
+          write_all(image, {"r", "x", "y"});
+          hdf5::write_text_dataset(image, "z", "up");
+        }) == ": z is no list of numbers (an array of one dimension); write it as such");
+  CHECK(arrays([](Image image) { hdf5::create_group(image, "PartType1"); }) ==
+        ": it is a snapshot, not a table; start from it by start.from or --from");
+  std::filesystem::remove(file);
+}
