@@ -121,6 +121,8 @@ const char* mark(bool chosen) {
 void print_text(const Tuning& t) {
   fmt::print("{} in states up to {:.3g} orbits old, one thread\n", counted(t.particles, "particle"), t.orbits);
   if (!t.gravity.empty())
+    fmt::print("errors are held to {} of what is allowed, since other seeds differ\n", margin_for_seeds);
+  if (!t.gravity.empty())
     fmt::print("\n{:<8}{:<22}{:>14}{:>18}\n", "solver", "settings", "force error", "ns a particle");
   for (std::size_t k = 0; k < t.gravity.size(); ++k)
     fmt::print("{:<8}{:<22}{:>14.1e}{:>18.0f}{}\n", t.gravity[k].choice.solver, t.gravity[k].choice.text,
@@ -156,9 +158,10 @@ void print_keys(const std::vector<KeyChange>& keys) {
 
 void warn(const Tuning& t) {
   if (!t.meets_force_error)
-    say("no solver meets the force error; the most accurate one is chosen");
+    say("no solver meets the force error with a margin for other seeds; the most accurate one is chosen");
   if (!t.meets_physics_error)
-    say("no kick interval down to 1/1000 orbit meets the physics error; that one is chosen");
+    say("no kick interval down to 1/1000 orbit meets the physics error with a margin for other seeds; that one is "
+        "chosen");
 }
 
 ExitCode tune_scene(const TuneOptions& options) {

@@ -20,9 +20,9 @@ void add_gravity(std::vector<KeyChange>& keys, const Tuning& tuning, const TuneS
   using Solver = GravitySettings::Solver;
   const GravityBenchRow& row = tuning.gravity[tuning.chosen_gravity];
   const GravitySettings& gravity = row.choice.settings;
-  const std::string error =
-      fmt::format("an rms force error of {} was measured (at most {}{})", per_cent(row.errors.rms),
-                  per_cent(settings.force_error), tuning.meets_force_error ? "" : ", which nothing meets");
+  const std::string error = fmt::format(
+      "an rms force error of {} was measured (at most {}{})", per_cent(row.errors.rms), per_cent(settings.force_error),
+      tuning.meets_force_error ? "" : ", which nothing meets with a margin for other seeds");
   const bool tree = gravity.solver == Solver::tree, fft = gravity.solver == Solver::fft;
   const std::string comment = "tune: " + error;
   keys.push_back({"gravity.solver", fmt::format("\"{}\"", row.choice.solver), tree || fft ? "" : comment});
@@ -44,7 +44,8 @@ void add_kicks(std::vector<KeyChange>& keys, const Tuning& tuning, const TuneSet
        fmt::format("tune: a kick each {:g} orbits makes {} of the contacts; the loss exceeds the work of the "
                    "shear by about {} (at most {}{})",
                    kicks.interval, per_cent(kicks.unresolved), per_cent(kicks.physics_error()),
-                   per_cent(settings.physics_error), tuning.meets_physics_error ? "" : ", which no interval meets")});
+                   per_cent(settings.physics_error),
+                   tuning.meets_physics_error ? "" : ", which no interval meets with a margin for other seeds")});
 }
 
 } // namespace

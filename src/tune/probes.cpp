@@ -13,6 +13,7 @@ namespace keeler {
 namespace {
 
 constexpr double settling = 0.05, counting = 0.15; // orbits of a probe of kicks, from each state
+constexpr std::uint64_t enough_contacts = 50000;   // of a state: a hundredth of them is 500, which scatters by 5 %
 constexpr double untimed = 0.02, timed = 0.03;     // at least, of each lap of a probe of steps
 constexpr double enough_seconds = 0.15;            // of a lap
 constexpr int laps = 3;                            // of a probe of threads
@@ -59,13 +60,18 @@ Scene with_steps(Scene scene, double step, int drifts) {
   return scene;
 }
 
-KickProbe probe_kicks(const Scene& scene, const std::vector<Patch>& states, double interval, int drifts) {
+KickProbe probe_kicks(const Scene& scene, const std::vector<Patch>& states, double interval, int drifts,
+                      double longest) {
   std::vector<double> shares;
   for (const Patch& state : states) {
     Simulation simulation(with_steps(scene, interval / drifts, drifts), state);
     run(simulation, settling, drifts);
     const CollisionTally before = simulation.state().collisions;
-    run(simulation, counting, drifts);
+    const double from = simulation.orbits();
+    do
+      run(simulation, counting, drifts);
+    while (contacts_of(simulation.state().collisions) - contacts_of(before) < enough_contacts &&
+           simulation.orbits() - from < longest);
     const CollisionTally after = simulation.state().collisions;
     const auto contacts = static_cast<double>(contacts_of(after) - contacts_of(before));
     shares.push_back(static_cast<double>(after.unresolved - before.unresolved) / std::max(1.0, contacts));

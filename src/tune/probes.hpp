@@ -12,8 +12,9 @@ namespace keeler {
 /// The scene with another step and kick interval, which without self-gravity is the step.
 Scene with_steps(Scene scene, double step, int drifts);
 
-/// A sixth of an orbit from each state.
-KickProbe probe_kicks(const Scene& scene, const std::vector<Patch>& states, double interval, int drifts);
+/// A fifth of an orbit from each state; where contacts are few, up to the longest time, orbits.
+KickProbe probe_kicks(const Scene& scene, const std::vector<Patch>& states, double interval, int drifts,
+                      double longest);
 
 /// Of the kick interval divided into so many drifts each, in turns, from each state.
 std::vector<StepProbe> probe_steps(const Scene& scene, const std::vector<Patch>& states, double interval,

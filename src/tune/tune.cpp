@@ -14,10 +14,9 @@
 namespace keeler {
 namespace {
 
-// Orbits. A tenth of an orbit is a whole number of each, so files fall where one asks for them.
-constexpr std::array<double, 10> kick_intervals = {1e-3, 1.25e-3, 2e-3,  2.5e-3,  4e-3,
-                                                   5e-3, 6.25e-3, 10e-3, 12.5e-3, 20e-3};
-constexpr std::size_t first_probed = 6;
+// In a tenth of an orbit, so that files fall where one asks for them. Neighbours differ by a third at most.
+constexpr std::array<int, 14> kicks_of_tenth = {100, 80, 64, 50, 40, 32, 25, 20, 16, 12, 10, 8, 6, 5};
+constexpr double longest_probe = 0.25;                     // of a kick interval from each state, over their age
 constexpr double usual_contacts = 0.3;                     // of a particle in a drift: near the cheapest
 constexpr double few_contacts = 0.04, many_contacts = 1.2; // where the cheapest is looked for
 constexpr std::size_t most_direct = 3000;                  // particles
@@ -78,27 +77,23 @@ int usual_drifts(double interval, double contact_rate) {
   return 1 << static_cast<int>(std::lround(std::clamp(std::log2(std::max(1.0, drifts)), 0.0, 9.0)));
 }
 
-// Longer intervals as long as they meet the tolerance, or shorter ones until one does.
+// The longest interval that meets the tolerance, by bisection; if none does, the shortest.
 void choose_kicks(Tuning& tuning, const Scene& scene, const Growth& growth, double physics_error,
                   PhaseProgress& progress) {
-  progress.begin("kick intervals", 4.0);
-  const auto meets = [&](std::size_t k) {
-    const double interval = kick_intervals[k];
-    tuning.kicks.push_back(probe_kicks(scene, growth.states, interval, usual_drifts(interval, growth.contact_rate)));
+  progress.begin("kick intervals", std::ceil(std::log2(kicks_of_tenth.size())));
+  std::size_t meeting = 0, missing = kicks_of_tenth.size(); // of the intervals the first `meeting` do
+  while (meeting < missing) {
+    const std::size_t k = (meeting + missing) / 2;
+    const double interval = 0.1 / kicks_of_tenth[k];
+    tuning.kicks.push_back(probe_kicks(scene, growth.states, interval, usual_drifts(interval, growth.contact_rate),
+                                       longest_probe * growth.orbits));
     progress.add(1.0);
-    return tuning.kicks.back().physics_error() <= physics_error;
-  };
-  std::size_t k = first_probed;
-  tuning.meets_physics_error = meets(k);
-  if (tuning.meets_physics_error) {
-    while (k + 1 < kick_intervals.size() && meets(k + 1))
-      ++k;
-    tuning.chosen_kicks = k - first_probed;
-    return;
+    const bool meets = tuning.kicks.back().physics_error() <= physics_error;
+    if (meets || k == 0)
+      tuning.chosen_kicks = tuning.kicks.size() - 1;
+    (meets ? meeting : missing) = meets ? k + 1 : k;
   }
-  while (k > 0 && !tuning.meets_physics_error)
-    tuning.meets_physics_error = meets(--k);
-  tuning.chosen_kicks = tuning.kicks.size() - 1;
+  tuning.meets_physics_error = meeting > 0;
 }
 
 // Into so many drifts the interval is divided, by powers of two.
@@ -177,15 +172,15 @@ Tuning tune(const Scene& scene, const TuneSettings& settings) {
   tuning.particles = growth.states.back().size();
   tuning.orbits = growth.orbits;
   Scene chosen = scene;
-  double interval = kick_intervals.back();
+  double interval = 0.1 / kicks_of_tenth.back();
   if (scene.gravity) {
     tuning.gravity =
         bench_gravity_of(growth.states.back(), gravity_candidates(scene, tuning.particles, settings.force_error),
                          gravity_repeats, progress)
             .rows;
-    choose_gravity(tuning, settings.force_error);
+    choose_gravity(tuning, margin_for_seeds * settings.force_error);
     chosen.gravity = tuning.gravity[tuning.chosen_gravity].choice.settings;
-    choose_kicks(tuning, chosen, growth, settings.physics_error, progress);
+    choose_kicks(tuning, chosen, growth, margin_for_seeds * settings.physics_error, progress);
     interval = tuning.kicks[tuning.chosen_kicks].interval;
   }
   choose_step(tuning, chosen, growth, interval, progress);

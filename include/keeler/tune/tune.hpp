@@ -14,6 +14,9 @@
 
 namespace keeler {
 
+/// The part of a tolerance that the probes are held to, since another seed has another error (docs/dev/tune.md).
+inline constexpr double margin_for_seeds = 0.8;
+
 struct TuneSettings {
   double force_error = 4e-3;         ///< rms error of the force that is allowed
   double physics_error = 0.01;       ///< share of the loss of energy that kicks may make beyond the work of the shear
@@ -51,10 +54,10 @@ struct Tuning {
 
   std::vector<GravityBenchRow> gravity; ///< empty without self-gravity
   std::size_t chosen_gravity = 0;
-  bool meets_force_error = true; ///< else the most accurate is chosen
+  bool meets_force_error = true; ///< with the margin; else the most accurate is chosen
   std::vector<KickProbe> kicks;  ///< in the order of the probes; empty without self-gravity
   std::size_t chosen_kicks = 0;
-  bool meets_physics_error = true; ///< else the shortest is chosen
+  bool meets_physics_error = true; ///< with the margin; else the shortest is chosen
   std::vector<StepProbe> steps;
   std::size_t chosen_step = 0;
   std::vector<ThreadProbe> threads; ///< one thread, and what the machine offers
