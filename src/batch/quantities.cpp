@@ -2,6 +2,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/diagnostics/clusters.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/diagnostics/wake_geometry.hpp>
@@ -78,6 +79,14 @@ Maybe wake_number(const Measurements& m, const std::function<std::optional<doubl
   return value ? Maybe({*value, std::numeric_limits<double>::quiet_NaN()}) : std::nullopt;
 }
 
+// At one instant: how far it is off is not known.
+Maybe largest_cluster(const Measurements& m) {
+  if (!m.wakes)
+    return std::nullopt;
+  const ClusterAnalysis clusters = analyze_clusters(std::span(&m.last, 1), default_cluster_gap);
+  return Maybe({clusters.largest_mass_share, std::numeric_limits<double>::quiet_NaN()});
+}
+
 void add_viscosity(std::vector<Quantity>& all, const std::string& part, const std::string& meaning,
                    const std::function<Maybe(const Transport&)>& of) {
   const std::string name = part + "_viscosity";
@@ -108,6 +117,9 @@ std::vector<Quantity> make_quantities() {
   }
   all.push_back(
       {{"scale_height", "m", "√⟨z²⟩, m"}, [](const Measurements& m) { return column_mean(m, "scale_height_m"); }});
+  for (const QuantityName& name : {QuantityName{"mean_spin", "omega", "about the vertical, Ω; with friction"},
+                                   QuantityName{"spin_energy_ratio", "", "of spins and random motion; with friction"}})
+    all.push_back({name, [column = name.column()](const Measurements& m) { return column_mean(m, column); }});
   all.push_back({{"collisions_per_particle_orbit", "", "collisions faster than v_cut"}, collision_rate});
   const auto add_wakes = [&](const QuantityName& name,
                              const std::function<std::optional<double>(const WakeGeometry&)>& number) {
@@ -119,6 +131,8 @@ std::vector<Quantity> make_quantities() {
             [](const WakeGeometry& w) { return w.wavelength.value; });
   add_wakes({"wake_angle", "degrees", "between the wakes and the orbit by the power spectrum; with wakes"},
             [](const WakeGeometry& w) { return w.angle_degrees.value; });
+  all.push_back({{"largest_cluster_mass_share", "", "of touching spheres, in the last snapshot; with self-gravity"},
+                 largest_cluster});
   add_wakes({"wake_contrast", "",
              "rms of the smoothed surface density about its mean, over the mean; with "
              "self-gravity"},

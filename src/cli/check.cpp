@@ -90,7 +90,7 @@ void print_particles(const Scene& scene, const Derived& d) {
   fmt::print("surface density    {} kg/m^2\n", figures(d.surface_density, 4));
   fmt::print("lambda_cr          {} m\n", figures(d.lambda_cr, 4));
   fmt::print("Toomre Q           {} at the start\n", figures(d.toomre_q, 3));
-  fmt::print("Hill parameter r_h {:.3g} at Saturn\n", d.hill_parameter);
+  fmt::print("Hill parameter r_h {:.3g}\n", d.hill_parameter);
   fmt::print("mid-plane filling  {:.3g} at the start\n", d.midplane_filling);
 }
 

@@ -63,6 +63,19 @@ void add_local(nlohmann::ordered_json& json, const Analysis& a) {
     json["size_classes"].push_back(json_of(c));
 }
 
+void add_spins(nlohmann::ordered_json& json, const SpinAnalysis& s) {
+  json["mean_spin_omega"] = s.mean_omega;
+  json["spin_dispersion_omega"] = s.dispersion_omega;
+  json["spin_energy_ratio"] = s.energy_ratio;
+}
+
+void print_spins(const SpinAnalysis& s) {
+  fmt::print(
+      "spins                mean {:.3g} {:.3g} {:.3g} Omega, dispersion {:.3g} Omega, {:.3g} of the energy of the "
+      "random motion\n",
+      s.mean_omega[0], s.mean_omega[1], s.mean_omega[2], s.dispersion_omega, s.energy_ratio);
+}
+
 void print_local(const Analysis& a) {
   const LocalAnalysis& l = a.local;
   const auto& c = l.dispersion_m_s;
@@ -136,6 +149,8 @@ void add_structure(nlohmann::ordered_json& json, const Analysis& a) {
   put(json, "wake_outer_pitch", "degrees", a.wakes.outer_pitch_degrees);
   json["wake_contrast"] = a.wakes.contrast;
   add_local(json, a);
+  if (a.spins)
+    add_spins(json, *a.spins);
   json["clusters"] = json_of(a.clusters);
   json["radial_mode_noise"] = a.radial_mode_noise;
   json["radial_modes"] = nlohmann::ordered_json::array();
@@ -146,6 +161,8 @@ void add_structure(nlohmann::ordered_json& json, const Analysis& a) {
 void print_structure(const Analysis& a) {
   print_wakes(a);
   print_local(a);
+  if (a.spins)
+    print_spins(*a.spins);
   print_clusters(a.clusters);
   print_modes(a);
 }

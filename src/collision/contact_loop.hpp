@@ -8,6 +8,7 @@
 //   bool is_due(event)           whether it still holds, and is for this loop to carry out
 //   std::span<const std::uint32_t> to_search_again()       who has got back an earlier orbit because of that
 //   void change(place, elements, time)                                     a new orbit from that time on
+//   void set_spin(place, spin)                                             of a rough particle, after its change
 //   bool keeps(event)                      after both changes: false has undone it all, for somebody else to carry out
 //   void visit_partners(place, from, until, visit)         visit(place, image) for all that its orbit may bring into
 //                                     contact between these times, and more
@@ -192,7 +193,14 @@ private:
       return; // an inexact finder may call a pair that moves apart
     const Vec3 place = step_.recorded ? place_of(a, normal, rotation) : Vec3::Zero();
     const double reduced_mass = a.mass * b.mass / (a.mass + b.mass);
-    const Vec3 impulse = reduced_mass * (speed + after.speed) * normal; // on b; a gets the opposite
+    const double normal_impulse = reduced_mass * (speed + after.speed);
+    Vec3 impulse = normal_impulse * normal; // on b; a gets the opposite
+    Spins spins;
+    if (step_.settings->friction) {
+      const Sliding sliding = rub(event, {a, b, normal, relative.velocity, {}, {}}, normal_impulse, spins);
+      impulse += sliding.impulse;
+      contact.energy_lost = sliding.energy_lost;
+    }
     contact.azimuthal_gain = azimuthal_gain(a, -impulse / a.mass, f, rotation);
     contact.azimuthal_gain += azimuthal_gain(b, impulse / b.mass, f, rotation);
     kick(a.elements, -impulse / a.mass, f, rotation);
@@ -203,7 +211,7 @@ private:
     contact.unresolved = speed * distance * distance < step_.kick_pull * (a.mass + b.mass);
     contact.again = orbits_.last_change(event.low) > step_.begin &&
                     orbits_.last_change(event.low) == orbits_.last_change(event.high);
-    contact.energy_lost = 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
+    contact.energy_lost += 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
     contact.momentum_flux = relative.position.x() * impulse.y();
     orbits_.happened(contact);
     if (step_.recorded)
@@ -220,12 +228,33 @@ private:
 
     change(event.low, a.elements, event.time);
     change(event.high, b.elements, event.time);
+    if (step_.settings->friction) {
+      orbits_.set_spin(event.low, spins.low);
+      orbits_.set_spin(event.high, spins.high);
+    }
     if (!orbits_.keeps(event))
       return;
     look_around(event.low, event.time, nobody);
     look_around(event.high, event.time, event.low); // the pair itself, in all its images, has been looked at
     search();
     search_again(orbits_.to_search_again());
+  }
+
+  /// Of the two particles of a contact, at the epoch.
+  struct Spins {
+    Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+  };
+
+  // Fills in the spins before the contact, and gives those after it.
+  Sliding rub(const Event& event, Touch touch, double normal_impulse, Spins& spins) const {
+    const SpinTurn turn(event.time);
+    spins = {step_.particles->spins[event.low], step_.particles->spins[event.high]};
+    touch.spin_a = turn.from_epoch(spins.low);
+    touch.spin_b = turn.from_epoch(spins.high);
+    const Sliding sliding = slide(*step_.settings->friction, touch, normal_impulse);
+    spins.low += turn.to_epoch(spin_change(touch.a, touch.normal, sliding.impulse));
+    spins.high += turn.to_epoch(spin_change(touch.b, touch.normal, sliding.impulse));
+    return sliding;
   }
 
   // Where a touches b, to which the normal points.

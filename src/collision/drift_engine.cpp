@@ -73,6 +73,8 @@ struct DriftEngine::InPlace {
       drift.watch_->changed(i);
   }
 
+  void set_spin(std::uint32_t i, const Vec3& spin) { drift.particles_->spins[i] = spin; }
+
   void list_anew(std::uint32_t i) {
     drift.lists_.list_anew(i);
     if (drift.lists_.reaches_far())

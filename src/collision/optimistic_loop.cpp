@@ -59,6 +59,7 @@ void OptimisticLoop::Domain::clear() {
   deferred.clear();
   barred.clear();
   changes.clear();
+  spins.clear();
   contacts.clear();
   records.clear();
   is_rolled_back.clear();
@@ -129,9 +130,12 @@ std::vector<Event> OptimisticLoop::left_by(std::size_t round) const {
   return left;
 }
 
-// The particle has the orbit of before the change again, the last of its changes.
-void OptimisticLoop::restore(const Change& change, bool alone) {
+// The particle has the orbit and the spin of before the domain's change of that number again, the last of its changes.
+void OptimisticLoop::restore(const Domain& domain, std::size_t number, bool alone) {
+  const Change& change = domain.changes[number];
   particles_->bodies[change.place].elements = change.ended;
+  if (particles_->rough)
+    particles_->spins[change.place] = domain.spins[number];
   newest_[change.place] = change.earlier;
   const bool stays = lists_->changed(change.place, change.begin);
   if (!stays && alone) // as the last round has listed it anew since
@@ -145,12 +149,14 @@ void OptimisticLoop::take_back(Domain& domain) {
     domain.records.pop_back();
   domain.is_rolled_back.pop_back();
   for (int both = 0; both < 2; ++both) {
-    const Change last = domain.changes.back();
-    domain.changes.pop_back();
+    const Change& last = domain.changes.back();
     so_far_->take_back(last.place, last.begin);
     if (!last.earlier)
       domain.touched.pop_back();
-    restore(last, false);
+    restore(domain, domain.changes.size() - 1, false);
+    domain.changes.pop_back();
+    if (particles_->rough)
+      domain.spins.pop_back();
   }
 }
 
@@ -196,9 +202,9 @@ bool OptimisticLoop::put_in_order() {
 bool OptimisticLoop::roll_back_all() {
   so_far_->begin_step(particles_->size(), step_->begin);
   for (Domain& domain : domains_) {
-    for (const Change& change : domain.changes)
-      if (!change.earlier)
-        restore(change, true);
+    for (std::size_t k = 0; k < domain.changes.size(); ++k)
+      if (!domain.changes[k].earlier)
+        restore(domain, k, true);
     domain.clear();
   }
   return false;
@@ -229,7 +235,7 @@ std::size_t OptimisticLoop::bytes() const {
   for (const Domain& d : domains_)
     total += (d.given.capacity() + d.aside.capacity() + d.deferred.capacity()) * sizeof(Event) + d.events.bytes() +
              d.barred.capacity() * sizeof(Barred) + d.changes.capacity() * sizeof(Change) +
-             d.contacts.capacity() * sizeof(Contact) + d.is_rolled_back.capacity() +
+             d.spins.capacity() * sizeof(Vec3) + d.contacts.capacity() * sizeof(Contact) + d.is_rolled_back.capacity() +
              d.touched.capacity() * sizeof(std::uint32_t);
   return total;
 }

@@ -83,6 +83,7 @@ private:
     std::vector<Event> aside; // of which no domain of the round has both particles
     std::vector<Barred> barred;
     std::vector<Change> changes;
+    std::vector<Vec3> spins; // before each change; none of smooth particles
     std::vector<Contact> contacts;
     std::vector<CollisionRecord> records;     // of each contact; none unless the step is recorded
     std::vector<std::uint8_t> is_rolled_back; // each contact
@@ -122,7 +123,7 @@ private:
   void run(std::size_t round, const std::vector<Event>& events);
   void run(std::size_t round, Domain& domain);
   std::vector<Event> left_by(std::size_t round) const;
-  void restore(const Change& change, bool alone);
+  void restore(const Domain& domain, std::size_t change, bool alone);
   void take_back(Domain& domain);
   bool put_in_order();
   bool roll_back_all();

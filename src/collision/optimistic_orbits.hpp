@@ -129,11 +129,12 @@ struct OptimisticLoop::Orbits {
       }
       its.is_rolled_back[contact] = 1;
       ++domain.rolled_back;
-      for (const Change* change : {&one, &other}) {
-        all.so_far_->renew(change->place, change->begin);
-        all.restore(*change, is_last());
-        paths.push_back({change->place, change->time});
-        again.push_back(change->place);
+      for (const std::uint32_t undone : {last, partner}) {
+        const Change& change = all.change(undone);
+        all.so_far_->renew(change.place, change.begin);
+        all.restore(its, (undone - 1) % most_changes, is_last());
+        paths.push_back({change.place, change.time});
+        again.push_back(change.place);
       }
       to_undo.pop_back();
     }
@@ -165,6 +166,8 @@ struct OptimisticLoop::Orbits {
       domain.touched.push_back(i);
     all.newest_[i] = number_of(number(), domain.changes.size());
     domain.changes.push_back({i, earlier, last_change(i), time, body.elements});
+    if (all.particles_->rough)
+      domain.spins.push_back(all.particles_->spins[i]);
     all.so_far_->change(i, time);
     body.elements = elements;
     if (!all.lists_->changed(i, time)) {
@@ -174,6 +177,8 @@ struct OptimisticLoop::Orbits {
         leaves_slack = true;
     }
   }
+
+  void set_spin(std::uint32_t i, const Vec3& spin) { all.particles_->spins[i] = spin; }
 
   bool meets(std::uint32_t i, double time, std::uint32_t j, const Change& past) const {
     if (time == past.time)

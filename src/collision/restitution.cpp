@@ -11,6 +11,8 @@
 namespace keeler {
 namespace {
 
+constexpr double centimetre = 0.01;
+
 void check_table(const NumberRows& table) {
   if (table.empty())
     throw UsageError("it has no rows; give at least one speed and its coefficient");
@@ -31,9 +33,36 @@ RestitutionLaw constant_restitution(double coefficient) {
 }
 
 RestitutionLaw bridges_restitution(double scale) {
-  constexpr double centimetre = 0.01;
   return [scale](const Impact& impact) {
     return impact.speed > 0.0 ? std::min(1.0, scale * std::pow(impact.speed / centimetre, -0.234)) : 1.0;
+  };
+}
+
+RestitutionLaw borderies_restitution(double critical_speed) {
+  return [critical_speed](const Impact& impact) {
+    if (impact.speed <= critical_speed)
+      return 1.0;
+    const double u = critical_speed / impact.speed, u2 = u * u;
+    return std::sqrt(-2.0 / 3.0 * u2 + std::sqrt(10.0 / 3.0 * u2 - 5.0 / 9.0 * u2 * u2));
+  };
+}
+
+RestitutionLaw hatzes_restitution() {
+  return [](const Impact& impact) {
+    const double v = impact.speed / centimetre;
+    return v > 0.0 ? std::min(1.0, 0.90 * std::exp(-0.22 * v) + 0.01 * std::pow(v, -0.6)) : 1.0;
+  };
+}
+
+RestitutionLaw viscoelastic_restitution(double speed, double radius) {
+  const auto stiffness = [](double a, double b) { // √R_eff / m_eff, but for a factor of the material
+    const double a3 = a * a * a, b3 = b * b * b;
+    return std::sqrt(a * b / (a + b)) * (a3 + b3) / (a3 * b3);
+  };
+  return [speed, stiffness, of_one = stiffness(radius, radius)](const Impact& impact) {
+    const double k = stiffness(impact.radius_low, impact.radius_high) / of_one;
+    const double x = std::pow(impact.speed / speed, 0.2) * std::pow(k, 0.4);
+    return (1.0 + 2.583 * x) / (1.0 + x * (3.583 + x * (2.983 + x * (1.148 + x * 0.326))));
   };
 }
 
@@ -70,6 +99,30 @@ const std::vector<RestitutionEntry>& restitution_laws() {
          .meaning = "the constant coefficient",
          .range = {.low = 0, .high = 1}}},
        [](const Parameters& p) { return constant_restitution(p.number("value")); }},
+      {"borderies",
+       {{.path = "critical_speed",
+         .type = KeyType::number,
+         .example = "1e-4",
+         .unit = "m/s",
+         .meaning = "normal speed up to which bounces are elastic (Borderies et al. 1984)",
+         .range = {.low = 0, .high = 1000, .low_open = true}}},
+       [](const Parameters& p) { return borderies_restitution(p.number("critical_speed")); }},
+      {"hatzes", {}, [](const Parameters&) { return hatzes_restitution(); }},
+      {"viscoelastic",
+       {{.path = "speed",
+         .type = KeyType::number,
+         .example = "5e-3",
+         .unit = "m/s",
+         .meaning =
+             "normal speed at which two spheres of that radius have a coefficient of 0.396 (Ramirez et al. 1999)",
+         .range = {.low = 0, .high = 1000, .low_open = true}},
+        {.path = "radius",
+         .type = KeyType::number,
+         .example = "1.0",
+         .unit = "m",
+         .meaning = "that radius; larger spheres are more elastic",
+         .range = {.low = 1e-6, .high = 1e6}}},
+       [](const Parameters& p) { return viscoelastic_restitution(p.number("speed"), p.number("radius")); }},
       {"table",
        {{.path = "table",
          .type = KeyType::rows,

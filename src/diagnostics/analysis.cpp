@@ -4,6 +4,7 @@
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/energy.hpp>
 #include <keeler/diagnostics/local.hpp>
+#include <keeler/diagnostics/spin.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/diagnostics/viscosity.hpp>
 #include <keeler/orbit/toomre.hpp>
@@ -55,6 +56,18 @@ void add(LocalAnalysis& sum, const Patch& patch, double share) {
   sum.thin_cell_m += share * std::sqrt(crowd.cell_x * crowd.cell_y);
 }
 
+void add(std::optional<SpinAnalysis>& sum, const Patch& patch, double share) {
+  const std::optional<SpinState> spins = spin_state(patch);
+  if (!spins)
+    return;
+  if (!sum)
+    sum.emplace();
+  for (int axis = 0; axis < 3; ++axis)
+    sum->mean_omega[static_cast<std::size_t>(axis)] += share * spins->mean[axis];
+  sum->dispersion_omega += share * spins->dispersion;
+  sum->energy_ratio += share * spins->energy_ratio;
+}
+
 void add(VelocityMoments& sum, const VelocityMoments& moments, double share) {
   sum.xx += share * moments.xx;
   sum.xy += share * moments.xy;
@@ -90,6 +103,7 @@ Analysis analyze(std::span<const Patch> patches, const AnalysisSettings& setting
     const double share = 1.0 / static_cast<double>(patches.size());
     add(mean, patch, share);
     add(mean.local, patch, share);
+    add(mean.spins, patch, share);
     add(moments, velocity_moments(patch), share);
     add(mean.size_classes, patch, share);
   }

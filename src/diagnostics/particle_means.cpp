@@ -2,6 +2,7 @@
 
 #include <keeler/core/threads.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace keeler {
@@ -22,6 +23,44 @@ struct Sums {
     return *this;
   }
 };
+
+struct SpinSums {
+  double mass = 0.0, inertia = 0.0, energy = 0.0, squares = 0.0;
+  Vec3 spins = Vec3::Zero(), moments = Vec3::Zero(); // Σ m ω, Σ I ω
+
+  SpinSums& operator+=(const SpinSums& more) {
+    mass += more.mass;
+    inertia += more.inertia;
+    energy += more.energy;
+    squares += more.squares;
+    spins += more.spins;
+    moments += more.moments;
+    return *this;
+  }
+};
+
+SpinMeans spin_means(const Particles& particles, double after) {
+  if (!particles.rough)
+    return {};
+  const SpinTurn turn(after);
+  const SpinSums sums = ordered_total<SpinSums>(particles.size(), [&](SpinSums& total, std::size_t k) {
+    const Body& body = particles.bodies[k];
+    const double inertia = 0.4 * body.mass * body.radius * body.radius;
+    const Vec3 spin = turn.from_epoch(particles.spins[k]);
+    total.mass += body.mass;
+    total.inertia += inertia;
+    total.energy += 0.5 * inertia * spin.squaredNorm();
+    total.squares += body.mass * spin.squaredNorm();
+    total.spins += body.mass * spin;
+    total.moments += inertia * spin;
+  });
+  const Vec3 mean = sums.spins / sums.mass, frame(0.0, 0.0, 1.0);
+  const auto energy_about = [&](const Vec3& spin) { // Σ ½ I (ω − spin)²
+    return sums.energy - sums.moments.dot(spin) + 0.5 * sums.inertia * spin.squaredNorm();
+  };
+  return {energy_about(frame), energy_about(mean), mean,
+          std::sqrt(std::max(0.0, sums.squares / sums.mass - mean.squaredNorm()))};
+}
 
 } // namespace
 
@@ -53,7 +92,8 @@ ParticleMeans particle_means(const Particles& particles, const Frequencies& freq
           sums.azimuthal,
           variance.cwiseSqrt(),
           sums.product / sums.mass - mean.x() * mean.y(),
-          std::sqrt(sums.heights / sums.mass)};
+          std::sqrt(sums.heights / sums.mass),
+          spin_means(particles, after)};
 }
 
 } // namespace keeler

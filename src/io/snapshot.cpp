@@ -58,6 +58,13 @@ void write_particles(const hdf5::Handle& image, const Patch& patch) {
   write_array(group, "Masses", FieldType::float64, {count}, patch.masses.data(), "kg", "mass");
   write_array(group, "ParticleIDs", FieldType::uint64, {count}, patch.ids.data(), "1", "identity, kept for ever");
   write_array(group, "Radius", FieldType::float64, {count}, patch.radii.data(), "m", "radius of the sphere");
+  if (patch.spins.empty())
+    return;
+  std::vector<Vec3> spins = patch.spins;
+  for (Vec3& spin : spins)
+    spin *= patch.orbital_frequency;
+  write_array(group, "Spins", FieldType::float64, {count, 3}, spins.data(), "rad/s",
+              "angular velocity against the stars, along x, y and z");
 }
 
 // One vertex cell a particle, as ParaView's VTKHDF reader wants it; points and their data are the arrays of
@@ -82,8 +89,9 @@ void write_vtk_view(const hdf5::Handle& image, std::size_t particle_count) {
   const hdf5::Handle particles = hdf5::open_group(image, particles_group);
   hdf5::link_again(particles, "Coordinates", group, "Points");
   const hdf5::Handle point_data = hdf5::create_group(group, "PointData");
-  for (const char* name : {"Velocities", "Masses", "ParticleIDs", "Radius"})
-    hdf5::link_again(particles, name, point_data, name);
+  for (const char* name : {"Velocities", "Masses", "ParticleIDs", "Radius", "Spins"})
+    if (hdf5::exists(particles, name))
+      hdf5::link_again(particles, name, point_data, name);
 }
 
 // The smallest box that holds the cell and every particle: eccentric ones stand outside the cell.
@@ -179,8 +187,11 @@ void read_particles(const hdf5::Handle& image, Patch& patch) {
   patch.masses = read_array<double, double>(group, "Masses", {count});
   patch.ids = read_array<std::uint64_t, std::uint64_t>(group, "ParticleIDs", {count});
   patch.radii = read_array<double, double>(group, "Radius", {count});
-  for (Vec3& velocity : patch.velocities)
-    velocity /= patch.orbital_frequency;
+  if (hdf5::exists(group, "Spins"))
+    patch.spins = read_array<double, Vec3>(group, "Spins", {count, 3});
+  for (std::vector<Vec3>* const rates : {&patch.velocities, &patch.spins})
+    for (Vec3& rate : *rates)
+      rate /= patch.orbital_frequency;
   const auto not_increasing = [](std::uint64_t a, std::uint64_t b) { return a >= b; };
   if (std::adjacent_find(patch.ids.begin(), patch.ids.end(), not_increasing) != patch.ids.end())
     throw IoError("its ParticleIDs do not increase; sort the particles by them, each once");

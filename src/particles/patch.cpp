@@ -33,6 +33,11 @@ Patch make_patch(const Particles& particles, const ShearingBox& box, double offs
     patch.masses[k] = body.mass;
     patch.ids[k] = particles.ids[order[k]];
   });
+  if (particles.rough) {
+    const SpinTurn turn(after);
+    patch.spins.resize(count);
+    parallel_for(count, [&](std::size_t k) { patch.spins[k] = turn.from_epoch(particles.spins[order[k]]); });
+  }
   return patch;
 }
 
@@ -48,6 +53,8 @@ void require_sound(const Patch& patch) {
       refuse("a radius that is not positive");
     if (!positive(patch.masses[k]))
       refuse("a mass that is not positive");
+    if (!patch.spins.empty() && !patch.spins[k].allFinite())
+      refuse("a spin that is not finite");
   }
 }
 
@@ -60,6 +67,12 @@ Particles particles_from(const Patch& patch, double ahead) {
     const State state{patch.positions[k], patch.velocities[k]};
     particles.bodies[k] = {elements_from(state, patch.frequencies, rotation), patch.radii[k], patch.masses[k]};
   });
+  particles.rough = !patch.spins.empty();
+  if (particles.rough) {
+    const SpinTurn turn(-ahead);
+    particles.spins.resize(patch.size());
+    parallel_for(patch.size(), [&](std::size_t k) { particles.spins[k] = turn.to_epoch(patch.spins[k]); });
+  }
   return particles;
 }
 

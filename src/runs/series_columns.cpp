@@ -35,6 +35,10 @@ bool may_overlap(const Scene& scene) {
   return !make_finder(scene.collisions.finder)->exact();
 }
 
+bool has_spins(const Scene& scene) {
+  return scene.collisions.friction.has_value();
+}
+
 constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 
 const SeriesColumn all_columns[] = {
@@ -54,10 +58,11 @@ const SeriesColumn all_columns[] = {
      [](Sample s) { return joule(s, state(s).collisions.energy_lost); }},
     {"kick_work_j", "J", "work of all forces' kicks on the motion beyond the shear since the run began",
      [](Sample s) { return joule(s, s.balance.kick_work); }},
-    {"random_energy_j", "J", "Σ m (½c² + ½ν²z²), c the velocity beyond the shear",
+    {"random_energy_j", "J", "Σ m (½c² + ½ν²z²), c the velocity beyond the shear, and the energy of spins",
      [](Sample s) { return joule(s, s.balance.energy); }},
     {"energy_residual_j", "J",
-     "what Σ m (½κ²e² + ½ν²i²) has changed beyond all that kicks and collisions are booked with: rounding",
+     "what Σ m (½κ²e² + ½ν²i²), and the energy of spins, has changed beyond all that kicks and collisions are booked "
+     "with: rounding",
      [](Sample s) { return joule(s, s.balance.residual); }},
     {"translational_flux_kg_m2_s", "kg m²/s",
      "∫ Σ m c_x c_y dt since the run began; its rate over M S is the translational viscosity",
@@ -81,6 +86,16 @@ const SeriesColumn all_columns[] = {
     {"potential_energy_j", "J",
      "Φ of the patch in its own gravity, images included, from an arbitrary zero; nan where it was not measured",
      [](Sample s) { return s.gravity ? joule(s, s.gravity->potential) : not_measured; }, measures_gravity},
+    {"mean_spin_omega", "Ω", "mean spin about the vertical, against the stars; only with `[collisions.friction]`",
+     [](Sample s) { return s.means.spin.mean.z(); }, has_spins},
+    {"spin_dispersion_omega", "Ω", "√⟨(ω − ⟨ω⟩)²⟩ of the spins, weighted by mass",
+     [](Sample s) { return s.means.spin.dispersion; }, has_spins},
+    {"spin_energy_ratio", "1",
+     "Σ ½ I (ω − ⟨ω⟩)² over ½ M (c_x² + c_y² + c_z²) of the dispersions: spins against the random motion",
+     [](Sample s) { return s.means.spin.random_energy / (0.5 * s.means.mass * s.means.dispersion.squaredNorm()); },
+     has_spins},
+    {"spin_energy_j", "J", "Σ ½ I (ω − Ω)² of the spins: the part of `random_energy_j` that they hold",
+     [](Sample s) { return joule(s, s.means.spin.energy); }, has_spins},
     {"step_orbits", "orbits", "length of the step to come; only with `time.step = \"auto\"`",
      [](Sample s) { return state(s).step_length / two_pi; }, [](const Scene& scene) { return scene.time.automatic; }},
     {"kick_interval_orbits", "orbits", "from kick to kick from now on; only with `time.step = \"auto\"`",

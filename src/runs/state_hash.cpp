@@ -11,6 +11,8 @@ std::string state_hash(const SimulationState& state, const Scene& scene) {
   for (const std::uint32_t k : order_by_id(particles.ids)) {
     hash.add(particles.ids[k]);
     hash.add(particles.bodies[k]);
+    if (particles.rough)
+      hash.add_bytes(std::as_bytes(std::span(particles.spins[k].data(), 3)));
   }
   hash.add(state.step);
   hash.add(state.step_length);

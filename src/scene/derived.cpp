@@ -23,7 +23,8 @@ constexpr double mesh_bytes = 150.0; // some ten nodes a particle in a layer of 
 double bytes_per_particle(const Scene& scene) {
   const double state = sizeof(Body) + sizeof(std::uint64_t);
   const double output_copy = 2 * sizeof(Vec3) + 2 * sizeof(double) + sizeof(std::uint64_t); // a Patch
-  double total = state + output_copy + cost::file_bytes + cost::drift_bytes;
+  const double spins = scene.collisions.friction ? 3.0 * sizeof(Vec3) : 0.0; // in the state, a Patch and a file
+  double total = state + spins + output_copy + cost::file_bytes + cost::drift_bytes;
   if (scene.gravity) {
     total += 2 * sizeof(Vec3) + sizeof(double) + sizeof(std::uint64_t); // a GravityProblem and its answer
     const auto solver = chosen_for(scene.particles.count, *scene.gravity).solver;

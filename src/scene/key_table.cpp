@@ -227,6 +227,25 @@ std::vector<Key> collision_keys() {
   };
 }
 
+std::vector<Key> friction_keys() {
+  using enum KeyType;
+  return {
+      {.path = "collisions.friction.tangential_restitution",
+       .type = number,
+       .example = "0.5",
+       .unit = "1",
+       .meaning = "the slip of the surfaces after a contact over that before, where they do not slide all through it",
+       .range = {.low = -1, .high = 1}},
+      {.path = "collisions.friction.coefficient",
+       .type = number,
+       .fallback = "\"unlimited\"",
+       .unit = "1",
+       .meaning = "Coulomb's coefficient: the impulse along the surfaces is at most this times the normal one",
+       .range = KeyRange::at_least(0),
+       .choices = {"unlimited"}},
+  };
+}
+
 std::vector<Key> course_keys() {
   using enum KeyType;
   using enum KeyEffect;
@@ -329,6 +348,7 @@ std::vector<Key> make_keys() {
   add_laws(keys,
            {.type = KeyType::choice, .fallback = "\"bridges\"", .meaning = "how much normal speed a bounce keeps"},
            "collisions.restitution", restitution_laws());
+  add(friction_keys());
   add_table(keys, "gravity", gravity_keys());
   for (const ForceEntry& force : external_forces())
     add_table(keys, force.table, force.keys);
@@ -346,6 +366,7 @@ std::vector<Section> make_sections() {
       {.path = "particles.modes", .replaced_by = "start.from"},
       {.path = "collisions"},
       {.path = "collisions.restitution"},
+      {.path = "collisions.friction"},
       {.path = "gravity"},
       {.path = "start"},
       {.path = "time", .needed = true, .meaning = "it says how long the run is"},

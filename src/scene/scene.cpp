@@ -34,11 +34,20 @@ PlanetSettings read_planet(Settings& settings) {
   return planet;
 }
 
+std::optional<Friction> read_friction(const Settings& settings) {
+  if (!settings.has("collisions.friction"))
+    return {};
+  const std::string coefficient = "collisions.friction.coefficient";
+  return Friction{settings.number("collisions.friction.tangential_restitution"),
+                  settings.is_word(coefficient) ? Friction::unlimited : settings.number(coefficient)};
+}
+
 CollisionSettings read_collisions(Settings& settings, const std::string& name) {
   CollisionSettings collisions;
   collisions.finder = settings.text("collisions.finder");
   collisions.elastic_below = settings.number("collisions.elastic_below");
   collisions.restitution = make_law(restitution_laws(), "collisions.restitution", settings, name);
+  collisions.friction = read_friction(settings);
   return collisions;
 }
 

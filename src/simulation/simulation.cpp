@@ -47,6 +47,10 @@ SimulationState first_state(const Scene& scene, const Patch& start) {
   state.box.first_offset = start.offset;
   Patch patch = start;
   patch.frequencies = scene.planet.frequencies;
+  if (!scene.collisions.friction)
+    patch.spins.clear();
+  else if (patch.spins.empty()) // no spin against the stars
+    patch.spins.assign(patch.size(), Vec3::Zero());
   state.particles = particles_from(patch, 0.5 * state.step_length);
   const double offset = state.epoch_offset();
   for (Body& body : state.particles.bodies) {
@@ -54,7 +58,7 @@ SimulationState first_state(const Scene& scene, const Patch& start) {
     el = state.box.image_of(el, state.box.image_into_cell(el.guiding_x, el.guiding_y, offset), offset);
   }
   const ParticleMeans means = particle_means(state.particles, scene.planet.frequencies, -0.5 * state.step_length);
-  state.energy = {means.epicyclic_energy, means.azimuthal};
+  state.energy = {means.epicyclic_energy, means.azimuthal, means.spin.energy};
   return state;
 }
 
@@ -140,6 +144,8 @@ void Simulation::sort_when_due() {
   const std::vector<std::uint32_t> order = order_by_place(state_.particles, state_.box, state_.epoch_offset());
   reorder(state_.particles.bodies, order);
   reorder(state_.particles.ids, order);
+  if (state_.particles.rough)
+    reorder(state_.particles.spins, order);
   for (ForceState& force : state_.forces)
     reorder(force.accelerations, order);
 }
@@ -164,6 +170,13 @@ void Simulation::rebase(double time) {
     if (image != Image{})
       el = state_.box.image_of(el, image, offset);
   });
+  if (state_.particles.rough) {
+    const FixedRotation turn(time); // of the stars in Hill's frame
+    parallel_for(state_.particles.size(), [&](std::size_t k) {
+      Vec3& spin = state_.particles.spins[k];
+      turn.turn(spin.y(), spin.x());
+    });
+  }
 }
 
 Boundary Simulation::boundary() const {

@@ -7,6 +7,7 @@ SimulationState::SimulationState(const Scene& scene) {
     forces.push_back({"gravity", {}, 0.0, 0.0});
   for (const ForceSettings& force : scene.external_forces)
     forces.push_back({force.entry->table, {}, 0.0, 0.0});
+  particles.rough = scene.collisions.friction.has_value();
 }
 
 FieldTable SimulationState::fields() {
@@ -29,6 +30,8 @@ FieldTable SimulationState::fields() {
   collisions.list_fields(table);
   table.scalar("energy_start", energy.epicyclic, "kg m^2 rad^-2", "epicyclic energy when the run began");
   table.scalar("azimuthal_start", energy.azimuthal, "kg m^2 rad^-2", "sum of m c_y^2 when the run began");
+  if (particles.rough)
+    table.scalar("spin_start", energy.spin, "kg m^2 rad^-2", "energy of the spins when the run began");
   return table;
 }
 
@@ -49,13 +52,13 @@ EnergyBalance SimulationState::balance(const ParticleMeans& means, const Frequen
     booked += force.work + part * force.azimuthal_gain;
   }
   EnergyBalance b;
-  b.energy = means.epicyclic_energy - part * means.azimuthal;
-  b.start = energy.epicyclic - part * energy.azimuthal;
+  b.energy = means.epicyclic_energy - part * means.azimuthal + means.spin.energy;
+  b.start = energy.epicyclic - part * energy.azimuthal + energy.spin;
   b.translational_flux = (azimuthal_gain - (means.azimuthal - energy.azimuthal)) / (f.kappa * f.kappa);
   b.collisional_flux = collisions.momentum_flux;
   b.kick_work = kick_work();
   b.lost = collisions.energy_lost;
-  b.residual = means.epicyclic_energy - energy.epicyclic - booked;
+  b.residual = means.epicyclic_energy - energy.epicyclic + (means.spin.energy - energy.spin) - booked;
   return b;
 }
 

@@ -101,8 +101,9 @@ Patch patch_from_snapshot(Patch patch, const std::string& path, const Scene& sce
   require_same_planet(patch, scene, path);
   require_physical(patch, path);
   // Velocities are stored in m/s; the scene's orbital frequency decides what they are in its own time.
-  for (Vec3& velocity : patch.velocities)
-    velocity *= patch.orbital_frequency / scene.planet.orbital_frequency;
+  for (std::vector<Vec3>* const rates : {&patch.velocities, &patch.spins})
+    for (Vec3& rate : *rates)
+      rate *= patch.orbital_frequency / scene.planet.orbital_frequency;
   patch.orbital_frequency = scene.planet.orbital_frequency;
   patch.frequencies = scene.planet.frequencies;
   patch.box.shear = scene.planet.frequencies.shear();

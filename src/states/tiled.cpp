@@ -81,6 +81,7 @@ Patch tiled_patch(const Patch& patch, std::size_t nx, std::size_t ny) {
   tiled.radii.resize(copies * count);
   tiled.masses.resize(copies * count);
   tiled.ids.resize(copies * count);
+  tiled.spins.resize(copies * patch.spins.size());
   const std::uint64_t stride = count > 0 ? patch.ids.back() + 1 : 0;
   const double kappa = patch.frequencies.kappa, shear = patch.box.shear;
   parallel_for(copies * count, [&](std::size_t k) {
@@ -95,6 +96,8 @@ Patch tiled_patch(const Patch& patch, std::size_t nx, std::size_t ny) {
     tiled.velocities[k] = velocity - Vec3(0.0, shear * shift.x(), 0.0);
     tiled.radii[k] = patch.radii[particle];
     tiled.masses[k] = patch.masses[particle];
+    if (!patch.spins.empty())
+      tiled.spins[k] = patch.spins[particle];
     tiled.ids[k] = patch.ids[particle] + copy * stride;
   });
   return tiled;

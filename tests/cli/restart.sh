@@ -78,6 +78,23 @@ for source in "start.from=$work/start.hdf" "particles.sizes={law=\"file\",path=\
   runs 0 analyze "$work/there"
 done
 
+# Rough particles: their spins are part of the state.
+cp "$work/scene.toml" "$work/smooth.toml"
+mv "$work/whole" "$work/smooth-whole"
+printf '\n[collisions.friction]\ntangential_restitution = 0.4\ncoefficient = 0.5\n' >>"$work/scene.toml"
+runs 0 run "$work/scene.toml" -o "$work/whole" --threads 1
+[ "$(state_hash "$work/whole")" = "$(state_hash "$work/smooth-whole")" ] && fail "friction did nothing"
+h5ls "$work/whole/snap_000001.hdf/PartType1" | grep -q Spins || fail "rough particles: no spins in a snapshot"
+h5ls "$work/smooth-whole/snap_000001.hdf/PartType1" | grep -q Spins && fail "smooth particles: spins in a snapshot"
+for threads in 2 3; do
+  runs 0 run "$work/scene.toml" -o "$work/rough-$threads" --threads "$threads"
+  same "rough particles, $threads threads" "$work/rough-$threads"
+done
+interrupted KILL 137 "$work/rough-killed" --threads 2
+runs 0 resume "$work/rough-killed" --threads 3
+same "rough particles, kill -9" "$work/rough-killed"
+mv "$work/smooth.toml" "$work/scene.toml"
+
 # Kicks every third step: ends and schedules are rounded to whole kicks, and no restart falls between two halves.
 sed -i 's/^solver.*/&\nkick_every = 3/; s/^snapshot_every.*/snapshot_every = 0.13/; s/^checkpoint_every.*/checkpoint_every = 0.07/' \
   "$work/scene.toml"

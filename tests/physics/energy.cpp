@@ -10,7 +10,7 @@ using namespace keeler;
 
 namespace {
 
-Scene patch_with_gravity(int kick_every) {
+Scene patch_with_gravity(int kick_every, const std::vector<std::string>& overrides = {}) {
   return parse_scene(fmt::format(R"(
 [planet]
 preset = "saturn-a-ring"
@@ -28,7 +28,7 @@ step = 2e-3
 end = 1.0
 )",
                                  kick_every),
-                     "test scene");
+                     "test scene", overrides);
 }
 
 } // namespace
@@ -50,6 +50,24 @@ TEST_CASE("the energy budget of a self-gravitating patch closes to rounding, and
     const double gained = shear * (b.translational_flux + b.collisional_flux) + b.kick_work - b.lost;
     CHECK(b.energy - b.start == doctest::Approx(gained).epsilon(1e-10));
     CHECK(largest_overlap(simulation.patch()).depth < 1e-9);
+  }
+}
+
+TEST_CASE("with rough spheres the spins' energy is in the budget, and it closes") {
+  for (const char* coefficient : {"\"unlimited\"", "0.3"}) {
+    const Scene scene = patch_with_gravity(
+        2, {fmt::format("collisions.friction={{tangential_restitution=0.4, coefficient={}}}", coefficient)});
+    Simulation simulation(scene, initial_patch(scene));
+    for (int k = 0; k < 300; ++k)
+      simulation.advance();
+    const EnergyBalance b = simulation.balance();
+    CHECK(simulation.state().collisions.fast > 1000);
+    const ParticleMeans means = simulation.means();
+    CHECK(std::fabs(means.spin.energy - simulation.state().energy.spin) > 1e-3 * b.lost);
+    CHECK(std::fabs(b.residual) < 1e-12 * b.lost);
+    const double shear = scene.planet.frequencies.shear();
+    const double gained = shear * (b.translational_flux + b.collisional_flux) + b.kick_work - b.lost;
+    CHECK(b.energy - b.start == doctest::Approx(gained).epsilon(1e-10));
   }
 }
 

@@ -40,6 +40,7 @@ std::vector<Subject> two_body_subjects();
 std::vector<Subject> balance_subjects();
 std::vector<Subject> literature_subjects();
 std::vector<Subject> overstability_subjects();
+std::vector<Subject> particle_subjects();
 
 /// A run of a scene of examples/ with some keys set, in a folder that is gone afterwards.
 struct Ran {

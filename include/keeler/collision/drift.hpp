@@ -34,7 +34,7 @@ struct CollisionTally {
   void list_fields(FieldTable& table);
 };
 
-/// What the collisions added to Σ m (½κ²e² + ½ν²i²), kg m² rad⁻².
+/// What the collisions added to Σ m (½κ²e² + ½ν²i²), and to the spins of rough particles, kg m² rad⁻².
 inline double epicyclic_gain(const CollisionTally& tally, const Frequencies& f) {
   const double shear = f.shear();
   return shear * tally.momentum_flux + shear / (f.kappa * f.kappa) * tally.azimuthal_gain - tally.energy_lost;

@@ -23,6 +23,20 @@ RestitutionLaw constant_restitution(double coefficient);
 /// min(1, c (v / 1 cm s⁻¹)^−0.234): frosty ice (Bridges et al. 1984; c is 0.34 there and 0.32 in other codes).
 RestitutionLaw bridges_restitution(double scale);
 
+/// Elastic up to the critical speed v* (m/s), and above it ε² = −⅔u² + √(10/3 u² − 5/9 u⁴), u = v*/v: spheres that
+/// yield plastically where they touch (Borderies, Goldreich & Tremaine 1984, after Andrews 1930).
+RestitutionLaw borderies_restitution(double critical_speed);
+
+/// min(1, 0.90 e^(−0.22 v) + 0.01 v^−0.6), v in cm/s: spheres of 20 cm with compacted frost at 123 K (Hatzes, Bridges &
+/// Lin 1988). The law that keeps a ring at Quaoar's (Morgado et al. 2023, Extended Data Fig. 4, model 4).
+RestitutionLaw hatzes_restitution();
+
+/// Viscoelastic spheres, whose coefficient depends on their sizes (Ramírez, Pöschel, Brilliantov & Schwager 1999):
+///   ε = (1 + 2.583 x)/(1 + 3.583 x + 2.983 x² + 1.148 x³ + 0.326 x⁴),  x = (v/v₀)^(1/5) (k/k₀)^(2/5),
+/// with k = √R_eff / m_eff of the pair, of one material, and k₀ that of two spheres of `radius` (m). `speed` is v₀
+/// (m/s), where two such spheres have ε = 0.396. At one speed larger spheres are more elastic: x goes as 1/r.
+RestitutionLaw viscoelastic_restitution(double speed, double radius);
+
 /// Rows of a speed (m/s) and its coefficient, speeds rising from above 0: linear in the logarithm of the speed between
 /// two rows, and constant beyond the first and the last. Throws UsageError "row n: …".
 RestitutionLaw tabulated_restitution(NumberRows table);

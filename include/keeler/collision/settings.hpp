@@ -1,8 +1,10 @@
 // What a scene says about collisions.
 #pragma once
 
+#include <keeler/collision/friction.hpp>
 #include <keeler/collision/restitution.hpp>
 
+#include <optional>
 #include <string>
 
 namespace keeler {
@@ -10,7 +12,8 @@ namespace keeler {
 struct CollisionSettings {
   std::string finder = "certified"; ///< a name of finder_table()
   RestitutionLaw restitution = constant_restitution(0.5);
-  double elastic_below = 1e-2; ///< v_cut in units of (r_i + r_j) Omega / 2: slower contacts bounce elastically
+  double elastic_below = 1e-2;      ///< v_cut in units of (r_i + r_j) Omega / 2: slower contacts bounce elastically
+  std::optional<Friction> friction; ///< none: smooth spheres, which have no spins
 
   /// v_cut for a radius sum (m), m rad^-1.
   double cut_speed(double radius_sum) const { return 0.5 * elastic_below * radius_sum; }

@@ -29,6 +29,13 @@ struct LocalAnalysis {
   double thin_cell_m = 0.0;               ///< side of these cells (of a square of the same area)
 };
 
+/// Spins of rough particles, against the stars (spin.hpp).
+struct SpinAnalysis {
+  std::array<double, 3> mean_omega{}; ///< ⟨ω⟩, Ω
+  double dispersion_omega = 0.0;      ///< √⟨(ω − ⟨ω⟩)²⟩, Ω
+  double energy_ratio = 0.0;          ///< energy of the spins about their mean over that of the random motion
+};
+
 /// Means over the snapshots; the wakes are those of the mean autocorrelation.
 struct Analysis {
   std::size_t snapshots = 0;
@@ -56,6 +63,7 @@ struct Analysis {
   WakeGeometry wakes;
 
   LocalAnalysis local;
+  std::optional<SpinAnalysis> spins; ///< none: smooth particles
   ClusterAnalysis clusters;
   std::vector<RadialModeAnalysis> radial_modes;
   double radial_mode_noise = 0.0;      ///< rms density amplitude of a mode if particles stood at random, one snapshot

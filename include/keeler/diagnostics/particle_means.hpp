@@ -7,6 +7,14 @@
 
 namespace keeler {
 
+/// The spins of rough particles; all 0 for smooth ones.
+struct SpinMeans {
+  double energy = 0.0;        ///< Σ ½ I (ω − Ω)², in Hill's frame, kg m² rad⁻²
+  double random_energy = 0.0; ///< Σ ½ I (ω − ⟨ω⟩)², kg m² rad⁻²
+  Vec3 mean = Vec3::Zero();   ///< ⟨ω⟩ against the stars, rad⁻¹
+  double dispersion = 0.0;    ///< √⟨|ω − ⟨ω⟩|²⟩, rad⁻¹
+};
+
 /// Weighted by mass. The bits follow from the particles and their order in memory, not from the threads.
 struct ParticleMeans {
   double mass = 0.0;              ///< Σ m, kg
@@ -15,6 +23,7 @@ struct ParticleMeans {
   Vec3 dispersion = Vec3::Zero(); ///< velocity_dispersion(), m rad⁻¹
   double random_stress = 0.0; ///< ⟨c_x c_y⟩ without the mean motion, m² rad⁻²: S × translational_viscosity()
   double scale_height = 0.0;  ///< scale_height(), m
+  SpinMeans spin;
 };
 
 /// At `after` (rad) from the epoch of the elements. All are 0 without particles.

@@ -17,6 +17,7 @@ struct Patch {
   std::vector<double> radii;    ///< m
   std::vector<double> masses;   ///< kg
   std::vector<std::uint64_t> ids;
+  std::vector<Vec3> spins; ///< rad^-1, against the stars, in Hill's frame; empty: smooth particles
 
   ShearingBox box;
   double offset = 0.0;            ///< shear offset of the box at this instant, m

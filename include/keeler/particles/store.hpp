@@ -24,9 +24,23 @@ inline double azimuthal_gain(const Body& body, const Vec3& dv, const Frequencies
   return body.mass * dv.y() * (2.0 * azimuthal_velocity(body.elements, f, r) + dv.y());
 }
 
+/// A turn about z, by which vectors that stand still among the stars turn in Hill's frame.
+struct SpinTurn {
+  double cosine = 1.0, sine = 0.0;
+
+  SpinTurn() = default;
+  explicit SpinTurn(double time) { sine_cosine(time, sine, cosine); }
+
+  /// From the epoch to `time` after it, and back.
+  Vec3 from_epoch(const Vec3& v) const { return {cosine * v.x() + sine * v.y(), cosine * v.y() - sine * v.x(), v.z()}; }
+  Vec3 to_epoch(const Vec3& v) const { return {cosine * v.x() - sine * v.y(), cosine * v.y() + sine * v.x(), v.z()}; }
+};
+
 struct Particles {
   std::vector<Body> bodies;
   std::vector<std::uint64_t> ids;
+  bool rough = false;      ///< whether they have spins
+  std::vector<Vec3> spins; ///< of rough ones: angular velocity against the stars, in Hill's frame at the epoch, rad⁻¹
 
   std::size_t size() const { return bodies.size(); }
 
@@ -38,6 +52,8 @@ struct Particles {
   void list_fields(FieldTable& table) {
     table.rows<double>("bodies", bodies, "m, kg", "X, Y, e cos, e sin, i sin, i cos at the epoch; radius; mass");
     table.rows<std::uint64_t>("ids", ids, "1", "unique identity, kept for ever");
+    if (rough)
+      table.rows<double>("spins", spins, "rad^-1", "angular velocity against the stars, in Hill's frame at the epoch");
   }
 };
 

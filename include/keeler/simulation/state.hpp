@@ -18,6 +18,7 @@ namespace keeler {
 struct EnergyStart {
   double epicyclic = 0.0; ///< Σ m (½κ²e² + ½ν²i²)
   double azimuthal = 0.0; ///< Σ m c_y²
+  double spin = 0.0;      ///< Σ ½ I (ω − Ω)² of rough particles
 };
 
 /// Where the energy of the random motions came from and went since the run began: with c the velocity beyond the shear,
@@ -26,13 +27,14 @@ struct EnergyStart {
 /// patch is its reservoir (diagnostics/gravity_stress.hpp). No term depends on the origin or on which image of a
 /// particle is inside the cell. Energies in kg m² rad⁻², fluxes in kg m² rad⁻¹.
 struct EnergyBalance {
-  double energy = 0.0;             ///< now: Σ m (½c² + ½ν²z²)
-  double start = 0.0;              ///< the same when the run began
+  double energy = 0.0; ///< now: Σ m (½c² + ½ν²z²), and the spins' Σ ½ I (ω − Ω)² of rough particles
+  double start = 0.0;  ///< the same when the run began
   double translational_flux = 0.0; ///< ∫ Σ m c_x c_y dt
   double collisional_flux = 0.0;   ///< Σ over collisions (x_j − x_i)(p_y gained by j)
   double kick_work = 0.0;          ///< Σ m (c·Δv + ½Δv²) over the kicks of all forces
   double lost = 0.0;               ///< in collisions
-  double residual = 0.0; ///< what Σ m (½κ²e² + ½ν²i²) has changed beyond all that was booked: rounding
+  double residual =
+      0.0; ///< what Σ m (½κ²e² + ½ν²i²), and the spins' energy, has changed beyond all that was booked: rounding
 };
 
 /// What a force has left in the state.

@@ -75,6 +75,12 @@ TEST_CASE("the same bits as the plain twin: general frequencies, sizes 1:30, sti
   SUBCASE("the bridges law") {
     s.restitution = bridges_restitution(0.34);
   }
+  SUBCASE("rough spheres") {
+    s.friction = {.tangential_restitution = 0.5};
+  }
+  SUBCASE("rough spheres that reverse their slip, sizes 1:5, some slide") {
+    s.friction = {.tangential_restitution = -0.8, .coefficient = 0.6}, s.smallest = 0.2, s.filling = 0.3;
+  }
   std::size_t collisions = 0;
   for (const std::uint64_t seed : {3u, 4u, 5u})
     collisions += walk(s, seed, 60);

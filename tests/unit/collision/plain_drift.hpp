@@ -106,7 +106,20 @@ private:
     if (!(speed > -after.speed))
       return false;
     const double reduced_mass = a.mass * b.mass / (a.mass + b.mass);
-    const Vec3 impulse = reduced_mass * (speed + after.speed) * normal;
+    const double normal_impulse = reduced_mass * (speed + after.speed);
+    Vec3 impulse = normal_impulse * normal;
+    double rubbed = 0.0;
+    if (settings_.friction) {
+      Vec3 &spin_a = particles_->spins[places.first], &spin_b = particles_->spins[places.second];
+      const SpinTurn turn(time);
+      const Sliding sliding =
+          slide(*settings_.friction,
+                {a, b, normal, relative.velocity, turn.from_epoch(spin_a), turn.from_epoch(spin_b)}, normal_impulse);
+      spin_a += turn.to_epoch(spin_change(a, normal, sliding.impulse));
+      spin_b += turn.to_epoch(spin_change(b, normal, sliding.impulse));
+      impulse += sliding.impulse;
+      rubbed = sliding.energy_lost;
+    }
     const double tangential_speed = (relative.velocity + speed * normal).norm();
     const Vec3 place = state_at(a.elements, f_, rotation).position + a.radius * normal;
     double gain = azimuthal_gain(a, -impulse / a.mass, f_, rotation);
@@ -116,7 +129,7 @@ private:
     kick(b.elements, impulse / b.mass, f_, rotation);
     last_[places.first] = last_[places.second] = time;
     ++(after.fast ? tally.fast : tally.slow);
-    const double lost = 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
+    const double lost = rubbed + 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
     tally.energy_lost += lost;
     tally.momentum_flux += relative.position.x() * impulse.y();
     records.push_back(

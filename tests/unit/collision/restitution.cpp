@@ -17,6 +17,36 @@ TEST_CASE("restitution laws") {
   CHECK(bridges({.speed = 0.0}) == 1.0);
 }
 
+TEST_CASE("the law of Borderies et al. is elastic up to its critical speed and falls as the root of it far above") {
+  const RestitutionLaw law = borderies_restitution(0.001);
+  CHECK(law({.speed = 0.0}) == 1.0);
+  CHECK(law({.speed = 0.001}) == 1.0);
+  CHECK(law({.speed = 0.001 * (1.0 + 1e-9)}) == doctest::Approx(1.0).epsilon(1e-8)); // no jump
+  const double u = 0.5, expected = -2.0 / 3.0 * u * u + std::sqrt(10.0 / 3.0 * u * u - 5.0 / 9.0 * u * u * u * u);
+  CHECK(law({.speed = 0.002}) == doctest::Approx(std::sqrt(expected)));
+  CHECK(law({.speed = 1e3}) == doctest::Approx(std::pow(10.0 / 3.0, 0.25) * 1e-3).epsilon(1e-3));
+}
+
+TEST_CASE("the law of Hatzes et al.") {
+  const RestitutionLaw law = hatzes_restitution();
+  CHECK(law({.speed = 0.01}) == doctest::Approx(0.90 * std::exp(-0.22) + 0.01)); // 1 cm/s
+  CHECK(law({.speed = 0.05}) == doctest::Approx(0.90 * std::exp(-1.1) + 0.01 * std::pow(5.0, -0.6)));
+  CHECK(law({.speed = 0.0}) == 1.0);
+  CHECK(law({.speed = 1e-7}) == 1.0); // 0.9 + 0.01 v^-0.6 passes 1 below 0.02 cm/s
+}
+
+// Expanded to second order: 1 − x + 3/5 x² (Schwager & Pöschel 1998), x as v^(1/5) and as 1/r.
+TEST_CASE("viscoelastic spheres: slow ones lose as v^(1/5), and larger ones less") {
+  const RestitutionLaw law = viscoelastic_restitution(0.005, 2.0);
+  const auto of = [&](double speed, double a, double b) { return law({speed, a, b}); };
+  CHECK(of(0.005, 2.0, 2.0) == doctest::Approx(3.583 / 9.04));
+  for (const double x : {1e-3, 1e-2})
+    CHECK(of(0.005 * std::pow(x, 5.0), 2.0, 2.0) == doctest::Approx(1.0 - x + 0.6 * x * x).epsilon(2.0 * x * x * x));
+  CHECK(of(0.005, 4.0, 4.0) == doctest::Approx(of(0.005 / 32.0, 2.0, 2.0))); // twice the radius: half of x
+  CHECK(of(0.005, 1.0, 3.0) == of(0.005, 3.0, 1.0));
+  CHECK(of(0.0, 1.0, 1.0) == 1.0);
+}
+
 TEST_CASE("a table of restitution goes through its rows, linear in the logarithm of the speed, constant beyond") {
   const RestitutionLaw law = tabulated_restitution({{0.001, 0.9}, {0.01, 0.5}, {1.0, 0.1}});
   CHECK(law({.speed = 0.0}) == 0.9);

@@ -59,6 +59,9 @@ struct Ring {
       rebase(el);
       el = box.image_of(el, box.image_into_cell(el.guiding_x, el.guiding_y, offset), offset);
     }
+    const FixedRotation stars(step);
+    for (Vec3& spin : particles.spins)
+      stars.turn(spin.y(), spin.x());
     undisturbed = keeps_neighbours;
   }
 

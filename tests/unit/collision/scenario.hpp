@@ -2,11 +2,13 @@
 #pragma once
 
 #include <keeler/collision/settings.hpp>
+#include <keeler/core/random.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/particles/sizes.hpp>
 #include <keeler/states/uniform.hpp>
 
 #include <cmath>
+#include <optional>
 
 namespace keeler::test {
 
@@ -19,11 +21,13 @@ struct Scenario {
   double kappa = 1.0, nu = 1.0;
   double step = two_pi * 1e-3;
   RestitutionLaw restitution = constant_restitution(0.5);
+  std::optional<Friction> friction{};
 };
 
 inline CollisionSettings settings_of(const Scenario& s) {
   CollisionSettings settings;
   settings.restitution = s.restitution;
+  settings.friction = s.friction;
   return settings;
 }
 
@@ -43,7 +47,15 @@ inline Patch make_patch(const Scenario& s, std::uint64_t seed) {
   request.dispersion_z = s.nu * volume / area / (std::sqrt(two_pi) * s.filling);
   request.dispersion_x = request.dispersion_z / (0.65 * s.nu);
   request.seed = seed;
-  return uniform_patch(request);
+  Patch patch = uniform_patch(request);
+  if (s.friction) {
+    RandomStream random(seed, RandomPurpose::velocity, s.count);
+    for (std::size_t k = 0; k < s.count; ++k) {
+      const double x = random.uniform(), y = random.uniform(), z = random.uniform();
+      patch.spins.push_back(4.0 * Vec3(x - 0.5, y - 0.5, z));
+    }
+  }
+  return patch;
 }
 
 } // namespace keeler::test

@@ -35,6 +35,10 @@ inline double total_energy(const Ring& ring) {
   double sum = 0.0;
   for (const Body& b : ring.particles.bodies)
     sum += b.mass * epicyclic_energy(b.elements, ring.frequencies);
+  for (std::size_t k = 0; k < ring.particles.spins.size(); ++k) {
+    const Body& b = ring.particles.bodies[k];
+    sum += 0.2 * b.mass * b.radius * b.radius * (ring.particles.spins[k] - Vec3(0.0, 0.0, 1.0)).squaredNorm();
+  }
   return sum;
 }
 

@@ -3,8 +3,12 @@
 #include <keeler/core/random.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
+#include <keeler/diagnostics/spin.hpp>
 
+#include <Eigen/Geometry>
 #include <doctest/doctest.h>
+
+#include <cmath>
 
 using namespace keeler;
 
@@ -43,6 +47,33 @@ TEST_CASE("one pass over the elements gives the numbers of the patch") {
   const Particles particles = made_up(5003, Vec3::Zero());
   for (const double after : {0.0, -0.01, 1.3})
     check_against_patch(particles, after);
+}
+
+TEST_CASE("one pass over the spins gives the numbers of the patch") {
+  Particles particles = made_up(2003, Vec3::Zero());
+  CHECK(particle_means(particles, frequencies, 0.3).spin.energy == 0.0); // smooth ones
+  particles.rough = true;
+  RandomStream random(2, RandomPurpose::velocity, 0);
+  for (std::size_t k = 0; k < particles.size(); ++k) {
+    const double x = random.normal(), y = random.normal(), z = 0.3 + random.normal();
+    particles.spins.emplace_back(x, y, z);
+  }
+  const Patch patch = make_patch(particles, box, 7.0, frequencies, 0.3);
+  const SpinState state = spin_state(patch).value();
+  const ParticleMeans means = particle_means(particles, frequencies, 0.3);
+  CHECK((means.spin.mean - state.mean).norm() < 1e-13);
+  CHECK(means.spin.dispersion == doctest::Approx(state.dispersion).epsilon(1e-13));
+  const double motion = 0.5 * means.mass * means.dispersion.squaredNorm();
+  CHECK(means.spin.random_energy / motion == doctest::Approx(state.energy_ratio).epsilon(1e-12));
+  double energy = 0.0;
+  for (std::size_t k = 0; k < patch.size(); ++k)
+    energy += 0.2 * patch.masses[k] * std::pow(patch.radii[k], 2) * (patch.spins[k] - Vec3::UnitZ()).squaredNorm();
+  CHECK(means.spin.energy == doctest::Approx(energy).epsilon(1e-12));
+  // a vector that stands still among the stars turns backwards in Hill's frame
+  CHECK((patch.spins[0] - Eigen::AngleAxisd(-0.3, Vec3::UnitZ()) * particles.spins[particles.size() - 1]).norm() <
+        1e-14);
+  const Particles back = particles_from(patch, -0.3);
+  CHECK((back.spins[0] - particles.spins[particles.size() - 1]).norm() < 1e-14);
 }
 
 TEST_CASE("a common motion, however large, costs no digits of the dispersion") {

@@ -92,6 +92,24 @@ TEST_CASE("a snapshot gives back the patch") {
   CHECK(folder.file_count() == 1);
 }
 
+TEST_CASE("spins are in a snapshot where there are any, in rad/s") {
+  const TemporaryFolder folder;
+  Patch patch = sample(50);
+  RandomStream random(2, RandomPurpose::velocity, 0);
+  for (std::size_t k = 0; k < patch.size(); ++k) {
+    const double x = random.normal(), y = random.normal(), z = random.normal();
+    patch.spins.emplace_back(x, y, z);
+  }
+  write_snapshot(folder / "a.hdf", patch, meta);
+  const Snapshot read = read_snapshot(folder / "a.hdf");
+  REQUIRE(read.patch.spins.size() == patch.size());
+  for (std::size_t k = 0; k < patch.size(); ++k)
+    CHECK((read.patch.spins[k] - patch.spins[k]).norm() < 1e-15 * patch.spins[k].norm());
+  const hdf5::Handle file = open_plainly(folder / "a.hdf");
+  CHECK(numbers<double>(file, "PartType1/Spins")[4] == patch.spins[1].y() * 1.3175e-4);
+  CHECK(address(file, "VTKHDF/PointData/Spins") == address(file, "PartType1/Spins"));
+}
+
 TEST_CASE("a snapshot gives back how its state clumped, where it did") {
   const TemporaryFolder folder;
   SnapshotMeta clumped = meta;

@@ -72,6 +72,8 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
       {"collisions.finder", {"linear-full", motion}},
       {"collisions.elastic_below", {"2e-2", motion}},
       {"collisions.restitution.scale", {"0.32", motion}},
+      {"collisions.friction.tangential_restitution", {"0.5", motion}},
+      {"collisions.friction.coefficient", {"0.2", motion}},
       {"gravity.solver", {"direct", motion}},
       {"gravity.opening_angle", {"0.5", motion}},
       {"gravity.images", {"rings", motion}},
@@ -103,6 +105,9 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
                                           "collisions.restitution.law",
                                           "collisions.restitution.value",
                                           "collisions.restitution.table",
+                                          "collisions.restitution.critical_speed",
+                                          "collisions.restitution.speed",
+                                          "collisions.restitution.radius",
                                           "gravity.force_error",
                                           "gravity.mesh_spacing",
                                           "start.from"};
@@ -121,10 +126,22 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
     CAPTURE(key.path);
     const auto& [value, effect] = other->second;
     CHECK(key.effect == effect);
-    const Scene changed = small_scene({key.path + "=" + value});
+    std::vector<std::string> overrides = {key.path + "=" + value};
+    if (key.path == "collisions.friction.coefficient")
+      overrides.push_back("collisions.friction.tangential_restitution=0.4");
+    const Scene changed = small_scene(overrides);
     CHECK((state_hash(state, changed) != hash) == (effect == motion));
   }
   CHECK(seen == others.size());
+}
+
+TEST_CASE("the hash sees the spins of rough particles") {
+  const Scene scene = small_scene({"collisions.friction.tangential_restitution=0.5"});
+  SimulationState state = evolved(scene, 5);
+  REQUIRE(state.particles.spins.size() == 100);
+  const std::string hash = state_hash(state, scene);
+  state.particles.spins[7].x() = std::nextafter(state.particles.spins[7].x(), 9.0);
+  CHECK(state_hash(state, scene) != hash);
 }
 
 TEST_CASE("the hash sees the rows of a table of restitution, not the file that they came from") {
@@ -147,7 +164,11 @@ TEST_CASE("the hash sees the rows of a table of restitution, not the file that t
 }
 
 TEST_CASE("the field table holds all that a run needs to go on to the bit") {
-  const Scene scene = small_scene();
+  Scene scene = small_scene();
+  SUBCASE("smooth particles") {}
+  SUBCASE("rough particles") {
+    scene = small_scene({"collisions.friction.tangential_restitution=0.5"});
+  }
   SimulationState half = evolved(scene, 10);
   SimulationState restored(scene); // filled through the table alone, as a checkpoint is read
   FieldTable from = half.fields(), into = restored.fields();

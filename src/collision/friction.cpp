@@ -1,0 +1,33 @@
+#include <keeler/collision/friction.hpp>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+
+namespace keeler {
+namespace {
+
+constexpr double rolling = 2.0 / 7.0; // the effective mass along the surfaces, in reduced masses: 1/(1 + 5/2)
+constexpr double inertia = 2.0 / 5.0; // m r²
+const Vec3 frame(0.0, 0.0, 1.0);      // the spin of Hill's frame, Ω
+
+} // namespace
+
+Sliding slide(const Friction& friction, const Touch& touch, double normal_impulse) {
+  const Body &a = touch.a, &b = touch.b;
+  const Vec3 spins = a.radius * (touch.spin_a - frame) + b.radius * (touch.spin_b - frame);
+  const Vec3 slip = touch.velocity - touch.velocity.dot(touch.normal) * touch.normal - spins.cross(touch.normal);
+  const double speed = slip.norm();
+  if (!(speed > 0.0))
+    return {Vec3::Zero(), 0.0};
+  const double mass = rolling * (a.mass * b.mass / (a.mass + b.mass));
+  const double change = std::min((1.0 - friction.tangential_restitution) * speed,
+                                 friction.coefficient * normal_impulse / mass); // of the slip
+  return {(-mass * change / speed) * slip, mass * change * (speed - 0.5 * change)};
+}
+
+Vec3 spin_change(const Body& body, const Vec3& normal, const Vec3& impulse) {
+  return (-1.0 / (inertia * body.mass * body.radius)) * normal.cross(impulse);
+}
+
+} // namespace keeler
