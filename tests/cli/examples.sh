@@ -1,6 +1,7 @@
 #!/bin/bash
 # examples.sh KEELER SOURCE_DIR: the commands in the READMEs of the examples' scenes work as they stand there;
-# runs are cut to two steps, and what is clumped to a quarter of the box with steps that are coarse.
+# runs are cut to two steps, and what is clumped to a quarter of the box with steps that are coarse. So do the sweeps of
+# examples/papers.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 ln -s "$source_dir/examples" "$work/examples"
@@ -18,5 +19,19 @@ for scene in examples/*/scene.toml; do
     count=$((count + 1))
   done < <(sed -n 's/^    //p' "$readme")
   [ "$count" -ge 2 ] || fail "$readme: $count commands"
+done
+
+# The papers' sweeps: one seed, a few steps.
+cp -r "$source_dir/examples" "$work/short"
+for grid in "$work"/short/papers/*/grid.toml; do
+  name=$(basename "${grid%/*}")
+  sed -i '/^"time.end"/d; s/^seeds.*/seeds = [1]/; s/^since.*//' "$grid"
+  if grep -q '^\[set\]' "$grid"; then
+    sed -i 's/^\[set\].*/&\n"time.end" = 0.005/' "$grid"
+  else
+    printf '\n[set]\n"time.end" = 0.005\n' >>"$grid"
+  fi
+  runs 0 sweep "$grid" -o "$work/sweep-$name"
+  grep -q "^## $name\$" "$source_dir/examples/papers/README.md" || fail "$name: no section in examples/papers/README.md"
 done
 report

@@ -161,3 +161,13 @@ TEST_CASE("a tiled patch must be one that a run takes") {
   patch.box.size_x = patch.box.size_y = 2e6;
   CHECK(fault(10, 1).find("2e7 m x 2000000 m (a patch has sizes above 0 and at most 1e7)") != std::string::npos);
 }
+
+TEST_CASE("copies of rough particles spin as these do") {
+  Patch patch = evolved(scene_of(30));
+  for (std::size_t k = 0; k < patch.size(); ++k)
+    patch.spins.push_back({0.1 * static_cast<double>(k), -1.0, 0.5});
+  const Patch tiled = tiled_patch(patch, 2, 3);
+  REQUIRE(tiled.spins.size() == 6 * patch.size());
+  for (std::size_t k = 0; k < tiled.size(); ++k)
+    CHECK(tiled.spins[k] == patch.spins[k % patch.size()]);
+}
