@@ -83,6 +83,8 @@ GravityChoice choice_of(const GravitySettings& settings, std::size_t count) {
     choice = direct();
   if (chosen.solver == Solver::mesh)
     choice = mesh(chosen.mesh_spacing);
+  if (chosen.solver == Solver::axisymmetric)
+    choice = {"axisymmetric", fmt::format("waves from {:g} m up", chosen.shortest_wavelength), "", 0.0, {}};
   if ((chosen.solver == Solver::tree || chosen.solver == Solver::direct) && !chosen.images.far)
     choice.text += fmt::format(", {} of images alone", counted(chosen.images.rings, "ring"));
   choice.settings = chosen;

@@ -112,6 +112,8 @@ std::string words_of(const GravitySettings& gravity) {
     return fmt::format("tree, opening angle {:g}", gravity.opening_angle);
   case Solver::mesh:
     return fmt::format("mesh, spacing {:g} mean distances", gravity.mesh_spacing);
+  case Solver::axisymmetric:
+    return fmt::format("axisymmetric, waves from {:g} m up", gravity.shortest_wavelength);
   default:
     return fmt::format("fft, asked for an rms force error of {:g}", gravity.force_error);
   }

@@ -82,7 +82,7 @@ std::vector<Key> gravity_keys() {
        .type = choice,
        .fallback = "\"tree\"",
        .meaning = "how accelerations are computed",
-       .choices = {"direct", "tree", "fft", "mesh", "auto"}},
+       .choices = {"direct", "tree", "fft", "mesh", "axisymmetric", "auto"}},
       {.path = "force_error",
        .type = number,
        .fallback = "2e-3",
@@ -97,6 +97,13 @@ std::vector<Key> gravity_keys() {
        .meaning = "spacing of the mesh, in (particles an area)^-1/2",
        .range = {.low = 0.1, .high = 100},
        .only_with = {"solver", {"mesh"}}},
+      {.path = "shortest_wavelength",
+       .type = number,
+       .example = "50.0",
+       .unit = "m",
+       .meaning = "radial waves of the surface density pull down to this wavelength",
+       .range = {.low = 0, .high = 1e7, .low_open = true},
+       .only_with = {"solver", {"axisymmetric"}}},
       {.path = "opening_angle",
        .type = number,
        .fallback = "0.6",
@@ -133,6 +140,7 @@ GravitySettings gravity_settings(const Parameters& p) {
                                                         {"tree", Solver::tree},
                                                         {"fft", Solver::fft},
                                                         {"mesh", Solver::mesh},
+                                                        {"axisymmetric", Solver::axisymmetric},
                                                         {"auto", Solver::automatic}};
   GravitySettings gravity;
   gravity.solver = solvers.at(p.text("solver"));
@@ -142,6 +150,8 @@ GravitySettings gravity_settings(const Parameters& p) {
     gravity.force_error = p.number("force_error");
   if (p.has("mesh_spacing"))
     gravity.mesh_spacing = p.number("mesh_spacing");
+  if (p.has("shortest_wavelength"))
+    gravity.shortest_wavelength = p.number("shortest_wavelength");
   if (p.has("images")) {
     gravity.images.rings = static_cast<int>(p.integer("image_rings"));
     gravity.images.far = p.text("images") == "periodic";

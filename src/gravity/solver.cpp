@@ -2,6 +2,7 @@
 
 #include "tree.hpp"
 
+#include <keeler/gravity/axisymmetric.hpp>
 #include <keeler/gravity/direct.hpp>
 #include <keeler/gravity/fft.hpp>
 
@@ -44,6 +45,8 @@ std::unique_ptr<GravitySolver> make_gravity_solver(const GravitySettings& settin
     return std::make_unique<DirectSolver>(chosen.images, set);
   if (chosen.solver == Solver::tree)
     return std::make_unique<TreeSolver>(chosen.opening_angle, chosen.images, set);
+  if (chosen.solver == Solver::axisymmetric)
+    return std::make_unique<AxisymmetricSolver>(chosen.shortest_wavelength);
   return make_fft(chosen, masses, area);
 }
 
@@ -51,10 +54,12 @@ bool has_energy_meter(const GravitySettings& settings) {
   return !pairwise(settings) || settings.images.far;
 }
 
-std::unique_ptr<FftSolver> make_energy_meter(const GravitySettings& settings, std::span<const double> masses,
-                                             double area) {
+std::unique_ptr<EnergyMeter> make_energy_meter(const GravitySettings& settings, std::span<const double> masses,
+                                               double area) {
   if (!has_energy_meter(settings))
     return nullptr;
+  if (settings.solver == Solver::axisymmetric)
+    return std::make_unique<AxisymmetricSolver>(settings.shortest_wavelength);
   GravitySettings chosen = settings;
   if (pairwise(settings))
     chosen = {};

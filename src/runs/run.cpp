@@ -72,7 +72,7 @@ public:
       recorder_.snapshot(simulation_);
     if (state.step != last_checkpoint_)
       recorder_.checkpoint(simulation_);
-    if (result.finished && scene_.gravity && recorder_.force_checks().last_step != state.step)
+    if (result.finished && has_force_checks() && recorder_.force_checks().last_step != state.step)
       recorder_.check_forces(simulation_);
     result.step = state.step;
     result.state_hash = state_hash(state, scene_);
@@ -128,13 +128,16 @@ private:
     return interval > 0.0 && between_kicks() && watch_.elapsed() - last_checkpoint_time_ >= interval;
   }
 
+  // The exact sum is over pairs.
+  bool has_force_checks() const { return scene_.gravity && scene_.gravity->by_pairs(); }
+
   // As often as a small share of the time allows: that is another number of steps for each solver and machine, and no
   // state hangs on it.
   bool force_check_due() const {
     const ForceChecks& checks = recorder_.force_checks();
     const double next =
         checks.count > 0 ? checks.last_s : first_check * static_cast<double>(simulation_.state().particles.size());
-    return scene_.gravity && between_kicks() && checks.seconds + next <= share_of_checks * watch_.elapsed();
+    return has_force_checks() && between_kicks() && checks.seconds + next <= share_of_checks * watch_.elapsed();
   }
 
   // Three times as long as any pass so far is nothing unusual.

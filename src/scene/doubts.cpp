@@ -57,10 +57,10 @@ std::vector<std::string> doubts(const Scene& scene, const PatchScale& patch) {
   doubt_number(patch.particle_count, lines);
   if (!scene.start_from && scene.particles.density < 50.0)
     lines.push_back("the density is in kg/m^3: water ice has 917");
-  if (scene.gravity) {
+  if (scene.gravity && scene.gravity->by_pairs())
     doubt_room_for_wakes(patch, lines);
+  if (scene.gravity)
     doubt_kicks(scene, lines);
-  }
   return lines;
 }
 

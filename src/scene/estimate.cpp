@@ -21,6 +21,7 @@ constexpr double kick = 20.0;       // a particle and kick
 constexpr double tree = 273.0, tree_opened = 44.5; // a particle and kick: the latter over the opening angle squared
 constexpr double mesh = 100.0, mesh_height = 75.0; // a particle and kick: the latter for each spacing of the layer's H
 constexpr double mesh_cut = 52.0;                  // a particle and kick, for each spacing that the cut spans
+constexpr double radial_waves = 70.0;              // a particle and kick
 constexpr double direct_pair = 0.25, far_images = 40.0; // a pair and image; a particle and kick
 constexpr double row = 12.0, row_itself = 2e4;          // a particle and row; a row
 constexpr double stress = 350.0;                        // a particle and measurement of gravity's energy
@@ -109,6 +110,8 @@ double gravity_ns(const Scene& scene) {
     return cost::kick + tree_ns(gravity, height);
   case GravitySettings::Solver::mesh:
     return cost::kick + mesh_ns(gravity, height);
+  case GravitySettings::Solver::axisymmetric:
+    return cost::kick + cost::radial_waves;
   default:
     return cost::kick + mesh_ns(gravity, height) +
            cost::mesh_cut * cut_for(gravity.force_error, std::sqrt(sizes.mean_power(6)) / sizes.mean_power(3));
@@ -123,8 +126,9 @@ double files(std::int64_t every, std::int64_t steps, double first) {
 double output_ns(const Scene& scene, double count) {
   const std::int64_t steps = scene.time.end_step;
   const double rows = files(scene.output.series_every, steps, 0.0);
-  const double checks = scene.gravity ? cost::force_check : 0.0;
-  const double stresses = scene.gravity ? cost::stress * files(scene.output.stress_every, steps, 0.0) : 0.0;
+  const bool pairs = scene.gravity && scene.gravity->by_pairs();
+  const double checks = pairs ? cost::force_check : 0.0;
+  const double stresses = pairs ? cost::stress * files(scene.output.stress_every, steps, 0.0) : 0.0;
   return rows * (cost::row * count + cost::row_itself) + count * stresses +
          count * (cost::snapshot * files(scene.output.snapshot_every, steps, 1.0) +
                   cost::checkpoint * files(scene.output.checkpoint_every, steps, 0.0) + cost::closing + checks);
@@ -184,7 +188,7 @@ SceneContacts scene_contacts(const Scene& scene) {
     return contact_rates(met_optical_depth(scene), typical_restitution(scene), layer_crowding(depth) + crowding,
                          spread);
   };
-  if (!scene.gravity)
+  if (!scene.gravity || !scene.gravity->by_pairs())
     return {rates(0.0), rates(0.0)};
   const double r_h = hill_parameter(scene.particles.density, distance_from_saturn(scene.planet));
   const double pressed = pressed_crowding(depth, r_h);

@@ -8,6 +8,7 @@
 #include "settings.hpp"
 
 #include <keeler/core/units.hpp>
+#include <keeler/core/words.hpp>
 #include <keeler/files/input.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/scene/derived.hpp>
@@ -51,10 +52,17 @@ CollisionSettings read_collisions(Settings& settings, const std::string& name) {
   return collisions;
 }
 
-std::optional<GravitySettings> read_gravity(Settings& settings, const std::string& name) {
+// `size_x`: of the box; 0 where a file holds it, and the solver will see.
+std::optional<GravitySettings> read_gravity(Settings& settings, const std::string& name, double size_x) {
   if (!settings.has("gravity"))
     return {};
-  return gravity_settings(settings.parameters("gravity", name));
+  const GravitySettings gravity = gravity_settings(settings.parameters("gravity", name));
+  if (size_x > 0.0 && gravity.shortest_wavelength > size_x)
+    fail_at(settings.place("gravity.shortest_wavelength"),
+            fmt::format("gravity.shortest_wavelength = {} m is longer than the box is wide ({} m: no wave is left); "
+                        "shorten it",
+                        figures(gravity.shortest_wavelength, 4), figures(size_x, 4)));
+  return gravity;
 }
 
 std::vector<ForceSettings> read_external_forces(Settings& settings, const std::string& name) {
@@ -133,7 +141,7 @@ Scene read_scene(Document document, const std::string& name, Purpose purpose, st
   else
     scene.particles.seed = static_cast<std::uint64_t>(settings.integer("particles.seed"));
   scene.collisions = read_collisions(settings, name);
-  scene.gravity = read_gravity(settings, name);
+  scene.gravity = read_gravity(settings, name, scene.size_x);
   scene.external_forces = read_external_forces(settings, name);
   resolve_times_of_quality(scene, settings);
   read_times(scene, settings);

@@ -126,7 +126,8 @@ void Simulation::decide_when_due() {
 }
 
 void Simulation::set_pace() {
-  const double kick_interval = !scene_.gravity ? 0.0 : static_cast<double>(ticks_between_kicks(0)) * state_.tick();
+  const bool pairs = scene_.gravity && scene_.gravity->by_pairs();
+  const double kick_interval = pairs ? static_cast<double>(ticks_between_kicks(0)) * state_.tick() : 0.0;
   drift_.set_pace(state_.step_length, newton_g(scene_.planet.orbital_frequency) * kick_interval);
 }
 

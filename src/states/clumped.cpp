@@ -19,6 +19,8 @@ namespace {
 void require_gravity(const Scene& scene) {
   if (!scene.gravity)
     throw UsageError("the scene has no [gravity] (only their own gravity clumps particles); add [gravity] to it");
+  if (!scene.gravity->by_pairs())
+    throw UsageError("the scene's gravity is axisymmetric (radial waves make no wakes); take another gravity.solver");
 }
 
 void require_room_to_settle(const SettleCriterion& criterion) {

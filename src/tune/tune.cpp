@@ -4,6 +4,7 @@
 #include "probes.hpp"
 
 #include <keeler/bench/yardsticks.hpp>
+#include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/scene/estimate.hpp>
 
@@ -164,6 +165,9 @@ private:
 } // namespace
 
 Tuning tune(const Scene& scene, const TuneSettings& settings) {
+  if (scene.gravity && !scene.gravity->by_pairs())
+    throw UsageError("the scene's gravity is axisymmetric (its forces have no other solver to choose from); choose "
+                     "its step by \"keeler study step\" or take another gravity.solver");
   PhaseProgress progress(settings.progress);
   const double usual = scene.gravity ? 4.0 : 8.0; // wakes stand and have passed their overshoot
   const Growth growth = grow(scene, std::min(settings.orbits.value_or(usual), orbits_of(scene)), progress);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <keeler/forces/force.hpp>
-#include <keeler/gravity/fft.hpp>
 #include <keeler/gravity/solver.hpp>
 
 #include <memory>
@@ -32,7 +31,7 @@ public:
 private:
   GravitySettings settings_;
   double orbital_frequency_;
-  std::unique_ptr<FftSolver> solver_; // null: not yet, or there is none
+  std::unique_ptr<EnergyMeter> solver_; // null: not yet, or there is none
 };
 
 /// The solver sees the patch from another origin at each kick, drawn from the seed and the step: where cells and meshes

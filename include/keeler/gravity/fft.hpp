@@ -30,21 +30,15 @@ double mass_spread(std::span<const double> masses);
 /// every patch measured (docs/dev/gravity-fft.md).
 double cut_for(double force_error, double mass_spread);
 
-/// Energy of a patch in its own gravity, images included.
-struct GravityEnergy {
-  double potential = 0.0; ///< Φ = −½ Σ G m_i m_j / d over all pairs and images, as the lattice counts it, kg m² rad⁻²
-  double stress = 0.0; ///< dΦ/dγ under the shear y → y − γ x of patch and box, kg m² rad⁻²; over M S it is a viscosity
-};
-
-class FftSolver final : public GravitySolver {
+class FftSolver final : public GravitySolver, public EnergyMeter {
 public:
   FftSolver(const FftSettings& settings, InstructionSet set);
   ~FftSolver() override;
 
   void accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) override;
 
-  /// By the same mesh and neighbours. What kicks add to the motions beyond the shear is ∫ S stress dt − ΔΦ.
-  GravityEnergy energy(const GravityProblem& problem);
+  /// By the same mesh and neighbours.
+  GravityEnergy energy(const GravityProblem& problem) override;
 
   std::string name() const override; ///< "mesh" without the short range
 

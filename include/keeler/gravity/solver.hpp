@@ -35,16 +35,33 @@ public:
   virtual std::string name() const = 0;
 };
 
+/// Energy of a patch in its own gravity, images included.
+struct GravityEnergy {
+  double potential = 0.0; ///< Φ = −½ Σ G m_i m_j / d over all pairs and images, as the lattice counts it, kg m² rad⁻²
+  double stress = 0.0; ///< dΦ/dγ under the shear y → y − γ x of patch and box, kg m² rad⁻²; over M S it is a viscosity
+};
+
+/// What kicks add to the motions beyond the shear is ∫ S stress dt − ΔΦ.
+class EnergyMeter {
+public:
+  virtual ~EnergyMeter() = default;
+  virtual GravityEnergy energy(const GravityProblem& problem) = 0;
+};
+
 /// How self-gravity is computed.
 struct GravitySettings {
-  enum class Solver { direct, tree, fft, mesh, automatic };
+  enum class Solver { direct, tree, fft, mesh, axisymmetric, automatic };
   Solver solver = Solver::tree;
-  double opening_angle = 0.6; ///< tree: a cell is opened when its size exceeds this times its distance
-  ImageSettings images = {};  ///< direct and tree
-  double force_error = 2e-3;  ///< fft and automatic: rms error asked for, over the rms force
-  double mesh_spacing = 1.6;  ///< fft and mesh: of the mesh, in mean distances (particles an area)^−1/2
-  double mesh_cut = 0.0;      ///< fft: where neighbours end, in spacings; 0: by the force error
-  int kick_every = 1;         ///< drifts per kick
+  double opening_angle = 0.6;       ///< tree: a cell is opened when its size exceeds this times its distance
+  ImageSettings images = {};        ///< direct and tree
+  double force_error = 2e-3;        ///< fft and automatic: rms error asked for, over the rms force
+  double mesh_spacing = 1.6;        ///< fft and mesh: of the mesh, in mean distances (particles an area)^−1/2
+  double mesh_cut = 0.0;            ///< fft: where neighbours end, in spacings; 0: by the force error
+  double shortest_wavelength = 0.0; ///< axisymmetric: of the waves that pull, m
+  int kick_every = 1;               ///< drifts per kick
+
+  /// Whether particles attract each other one by one: not by the radial pull of all alone.
+  bool by_pairs() const { return solver != Solver::axisymmetric; }
 };
 
 /// What `automatic` stands for in a patch of so many particles: fft, which was cheaper than the tree at every error and
@@ -56,13 +73,11 @@ GravitySettings chosen_for(std::size_t count, GravitySettings settings);
 std::unique_ptr<GravitySolver> make_gravity_solver(const GravitySettings& settings, std::span<const double> masses,
                                                    double area);
 
-class FftSolver;
-
-/// What measures the energy and the stress (FftSolver::energy) that belong to the forces of such a solver: of the same
-/// periodic sum for `direct` and `tree`, of the mesh alone for `mesh`; null where only some rings of images act. Throws
-/// as above.
+/// What measures the energy and the stress that belong to the forces of such a solver: of the same periodic sum for
+/// `direct` and `tree`, of the mesh or the radial waves alone for `mesh` and `axisymmetric`; null where only some rings
+/// of images act. Throws as above.
 bool has_energy_meter(const GravitySettings& settings);
-std::unique_ptr<FftSolver> make_energy_meter(const GravitySettings& settings, std::span<const double> masses,
-                                             double area);
+std::unique_ptr<EnergyMeter> make_energy_meter(const GravitySettings& settings, std::span<const double> masses,
+                                               double area);
 
 } // namespace keeler

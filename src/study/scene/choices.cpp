@@ -71,6 +71,8 @@ StudyChoices kick_choices(const Scene& scene, bool quick) {
 StudyChoices mesh_choices(const Scene& scene, bool quick) {
   if (!scene.gravity)
     throw UsageError("the scene has no self-gravity, so it has no solver to study; add [gravity] to it");
+  if (!scene.gravity->by_pairs())
+    throw UsageError("the scene's gravity is axisymmetric, which no other solver computes; study its step or kicks");
   StudyChoices all;
   if (scene.gravity->images.far) // the mesh is periodic: with some rings of images alone it is another force
     for (const double error : quick ? std::vector{1e-3, 1e-2} : std::vector{3e-4, 1e-3, 2e-3, 5e-3, 1e-2})

@@ -110,6 +110,7 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
                                           "collisions.restitution.radius",
                                           "gravity.force_error",
                                           "gravity.mesh_spacing",
+                                          "gravity.shortest_wavelength",
                                           "start.from"};
   const Scene scene = small_scene();
   const SimulationState state = evolved(scene, 2);

@@ -65,10 +65,10 @@ TEST_CASE("values out of range are told with the range") {
         "\"auto\" it follows the state, in orbits); write for example step = 1e-3");
   CHECK(fault(least + "[gravity]\nsolver = \"trea\"\n") ==
         "s.toml:12:10: gravity.solver is \"trea\", but must be one of \"direct\", \"tree\", \"fft\", "
-        "\"mesh\", \"auto\" (how accelerations are computed); did you mean \"tree\"?");
+        "\"mesh\", \"axisymmetric\", \"auto\" (how accelerations are computed); did you mean \"tree\"?");
   CHECK(fault(least + "[gravity]\nsolver = \"quantum\"\n") ==
         "s.toml:12:10: gravity.solver is \"quantum\", but must be one of \"direct\", \"tree\", \"fft\", "
-        "\"mesh\", \"auto\" (how accelerations are computed); write for example solver = \"tree\"");
+        "\"mesh\", \"axisymmetric\", \"auto\" (how accelerations are computed); write for example solver = \"tree\"");
   CHECK(fault(least + "[start]\nfrom = \"\"\n").find("must be the path of a file") != std::string::npos);
 }
 

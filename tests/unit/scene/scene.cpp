@@ -142,6 +142,19 @@ TEST_CASE("an empty gravity section means gravity with its defaults") {
   CHECK(scene.gravity->kick_every == 1);
 }
 
+TEST_CASE("radial self-gravity needs its shortest wavelength") {
+  const Scene scene = parse_scene(least + "[gravity]\nsolver = \"axisymmetric\"\nshortest_wavelength = 20\n", "s.toml");
+  CHECK(scene.gravity->solver == GravitySettings::Solver::axisymmetric);
+  CHECK(scene.gravity->shortest_wavelength == 20.0);
+  CHECK_FALSE(scene.gravity->by_pairs());
+  CHECK(scene.motion.find("gravity.shortest_wavelength = 20.0") != std::string::npos);
+  CHECK_THROWS_WITH_AS(parse_scene(least + "[gravity]\nsolver = \"axisymmetric\"\n", "s.toml"),
+                       doctest::Contains("gravity.shortest_wavelength is missing"), UsageError);
+  CHECK_THROWS_WITH_AS(
+      parse_scene(least + "[gravity]\nsolver = \"axisymmetric\"\nshortest_wavelength = 101\n", "s.toml"),
+      doctest::Contains("gravity.shortest_wavelength = 101 m is longer than the box is wide (100 m"), UsageError);
+}
+
 TEST_CASE("the count follows from the optical depth, to the nearest particle") {
   const Scene scene = parse_scene(changed(least, "count = 300", "optical_depth = 0.5"), "s.toml");
   CHECK(scene.particles.count == 796); // 0.5 × 5000 / π = 795.8

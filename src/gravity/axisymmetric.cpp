@@ -1,0 +1,188 @@
+#include <keeler/gravity/axisymmetric.hpp>
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/threads.hpp>
+#include <keeler/core/units.hpp>
+#include <keeler/core/words.hpp>
+
+#include <fftw3.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <complex>
+#include <vector>
+
+namespace keeler {
+namespace {
+
+// Particles are spread by a B-spline of order 8, and forces read off by the same one, which keeps the momentum. Its
+// transform is divided out twice; what is left is the alias k - nodes of the shortest wave, (1/11)^8 = 5e-9 of it.
+constexpr std::size_t order = 8, nodes_a_wave = 12;
+
+using Weights = std::array<double, order>;
+
+// Of the nodes first … first + 7 for a place between node first + 7 and the next, t of a spacing beyond it (Essmann et
+// al. 1995). That is half a spline too far down; spreading and reading off both are, and it cancels.
+Weights spline_weights(double t) {
+  Weights w{};
+  w[order - 1] = t;
+  w[order - 2] = 1.0 - t;
+  for (std::size_t p = 3; p <= order; ++p) {
+    const double scale = 1.0 / static_cast<double>(p - 1);
+    w[order - p] = scale * (1.0 - t) * w[order - p + 1];
+    for (std::size_t j = order - p + 1; j + 1 < order; ++j) {
+      const double from_low = static_cast<double>(order - 1 - j); // spacings of the place beyond node j, less t
+      w[j] = scale * ((from_low + t) * w[j] + (static_cast<double>(p) - from_low - t) * w[j + 1]);
+    }
+    w[order - 1] *= scale * t;
+  }
+  return w;
+}
+
+struct Place {
+  std::size_t first;
+  Weights weights;
+};
+
+} // namespace
+
+struct AxisymmetricSolver::Mesh {
+  explicit Mesh(double wavelength) : shortest_wavelength(wavelength) {}
+  ~Mesh() { destroy(); }
+  Mesh(const Mesh&) = delete;
+  Mesh& operator=(const Mesh&) = delete;
+
+  void destroy();
+  void prepare(const ShearingBox& box);
+  Place place_of(double x, double length) const;
+  void spread(const GravityProblem& problem);
+  void transform(const GravityProblem& problem);
+  double spline_transform(std::size_t n) const;
+
+  double shortest_wavelength;
+  std::size_t modes = 0, nodes = 0;
+  std::vector<std::vector<std::int64_t>> fixed; // a mesh a thread
+  double* real = nullptr;                       // nodes
+  fftw_complex* waves = nullptr;                // nodes / 2 + 1
+  fftw_plan forward = nullptr, backward = nullptr;
+};
+
+void AxisymmetricSolver::Mesh::destroy() {
+  fftw_destroy_plan(forward);
+  fftw_destroy_plan(backward);
+  fftw_free(real);
+  fftw_free(waves);
+}
+
+void AxisymmetricSolver::Mesh::prepare(const ShearingBox& box) {
+  const double waves_in_box = std::floor(box.size_x / shortest_wavelength * (1.0 + 1e-12));
+  if (!(waves_in_box >= 1.0))
+    throw UsageError(fmt::format("gravity.shortest_wavelength = {} m is longer than the box is wide ({} m: no wave is "
+                                 "left); shorten it",
+                                 figures(shortest_wavelength, 4), figures(box.size_x, 4)));
+  if (modes == static_cast<std::size_t>(waves_in_box))
+    return;
+  destroy();
+  modes = static_cast<std::size_t>(waves_in_box);
+  nodes = std::bit_ceil(std::max(nodes_a_wave * modes, 2 * order));
+  real = fftw_alloc_real(nodes);
+  waves = fftw_alloc_complex(nodes / 2 + 1);
+  const auto size = static_cast<int>(nodes);
+  forward = fftw_plan_dft_r2c_1d(size, real, waves, FFTW_ESTIMATE);
+  backward = fftw_plan_dft_c2r_1d(size, waves, real, FFTW_ESTIMATE);
+}
+
+Place AxisymmetricSolver::Mesh::place_of(double x, double length) const {
+  const double turns = x / length, at = (turns - std::floor(turns)) * static_cast<double>(nodes);
+  const auto node = static_cast<std::size_t>(at); // `nodes` itself where the turns round up to 1
+  return {node + nodes - (order - 1), spline_weights(at - static_cast<double>(node))};
+}
+
+// In whole numbers, whose sums have no order: the same bits for any threads and any order in memory.
+void AxisymmetricSolver::Mesh::spread(const GravityProblem& problem) {
+  const std::size_t count = problem.positions.size();
+  const double most = *std::max_element(problem.masses.begin(), problem.masses.end()) * static_cast<double>(count);
+  const int exponent = 61 - std::ilogb(most); // no node has more than half of all
+  const double unit = std::ldexp(1.0, exponent), length = problem.box.size_x;
+  fixed.resize(static_cast<std::size_t>(threads()));
+  for (std::vector<std::int64_t>& mesh : fixed)
+    mesh.assign(nodes, 0);
+  parallel_for(count, [&](std::size_t k) {
+    std::vector<std::int64_t>& mesh = fixed[static_cast<std::size_t>(omp_get_thread_num())];
+    const Place place = place_of(problem.positions[k].x(), length);
+    for (std::size_t j = 0; j < order; ++j)
+      mesh[(place.first + j) & (nodes - 1)] += std::llrint(problem.masses[k] * unit * place.weights[j]);
+  });
+  for (std::size_t i = 0; i < nodes; ++i) {
+    std::int64_t sum = 0;
+    for (const std::vector<std::int64_t>& mesh : fixed)
+      sum += mesh[i];
+    real[i] = std::ldexp(static_cast<double>(sum), -exponent);
+  }
+}
+
+double AxisymmetricSolver::Mesh::spline_transform(std::size_t n) const {
+  const double half = pi * static_cast<double>(n) / static_cast<double>(nodes);
+  return std::pow(std::sin(half) / half, static_cast<double>(order));
+}
+
+// waves[n] / area becomes S_n, but for the phase of half a spline.
+void AxisymmetricSolver::Mesh::transform(const GravityProblem& problem) {
+  if (!std::all_of(problem.positions.begin(), problem.positions.end(), [](const Vec3& p) { return p.allFinite(); }))
+    throw InvariantError("a particle stands at no finite place; take a shorter time.step");
+  prepare(problem.box);
+  spread(problem);
+  fftw_execute(forward);
+  for (std::size_t n = 1; n <= modes; ++n)
+    for (double& part : waves[n])
+      part /= spline_transform(n);
+}
+
+AxisymmetricSolver::AxisymmetricSolver(double shortest_wavelength)
+    : mesh_(std::make_unique<Mesh>(shortest_wavelength)) {}
+
+AxisymmetricSolver::~AxisymmetricSolver() = default;
+
+void AxisymmetricSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) {
+  const std::size_t count = problem.positions.size();
+  if (count == 0)
+    return;
+  Mesh& mesh = *mesh_;
+  mesh.transform(problem);
+  const double pull = two_pi * problem.newton_g / problem.box.area();
+  mesh.waves[0][0] = mesh.waves[0][1] = 0.0;
+  for (std::size_t n = 1; n <= mesh.nodes / 2; ++n) {
+    fftw_complex& wave = mesh.waves[n];
+    const double factor = n <= mesh.modes ? pull / mesh.spline_transform(n) : 0.0;
+    const double re = wave[0], im = wave[1];
+    wave[0] = -factor * im; // g_n = 2π i G S_n
+    wave[1] = factor * re;
+  }
+  fftw_execute(mesh.backward);
+  parallel_for(count, [&](std::size_t k) {
+    const Place place = mesh.place_of(problem.positions[k].x(), problem.box.size_x);
+    double g = 0.0;
+    for (std::size_t j = 0; j < order; ++j)
+      g += place.weights[j] * mesh.real[(place.first + j) & (mesh.nodes - 1)];
+    accelerations[k] = Vec3(g, 0.0, 0.0);
+  });
+}
+
+// ½ ∫ Σ Φ dA, wave by wave.
+GravityEnergy AxisymmetricSolver::energy(const GravityProblem& problem) {
+  if (problem.positions.empty())
+    return {};
+  Mesh& mesh = *mesh_;
+  mesh.transform(problem);
+  double sum = 0.0;
+  for (std::size_t n = 1; n <= mesh.modes; ++n) {
+    const double re = mesh.waves[n][0], im = mesh.waves[n][1];
+    sum += (re * re + im * im) / static_cast<double>(n);
+  }
+  return {-problem.newton_g * problem.box.size_x / problem.box.area() * sum, 0.0};
+}
+
+} // namespace keeler
