@@ -5,6 +5,7 @@
 #include <keeler/bench/yardsticks.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
+#include <keeler/core/units.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/scene/derived.hpp>
 #include <keeler/scene/doubts.hpp>
@@ -13,6 +14,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -135,6 +137,15 @@ void print_steps(const Scene& scene, const Derived& d) {
     fmt::print("; a kick each {} orbits\n", figures(kick_interval_orbits(scene)));
 }
 
+void print_moonlets(const Scene& scene) {
+  const double g = newton_g(scene.planet.orbital_frequency);
+  for (std::size_t k = 0; k < scene.moonlets.size(); ++k) {
+    const MoonletSettings& m = scene.moonlets[k];
+    fmt::print("moonlet {:<10} id {}, radius {} m, mass {} kg, Hill radius {} m\n", k + 1, scene.particles.count + k,
+               figures(m.radius), figures(m.mass, 4), figures(std::cbrt(g * m.mass / 3.0), 3));
+  }
+}
+
 void print_text(const Scene& scene, const Derived& d, const std::optional<RunEstimate>& cost) {
   if (!scene.title.empty())
     fmt::print("{}\n", scene.title);
@@ -142,6 +153,7 @@ void print_text(const Scene& scene, const Derived& d, const std::optional<RunEst
     print_particles(scene, d);
   else
     fmt::print("box and particles  from {}\n", *scene.start_from);
+  print_moonlets(scene);
   print_steps(scene, d);
   if (d.particles_known)
     fmt::print("memory             about {:.0f} MB (an estimate)\n", d.memory_mb);

@@ -43,15 +43,32 @@ SizeLaw make_listed(const Parameters& p) {
 
 constexpr KeyRange radius_range = {.low = 1e-6, .high = 1e6}; // wide: only slips of units lie outside
 
-SizeLaw make_table(const Parameters& p) {
-  const NumberRows& table = p.rows("table");
+constexpr KeyRange density_range = {.low = 1e-2, .high = 3e4}; // up to the densest metals
+
+const NumberRows& checked_rows(const NumberRows& table) {
   if (table.empty())
     throw UsageError("it has no rows; give at least one radius and its number");
   for (const std::vector<double>& row : table)
     if (!radius_range.contains(row[0]))
       throw UsageError(fmt::format("the radius {} is {} m (it must be {}); correct it", &row - table.data() + 1, row[0],
                                    radius_range.words()));
-  return tabulated_sizes(table);
+  return table;
+}
+
+SizeLaw make_table(const Parameters& p) {
+  return tabulated_sizes(checked_rows(p.rows("table")));
+}
+
+SizeLaw make_populations(const Parameters& p) {
+  if (!p.has("populations"))
+    throw UsageError("populations are missing (particles.density is for laws without them); give populations = "
+                     "[[30.0, 1, 450.0], [1.0, 19999, 900.0]] in its place");
+  const NumberRows& table = checked_rows(p.rows("populations"));
+  for (const std::vector<double>& row : table)
+    if (!density_range.contains(row[2]))
+      throw UsageError(fmt::format("the density {} is {} kg/m^3 (it must be {}); correct it", &row - table.data() + 1,
+                                   row[2], density_range.words()));
+  return populations(table);
 }
 
 Key length_key(const char* name, const char* example, const char* meaning) {
@@ -113,19 +130,48 @@ SizeLaw tabulated_sizes(NumberRows table) {
   return law;
 }
 
-std::vector<double> draw_radii(const SizeLaw& law, std::size_t count, std::uint64_t seed) {
-  std::vector<double> radii(count, law.smallest);
-  if (law.smallest == law.largest)
-    return radii;
+SizeLaw populations(const NumberRows& table) {
+  NumberRows sizes, densities;
+  double volume = 0.0, mass = 0.0;
+  for (const std::vector<double>& row : table) {
+    sizes.push_back({row[0], row[1]});
+    densities.push_back({row[2], row[1]});
+    volume += row[1] * std::pow(row[0], 3);
+    mass += row[1] * std::pow(row[0], 3) * row[2];
+  }
+  SizeLaw law = tabulated_sizes(std::move(sizes));
+  law.density = tabulated_sizes(std::move(densities)).radius; // the same row at the same quantile
+  law.mean_density = mass / volume;
+  return law;
+}
+
+namespace {
+
+// One value a particle, in an order that the seed shuffles: the same order for all values of one seed.
+std::vector<double> draw(const std::function<double(double u, std::size_t k)>& value, std::size_t count,
+                         std::uint64_t seed) {
+  std::vector<double> values(count);
   for (std::size_t k = 0; k < count; ++k) {
     RandomStream random(seed, RandomPurpose::size, k);
-    radii[k] = law.radius((static_cast<double>(k) + random.uniform()) / static_cast<double>(count), k);
+    values[k] = value((static_cast<double>(k) + random.uniform()) / static_cast<double>(count), k);
   }
   for (std::size_t k = count; k > 1; --k) { // Fisher–Yates
     RandomStream random(seed, RandomPurpose::size, count + k);
-    std::swap(radii[k - 1], radii[static_cast<std::size_t>(random.uniform() * static_cast<double>(k))]);
+    std::swap(values[k - 1], values[static_cast<std::size_t>(random.uniform() * static_cast<double>(k))]);
   }
-  return radii;
+  return values;
+}
+
+} // namespace
+
+std::vector<double> draw_radii(const SizeLaw& law, std::size_t count, std::uint64_t seed) {
+  if (law.smallest == law.largest)
+    return std::vector<double>(count, law.smallest);
+  return draw(law.radius, count, seed);
+}
+
+std::vector<double> draw_densities(const SizeLaw& law, std::size_t count, std::uint64_t seed) {
+  return law.density ? draw(law.density, count, seed) : std::vector<double>();
 }
 
 const std::vector<SizeEntry>& size_laws() {
@@ -162,6 +208,16 @@ const std::vector<SizeEntry>& size_laws() {
          .columns = {"radius in m", "number of particles"},
          .effect = KeyEffect::start}},
        make_table},
+      {"populations",
+       {{.path = "populations",
+         .type = KeyType::rows,
+         .example = "[[30.0, 1, 450.0], [1.0, 19999, 900.0]]",
+         .meaning = "radii, how many particles have each, in proportion, and of which density",
+         .range = {.low = 1e-6, .high = 1e9},
+         .alternatives = {"particles.density"},
+         .columns = {"radius in m", "number of particles", "density in kg/m^3"},
+         .effect = KeyEffect::start}},
+       make_populations},
   };
   return laws;
 }

@@ -20,9 +20,9 @@ namespace {
 
 constexpr std::size_t checked_particles = 200;
 
-Series open_series(const RunFolder& folder, const std::vector<std::string>& columns,
+Series open_series(const std::filesystem::path& file, const std::vector<std::string>& columns,
                    std::optional<std::int64_t> resumed_at) {
-  return resumed_at ? Series::resume(folder.series(), columns, *resumed_at) : Series::begin(folder.series(), columns);
+  return resumed_at ? Series::resume(file, columns, *resumed_at) : Series::begin(file, columns);
 }
 
 } // namespace
@@ -38,7 +38,14 @@ void OutputCounters::list_fields(FieldTable& table, const Scene& scene) {
 Recorder::Recorder(const RunFolder& folder, const Scene& scene, const std::vector<std::string>& arguments,
                    OutputCounters counters, std::optional<std::int64_t> resumed_at)
     : folder_(folder), scene_(scene), provenance_(collect_provenance(arguments)), counters_(std::move(counters)),
-      columns_(series_columns_of(scene)), series_(open_series(folder, names_of(columns_), resumed_at)) {
+      columns_(series_columns_of(scene)), series_(open_series(folder.series(), names_of(columns_), resumed_at)),
+      moonlet_columns_(moonlet_columns_of(scene)) {
+  if (!moonlet_columns_.empty()) {
+    std::vector<std::string> names;
+    for (const MoonletColumn& column : moonlet_columns_)
+      names.emplace_back(column.name);
+    moonlets_.emplace(open_series(folder.moonlets(), names, resumed_at));
+  }
   write_text(folder_.scene(), scene_.resolved);
   if (measures_gravity(scene_))
     gravity_meter_.emplace(*scene_.gravity, scene_.planet.orbital_frequency);
@@ -79,6 +86,8 @@ void Recorder::checkpoint(const Simulation& simulation) {
   }
   const Stopwatch watch(costs_.checkpoints);
   series_.sync();
+  if (moonlets_)
+    moonlets_->sync();
   SimulationState copy = simulation.state();
   OutputCounters counters = counters_;
   ++counters.checkpoints;
@@ -93,6 +102,12 @@ void Recorder::sample(const Simulation& simulation) {
   const std::optional<GravityEnergy> gravity = measure_gravity(simulation);
   const Stopwatch watch(costs_.series);
   series_.append(simulation.state().step, values_of(columns_, SeriesSample(scene_, simulation, gravity)));
+  for (std::size_t k = 0; k < simulation.state().moonlets.size(); ++k) {
+    std::vector<double> values;
+    for (const MoonletColumn& column : moonlet_columns_)
+      values.push_back(column.value({scene_, simulation, k}));
+    moonlets_->append(simulation.state().step, values);
+  }
 }
 
 // In the first row at or after each multiple of its interval: what is due follows from the step alone.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "contact_log.hpp"
+#include "moonlet_columns.hpp"
 #include "run_folder.hpp"
 
 #include <keeler/forces/self_gravity.hpp>
@@ -74,6 +75,8 @@ private:
   OutputCounters counters_;
   std::vector<SeriesColumn> columns_;
   Series series_;
+  std::vector<MoonletColumn> moonlet_columns_;
+  std::optional<Series> moonlets_; // only where the scene has some
   std::optional<ContactLog> contact_log_;
   std::optional<GravityMeter> gravity_meter_; // only where the series has it
   ForceChecks force_checks_;

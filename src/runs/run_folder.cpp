@@ -23,7 +23,8 @@ bool is_numbered(std::string_view name, std::string_view prefix, std::string_vie
 bool is_own(std::string_view name) {
   if (name.ends_with(".tmp"))
     name.remove_suffix(4);
-  for (const std::string_view own : {"scene.toml", "series.csv", "impact_speeds.csv", "summary.json", "log.jsonl"})
+  for (const std::string_view own :
+       {"scene.toml", "series.csv", "moonlets.csv", "impact_speeds.csv", "summary.json", "log.jsonl"})
     if (name == own)
       return true;
   return is_numbered(name, "snap_", ".hdf") || is_numbered(name, "checkpoint_", ".h5") ||

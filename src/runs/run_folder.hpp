@@ -12,6 +12,7 @@ public:
 
   std::filesystem::path scene() const { return path_ / "scene.toml"; }
   std::filesystem::path series() const { return path_ / "series.csv"; }
+  std::filesystem::path moonlets() const { return path_ / "moonlets.csv"; }
   std::filesystem::path summary() const { return path_ / "summary.json"; }
   std::filesystem::path log() const { return path_ / "log.jsonl"; }
   std::filesystem::path impact_speeds() const { return path_ / "impact_speeds.csv"; }

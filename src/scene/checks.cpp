@@ -39,9 +39,10 @@ bool fits_type(const Key& key, const Value& value) {
            (!key.choices.empty() && std::holds_alternative<std::string>(value));
   case KeyType::integer:
     return std::holds_alternative<std::int64_t>(value);
-  case KeyType::pair: {
+  case KeyType::pair:
+  case KeyType::triple: {
     const auto* list = std::get_if<std::vector<double>>(&value);
-    return list && list->size() == 2;
+    return list && list->size() == (key.type == KeyType::pair ? 2 : 3);
   }
   case KeyType::rows: {
     const auto* rows = std::get_if<NumberRows>(&value);
@@ -87,36 +88,42 @@ void check_value(const Key& key, const Entry& entry) {
   if (const auto* word = std::get_if<std::string>(&entry.value); word && !key.choices.empty())
     if (const std::string near = closest(*word, key.choices); !near.empty())
       advice = fmt::format("did you mean \"{}\"?", near);
-  fail_at(entry.value_place,
-          fmt::format("{} is {}, but must be {} ({}); {}", key.path, is, allowed_words(key), meaning_of(key), advice));
+  fail_at(entry.value_place, fmt::format("{} is {}, but must be {} ({}); {}", entry.path, is, allowed_words(key),
+                                         meaning_of(key), advice));
 }
 
 void check_entry(const Entry& entry) {
   if (const Key* key = find_key(entry.path))
     return check_value(*key, entry);
-  if (!find_section(entry.path))
+  const Section* const section = find_section(entry.path);
+  if (!section)
     fail_unknown(entry);
-  if (!std::holds_alternative<Table>(entry.value))
-    fail_at(entry.value_place,
-            fmt::format("{0} is {1}, but must be a table (it holds several keys); write [{0}] and its "
-                        "keys below",
-                        entry.path, kind_words(entry.value)));
+  const bool list = section->repeated && entry.path == section->path;
+  if (list ? !std::holds_alternative<TableList>(entry.value) : !std::holds_alternative<Table>(entry.value))
+    fail_at(entry.value_place, fmt::format("{} is {}, but must be a {} ({}); write {} and its keys below", entry.path,
+                                           kind_words(entry.value), list ? "list of tables" : "table",
+                                           list ? "there may be several" : "it holds several keys", section->header()));
+}
+
+// The path of another key of the same table.
+std::string beside(const std::string& path, const std::string& other) {
+  return declared_path(path) == path ? other : Key{.path = path}.section() + "." + Key{.path = other}.name();
 }
 
 void check_contradictions(const Document& document) {
   for (const Entry& entry : document) {
     if (const Section* section = find_section(entry.path))
       if (!section->replaced_by.empty() && find_entry(document, section->replaced_by))
-        fail_at(entry.key_place, fmt::format("[{}] cannot stand beside {} (the start file holds the box and its "
+        fail_at(entry.key_place, fmt::format("{} cannot stand beside {} (the start file holds the box and its "
                                              "particles); remove one of the two",
-                                             entry.path, section->replaced_by));
+                                             section->header(), section->replaced_by));
     const Key* key = find_key(entry.path);
     if (!key)
       continue;
     for (const std::string& other : key->alternatives)
-      if (const Entry* earlier = find_entry(document, other); earlier && earlier < &entry)
+      if (const Entry* earlier = find_entry(document, beside(entry.path, other)); earlier && earlier < &entry)
         fail_at(entry.key_place, fmt::format("{} cannot stand beside {} (either gives the other); keep one of the two",
-                                             entry.path, other));
+                                             entry.path, earlier->path));
     if (!condition_holds(document, entry.path)) {
       const KeyCondition& needs = key->only_with;
       fail_at(entry.key_place, fmt::format("{0} has no meaning here (it belongs to {1}{2}); remove it or give {1}{2}",
@@ -125,16 +132,17 @@ void check_contradictions(const Document& document) {
   }
 }
 
-void check_key_present(const Document& document, const Key& key, const std::string& place) {
-  const auto given = [&](const std::string& path) { return find_entry(document, path) != nullptr; };
-  if (given(key.path) || !key.fallback.empty() || !condition_holds(document, key.path) ||
+// `path`: the key's own, or in one table of a list.
+void check_key_present(const Document& document, const Key& key, const std::string& path, const std::string& place) {
+  const auto given = [&](const std::string& other) { return find_entry(document, beside(path, other)) != nullptr; };
+  if (given(path) || !key.fallback.empty() || !condition_holds(document, key.path) ||
       std::any_of(key.alternatives.begin(), key.alternatives.end(), given))
     return;
   std::string other_ways;
   for (const std::string& other : key.alternatives)
     other_ways += " or " + find_key(other)->name();
-  fail_at(place, fmt::format("{} is missing ({}); add for example {}{}", key.path, meaning_of(key), sample_of(key),
-                             other_ways));
+  fail_at(place,
+          fmt::format("{} is missing ({}); add for example {}{}", path, meaning_of(key), sample_of(key), other_ways));
 }
 
 void check_complete(const Document& document, const std::string& name) {
@@ -147,9 +155,10 @@ void check_complete(const Document& document, const std::string& name) {
       fail_at(parent ? parent->key_place : name + ":1:1",
               fmt::format("[{0}] is missing ({1}); add a table [{0}]", section.path, section.meaning));
     }
-    for (const Key& key : scene_keys())
-      if (key.section() == section.path)
-        check_key_present(document, key, entry->key_place);
+    for (const std::string& table : tables_of(document, section.path))
+      for (const Key& key : scene_keys())
+        if (key.section() == section.path)
+          check_key_present(document, key, table + "." + key.name(), find_entry(document, table)->key_place);
   }
 }
 

@@ -67,7 +67,9 @@ Value value_of_array(const toml::array& array) {
     return *numbers;
   if (const std::optional<NumberRows> rows = rows_in(array))
     return *rows;
-  return Unusable{array.front().is_table() ? "a list of tables" : "a list of things that are not numbers"};
+  if (array.is_array_of_tables())
+    return TableList{array.size()};
+  return Unusable{"a list of things that are not numbers"};
 }
 
 Value value_of(const toml::node& node) {
@@ -89,6 +91,9 @@ Value value_of(const toml::node& node) {
   }
 }
 
+void flatten_list(const toml::array& tables, const std::string& path, const std::string& name,
+                  std::vector<Positioned>& entries);
+
 void flatten(const toml::table& table, const std::string& prefix, const std::string& name,
              std::vector<Positioned>& entries) {
   for (const auto& [key, node] : table) {
@@ -98,6 +103,18 @@ void flatten(const toml::table& table, const std::string& prefix, const std::str
         {position, {path, place_of(name, position), place_of(name, node.source().begin), value_of(node)}});
     if (const toml::table* inner = node.as_table())
       flatten(*inner, path + ".", name, entries);
+    if (node.is_array_of_tables())
+      flatten_list(*node.as_array(), path, name, entries);
+  }
+}
+
+void flatten_list(const toml::array& tables, const std::string& path, const std::string& name,
+                  std::vector<Positioned>& entries) {
+  for (std::size_t n = 0; n < tables.size(); ++n) {
+    const toml::table& table = *tables[n].as_table();
+    const std::string own = fmt::format("{}[{}]", path, n + 1), place = place_of(name, table.source().begin);
+    entries.push_back({table.source().begin, {own, place, place, Table{}}});
+    flatten(table, own + ".", name, entries);
   }
 }
 
@@ -141,6 +158,17 @@ toml::table parsed(const std::string& text, const std::string& name) {
 const Entry* find_entry(const Document& document, const std::string& path) {
   const auto found = std::find_if(document.begin(), document.end(), [&](const Entry& e) { return e.path == path; });
   return found == document.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> tables_of(const Document& document, const std::string& section) {
+  const Entry* const entry = find_entry(document, section);
+  if (!entry)
+    return {};
+  const auto* const list = std::get_if<TableList>(&entry->value);
+  std::vector<std::string> tables;
+  for (std::size_t n = 1; list && n <= list->count; ++n)
+    tables.push_back(fmt::format("{}[{}]", section, n));
+  return list ? tables : std::vector{section};
 }
 
 Document parse_document(const std::string& text, const std::string& name) {
@@ -187,6 +215,7 @@ std::string kind_words(const Value& value) {
       return fmt::format("{} row{} of numbers", rows.size(), rows.size() == 1 ? "" : "s");
     }
     std::string operator()(const Table&) const { return "a table"; }
+    std::string operator()(const TableList&) const { return "a list of tables"; }
     std::string operator()(const Unusable& unusable) const { return unusable.what; }
   };
   return std::visit(Words{}, value);
@@ -214,6 +243,7 @@ std::string to_toml(const Value& value) {
       return fmt::format("[{}]", fmt::join(lists, ", "));
     }
     std::string operator()(const Table&) const { return "a table"; }
+    std::string operator()(const TableList&) const { return "a list of tables"; }
     std::string operator()(const Unusable& unusable) const { return unusable.what; }
   };
   return std::visit(Text{}, value);

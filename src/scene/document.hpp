@@ -14,12 +14,18 @@ namespace keeler {
 
 struct Table {};
 
+/// A list of tables, [[path]]; table n of it is an entry path[n] of its own, from 1.
+struct TableList {
+  std::size_t count = 0;
+};
+
 /// A TOML value that no key takes; `what` names it in messages.
 struct Unusable {
   std::string what;
 };
 
-using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, NumberRows, Table, Unusable>;
+using Value =
+    std::variant<bool, std::int64_t, double, std::string, std::vector<double>, NumberRows, Table, TableList, Unusable>;
 
 /// One key or table header. Names that are not plain keep their quotes in the path, so "a.b" is never a table a.
 struct Entry {
@@ -32,6 +38,9 @@ struct Entry {
 
 /// In the order of the file, overrides last. No path occurs twice.
 using Document = std::vector<Entry>;
+
+/// The paths of the tables that a document has of a section: none, its own, or those of its list.
+std::vector<std::string> tables_of(const Document& document, const std::string& section);
 
 const Entry* find_entry(const Document& document, const std::string& path);
 

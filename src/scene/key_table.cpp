@@ -1,5 +1,6 @@
 #include "key_table.hpp"
 
+#include "moonlets.hpp"
 #include "presets.hpp"
 
 #include <keeler/collision/restitution.hpp>
@@ -149,7 +150,8 @@ std::vector<Key> patch_keys() {
        .example = "600.0",
        .unit = "kg/m^3",
        .meaning = "density of the particles' material",
-       .range = {.low = 1e-2, .high = 3e4},
+       .range = material_densities,
+       .alternatives = {"particles.sizes.populations"},
        .effect = start},
       {.path = "particles.velocity_dispersion",
        .type = number,
@@ -344,6 +346,7 @@ std::vector<Key> make_keys() {
            "particles.sizes", size_laws());
   add(streamline_keys());
   add(mode_keys());
+  add(moonlet_keys());
   add(collision_keys());
   add_laws(keys,
            {.type = KeyType::choice, .fallback = "\"bridges\"", .meaning = "how much normal speed a bounce keeps"},
@@ -364,6 +367,7 @@ std::vector<Section> make_sections() {
       {.path = "particles.sizes", .needed = true, .meaning = "it says how large they are", .replaced_by = "start.from"},
       {.path = "particles.streamlines", .replaced_by = "start.from"},
       {.path = "particles.modes", .replaced_by = "start.from"},
+      {.path = "moonlet", .replaced_by = "start.from", .repeated = true},
       {.path = "collisions"},
       {.path = "collisions.restitution"},
       {.path = "collisions.friction"},

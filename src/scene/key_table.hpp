@@ -8,6 +8,9 @@
 
 namespace keeler {
 
+/// Up to the densest metals, kg/m³.
+inline constexpr KeyRange material_densities = {.low = 1e-2, .high = 3e4};
+
 std::vector<Key> make_keys();
 std::vector<Section> make_sections();
 

@@ -19,15 +19,30 @@ const std::vector<Section>& scene_sections() {
   return sections;
 }
 
+std::string declared_path(const std::string& path) {
+  std::string declared;
+  bool number = false;
+  for (const char c : path) {
+    number = number || c == '[';
+    if (!number)
+      declared += c;
+    number = number && c != ']';
+  }
+  return declared;
+}
+
 const Key* find_key(const std::string& path) {
   const auto& keys = scene_keys();
-  const auto found = std::find_if(keys.begin(), keys.end(), [&](const Key& key) { return key.path == path; });
+  const std::string declared = declared_path(path);
+  const auto found = std::find_if(keys.begin(), keys.end(), [&](const Key& key) { return key.path == declared; });
   return found == keys.end() ? nullptr : &*found;
 }
 
 const Section* find_section(const std::string& path) {
   const auto& sections = scene_sections();
-  const auto found = std::find_if(sections.begin(), sections.end(), [&](const Section& s) { return s.path == path; });
+  const std::string declared = declared_path(path);
+  const auto found =
+      std::find_if(sections.begin(), sections.end(), [&](const Section& s) { return s.path == declared; });
   return found == sections.end() ? nullptr : &*found;
 }
 
@@ -48,6 +63,8 @@ std::string allowed_words(const Key& key) {
     return "a whole number" + suffix;
   case KeyType::pair:
     return "two numbers" + suffix;
+  case KeyType::triple:
+    return "three numbers" + suffix;
   case KeyType::rows:
     return fmt::format("the path of a text file, or rows in place: {}{}", fmt::join(key.columns, ", "), suffix);
   }

@@ -11,7 +11,7 @@ namespace keeler {
 namespace {
 
 bool is_within(const std::string& path, const std::string& table) {
-  return path == table || path.rfind(table + ".", 0) == 0;
+  return path == table || path.rfind(table + ".", 0) == 0 || path.rfind(table + "[", 0) == 0;
 }
 
 bool is_dotted_name(const std::string& path) {

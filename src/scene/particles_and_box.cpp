@@ -181,8 +181,8 @@ void check_filling(Scene& scene, const std::string& place) {
 
 void read_particles_and_box(Scene& scene, Settings& settings, const std::string& name) {
   ParticleSettings& particles = scene.particles;
-  particles.density = settings.number("particles.density");
   particles.sizes = make_law(size_laws(), "particles.sizes", settings, name);
+  particles.density = particles.sizes.density ? particles.sizes.mean_density : settings.number("particles.density");
   particles.velocity_dispersion = settings.number("particles.velocity_dispersion");
   particles.seed = static_cast<std::uint64_t>(settings.integer("particles.seed"));
   particles.streamlines = read_streamlines(settings);

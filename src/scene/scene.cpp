@@ -1,6 +1,7 @@
 #include <keeler/scene/scene.hpp>
 
 #include "checks.hpp"
+#include "moonlets.hpp"
 #include "overrides.hpp"
 #include "particles_and_box.hpp"
 #include "presets.hpp"
@@ -65,11 +66,20 @@ std::optional<GravitySettings> read_gravity(Settings& settings, const std::strin
   return gravity;
 }
 
-std::vector<ForceSettings> read_external_forces(Settings& settings, const std::string& name) {
+// `size_x`: as above.
+std::vector<ForceSettings> read_external_forces(Settings& settings, const std::string& name, double size_x) {
   std::vector<ForceSettings> forces;
-  for (const ForceEntry& entry : external_forces())
-    if (settings.has(entry.table))
-      forces.push_back({&entry, settings.parameters(entry.table, name)});
+  for (const ForceEntry& entry : external_forces()) {
+    if (!settings.has(entry.table))
+      continue;
+    forces.push_back({&entry, settings.parameters(entry.table, name)});
+    try {
+      if (entry.check && size_x > 0.0)
+        entry.check(forces.back().parameters, size_x);
+    } catch (const UsageError& fault) {
+      fail_at(settings.place(entry.table), fault.what());
+    }
+  }
   return forces;
 }
 
@@ -140,9 +150,12 @@ Scene read_scene(Document document, const std::string& name, Purpose purpose, st
     read_particles_and_box(scene, settings, name);
   else
     scene.particles.seed = static_cast<std::uint64_t>(settings.integer("particles.seed"));
+  scene.moonlets = read_moonlets(settings, name);
+  if (purpose == Purpose::start && !scene.start_from)
+    check_moonlets(scene, settings);
   scene.collisions = read_collisions(settings, name);
   scene.gravity = read_gravity(settings, name, scene.size_x);
-  scene.external_forces = read_external_forces(settings, name);
+  scene.external_forces = read_external_forces(settings, name, scene.size_x);
   resolve_times_of_quality(scene, settings);
   read_times(scene, settings);
   scene.output.collisions = read_contact_log(settings);

@@ -3,7 +3,6 @@
 #include "checks.hpp"
 
 #include <keeler/files/input.hpp>
-#include <keeler/scene/keys.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -49,13 +48,22 @@ NumberRows read_rows(const std::string& path, const Key& key, const std::string&
 } // namespace
 
 Settings::Settings(Document document) : document_(std::move(document)) {
-  for (const Key& key : scene_keys()) {
-    const bool in_force = has(key.section()) || always_in_force(key.section());
-    if (!in_force || has(key.path) || key.fallback.empty() || !condition_holds(document_, key.path))
-      continue;
-    const Value value = parse_override_value(key.fallback, key.path, default_place).front().value;
-    document_.push_back({key.path, default_place, default_place, value, false});
-  }
+  for (const Key& key : scene_keys())
+    for (const std::string& path : paths_of(key)) {
+      if (has(path) || key.fallback.empty() || !condition_holds(document_, path))
+        continue;
+      const Value value = parse_override_value(key.fallback, path, default_place).front().value;
+      document_.push_back({path, default_place, default_place, value, false});
+    }
+}
+
+std::vector<std::string> Settings::paths_of(const Key& key) const {
+  if (always_in_force(key.section()))
+    return {key.path};
+  std::vector<std::string> paths = tables(key.section());
+  for (std::string& path : paths)
+    path += "." + key.name();
+  return paths;
 }
 
 double Settings::number(const std::string& path) const {
@@ -115,6 +123,7 @@ Parameters::Value Settings::parameter(const Key& key, const std::string& scene_n
   case KeyType::integer:
     return integer(key.path);
   case KeyType::pair:
+  case KeyType::triple:
     return numbers(key.path);
   case KeyType::rows:
     return rows(key, scene_name);
@@ -127,38 +136,54 @@ Parameters::Value Settings::parameter(const Key& key, const std::string& scene_n
   return text(key.path);
 }
 
-Parameters Settings::parameters(const std::string& section, const std::string& scene_name) {
+Parameters Settings::parameters(const std::string& table, const std::string& scene_name) {
   Parameters parameters;
-  for (const Key& key : scene_keys())
-    if (key.section() == section && has(key.path))
-      parameters.set(key.name(), parameter(key, scene_name));
+  for (Key key : scene_keys()) {
+    const std::string name = key.name();
+    const bool own = key.section() == declared_path(table);
+    key.path = table + "." + name;
+    if (own && has(key.path))
+      parameters.set(name, parameter(key, scene_name));
+  }
   return parameters;
 }
 
-std::string Settings::toml_of(const Key& key) const {
+std::string Settings::toml_of(const Key& key, const std::string& path) const {
   // 3 and 3.0 are one value, and shall be one text
-  const bool as_double = key.type == KeyType::number && !is_word(key.path);
-  return to_toml(as_double ? Value(number(key.path)) : find_entry(document_, key.path)->value);
+  const bool as_double = key.type == KeyType::number && !is_word(path);
+  return to_toml(as_double ? Value(number(path)) : find_entry(document_, path)->value);
 }
 
 std::string Settings::motion() const {
   std::string out;
   for (const Key& key : scene_keys())
-    if (key.effect == KeyEffect::motion && has(key.path))
-      out += fmt::format("{} = {}\n", key.path, toml_of(key));
+    for (const std::string& path : paths_of(key))
+      if (key.effect == KeyEffect::motion && has(path))
+        out += fmt::format("{} = {}\n", path, toml_of(key, path));
   return out;
+}
+
+std::string Settings::table_text(const Section& section, const std::string& table) const {
+  std::string out;
+  for (const Key& key : scene_keys())
+    if (const std::string path = table + "." + key.name(); key.section() == section.path && has(path))
+      out += fmt::format("{} = {}\n", key.name(), toml_of(key, path));
+  return out.empty() ? out : fmt::format("\n{}\n{}", section.header(), out);
 }
 
 std::string Settings::resolved() const {
   std::string out, open;
   for (const Key& key : scene_keys()) {
-    if (!has(key.path))
+    if (key.section().empty() && has(key.path))
+      out += fmt::format("{} = {}\n", key.name(), toml_of(key, key.path));
+    if (key.section() == open)
       continue;
-    if (key.section() != open) {
-      open = key.section();
-      out += fmt::format("\n[{}]\n", open);
-    }
-    out += fmt::format("{} = {}\n", key.name(), toml_of(key));
+    open = key.section();
+    const Section& section = *find_section(open);
+    if (!section.repeated)
+      out += table_text(section, open);
+    for (const std::string& table : section.repeated ? tables(open) : std::vector<std::string>())
+      out += table_text(section, table);
   }
   return out;
 }

@@ -5,6 +5,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/key.hpp>
+#include <keeler/scene/keys.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -31,10 +32,13 @@ public:
   /// Where the value (or a table's header) stands, for messages.
   std::string place(const std::string& path) const { return find_entry(document_, path)->value_place; }
 
+  /// The paths of the tables that the scene has of a section: none, its own, or those of its list.
+  std::vector<std::string> tables(const std::string& section) const { return tables_of(document_, section); }
+
   /// The values in force of a table's keys. Rows are read from the file that they name; those that have a say in the
   /// motion then stand in the resolved scene themselves, so that a run goes on without the file. `scene_name`: as
   /// below.
-  Parameters parameters(const std::string& section, const std::string& scene_name);
+  Parameters parameters(const std::string& table, const std::string& scene_name);
 
   /// The absolute path of the file that a key names: what a scene file says is relative to it, what the command line
   /// says to the current directory. The resolved scene holds the absolute path.
@@ -50,7 +54,10 @@ public:
   std::string motion() const;
 
 private:
-  std::string toml_of(const Key& key) const;
+  /// Where a key may stand in this scene: once in each of its section's tables.
+  std::vector<std::string> paths_of(const Key& key) const;
+  std::string toml_of(const Key& key, const std::string& path) const;
+  std::string table_text(const Section& section, const std::string& table) const;
   NumberRows rows(const Key& key, const std::string& scene_name);
   Parameters::Value parameter(const Key& key, const std::string& scene_name);
 

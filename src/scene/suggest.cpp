@@ -37,7 +37,7 @@ std::string closest(const std::string& word, const std::vector<std::string>& can
 }
 
 std::string suggest_path(const std::string& path) {
-  const Key asked{.path = path};
+  const Key asked{.path = declared_path(path)};
   std::vector<std::string> siblings, all;
   for (const Section& section : scene_sections())
     all.push_back(section.path);

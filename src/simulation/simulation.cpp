@@ -57,6 +57,8 @@ SimulationState first_state(const Scene& scene, const Patch& start) {
     Elements& el = body.elements;
     el = state.box.image_of(el, state.box.image_into_cell(el.guiding_x, el.guiding_y, offset), offset);
   }
+  for (std::size_t k = 0; k < state.moonlets.size(); ++k) // a fresh patch is in the order of the ids
+    state.moonlets[k].start_x = state.particles.bodies[state.first_moonlet() + k].elements.guiding_x;
   const ParticleMeans means = particle_means(state.particles, scene.planet.frequencies, -0.5 * state.step_length);
   state.energy = {means.epicyclic_energy, means.azimuthal, means.spin.energy};
   return state;
@@ -87,6 +89,7 @@ Simulation::Simulation(const Scene& scene, SimulationState state)
     : scene_(scene), state_(std::move(state)),
       drift_(scene.collisions, scene.planet.frequencies, scene.planet.orbital_frequency, state_.step_length) {
   forces_ = make_forces(scene_, state_);
+  find_moonlets();
   set_pace();
 }
 
@@ -149,6 +152,16 @@ void Simulation::sort_when_due() {
     reorder(state_.particles.spins, order);
   for (ForceState& force : state_.forces)
     reorder(force.accelerations, order);
+  find_moonlets();
+}
+
+void Simulation::find_moonlets() {
+  moonlet_places_.resize(state_.moonlets.size());
+  if (moonlet_places_.empty())
+    return;
+  for (std::size_t place = 0; place < state_.particles.size(); ++place)
+    if (const std::uint64_t id = state_.particles.ids[place]; id >= state_.first_moonlet())
+      moonlet_places_[id - state_.first_moonlet()] = place;
 }
 
 // To the epoch of the next step.
@@ -168,8 +181,15 @@ void Simulation::rebase(double time) {
     Elements& el = state_.particles.bodies[k].elements;
     to_epoch(el);
     const Image image = state_.box.image_into_cell(el.guiding_x, el.guiding_y, offset);
-    if (image != Image{})
-      el = state_.box.image_of(el, image, offset);
+    if (image == Image{})
+      return;
+    el = state_.box.image_of(el, image, offset);
+    if (const std::uint64_t id = state_.particles.ids[k]; id >= state_.first_moonlet()) {
+      MoonletTrack& track = state_.moonlets[id - state_.first_moonlet()];
+      const Vec3 shift = state_.box.displacement(image, offset);
+      track.shift_x += shift.x();
+      track.shift_y += shift.y();
+    }
   });
   if (state_.particles.rough) {
     const FixedRotation turn(time); // of the stars in Hill's frame
@@ -181,8 +201,8 @@ void Simulation::rebase(double time) {
 }
 
 Boundary Simulation::boundary() const {
-  return {state_.particles, scene_.planet.frequencies, 0.5 * state_.step_length,
-          state_.box,       state_.boundary_offset(),  state_.step};
+  return {state_.particles, scene_.planet.frequencies, 0.5 * state_.step_length, state_.box, state_.boundary_offset(),
+          state_.step,      two_pi * orbits()};
 }
 
 void Simulation::accelerate(std::size_t f) {
@@ -210,6 +230,8 @@ void Simulation::half_kick(std::size_t f) {
   });
   force.work += sums.work;
   force.azimuthal_gain += sums.azimuthal_gain;
+  for (std::size_t k = 0; k < moonlet_places_.size(); ++k)
+    force.moonlet_gains[k] += moonlet(k).mass * half * force.accelerations[moonlet_places_[k]].y();
 }
 
 Patch Simulation::patch() const {

@@ -2,11 +2,12 @@
 
 namespace keeler {
 
-SimulationState::SimulationState(const Scene& scene) {
+SimulationState::SimulationState(const Scene& scene) : moonlets(scene.moonlets.size()) {
+  const std::vector<double> gains(moonlets.size());
   if (scene.gravity)
-    forces.push_back({"gravity", {}, 0.0, 0.0});
+    forces.push_back({"gravity", {}, 0.0, 0.0, gains});
   for (const ForceSettings& force : scene.external_forces)
-    forces.push_back({force.entry->table, {}, 0.0, 0.0});
+    forces.push_back({force.entry->table, {}, 0.0, 0.0, gains});
   particles.rough = scene.collisions.friction.has_value();
 }
 
@@ -19,7 +20,12 @@ FieldTable SimulationState::fields() {
     table.scalar(force.name + "_work", force.work, "kg m^2 rad^-2", "energy gained from its kicks");
     table.scalar(force.name + "_azimuthal_gain", force.azimuthal_gain, "kg m^2 rad^-2",
                  "sum of m c_y^2 gained by its kicks");
+    if (!moonlets.empty())
+      table.rows<double>(force.name + "_moonlet_gains", force.moonlet_gains, "kg m rad^-1",
+                         "momentum along the orbit that its kicks gave each moonlet");
   }
+  if (!moonlets.empty())
+    table.rows<double>("moonlets", moonlets, "m", "X at the start; shifts of X and Y by wraps since");
   table.scalar("box_size_x", box.size_x, "m", "L_x");
   table.scalar("box_size_y", box.size_y, "m", "L_y");
   table.scalar("box_shear", box.shear, "1", "shear rate in units of the orbital frequency");

@@ -76,6 +76,15 @@ Streamlines streamlines_of(const Scene& scene) {
   return streamlines;
 }
 
+std::vector<HeldBody> moonlets_of(const Scene& scene) {
+  std::vector<HeldBody> bodies;
+  for (const MoonletSettings& m : scene.moonlets) {
+    const Vec3 circular(0.0, -scene.planet.frequencies.shear() * m.place.x(), 0.0);
+    bodies.push_back({m.place, circular + m.velocity / scene.planet.orbital_frequency, m.radius, m.mass});
+  }
+  return bodies;
+}
+
 UniformRequest request_of(const Scene& scene) {
   const double mean_radius = scene.particles.sizes.mean_power(1);
   UniformRequest request;
@@ -83,10 +92,12 @@ UniformRequest request_of(const Scene& scene) {
   request.frequencies = scene.planet.frequencies;
   request.radii = draw_radii(scene.particles.sizes, scene.particles.count, scene.particles.seed);
   request.density = scene.particles.density;
+  request.densities = draw_densities(scene.particles.sizes, scene.particles.count, scene.particles.seed);
   request.dispersion_x = scene.particles.velocity_dispersion * mean_radius;
   request.dispersion_z = vertical_share * request.dispersion_x;
   request.own_room = own_room(request);
   request.streamlines = streamlines_of(scene);
+  request.held = moonlets_of(scene);
   request.seed = scene.particles.seed;
   return request;
 }

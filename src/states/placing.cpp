@@ -46,6 +46,11 @@ Placing::Placing(const UniformRequest& request)
       ++last;
     octaves_.push_back({first, last});
   }
+  for (std::size_t k = 0; k < request.held.size(); ++k) {
+    const HeldBody& body = request.held[k];
+    const auto particle = static_cast<std::uint32_t>(radii.size() + k);
+    spheres_.push_back({body.place, body.radius, body.place.z(), particle, true});
+  }
 }
 
 void Placing::run(const std::function<void(double)>& progress) {
@@ -137,17 +142,19 @@ void Placing::redraw_caught(int round) {
   parallel_for(spheres_.size(), [&](std::size_t k) {
     const Sphere& sphere = spheres_[k];
     bool caught = false;
+    places[k] = sphere.place;
+    if (sphere.held)
+      return;
     levels.visit_near(sphere.place, sphere.radius, 1.0, 0, [&](std::size_t j, const Image& image) {
       const Sphere& other = spheres_[j];
-      if (other.radius < sphere.radius || (other.radius == sphere.radius && j >= k))
+      if (j == k || (!other.held && (other.radius < sphere.radius || (other.radius == sphere.radius && j > k))))
         return;
       const Vec3 d = sphere.place - other.place - request_.box.displacement(image, request_.box.first_offset);
       caught = caught || d.norm() < sphere.radius + other.radius;
     });
     const std::uint64_t stream = static_cast<std::uint64_t>(round) << 32 | sphere.particle;
-    places[k] = caught
-                    ? draw_place(RandomStream(request_.seed, RandomPurpose::relaxation, stream), sphere.radius, levels)
-                    : sphere.place;
+    if (caught)
+      places[k] = draw_place(RandomStream(request_.seed, RandomPurpose::relaxation, stream), sphere.radius, levels);
   });
   for (std::size_t k = 0; k < spheres_.size(); ++k) {
     spheres_[k].place = places[k];

@@ -46,6 +46,14 @@ void follow_streamlines(const UniformRequest& request, Patch& patch) {
   });
 }
 
+void add(const HeldBody& body, Patch& patch) {
+  patch.positions.push_back(body.place);
+  patch.velocities.push_back(body.velocity);
+  patch.radii.push_back(body.radius);
+  patch.masses.push_back(body.mass);
+  patch.ids.push_back(patch.ids.size());
+}
+
 Patch patch_at(const UniformRequest& request, std::vector<Vec3> places) {
   Patch patch;
   patch.box = request.box;
@@ -53,19 +61,24 @@ Patch patch_at(const UniformRequest& request, std::vector<Vec3> places) {
   patch.frequencies = request.frequencies;
   patch.radii = request.radii;
   patch.positions = std::move(places);
+  patch.positions.resize(request.radii.size()); // without the held bodies, which come last
   patch.velocities.resize(patch.size());
   patch.masses.resize(patch.size());
   patch.ids.resize(patch.size());
   std::iota(patch.ids.begin(), patch.ids.end(), std::uint64_t{0});
   parallel_for(patch.size(), [&](std::size_t k) {
     patch.velocities[k] = random_velocity(request, k);
-    patch.masses[k] = 4.0 / 3.0 * pi * request.density * std::pow(request.radii[k], 3);
+    const double density = request.densities.empty() ? request.density : request.densities[k];
+    patch.masses[k] = 4.0 / 3.0 * pi * density * std::pow(request.radii[k], 3);
   });
   if (patch.size() > 0) {
     remove_momentum(patch);
-    centre_heights(patch);
+    if (request.held.empty()) // particles could be shifted into a held body
+      centre_heights(patch);
   }
   follow_streamlines(request, patch);
+  for (const HeldBody& body : request.held)
+    add(body, patch);
   return patch;
 }
 

@@ -13,7 +13,7 @@
 namespace keeler {
 
 /// rows: a table of numbers, given in place or as the path of a text file.
-enum class KeyType { text, path, choice, number, integer, pair, rows };
+enum class KeyType { text, path, choice, number, integer, pair, triple, rows };
 
 /// What a key has a say in. The state hash covers the keys of the motion: what only shaped the start is in the state.
 enum class KeyEffect { motion, start, output };
@@ -76,6 +76,9 @@ public:
   double number(const std::string& name) const { return std::get<double>(values_.at(name)); }
   std::int64_t integer(const std::string& name) const { return std::get<std::int64_t>(values_.at(name)); }
   const std::string& text(const std::string& name) const { return std::get<std::string>(values_.at(name)); }
+  const std::vector<double>& numbers(const std::string& name) const {
+    return std::get<std::vector<double>>(values_.at(name));
+  }
   const NumberRows& rows(const std::string& name) const { return std::get<NumberRows>(values_.at(name)); }
 
 private:

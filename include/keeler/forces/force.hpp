@@ -23,6 +23,7 @@ struct Boundary {
   ShearingBox box;
   double offset;     ///< the box's shear offset at this boundary, m
   std::int64_t step; ///< steps done
+  double time = 0.0; ///< since the run began, rad
 
   /// Turns elements at the epoch back to this boundary.
   Rotation rotation() const { return {frequencies, -to_epoch}; }
@@ -57,6 +58,9 @@ struct ForceEntry {
   const char* table;
   std::vector<Key> keys;
   std::unique_ptr<Force> (*make)(const Parameters& parameters, const ForceContext& context);
+  /// Throws UsageError where the values do not go with a box of that radial size; null: they always do. `make` checks
+  /// the same, for boxes that the scene does not know.
+  void (*check)(const Parameters& parameters, double size_x) = nullptr;
 };
 
 /// All forces but self-gravity, whose settings have a type of their own (self_gravity.hpp) because solvers are chosen,

@@ -16,6 +16,9 @@ struct SizeLaw {
   std::function<double(int k)> mean_power; ///< ⟨r^k⟩
   /// Radius of particle k, at the quantile u in (0, 1).
   std::function<double(double u, std::size_t k)> radius;
+  /// Density of the material of that particle, kg/m³; empty where sizes say nothing about it.
+  std::function<double(double u, std::size_t k)> density{};
+  double mean_density = 0.0; ///< by volume, where they do
 };
 
 SizeLaw equal_sizes(double radius);
@@ -30,9 +33,15 @@ SizeLaw listed_sizes(std::vector<double> radii);
 /// the table has in all, and of nearly as many, each row has its number. At least one row.
 SizeLaw tabulated_sizes(NumberRows table);
 
+/// A table of radii, each with a number as above and with the density (kg/m³) of its particles.
+SizeLaw populations(const NumberRows& table);
+
 /// Radii (m) of particles 0 … count−1: the quantiles of the law at jittered even spacing, in an order shuffled by id,
 /// so that even a small sample has the law's moments. Same seed, same radii.
 std::vector<double> draw_radii(const SizeLaw& law, std::size_t count, std::uint64_t seed);
+
+/// The densities of the same particles, kg/m³; empty where the law has none.
+std::vector<double> draw_densities(const SizeLaw& law, std::size_t count, std::uint64_t seed);
 
 /// A law that a scene can choose: its name, its keys, and how it is made from their values. `make` throws UsageError
 /// when the values do not fit together.

@@ -4,6 +4,7 @@
 
 #include <keeler/box/shearing_box.hpp>
 #include <keeler/collision/settings.hpp>
+#include <keeler/core/vector.hpp>
 #include <keeler/forces/force.hpp>
 #include <keeler/gravity/solver.hpp>
 #include <keeler/orbit/elements.hpp>
@@ -40,7 +41,7 @@ struct ModeSettings {
 
 struct ParticleSettings {
   std::size_t count = 0; ///< N, derived when the file gives τ or Σ
-  double density = 0.0;  ///< kg/m³
+  double density = 0.0;  ///< kg/m³; of populations the mean by volume
   SizeLaw sizes;
   double velocity_dispersion = 2.0; ///< c_x in ⟨r⟩ Ω
   std::uint64_t seed = 1;
@@ -50,6 +51,13 @@ struct ParticleSettings {
   /// The largest that 1 − spacing of streamlines may come to be, in their mean spacing: q, or the sum of the
   /// amplitudes.
   double bunching() const;
+};
+
+/// A body beside the particles. Moonlet k of n has the id N + k, N the number of particles: the last ids of a run.
+struct MoonletSettings {
+  double radius = 0.0, mass = 0.0; ///< m, kg
+  Vec3 place = Vec3::Zero();       ///< at the start, m
+  Vec3 velocity = Vec3::Zero();    ///< at the start, beyond a circular orbit's at its place, m/s
 };
 
 /// Time is a whole number of ticks: of steps, or of the shortest step that an automatic one may be. `end` and the
@@ -89,6 +97,7 @@ struct Scene {
   PlanetSettings planet;
   double size_x = 0.0, size_y = 0.0; ///< m
   ParticleSettings particles;
+  std::vector<MoonletSettings> moonlets;
   CollisionSettings collisions;
   std::optional<GravitySettings> gravity; ///< none: no gravity code runs
   std::vector<ForceSettings> external_forces;

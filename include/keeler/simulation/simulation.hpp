@@ -42,6 +42,9 @@ public:
   const SimulationState& state() const { return state_; }
   double orbits() const { return static_cast<double>(state_.step) * scene_.time.step; }
 
+  /// The body of a moonlet, k < state().moonlets.size().
+  const Body& moonlet(std::size_t k) const { return state_.particles.bodies[moonlet_places_[k]]; }
+
   /// A Cartesian copy of the present state.
   Patch patch() const;
 
@@ -68,6 +71,7 @@ private:
   void rebase(double time);
   void sort_when_due();
   void decide_when_due();
+  void find_moonlets();
   void set_pace();
   std::int64_t ticks_between_kicks(std::size_t f) const {
     return state_.control.kick > 0 ? state_.control.kick : forces_[f]->kick_every();
@@ -79,6 +83,7 @@ private:
   DriftPhase drift_;
   bool undisturbed_ = false;                   // the particles, but for moving on, since the last drift
   std::vector<std::unique_ptr<Force>> forces_; // in the order of state_.forces
+  std::vector<std::size_t> moonlet_places_;    // in memory
   TimeSplit split_;
 };
 

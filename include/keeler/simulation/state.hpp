@@ -37,12 +37,20 @@ struct EnergyBalance {
       0.0; ///< what Σ m (½κ²e² + ½ν²i²), and the spins' energy, has changed beyond all that was booked: rounding
 };
 
+/// Of a moonlet: from where it has come, to tell its drift and what drove it. X and Y less `shift` are those of the
+/// body itself, never wrapped.
+struct MoonletTrack {
+  double start_x = 0.0;                ///< X when the run began, m
+  double shift_x = 0.0, shift_y = 0.0; ///< by wraps so far, m
+};
+
 /// What a force has left in the state.
 struct ForceState {
   std::string name;
-  std::vector<Vec3> accelerations; ///< of its last kick, m rad⁻², in the order of the particles
-  double work = 0.0;               ///< of its kicks on the motion beyond the shear, kg m² rad⁻²
-  double azimuthal_gain = 0.0;     ///< what they added to Σ m c_y², kg m² rad⁻²
+  std::vector<Vec3> accelerations;   ///< of its last kick, m rad⁻², in the order of the particles
+  double work = 0.0;                 ///< of its kicks on the motion beyond the shear, kg m² rad⁻²
+  double azimuthal_gain = 0.0;       ///< what they added to Σ m c_y², kg m² rad⁻²
+  std::vector<double> moonlet_gains; ///< momentum along the orbit that they gave each moonlet, kg m rad⁻¹
 };
 
 /// Elements stand at the middle of the step to come, h/2 after the present tick.
@@ -55,6 +63,7 @@ struct SimulationState {
   StepControl control;
   CollisionTally collisions;
   EnergyStart energy;
+  std::vector<MoonletTrack> moonlets; ///< of the last ids, in their order
 
   SimulationState() = default;
   /// An empty state with a place for each force of the scene: what a checkpoint is read into.
@@ -62,6 +71,9 @@ struct SimulationState {
 
   /// Every field that must be stored to continue exactly. A new piece of state is one more line here.
   FieldTable fields();
+
+  /// The id of the first moonlet; of none the number of particles.
+  std::uint64_t first_moonlet() const { return particles.size() - moonlets.size(); }
 
   /// Shear offset at the epoch of the elements, and at this boundary between steps.
   double epoch_offset() const { return box.offset(2 * step + control.step, 0.5 * tick()); }

@@ -7,6 +7,29 @@
 
 using namespace keeler;
 
+TEST_CASE("each row of populations has its number of particles, its radius and its density") {
+  const SizeLaw law = populations({{2.0, 30, 450.0}, {2.0, 50, 900.0}, {5.0, 20, 1200.0}});
+  CHECK(law.listed == 3);
+  const std::vector<double> radii = draw_radii(law, 100, 3), densities = draw_densities(law, 100, 3);
+  int light = 0, heavy = 0, large = 0;
+  double mass = 0.0, volume = 0.0;
+  for (std::size_t k = 0; k < 100; ++k) {
+    light += radii[k] == 2.0 && densities[k] == 450.0;
+    heavy += radii[k] == 2.0 && densities[k] == 900.0;
+    large += radii[k] == 5.0 && densities[k] == 1200.0;
+    volume += std::pow(radii[k], 3);
+    mass += std::pow(radii[k], 3) * densities[k];
+  }
+  CHECK(light == 30);
+  CHECK(heavy == 50);
+  CHECK(large == 20);
+  CHECK(law.mean_density == doctest::Approx(mass / volume).epsilon(1e-14));
+  CHECK(draw_densities(equal_sizes(1.0), 100, 3).empty());
+  const SizeLaw alike = populations({{1.0, 1, 300.0}, {1.0, 3, 600.0}}); // one radius, two densities
+  const std::vector<double> of_alike = draw_densities(alike, 80, 1);
+  CHECK(std::count(of_alike.begin(), of_alike.end(), 300.0) == 20);
+}
+
 TEST_CASE("drawn radii have the moments of the law and depend on the seed alone") {
   for (const double q : {1.0, 2.9, 3.0, 4.0}) {
     const SizeLaw law = power_sizes(q, 0.5, 5.0);

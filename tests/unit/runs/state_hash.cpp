@@ -102,6 +102,7 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
                                           "particles.sizes.radius",
                                           "particles.sizes.path",
                                           "particles.sizes.table",
+                                          "particles.sizes.populations",
                                           "collisions.restitution.law",
                                           "collisions.restitution.value",
                                           "collisions.restitution.table",
@@ -120,7 +121,9 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
     const auto other = others.find(key.path);
     if (other == others.end()) { // has no place in this scene beside the others
       CHECK((needless.count(key.path) == 1 || key.section() == "particles.streamlines" ||
-             key.section() == "particles.modes"));
+             key.section() == "particles.modes" || key.section() == "moonlet" || key.section() == "satellite"));
+      CHECK((key.effect == motion || key.section() != "satellite"));
+      CHECK((key.effect == start || key.section() != "moonlet"));
       continue;
     }
     ++seen;
@@ -143,6 +146,17 @@ TEST_CASE("the hash sees the spins of rough particles") {
   const std::string hash = state_hash(state, scene);
   state.particles.spins[7].x() = std::nextafter(state.particles.spins[7].x(), 9.0);
   CHECK(state_hash(state, scene) != hash);
+}
+
+TEST_CASE("the hash sees a satellite and its mass") {
+  const auto hash_of = [](const std::string& satellite) {
+    const Scene scene = small_scene({"satellite=" + satellite});
+    return state_hash(SimulationState(scene), scene);
+  };
+  CHECK(hash_of("{ mass = 1e9, distance = 300, passage = 1 }") !=
+        hash_of("{ mass = 2e9, distance = 300, passage = 1 }"));
+  CHECK(hash_of("{ mass = 1e9, distance = 300, passage = 1 }") ==
+        hash_of("{ mass = 1e9, distance = 300, passage = 1, every = 0 }"));
 }
 
 TEST_CASE("the hash sees the rows of a table of restitution, not the file that they came from") {

@@ -215,13 +215,18 @@ TEST_CASE("every key refuses every wrong type, with one line that names the key"
       const bool fits = (type == KeyType::text && is_text) ||
                         (type == KeyType::number && key.type == KeyType::number) ||
                         (type == KeyType::integer && (key.type == KeyType::number || key.type == KeyType::integer)) ||
-                        (type == KeyType::pair && key.type == KeyType::pair);
+                        (type == KeyType::pair && key.type == KeyType::pair) ||
+                        (sample == "[1, 2, 3]" && key.type == KeyType::triple);
       if (fits)
         continue;
       CAPTURE(key.path);
-      const std::string message = fault(key.path + " = " + sample + "\n");
+      const Section* const section = find_section(key.section());
+      const bool in_list = section && section->repeated;
+      const std::string name = in_list ? section->path + "[1]." + key.name() : key.path;
+      const std::string message = fault(in_list ? section->path + " = [{ " + key.name() + " = " + sample + " }]\n"
+                                                : key.path + " = " + sample + "\n");
       CHECK(message.rfind("s.toml:1:", 0) == 0);
-      CHECK(message.find(": " + key.path + " is ") != std::string::npos);
+      CHECK(message.find(": " + name + " is ") != std::string::npos);
       CHECK(message.find('\n') == std::string::npos);
     }
 }

@@ -155,6 +155,25 @@ TEST_CASE("radial self-gravity needs its shortest wavelength") {
       doctest::Contains("gravity.shortest_wavelength = 101 m is longer than the box is wide (100 m"), UsageError);
 }
 
+TEST_CASE("populations bring their densities") {
+  const std::string text = changed(changed(least, "density = 900\n", ""), "{ law = \"equal\", radius = 1.0 }",
+                                   "{ law = \"populations\", populations = [[2, 100, 450], [1, 200, 900]] }");
+  const Scene scene = parse_scene(text, "s.toml");
+  CHECK(scene.particles.density == doctest::Approx((800.0 * 450 + 200.0 * 900) / 1000.0).epsilon(1e-14));
+  CHECK(scene.surface_density() ==
+        doctest::Approx(4.0 / 3.0 * pi * (800.0 * 450 + 200.0 * 900) / 5000.0).epsilon(1e-14));
+  CHECK(parse_scene(scene.resolved, "r.toml").resolved == scene.resolved);
+  CHECK_THROWS_WITH_AS(parse_scene(changed(text, "count = 300\n", "count = 300\ndensity = 900\n"), "s.toml"),
+                       doctest::Contains("cannot stand beside"), UsageError);
+  CHECK_THROWS_WITH_AS(parse_scene(changed(text, "900]]", "-900]]"), "s.toml"), doctest::Contains("populations"),
+                       UsageError);
+  CHECK_THROWS_WITH_AS(parse_scene(changed(text, "900]]", "9e4]]"), "s.toml"),
+                       doctest::Contains("the density 2 is 90000 kg/m^3"), UsageError);
+  CHECK_THROWS_WITH_AS(
+      parse_scene(changed(least, "{ law = \"equal\", radius = 1.0 }", "{ law = \"populations\" }"), "s.toml"),
+      doctest::Contains("populations are missing"), UsageError);
+}
+
 TEST_CASE("the count follows from the optical depth, to the nearest particle") {
   const Scene scene = parse_scene(changed(least, "count = 300", "optical_depth = 0.5"), "s.toml");
   CHECK(scene.particles.count == 796); // 0.5 × 5000 / π = 795.8

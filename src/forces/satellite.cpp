@@ -1,0 +1,148 @@
+// The satellite is on an epicycle about a guiding centre X_s, which passes the particles at the rate of the shear. A
+// cell is short beside 3π |X_s|, over which an epicycle turns once, so all particles of a streamline are taken to be
+// where the column of the cell's particles is: the force depends on X, the epicycle and the time, never on Y, and the
+// box stays periodic along the orbit. The column stands upright at t_u: then, and only then, neighbouring streamlines
+// side by side have met the satellite at the times at which they do in a ring. In units of Ω:
+//
+//   t_n(X) = (X_s t_0 − X t_u) / (X_s − X) + n T X_s / (X_s − X)     passage n of a streamline
+//   y_s − y = −S (X_s − X) (t − t_n) + (2/κ) (e_s sin φ_s − e sin φ)
+//
+// With a particle's own X in t_n, what the passage does to X would shift the passage: a change of X would act as if it
+// had always been there. So t_n takes the X before the passage, to first order in the satellite's mass:
+//   X − 2 G m / (κ² S d |d| √(1 + S² τ²)),  d = X_s − X, τ = t − t_n(X)
+// This keeps |ΔX| = e²/(S |d|) right to second order (docs/theory/satellite.md).
+#include "satellite.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/threads.hpp>
+#include <keeler/core/units.hpp>
+#include <keeler/core/words.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+// Internal units; times in rad since the run began.
+struct SatelliteOrbit {
+  double pull = 0.0; // G m, m³ rad⁻²
+  double guiding_x = 0.0;
+  double passage = 0.0, every = 0.0, upright = 0.0; // t_0, T (0: one passage alone), t_u
+  double eccentricity = 0.0, phase = 0.0;           // m; φ at t_0
+  double inclination = 0.0, vertical_phase = 0.0;   // m; ζ at t_0
+};
+
+class Satellite : public Force {
+public:
+  explicit Satellite(const SatelliteOrbit& orbit) : orbit_(orbit) {}
+
+  std::string name() const override { return "satellite"; }
+
+  void accelerate(const Boundary& boundary, std::span<Vec3> accelerations) override {
+    const Frequencies& f = boundary.frequencies;
+    const Rotation rotation = boundary.rotation();
+    const double turned = f.kappa * (boundary.time - orbit_.passage) + orbit_.phase;
+    const double raised = f.nu * (boundary.time - orbit_.passage) + orbit_.vertical_phase;
+    // its own epicycle, beside the guiding centre
+    const Vec3 own(-orbit_.eccentricity * std::cos(turned), 2.0 / f.kappa * orbit_.eccentricity * std::sin(turned),
+                   orbit_.inclination * std::sin(raised));
+    parallel_for(accelerations.size(), [&](std::size_t k) {
+      boundary.particles.prefetch_after(k);
+      const Elements& el = boundary.particles.bodies[k].elements;
+      const Vec3 swing = epicycle(el, f, rotation);
+      const double d = orbit_.guiding_x - el.guiding_x;
+      const double since = boundary.time - passage_of(el.guiding_x, boundary.time, f);
+      const Vec3 away = Vec3(d, -f.shear() * d * since, 0.0) + own - swing;
+      const double square = away.squaredNorm();
+      accelerations[k] = orbit_.pull / (square * std::sqrt(square)) * away;
+    });
+  }
+
+private:
+  // Of a particle, beside its guiding centre.
+  static Vec3 epicycle(const Elements& el, const Frequencies& f, const Rotation& r) {
+    return {-(el.e_cos * r.cos_e - el.e_sin * r.sin_e), 2.0 / f.kappa * (el.e_sin * r.cos_e + el.e_cos * r.sin_e),
+            el.i_sin * r.cos_i + el.i_cos * r.sin_i};
+  }
+
+  // The time of the nearest passage of a streamline.
+  double nearest_passage(double x, double time) const {
+    const double d = orbit_.guiding_x - x, first = (orbit_.guiding_x * orbit_.passage - x * orbit_.upright) / d;
+    const double period = orbit_.every * orbit_.guiding_x / d;
+    return period > 0.0 ? first + period * std::round((time - first) / period) : first;
+  }
+
+  // The same for a particle, by its X before the passage.
+  double passage_of(double x, double time, const Frequencies& f) const {
+    const double d = orbit_.guiding_x - x, at = f.shear() * (time - nearest_passage(x, time));
+    const double gained = 2.0 * orbit_.pull / (f.kappa * f.kappa * f.shear() * d * std::fabs(d) * std::hypot(1.0, at));
+    return nearest_passage(x - gained, time);
+  }
+
+  SatelliteOrbit orbit_;
+};
+
+void check(const Parameters& p, double size_x) {
+  const double distance = p.number("distance"), eccentricity = p.number("eccentricity");
+  if (!(std::fabs(distance) - eccentricity > 0.5 * size_x))
+    throw UsageError(
+        fmt::format("satellite.distance = {} m with its eccentricity of {} m is inside the box (it reaches "
+                    "{} m from its middle); move it out, or make it a [[moonlet]]",
+                    figures(distance, 4), figures(eccentricity, 4), figures(0.5 * size_x, 4)));
+}
+
+std::unique_ptr<Force> make(const Parameters& p, const ForceContext& context) {
+  check(p, context.box.size_x);
+  const double degree = pi / 180.0;
+  SatelliteOrbit orbit;
+  orbit.pull = newton_g(context.orbital_frequency) * p.number("mass");
+  orbit.guiding_x = p.number("distance");
+  orbit.passage = two_pi * p.number("passage");
+  orbit.every = two_pi * p.number("every");
+  orbit.upright = orbit.passage + two_pi * p.number("upright_after");
+  orbit.eccentricity = p.number("eccentricity");
+  orbit.phase = degree * p.number("eccentricity_phase");
+  orbit.inclination = p.number("inclination");
+  orbit.vertical_phase = degree * p.number("inclination_phase");
+  return std::make_unique<Satellite>(orbit);
+}
+
+Key number(const char* name, const char* fallback, const char* unit, const char* meaning, const KeyRange& range = {}) {
+  return {
+      .path = name, .type = KeyType::number, .fallback = fallback, .unit = unit, .meaning = meaning, .range = range};
+}
+
+Key needed(Key key) {
+  key.example = key.fallback;
+  key.fallback.clear();
+  return key;
+}
+
+} // namespace
+
+ForceEntry satellite_entry() {
+  const KeyRange turn = {.low = -360, .high = 360};
+  return {
+      "satellite",
+      {needed(number("mass", "1.6e17", "kg", "mass of a satellite that passes outside the box", KeyRange::above(0))),
+       needed(number("distance", "1e6", "m", "of its guiding centre from the middle of the box, outward",
+                     {.low = -1e7, .high = 1e7})),
+       needed(number("passage", "2.0", "orbits", "when it passes the middle of the box")),
+       number("every", "0.0", "orbits",
+              "its synodic period, a / (S |distance|): from passage to passage; 0: one passage alone",
+              KeyRange::at_least(0)),
+       number("upright_after", "0.0", "orbits",
+              "how long after the passage neighbouring streamlines have the phases that they have side by side in a "
+              "ring"),
+       number("eccentricity", "0.0", "m", "its eccentricity times its distance from the planet", KeyRange::at_least(0)),
+       number("eccentricity_phase", "0.0", "degrees", "of its epicycle at the passage; 0: at its innermost place",
+              turn),
+       number("inclination", "0.0", "m", "its inclination times its distance from the planet", KeyRange::at_least(0)),
+       number("inclination_phase", "0.0", "degrees", "of its vertical motion at the passage; 0: rising", turn)},
+      make,
+      check};
+}
+
+} // namespace keeler
