@@ -19,8 +19,8 @@ TEST_CASE("the key table is consistent") {
     CHECK((key.section().empty() || find_section(key.section())));
     CHECK(key.fallback.empty() != key.example.empty()); // every key has exactly one of them
     CHECK(!key.meaning.empty());
-    CHECK(key.choices.empty() == (key.type != KeyType::choice && key.path != "time.step" &&
-                                 key.path != "collisions.friction.coefficient"));
+    CHECK(key.choices.empty() ==
+          (key.type != KeyType::choice && key.path != "time.step" && key.path != "collisions.friction.coefficient"));
     CHECK((key.type == KeyType::rows) == !key.columns.empty());
     if (!key.only_with.key.empty())
       CHECK(find_key(key.only_with.key));
