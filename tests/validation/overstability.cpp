@@ -44,12 +44,13 @@ Wave without_gravity(double length, double depth) {
                      {"planet.vertical_ratio=3.6"});
 }
 
-Wave with_gravity(double hill, double orbits) {
+Wave with_gravity(double hill, double orbits, const std::vector<std::string>& more = {}) {
   constexpr double omega = 1.95e-4; // of the example
   const double density = 9.0 * omega * omega * hill * hill * hill / (pi * newton_g_si);
-  return seeded_wave(0.1, 100.0, 60.0, 1.0, orbits,
-                     {fmt::format("particles.density={:.1f}", density), "gravity={solver=\"fft\"}",
-                      "collisions.restitution={ law = \"constant\", value = 0.1 }"});
+  std::vector<std::string> all = {fmt::format("particles.density={:.1f}", density), "gravity={solver=\"fft\"}",
+                                  "collisions.restitution={ law = \"constant\", value = 0.1 }"};
+  all.insert(all.end(), more.begin(), more.end());
+  return seeded_wave(0.1, 100.0, 60.0, 1.0, orbits, all);
 }
 
 Row growth_row(const std::string& wave_of, const Wave& wave, double expected, double tolerance,
@@ -131,12 +132,27 @@ std::vector<Row> overstability_or_wakes() {
   return rows;
 }
 
+// Where wakes and waves compete, friction takes the part of the waves.
+std::vector<Row> friction() {
+  const auto amplitude = [](const Wave& wave) { return analyze_radial_modes(wave.patches, 1)[0].density_amplitude; };
+  const Wave smooth = with_gravity(0.65, 20.0),
+             rough = with_gravity(0.65, 20.0, {"collisions.friction.tangential_restitution=0.5"});
+  return {{.what = "amplitude of the axisymmetric wave, rough particles over smooth ones, tau 1, eps 0.1, r_h 0.65",
+           .measured = amplitude(rough) / amplitude(smooth),
+           .expected = 2.0,
+           .tolerance = 0.9,
+           .tolerance_is = "that it is larger",
+           .source = "rough surfaces favour overstability, smooth ones wakes (Ballouz, Richardson & Morishima 2017)",
+           .command = rough.command}};
+}
+
 } // namespace
 
 std::vector<Subject> overstability_subjects() {
   return {{"overstability-decay", "Viscous overstability", true, decay},
           {"overstability", "Viscous overstability", false, growth_by_length},
-          {"overstability-wakes", "Viscous overstability", false, overstability_or_wakes}};
+          {"overstability-wakes", "Viscous overstability", false, overstability_or_wakes},
+          {"overstability-friction", "Viscous overstability", false, friction}};
 }
 
 } // namespace keeler::validation
