@@ -27,8 +27,8 @@ ExitCode tile(const TileOptions& options, const std::vector<std::string>& argume
   options.threads.apply();
   require_new_file(options.output, options.force, "a state");
   Snapshot snapshot = read_snapshot(options.file);
-  // No fresh start makes this state: the scene that goes with it starts from the file.
-  const Scene scene = parse_scene(snapshot.meta.scene, options.file, {}, options.output);
+  // No fresh start makes this state: the scene that goes with it starts from the file, and keeps all of it.
+  const Scene scene = parse_scene(snapshot.meta.scene, options.file, {"start.keep=1.0"}, options.output);
   const Patch patch = patch_from_snapshot(std::move(snapshot.patch), options.file, scene);
   require_apart(patch, "'" + options.file + "'");
   const Patch tiled = tiled_patch(patch, options.nx, options.ny);

@@ -2,6 +2,7 @@
 
 #include "moonlets.hpp"
 #include "presets.hpp"
+#include "start_pattern_keys.hpp"
 
 #include <keeler/collision/restitution.hpp>
 #include <keeler/contacts/finders.hpp>
@@ -169,49 +170,6 @@ std::vector<Key> patch_keys() {
   };
 }
 
-std::vector<Key> streamline_keys() {
-  using enum KeyType;
-  using enum KeyEffect;
-  return {
-      {.path = "particles.streamlines.waves",
-       .type = integer,
-       .example = "1",
-       .unit = "1",
-       .meaning = "waves in the box of a pattern in the eccentricity vectors: phases at the start are 2 pi n X / L_x",
-       .range = {.low = 1, .high = 1000},
-       .effect = start},
-      {.path = "particles.streamlines.bunching",
-       .type = number,
-       .example = "0.6",
-       .unit = "1",
-       .meaning = "q = (2 pi n / L_x) e of that pattern: streamlines bunch to 1 - q of their spacing once an orbit",
-       .range = {.low = 0, .high = 0.9},
-       .effect = start},
-      {.path = "particles.streamlines.inclination",
-       .type = number,
-       .fallback = "0.0",
-       .unit = "mean r",
-       .meaning = "inclination common to all particles, which swing up and down together; rising at the start",
-       .range = {.low = 0, .high = 1000},
-       .effect = start},
-  };
-}
-
-std::vector<Key> mode_keys() {
-  const auto key = [](const char* name, const char* meaning) {
-    return Key{.path = std::string("particles.modes.") + name,
-               .type = KeyType::rows,
-               .fallback = "[]",
-               .meaning = meaning,
-               .columns = {"waves in the box", "amplitude of the relative surface density",
-                           "phase in degrees, with a crest at x = -phase/k"},
-               .effect = KeyEffect::start};
-  };
-  return {key("outward", "epicyclic waves along the radius at the start that travel outward"),
-          key("inward", "the same, inward"),
-          key("standing", "the same, standing; their density is largest at the start")};
-}
-
 std::vector<Key> collision_keys() {
   using enum KeyType;
   return {
@@ -256,6 +214,20 @@ std::vector<Key> course_keys() {
        .type = path,
        .example = "\"wakes.hdf\"",
        .meaning = "snapshot to start from, relative to the scene file; without [start] the patch is fresh",
+       .effect = start},
+      {.path = "start.keep",
+       .type = number,
+       .fallback = "1.0",
+       .unit = "1",
+       .meaning = "share of its particles that is kept, drawn by a hash of their ids",
+       .range = up_to(1),
+       .effect = start},
+      {.path = "start.keep_seed",
+       .type = integer,
+       .fallback = "1",
+       .unit = "1",
+       .meaning = "seed of that draw",
+       .range = KeyRange::at_least(0),
        .effect = start},
 
       {.path = "time.step",
@@ -344,8 +316,7 @@ std::vector<Key> make_keys() {
             .meaning = "how sizes are distributed",
             .effect = KeyEffect::start},
            "particles.sizes", size_laws());
-  add(streamline_keys());
-  add(mode_keys());
+  add(start_pattern_keys());
   add(moonlet_keys());
   add(collision_keys());
   add_laws(keys,
@@ -368,6 +339,8 @@ std::vector<Section> make_sections() {
       {.path = "particles.streamlines", .replaced_by = "start.from"},
       {.path = "particles.modes", .replaced_by = "start.from"},
       {.path = "moonlet", .replaced_by = "start.from", .repeated = true},
+      {.path = "particles.step", .replaced_by = "start.from"},
+      {.path = "particles.wake", .replaced_by = "start.from"},
       {.path = "collisions"},
       {.path = "collisions.restitution"},
       {.path = "collisions.friction"},

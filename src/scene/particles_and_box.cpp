@@ -83,6 +83,59 @@ std::vector<ModeSettings> read_modes(Settings& settings, const std::string& name
   return modes;
 }
 
+void read_step(const Scene& scene, const Settings& settings, DensityPattern& pattern) {
+  const std::vector<double> between = settings.numbers("particles.step.between");
+  const double edge = 0.5 * scene.size_x;
+  if (!(between[0] < between[1] && between[0] >= -edge && between[1] <= edge && between[1] - between[0] < scene.size_x))
+    fail_at(
+        settings.place("particles.step.between"),
+        fmt::format("particles.step.between is [{}, {}] (two rising x within the box, from {} to {}, and not all of "
+                    "it); correct it",
+                    figures(between[0]), figures(between[1]), figures(-edge), figures(edge)));
+  pattern.low = between[0];
+  pattern.high = between[1];
+  pattern.factor = settings.number("particles.step.factor");
+}
+
+// Whole waves fit a periodic box, along both sides.
+void read_wake(Scene& scene, Settings& settings, DensityPattern& pattern) {
+  const double wavelength = settings.number("particles.wake.wavelength"),
+               pitch = settings.number("particles.wake.pitch") * pi / 180.0;
+  const double waves_x = std::round(scene.size_x * std::cos(pitch) / wavelength),
+               waves_y = std::round(scene.size_y * std::sin(pitch) / wavelength);
+  const std::string place = settings.place("particles.wake.wavelength");
+  if (waves_x == 0.0 && waves_y == 0.0)
+    fail_at(place,
+            fmt::format("particles.wake.wavelength = {} is too long (no wave fits the box of {} m x {} m); lower "
+                        "it or enlarge the box",
+                        figures(wavelength), figures(scene.size_x, 4), figures(scene.size_y, 4)));
+  if (!(wavelength >= 2.0 * scene.particles.sizes.largest))
+    fail_at(place,
+            fmt::format("particles.wake.wavelength = {} is shorter than the largest particle ({} m across); raise "
+                        "it",
+                        figures(wavelength), figures(2.0 * scene.particles.sizes.largest, 4)));
+  pattern.contrast = settings.number("particles.wake.contrast");
+  pattern.waves_x = static_cast<int>(waves_x);
+  pattern.waves_y = static_cast<int>(waves_y);
+  if (std::fabs(pattern.wavelength() / wavelength - 1.0) > 1e-9 ||
+      std::fabs(pattern.pitch() - pitch * 180.0 / pi) > 1e-9)
+    scene.notices.push_back(
+        fmt::format("the wake has a wavelength of {} m and a pitch of {} degrees ({} x {} waves fit "
+                    "the box)",
+                    figures(pattern.wavelength(), 4), figures(pattern.pitch(), 4), pattern.waves_x, pattern.waves_y));
+  settings.resolve("particles.wake.wavelength", pattern.wavelength());
+  settings.resolve("particles.wake.pitch", pattern.pitch());
+}
+
+void read_pattern(Scene& scene, Settings& settings) {
+  DensityPattern pattern{.size_x = scene.size_x, .size_y = scene.size_y};
+  if (settings.has("particles.step"))
+    read_step(scene, settings, pattern);
+  if (settings.has("particles.wake"))
+    read_wake(scene, settings, pattern);
+  scene.particles.pattern = pattern;
+}
+
 // The key that sets how much there is, and the optical depth it asks for (0 when a count waits for the box).
 struct Amount {
   std::string key;
@@ -167,9 +220,10 @@ void check_filling(Scene& scene, const std::string& place) {
                                "optical depth from {:.3g} to at most {:.2f}{}",
                                filling, refused_filling, std::ceil(hot * 100.0) / 100.0, depth,
                                std::floor(thin * depth / bunched * 100.0) / 100.0,
-                               !(bunched > depth)        ? ""
-                               : particles.modes.empty() ? " or lower the bunching"
-                                                         : " or lower the amplitudes of the modes"));
+                               !(bunched > depth)             ? ""
+                               : !particles.pattern.uniform() ? " or even out the step or the wake"
+                               : particles.modes.empty()      ? " or lower the bunching"
+                                                              : " or lower the amplitudes of the modes"));
   }
   if (filling > largest_filling)
     scene.notices.push_back(fmt::format("the start has a flat-topped layer, its mid-plane filled to {:.2f}: a Gaussian "
@@ -189,6 +243,7 @@ void read_particles_and_box(Scene& scene, Settings& settings, const std::string&
   particles.modes = read_modes(settings, name);
   const Amount amount = read_amount(settings, particles);
   read_box(scene, settings, amount);
+  read_pattern(scene, settings);
   const std::string place = settings.place(amount.key); // before it is resolved to a count
   read_count(scene, settings, amount);
   check_filling(scene, place);

@@ -134,6 +134,12 @@ std::optional<ContactLogSettings> read_contact_log(Settings& settings) {
                             settings.number("output.collisions.share")};
 }
 
+void read_start(Scene& scene, Settings& settings, const std::string& name) {
+  scene.start_from = settings.file_path("start.from", name);
+  scene.start_keep = settings.number("start.keep");
+  scene.start_keep_seed = static_cast<std::uint64_t>(settings.integer("start.keep_seed"));
+}
+
 enum class Purpose { start, go_on };
 
 Scene read_scene(Document document, const std::string& name, Purpose purpose, std::vector<std::string> notices) {
@@ -145,7 +151,7 @@ Scene read_scene(Document document, const std::string& name, Purpose purpose, st
   scene.title = settings.text("title");
   scene.planet = read_planet(settings);
   if (settings.has("start"))
-    scene.start_from = settings.file_path("start.from", name);
+    read_start(scene, settings, name);
   else if (purpose == Purpose::start)
     read_particles_and_box(scene, settings, name);
   else
@@ -188,7 +194,7 @@ double Scene::optical_depth() const {
 }
 
 double Scene::bunched_optical_depth() const {
-  return optical_depth() / (1.0 - particles.bunching());
+  return optical_depth() * particles.pattern.peak() / (1.0 - particles.bunching());
 }
 
 Scene parse_scene(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,

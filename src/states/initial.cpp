@@ -4,6 +4,7 @@
 #include "placing.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/random.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/diagnostics/surface.hpp>
@@ -53,6 +54,32 @@ void require_physical(const Patch& patch, const std::string& path) {
           fmt::format("particle {} of '{}' has {}; correct it or take another state", patch.ids[k], path, fault));
 }
 
+// A particle is kept or not by its id alone: the same of any state that it is in, and fewer of the same at a lower
+// share.
+Patch thinned(Patch patch, const Scene& scene) {
+  std::vector<bool> keeps(patch.size());
+  for (std::size_t k = 0; k < keeps.size(); ++k)
+    keeps[k] = RandomStream(scene.start_keep_seed, RandomPurpose::thinning, patch.ids[k]).uniform() < scene.start_keep;
+  if (!keeps.empty() && std::find(keeps.begin(), keeps.end(), true) == keeps.end())
+    throw UsageError(
+        fmt::format("start.keep = {} keeps none of the {} of '{}'; raise it, or try another start.keep_seed",
+                    figures(scene.start_keep), counted(patch.size(), "particle"), *scene.start_from));
+  const auto thin = [&](auto& rows) { // none where there are no spins
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      if (keeps[k])
+        rows[kept++] = rows[k];
+    rows.resize(kept);
+  };
+  thin(patch.positions);
+  thin(patch.velocities);
+  thin(patch.spins);
+  thin(patch.radii);
+  thin(patch.masses);
+  thin(patch.ids);
+  return patch;
+}
+
 // What the radii that were drawn add to the layer's height²: 1.7 τ R², with the R of the crowd.
 double own_room(const UniformRequest& request) {
   double area = 0.0;
@@ -98,6 +125,7 @@ UniformRequest request_of(const Scene& scene) {
   request.own_room = own_room(request);
   request.streamlines = streamlines_of(scene);
   request.held = moonlets_of(scene);
+  request.pattern = scene.particles.pattern;
   request.seed = scene.particles.seed;
   return request;
 }
@@ -129,7 +157,7 @@ PatchScale scale_of(const Patch& patch) {
 
 Patch initial_patch(const Scene& scene, const std::function<void(const StartProgress&)>& progress) {
   if (scene.start_from)
-    return patch_from_snapshot(*scene.start_from, scene);
+    return thinned(patch_from_snapshot(*scene.start_from, scene), scene);
   Patch patch = uniform_patch(request_of(scene), progress);
   patch.orbital_frequency = scene.planet.orbital_frequency;
   return patch;

@@ -88,6 +88,16 @@ bool Placing::is_free(const Vec3& place, double radius, const SizeLevels& larger
   return free;
 }
 
+// Evenly, or where the density pattern accepts it (von Neumann's rejection).
+std::pair<double, double> Placing::draw_guiding_centre(RandomStream& random) const {
+  const DensityPattern& pattern = request_.pattern;
+  for (;;) {
+    const double x = (random.uniform() - 0.5) * request_.box.size_x, y = (random.uniform() - 0.5) * request_.box.size_y;
+    if (pattern.uniform() || random.uniform() * pattern.peak() < pattern.relative(x, y))
+      return {x, y};
+  }
+}
+
 // Tries places until one is free of all that is larger; from time to time farther from the mid-plane.
 Vec3 Placing::draw_place(RandomStream random, double radius, const SizeLevels& larger) const {
   constexpr int tries_a_height = 50, most_tries = 1000;
@@ -99,16 +109,16 @@ Vec3 Placing::draw_place(RandomStream random, double radius, const SizeLevels& l
       flat = 2.0 * random.uniform() - 1.0;
       normal = random.normal();
     }
-    const double guiding_x = (random.uniform() - 0.5) * request_.box.size_x;
+    const auto [guiding_x, guiding_y] = draw_guiding_centre(random);
     const Elements streamline = streamlines.elements(guiding_x);
-    const double crowding = 1.0 / streamlines.spacing(guiding_x), motion = request_.dispersion_z / f.nu;
+    const double crowding = request_.pattern.relative(guiding_x, guiding_y) / streamlines.spacing(guiding_x),
+                 motion = request_.dispersion_z / f.nu;
     const double height = std::sqrt(motion * motion + request_.own_room * crowding);
     const double filling = crowding * crowd_volume_ / request_.box.area() / (std::sqrt(two_pi) * height);
     const LayerProfile profile = LayerProfile::of_height(height, filling, largest_filling);
     const int heights = tries / tries_a_height; // drawn so far
     const double stretch = 1.0 + heights;
-    const Vec3 place(guiding_x - streamline.e_cos,
-                     (random.uniform() - 0.5) * request_.box.size_y + 2.0 / f.kappa * streamline.e_sin,
+    const Vec3 place(guiding_x - streamline.e_cos, guiding_y + 2.0 / f.kappa * streamline.e_sin,
                      stretch * (profile.slab * flat + profile.sigma * normal));
     if (tries == most_tries || is_free(place, radius, larger))
       return place;

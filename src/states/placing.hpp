@@ -12,6 +12,8 @@
 #include "separation.hpp"
 #include "size_levels.hpp"
 
+#include <utility>
+
 namespace keeler {
 
 /// Volume (m³) of the particles, each without the share that it has of the mass: a moonlet alone is no crowd.
@@ -33,6 +35,7 @@ private:
   };
   void draw(const Octave& octave);
   bool is_free(const Vec3& place, double radius, const SizeLevels& larger) const;
+  std::pair<double, double> draw_guiding_centre(RandomStream& random) const;
   Vec3 draw_place(RandomStream random, double radius, const SizeLevels& larger) const;
   void redraw_caught(int round);
 

@@ -44,6 +44,21 @@ refuses "modes that make streamlines cross" "sum up to 1.1 (at 1 streamlines cro
 refuses "a mode that does not fit the box" "row 1 of particles.modes.outward has waves: 0" \
   generate "$work/scene.toml" --set 'particles.modes.outward=[[0,0.1,0]]' -o "$work/none.hdf"
 
+# Patterns of the density, and a share of a snapshot.
+runs 0 generate "$work/scene.toml" --set 'particles.wake={contrast=0.5, wavelength=30, pitch=25}' -o "$work/wake.hdf"
+one_line "a wake" "the wake has a wavelength of 26.83 m and a pitch of 26.57 degrees (2 x 1 waves fit the box)"
+refuses "a step beyond the box" "particles.step.between is [-10, 50] (two rising x within the box, from -30 to 30" \
+  generate "$work/scene.toml" --set 'particles.step={between=[-10,50], factor=2.0}' -o "$work/none.hdf"
+printf '[planet]\norbital_frequency = 1.95e-4\n[start]\nfrom = "1.hdf"\n[time]\nend = 0.002\n' >"$work/share.toml"
+for share in 1.0 0.5; do
+  runs 0 generate "$work/share.toml" --set start.keep=$share -o "$work/kept-$share.hdf"
+  sed -E 's/ particles? in .*//' "$work/out" >"$work/kept-$share"
+done
+same_bytes "a share of 1" "$work/1.hdf" "$work/kept-1.0.hdf" /PartType1/ParticleIDs
+[ $((2 * $(cat "$work/kept-0.5"))) -lt $(($(cat "$work/kept-1.0") * 6 / 5)) ] || fail "half: $(cat "$work/kept-0.5")"
+[ $((2 * $(cat "$work/kept-0.5"))) -gt $(($(cat "$work/kept-1.0") * 4 / 5)) ] || fail "half: $(cat "$work/kept-0.5")"
+refuses "no share" "start.keep is 0" generate "$work/share.toml" --set start.keep=0.0 -o "$work/none.hdf"
+
 # A stop, in a start that takes ten seconds and more. The program is ready for signals when it catches TERM (bit 14).
 catches_signals() { ((0x$(sed -n 's/^SigCgt:[[:space:]]*//p' "/proc/$1/status" 2>/dev/null || echo 0) & 0x4000)); }
 stops() {

@@ -15,7 +15,8 @@ enum class RandomPurpose : std::uint32_t {
   relaxation = 4,
   gravity_origin = 5,
   sample = 6,
-  contact = 7
+  contact = 7,
+  thinning = 8
 };
 
 /// Philox4x64-10 (Salmon et al. 2011) keyed by seed and purpose, counting draws of one id.

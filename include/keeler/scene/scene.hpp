@@ -9,6 +9,7 @@
 #include <keeler/gravity/solver.hpp>
 #include <keeler/orbit/elements.hpp>
 #include <keeler/particles/sizes.hpp>
+#include <keeler/scene/density_pattern.hpp>
 
 #include <cstdint>
 #include <optional>
@@ -47,6 +48,7 @@ struct ParticleSettings {
   std::uint64_t seed = 1;
   StreamlineSettings streamlines;
   std::vector<ModeSettings> modes; ///< none beside patterned streamlines
+  DensityPattern pattern;
 
   /// The largest that 1 − spacing of streamlines may come to be, in their mean spacing: q, or the sum of the
   /// amplitudes.
@@ -102,6 +104,8 @@ struct Scene {
   std::optional<GravitySettings> gravity; ///< none: no gravity code runs
   std::vector<ForceSettings> external_forces;
   std::optional<std::string> start_from; ///< a snapshot to start from
+  double start_keep = 1.0;               ///< share of its particles
+  std::uint64_t start_keep_seed = 1;
   TimeSettings time;
   OutputSettings output;
 
@@ -120,7 +124,7 @@ struct Scene {
   double surface_density() const;
   /// Optical depth Σ π r² / area.
   double optical_depth() const;
-  /// The same where streamlines are closest at the start, 1/(1 − q) of it.
+  /// The same where streamlines are closest at the start, 1/(1 − q) of it, and the pattern is densest.
   double bunched_optical_depth() const;
 };
 

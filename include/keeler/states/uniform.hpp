@@ -2,6 +2,7 @@
 #pragma once
 
 #include <keeler/particles/patch.hpp>
+#include <keeler/scene/density_pattern.hpp>
 #include <keeler/states/progress.hpp>
 #include <keeler/states/streamlines.hpp>
 
@@ -29,16 +30,17 @@ struct UniformRequest {
   double own_room = 0.0;         ///< m²: the layer's height is √(c_z²/ν² + own_room)
   Streamlines streamlines;       ///< that the mean motion follows; circles unless given
   std::vector<HeldBody> held;    ///< they come after the particles, with the ids that follow; no two may overlap
+  DensityPattern pattern;        ///< of the guiding centres on them
   std::uint64_t seed = 1;
 };
 
-/// Uniform in x and y (in X, where streamlines bunch); in z Gaussian, or flat-topped with the same height where the
-/// mid-plane would be fuller than largest_filling (scene/derived.hpp). Eccentricity vectors are Gaussian about those of
-/// the streamlines, so that c_y = c_x κ/2, and so are vertical velocities; their random parts have no mean by mass, nor
-/// have the heights (of the particles alone where bodies are held, but for what these push aside). Each pair is apart
-/// by at least 2 × 10⁻⁵ of the smaller radius. Sizes may differ by 10⁴ and more; time and memory go with the number of
-/// particles. Same request, same state, for any number of threads. Throws UsageError when there is no room without
-/// overlap, Interrupted (interrupt.hpp).
+/// Uniform in x and y (in X, where streamlines bunch), or after the pattern; in z Gaussian, or flat-topped with the
+/// same height where the mid-plane would be fuller than largest_filling (scene/derived.hpp). Eccentricity vectors are
+/// Gaussian about those of the streamlines, so that c_y = c_x κ/2, and so are vertical velocities; their random parts
+/// have no mean by mass, nor have the heights (of the particles alone where bodies are held, but for what these push
+/// aside). Each pair is apart by at least 2 × 10⁻⁵ of the smaller radius. Sizes may differ by 10⁴ and more; time and
+/// memory go with the number of particles. Same request, same state, for any number of threads. Throws UsageError when
+/// there is no room without overlap, Interrupted (interrupt.hpp).
 Patch uniform_patch(const UniformRequest& request, const std::function<void(const StartProgress&)>& progress = {});
 
 } // namespace keeler

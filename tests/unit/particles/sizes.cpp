@@ -59,6 +59,22 @@ TEST_CASE("equal sizes are exactly equal, listed sizes are used in turn") {
   CHECK(listed.largest == 2.0);
 }
 
+TEST_CASE("radii of a list as long as the particles are many are dealt out exactly, each once") {
+  std::vector<double> radii;
+  for (int k = 0; k < 500; ++k)
+    radii.push_back(0.1 + 1.0 / (1.0 + k));
+  std::vector<double> once = draw_radii(listed_sizes(radii), radii.size(), 7),
+                      thrice = draw_radii(listed_sizes(radii), 3 * radii.size(), 7);
+  CHECK(once != radii); // shuffled
+  std::sort(once.begin(), once.end());
+  std::sort(radii.begin(), radii.end());
+  CHECK(once == radii);
+  std::sort(thrice.begin(), thrice.end());
+  for (std::size_t k = 0; k < radii.size(); ++k)
+    for (std::size_t copy = 0; copy < 3; ++copy)
+      CHECK(thrice[3 * k + copy] == radii[k]);
+}
+
 TEST_CASE("of tabulated sizes each has its number, and its share of any other number") {
   const SizeLaw law = tabulated_sizes({{30.0, 1}, {1.0, 19989}, {2.0, 10}});
   CHECK(law.smallest == 1.0);

@@ -112,7 +112,9 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
                                           "gravity.force_error",
                                           "gravity.mesh_spacing",
                                           "gravity.shortest_wavelength",
-                                          "start.from"};
+                                          "start.from",
+                                          "start.keep",
+                                          "start.keep_seed"};
   const Scene scene = small_scene();
   const SimulationState state = evolved(scene, 2);
   const std::string hash = state_hash(state, scene);
@@ -121,7 +123,8 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
     const auto other = others.find(key.path);
     if (other == others.end()) { // has no place in this scene beside the others
       CHECK((needless.count(key.path) == 1 || key.section() == "particles.streamlines" ||
-             key.section() == "particles.modes" || key.section() == "moonlet" || key.section() == "satellite"));
+             key.section() == "particles.modes" || key.section() == "particles.step" ||
+             key.section() == "particles.wake" || key.section() == "moonlet" || key.section() == "satellite"));
       CHECK((key.effect == motion || key.section() != "satellite"));
       CHECK((key.effect == start || key.section() != "moonlet"));
       continue;

@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 
@@ -79,4 +80,31 @@ TEST_CASE("doubts about a patch have numbers, and a large one none") {
   CHECK(doubts(scene({"box.size_in_wavelengths=[8,8]", "particles.optical_depth=0.5",
                       "particles.velocity_dispersion=3.5"}))
             .empty());
+}
+
+TEST_CASE("a share of a start file's particles is kept, the same ones of any state") {
+  const std::string file = (std::filesystem::temp_directory_path() / "keeler-test-keep.hdf").string();
+  const Scene whole = scene({"particles.count=3000", "box.size=[400, 400]"});
+  const Patch patch = initial_patch(whole);
+  write_snapshot(file, patch, {whole.resolved, {}});
+  const auto kept = [&](const std::string& share, const std::string& seed) {
+    return initial_patch(scene({"start.keep=" + share, "start.keep_seed=" + seed}, file));
+  };
+  CHECK(initial_patch(scene({}, file)).ids == patch.ids);
+  CHECK(kept("1.0", "1").positions == patch.positions);
+  const Patch third = kept("0.3", "1"), half = kept("0.5", "1");
+  CHECK(std::fabs(static_cast<double>(third.size()) - 900.0) < 3.0 * std::sqrt(3000.0 * 0.3 * 0.7)); // binomial
+  CHECK(std::includes(half.ids.begin(), half.ids.end(), third.ids.begin(), third.ids.end()));
+  CHECK(kept("0.3", "2").ids != third.ids);
+  for (std::size_t k = 0; k < third.size(); ++k) {
+    const auto id = static_cast<std::size_t>(third.ids[k]); // its row in the whole patch
+    CHECK(third.positions[k] == patch.positions[id]);
+    CHECK(third.masses[k] == patch.masses[id]);
+  }
+  CHECK_THROWS_WITH_AS(
+      kept("1e-9", "1"),
+      ("start.keep = 1e-9 keeps none of the 3000 particles of '" + file + "'; raise it, or try another start.keep_seed")
+          .c_str(),
+      UsageError);
+  std::filesystem::remove(file);
 }

@@ -1,0 +1,12 @@
+// The keys of what a fresh start may be patterned with: streamlines, radial modes, a step or a wave of the density.
+#pragma once
+
+#include <keeler/core/key.hpp>
+
+#include <vector>
+
+namespace keeler {
+
+std::vector<Key> start_pattern_keys();
+
+} // namespace keeler
