@@ -70,7 +70,7 @@ std::vector<Key> pattern_keys() {
        .example = "0.5",
        .unit = "1",
        .meaning = "A of a surface density 1 + A cos(k r) at the start, with a crest through the centre",
-       .range = up_to(1),
+       .range = {.low = 0, .high = 1, .low_open = true},
        .effect = start},
       {.path = "particles.wake.wavelength",
        .type = number,
