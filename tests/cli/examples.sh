@@ -34,4 +34,9 @@ for grid in "$work"/short/papers/*/grid.toml; do
   runs 0 sweep "$grid" -o "$work/sweep-$name"
   grep -q "^## $name\$" "$source_dir/examples/papers/README.md" || fail "$name: no section in examples/papers/README.md"
 done
+for scene in "$work"/short/papers/*/scene.toml; do
+  name=$(basename "${scene%/*}")
+  runs 0 run "$scene" -o "$work/run-$name" --set time.end=0.004
+  grep -q "^## $name\$" "$source_dir/examples/papers/README.md" || fail "$name: no section in examples/papers/README.md"
+done
 report
