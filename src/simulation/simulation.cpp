@@ -176,19 +176,16 @@ void Simulation::move_on() {
 void Simulation::rebase(double time) {
   const Rebase to_epoch(scene_.planet.frequencies, time);
   const double offset = state_.epoch_offset();
+  const bool with_moonlets = !state_.moonlets.empty();
   parallel_for(state_.particles.size(), [&](std::size_t k) {
     state_.particles.prefetch_after(k);
     Elements& el = state_.particles.bodies[k].elements;
     to_epoch(el);
     const Image image = state_.box.image_into_cell(el.guiding_x, el.guiding_y, offset);
-    if (image == Image{})
-      return;
-    el = state_.box.image_of(el, image, offset);
-    if (const std::uint64_t id = state_.particles.ids[k]; id >= state_.first_moonlet()) {
-      MoonletTrack& track = state_.moonlets[id - state_.first_moonlet()];
-      const Vec3 shift = state_.box.displacement(image, offset);
-      track.shift_x += shift.x();
-      track.shift_y += shift.y();
+    if (image != Image{}) {
+      el = state_.box.image_of(el, image, offset);
+      if (with_moonlets)
+        note_wrap(k, image, offset);
     }
   });
   if (state_.particles.rough) {
@@ -198,6 +195,18 @@ void Simulation::rebase(double time) {
       turn.turn(spin.y(), spin.x());
     });
   }
+}
+
+// Of a particle that has gone round an edge, whoever it is. Rare: it stays out of the loop over all of them.
+[[gnu::noinline]] void Simulation::note_wrap(std::size_t k, const Image& image, double offset) {
+  const std::uint64_t id = state_.particles.ids[k];
+  if (id < state_.first_moonlet())
+    return;
+  assert(id - state_.first_moonlet() < state_.moonlets.size());
+  MoonletTrack& track = state_.moonlets[id - state_.first_moonlet()];
+  const Vec3 shift = state_.box.displacement(image, offset);
+  track.shift_x += shift.x();
+  track.shift_y += shift.y();
 }
 
 Boundary Simulation::boundary() const {

@@ -72,6 +72,7 @@ private:
   void sort_when_due();
   void decide_when_due();
   void find_moonlets();
+  void note_wrap(std::size_t k, const Image& image, double offset);
   void set_pace();
   std::int64_t ticks_between_kicks(std::size_t f) const {
     return state_.control.kick > 0 ? state_.control.kick : forces_[f]->kick_every();
