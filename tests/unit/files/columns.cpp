@@ -5,6 +5,8 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 using namespace keeler;
 
@@ -22,10 +24,10 @@ std::string fault(std::string_view text) {
 } // namespace
 
 TEST_CASE("tables as spreadsheets, numpy and pandas write them") {
-  for (const char* text : {"a,b\n1,-2.5e3\n+3,4\n", "\"a\" , \"b\"\r\n1, -2.5e3\r\n 3,4", "a;b\n1;-2500\n\n3;4\n",
-                           "# made by hand\na b\n1   -2500\n# more\n3\t4\n", "# a,b\n1,-2500\n3,4\n",
-                           "\xef\xbb\xbf"
-                           "a,b\n1,-2500\n3,4\n"}) {
+  const std::string with_byte_order_mark = std::string("\xef\xbb\xbf") + "a,b\n1,-2500\n3,4\n";
+  for (const std::string& text : std::vector<std::string>{
+           "a,b\n1,-2.5e3\n+3,4\n", "\"a\" , \"b\"\r\n1, -2.5e3\r\n 3,4", "a;b\n1;-2500\n\n3;4\n",
+           "# made by hand\na b\n1   -2500\n# more\n3\t4\n", "# a,b\n1,-2500\n3,4\n", with_byte_order_mark}) {
     CAPTURE(text);
     const Columns columns = parse_columns(text, "t.csv");
     CHECK(columns.names == std::vector<std::string>{"a", "b"});
