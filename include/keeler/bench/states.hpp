@@ -1,7 +1,7 @@
 // The states that benches time: patches near their collisional equilibrium without gravity, without overlaps.
 //
-// A large state is a small one side by side with copies of itself (states/tiled.hpp). Its particles meet as those of the
-// small one do, until rounding tells them apart.
+// A large state is a small one side by side with copies of itself (states/tiled.hpp). Its particles meet as those of
+// the small one do, until rounding tells them apart.
 #pragma once
 
 #include <keeler/bench/drift.hpp>

@@ -15,8 +15,8 @@ namespace keeler {
 /// Copies are counted column by column, outward, and in a column forward along the orbit. Copy c of the particle with
 /// the id i has the id i + c × (1 + the patch's largest id).
 ///
-/// Guiding centres lie in the new cell, or as little outside as they do in the patch. Throws UsageError where the new box or its number of particles would be more
-/// than a run takes.
+/// Guiding centres lie in the new cell, or as little outside as they do in the patch. Throws UsageError where the new
+/// box or its number of particles would be more than a run takes.
 Patch tiled_patch(const Patch& patch, std::size_t nx, std::size_t ny);
 
 } // namespace keeler

@@ -49,7 +49,8 @@ ClumpedState one_wave(int n, double amplitude) {
   state.box = {600.0, 90.0, 1.5, 0.0};
   for (std::size_t k = 0; k < count; ++k) {
     const double x = (static_cast<double>(k) + 0.25) / count * state.box.size_x - 300.0;
-    state.positions.emplace_back(x, std::fmod(37.0 * static_cast<double>(k), 90.0) - 45.0, static_cast<double>(k % 7) - 3.0);
+    state.positions.emplace_back(x, std::fmod(37.0 * static_cast<double>(k), 90.0) - 45.0,
+                                 static_cast<double>(k % 7) - 3.0);
     state.masses.push_back(1e4 * (1.0 + amplitude * std::cos(two_pi * n * x / state.box.size_x)));
     state.ids.push_back(k);
   }
