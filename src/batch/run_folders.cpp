@@ -1,5 +1,6 @@
 #include <keeler/batch/run_folders.hpp>
 
+#include <keeler/batch/claims.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/files/files.hpp>
 
@@ -58,6 +59,13 @@ void refuse_changed_run(const PlannedRun& run, const fs::path& folder, const std
                                  place, run.name, change, folder.string()));
 }
 
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error)
+    throw IoError(fmt::format("cannot make the folder '{}': {}; name another", folder.string(), error.message()));
+}
+
 } // namespace
 
 void RunFolders::refuse_changed(std::span<const PlannedRun> runs, const std::string& place) const {
@@ -77,13 +85,10 @@ std::size_t RunFolders::runs_beside(std::span<const PlannedRun> runs) const {
 }
 
 void RunFolders::make() const {
-  for (const char* const name : {"runs", "scenes", "failed"}) {
-    std::error_code error;
-    fs::create_directories(path_ / name, error);
-    if (error)
-      throw IoError(
-          fmt::format("cannot make the folder '{}': {}; name another", (path_ / name).string(), error.message()));
-  }
+  make_folder(path_);
+  const Claims first(claims()); // by this file another program knows what the folder is
+  for (const char* const name : {"runs", "scenes", "failed"})
+    make_folder(path_ / name);
 }
 
 std::optional<std::string> RunFolders::failure_of(const std::string& name) const {

@@ -40,8 +40,10 @@ void refuse_other_content(const RunFolders& folders) {
   const fs::file_status status = fs::status(folders.path(), unknown);
   if (fs::exists(status) && !fs::is_directory(status))
     throw UsageError(fmt::format("'{}' is a file (results go into a folder); name another", folders.path().string()));
-  const bool sweep = fs::exists(folders.claims(), unknown) && !fs::exists(folders.path() / "study.json", unknown);
-  if (fs::is_directory(status) && !fs::is_empty(folders.path(), unknown) && !sweep)
+  if (!fs::is_directory(status) || fs::is_empty(folders.path(), unknown))
+    return;
+  // Asked after the contents: a program that makes this folder at the moment makes the file of claims first.
+  if (!fs::exists(folders.claims(), unknown) || fs::exists(folders.path() / "study.json", unknown))
     throw UsageError(fmt::format("'{}' is not empty and holds no sweep; name another folder", folders.path().string()));
 }
 

@@ -129,6 +129,18 @@ same_tables "shared" "$work/shared"
 [ "$(cat "$work"/shared/runs/*/log.jsonl | grep -c '"started"')" -eq 4 ] || fail "shared: a run was begun twice"
 grep -q '"resumed"' "$work"/shared/runs/*/log.jsonl && fail "shared: a run was cut"
 
+# Programs that begin at one moment know the folder that the first of them makes.
+for try in 1 2 3 4 5 6 7 8 9 10; do
+  processes=()
+  for k in 1 2 3 4; do
+    "$keeler" sweep "$work/grid.toml" -o "$work/at_once.$try" --tables >"$work/out.$k" 2>"$work/err.$k" &
+    processes+=($!)
+  done
+  for process in "${processes[@]}"; do
+    wait "$process" || fail "at once: $(cat "$work"/err.*)"
+  done
+done
+
 # One run is killed: the others go on, and the next call finishes it.
 swept_until has_checkpoint "$work/one" --jobs 2
 kill -9 "${runs[0]}"

@@ -28,7 +28,7 @@ public:
   /// Runs that the folder holds and the list does not.
   std::size_t runs_beside(std::span<const PlannedRun> runs) const;
 
-  /// Makes the folders. Throws IoError.
+  /// Makes the folders, and the file of claims before the others. Throws IoError.
   void make() const;
 
   /// Why the run failed when it was last tried; none when it did not.
