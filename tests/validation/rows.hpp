@@ -41,6 +41,7 @@ std::vector<Subject> balance_subjects();
 std::vector<Subject> literature_subjects();
 std::vector<Subject> overstability_subjects();
 std::vector<Subject> particle_subjects();
+std::vector<Subject> satellite_subjects();
 
 /// A run of a scene of examples/ with some keys set, in a folder that is gone afterwards.
 struct Ran {
