@@ -4,7 +4,7 @@
 #include "profile_file.hpp"
 #include "sight_options.hpp"
 #include "structure_report.hpp"
-#include "transport_report.hpp"
+#include "transport_text.hpp"
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
@@ -12,7 +12,8 @@
 #include <keeler/diagnostics/analysis.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/report/csv.hpp>
-#include <keeler/runs/stored_patches.hpp>
+#include <keeler/runs/analysis_numbers.hpp>
+#include <keeler/runs/measured_part.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -25,8 +26,6 @@
 namespace keeler {
 namespace {
 
-constexpr double averaged_orbits = 1.0;
-
 struct AnalyzeOptions {
   std::string path;
   bool json = false;
@@ -37,34 +36,6 @@ struct AnalyzeOptions {
   SightOptions sights;
   ThreadOption threads;
 };
-
-nlohmann::ordered_json as_json(const Analysis& a, double overlap) {
-  const auto maybe = [](const std::optional<double>& value) {
-    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
-  };
-  nlohmann::ordered_json json;
-  json["snapshots"] = a.snapshots;
-  json["time_orbits"] = a.time_orbits;
-  json["particle_count"] = a.particle_count;
-  json["mean_radius_m"] = a.mean_radius_m;
-  json["optical_depth"] = a.optical_depth;
-  json["surface_density_kg_m2"] = a.surface_density_kg_m2;
-  json["critical_wavelength_m"] = a.critical_wavelength_m;
-  json["toomre_q"] = a.toomre_q;
-  json["dispersion_m_s"] = a.dispersion_m_s;
-  json["dispersion_r_omega"] = a.dispersion_r_omega;
-  json["scale_height_m"] = a.scale_height_m;
-  json["mean_eccentricity_m"] = a.mean_eccentricity_m;
-  json["mean_inclination_m"] = a.mean_inclination_m;
-  json["filling_factor"] = a.filling_factor;
-  json["random_energy_m2_s2"] = a.random_energy_m2_s2;
-  json["largest_overlap"] = overlap;
-  json["wake_pitch_degrees"] = maybe(a.wake_pitch_degrees);
-  json["wake_spacing_m"] = maybe(a.wake_spacing_m);
-  json["wake_amplitude"] = a.wake_amplitude;
-  add_structure(json, a);
-  return json;
-}
 
 void print_wakes(const Analysis& a) {
   const char* const none =
@@ -101,34 +72,6 @@ void print_text(const Analysis& a, double overlap) {
   print_structure(a);
 }
 
-struct Measured {
-  StoredPatches stored;
-  TransportReport transport;
-};
-
-// Of a run: the series says from where on it is steady, and snapshots are taken from there.
-Measured measure(const AnalyzeOptions& options) {
-  const OrbitWindow& window = options.window;
-  if (!std::filesystem::is_directory(options.path)) {
-    if (window.since || window.until)
-      throw UsageError(fmt::format("--since and --until choose a part of a run, and '{}' is a snapshot; give the run's "
-                                   "folder",
-                                   options.path));
-    StoredPatches snapshot = load_newest_patch(options.path);
-    const TransportReport report = TransportReport::of_snapshot(snapshot.patches.front(), snapshot.gravity);
-    return {std::move(snapshot), report};
-  }
-  const StoredPatches newest = load_newest_patch(options.path);
-  const Patch& last = newest.patches.front();
-  const TransportReport report = TransportReport::of_run(options.path, RingScale::of(last, newest.driven), window);
-  const std::optional<Transport>& found = report.transport();
-  const double since = found && found->since_found ? found->since_orbit : last.time_orbits - averaged_orbits;
-  if (window.since || window.until)
-    return {load_patches_between(options.path, window.since.value_or(since), window.until.value_or(last.time_orbits)),
-            report};
-  return {load_patches(options.path, std::max(0.0, last.time_orbits - since)), report};
-}
-
 // dispersion_m_s and x: dispersion_x_m_s, as in series.csv.
 std::string column_of_axis(const std::string& name, char axis) {
   for (const std::string unit : {"_m_s", "_r_omega"})
@@ -141,7 +84,7 @@ std::string column_of_axis(const std::string& name, char axis) {
 void write_snapshots(const std::string& file, const StoredPatches& stored, const AnalysisSettings& settings) {
   auto rows = nlohmann::ordered_json::array();
   for (const Patch& patch : stored.patches) {
-    nlohmann::ordered_json all = as_json(analyze(std::span(&patch, 1), settings), largest_overlap(patch).depth), row;
+    nlohmann::ordered_json all = numbers_of(analyze(std::span(&patch, 1), settings), largest_overlap(patch).depth), row;
     TransportReport::of_snapshot(patch, stored.gravity).add_to(all, patch);
     for (const auto& [name, value] : all.items())
       if (value.is_primitive() && !name.ends_with("_error_m2_s") && name.find("scatter") == std::string::npos)
@@ -159,7 +102,7 @@ ExitCode run(const AnalyzeOptions& options) {
   for (const std::string& file : {options.profile, options.csv})
     if (!file.empty())
       require_writable_folder(std::filesystem::absolute(file).parent_path(), file);
-  const auto [stored, transport] = measure(options);
+  const auto [stored, transport] = measured_part(options.path, options.window);
   double overlap = 0.0;
   for (const Patch& patch : stored.patches)
     overlap = std::max(overlap, largest_overlap(patch).depth);
@@ -172,14 +115,14 @@ ExitCode run(const AnalyzeOptions& options) {
   if (!options.csv.empty())
     write_snapshots(options.csv, stored, options.settings);
   if (options.json) {
-    nlohmann::ordered_json json = as_json(analysis, overlap);
+    nlohmann::ordered_json json = numbers_of(analysis, overlap);
     transport.add_to(json, stored.patches.back());
     if (sights)
       json["sights"] = sights->json();
     fmt::print("{}\n", json.dump(2));
   } else {
     print_text(analysis, overlap);
-    transport.print(stored.patches.back());
+    print_transport(transport, stored.patches.back());
     if (sights)
       sights->print();
   }

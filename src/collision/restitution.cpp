@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
 
 namespace keeler {
 namespace {
@@ -26,7 +28,43 @@ void check_table(const NumberRows& table) {
   }
 }
 
+// Laws that the program has brought itself. Scenes are read in any thread.
+struct OwnLaws {
+  std::mutex guard;
+  std::map<std::string, RestitutionLaw> laws;
+};
+
+OwnLaws& own_laws() {
+  static OwnLaws laws;
+  return laws;
+}
+
+RestitutionLaw own_restitution(const std::string& name) {
+  OwnLaws& own = own_laws();
+  const std::lock_guard lock(own.guard);
+  const auto found = own.laws.find(name);
+  if (found == own.laws.end())
+    throw UsageError(fmt::format("the law '{}' is a function of the program that made this, and this program has no "
+                                 "such function; go on in that program, or choose another law",
+                                 name));
+  return found->second;
+}
+
 } // namespace
+
+void add_own_restitution(const std::string& name, RestitutionLaw law) {
+  if (name.empty())
+    throw UsageError("a restitution law of one's own needs a name; states and checkpoints know it by that");
+  for (double speed = 1e-6; speed < 101.0; speed *= 10.0)
+    if (const double kept = law({speed, 1.0, 1.0}); !(kept >= 0.0 && kept <= 1.0))
+      throw UsageError(fmt::format("the restitution law '{}' gives {:g} for an impact of {:g} m/s; coefficients are from "
+                                   "0 to 1",
+                                   name, kept, speed));
+  OwnLaws& own = own_laws();
+  const std::lock_guard lock(own.guard);
+  if (!own.laws.try_emplace(name, std::move(law)).second)
+    throw UsageError(fmt::format("there is a restitution law '{}' already; give this one another name", name));
+}
 
 RestitutionLaw constant_restitution(double coefficient) {
   return [coefficient](const Impact&) { return coefficient; };
@@ -130,6 +168,12 @@ const std::vector<RestitutionEntry>& restitution_laws() {
          .meaning = "measured coefficients; linear in log speed between rows, constant beyond them",
          .columns = {"normal speed in m/s", "coefficient"}}},
        [](const Parameters& p) { return tabulated_restitution(p.rows("table")); }},
+      {"own",
+       {{.path = "name",
+         .type = KeyType::text,
+         .example = "\"my-ice\"",
+         .meaning = "the name of a function that the program brings itself, from Python or C++"}},
+       [](const Parameters& p) { return own_restitution(p.text("name")); }},
   };
   return laws;
 }

@@ -349,6 +349,18 @@ StoredRun load_checkpoint(const std::filesystem::path& file) {
   return load(file).run;
 }
 
+StoredRun load_newest_checkpoint(const std::filesystem::path& folder) {
+  return load(newest_valid_checkpoint(folder).path).run;
+}
+
+void store_checkpoint(const std::filesystem::path& file, const SimulationState& state, const Scene& scene) {
+  SimulationState copy = state;
+  OutputCounters counters;
+  FieldTable table = copy.fields();
+  counters.list_fields(table, scene);
+  write_checkpoint(file, table, {scene.resolved, collect_provenance({})});
+}
+
 RunResult start_run(const Scene& scene, const RunOptions& options, RunRequests& requests) {
   return with_advice(options, [&] { return begin(scene, options, requests); });
 }

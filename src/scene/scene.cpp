@@ -208,12 +208,17 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::v
 }
 
 TableScene load_table_scene(const std::string& path, const std::vector<std::string>& overrides) {
-  Document document = parse_document(read_input(path, path), path);
+  return parse_table_scene(read_input(path, path), path, overrides);
+}
+
+TableScene parse_table_scene(const std::string& text, const std::string& name,
+                             const std::vector<std::string>& overrides) {
+  Document document = parse_document(text, name);
   std::vector<std::string> notices;
   apply_overrides(document, overrides, notices);
   const bool has_density = find_entry(document, "particles.density") != nullptr;
   apply_table(document);
-  TableScene of{read_scene(std::move(document), path, Purpose::start, std::move(notices)), {}};
+  TableScene of{read_scene(std::move(document), name, Purpose::start, std::move(notices)), {}};
   if (has_density)
     of.density = of.scene.particles.density;
   return of;

@@ -243,12 +243,35 @@ void Simulation::half_kick(std::size_t f) {
     force.moonlet_gains[k] += moonlet(k).mass * half * force.accelerations[moonlet_places_[k]].y();
 }
 
-Patch Simulation::patch() const {
-  Patch patch = make_patch(state_.particles, state_.box, state_.boundary_offset(), scene_.planet.frequencies,
+void Simulation::replace(Particles particles) {
+  assert(state_.step % scene_.kick_interval() == 0 && particles.ids == state_.particles.ids);
+  const Patch after = patch_of(particles);
+  require_sound(after);
+  require_apart(after, "the changed state");
+  const ParticleMeans before = means();
+  state_.particles = std::move(particles);
+  const ParticleMeans now = means();
+  state_.energy.epicyclic += now.epicyclic_energy - before.epicyclic_energy;
+  state_.energy.azimuthal += now.azimuthal - before.azimuthal;
+  state_.energy.spin += now.spin.energy - before.spin.energy;
+  drift_.release();
+  undisturbed_ = false;
+  forces_ = make_forces(scene_, state_);
+  rebase(0.0); // back into the cell
+  for (std::size_t f = 0; f < forces_.size(); ++f)
+    accelerate(f);
+}
+
+Patch Simulation::patch_of(const Particles& particles) const {
+  Patch patch = make_patch(particles, state_.box, state_.boundary_offset(), scene_.planet.frequencies,
                            -0.5 * state_.step_length);
   patch.orbital_frequency = scene_.planet.orbital_frequency;
   patch.time_orbits = orbits();
   return patch;
+}
+
+Patch Simulation::patch() const {
+  return patch_of(state_.particles);
 }
 
 ParticleMeans Simulation::means() const {

@@ -4,6 +4,7 @@
 #include <keeler/core/key.hpp>
 
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace keeler {
@@ -40,6 +41,11 @@ RestitutionLaw viscoelastic_restitution(double speed, double radius);
 /// Rows of a speed (m/s) and its coefficient, speeds rising from above 0: linear in the logarithm of the speed between
 /// two rows, and constant beyond the first and the last. Throws UsageError "row n: …".
 RestitutionLaw tabulated_restitution(NumberRows table);
+
+/// A law that the program brings itself, known to scenes by this name from now on (law = "own", name = NAME), and so to
+/// the state hash and to checkpoints: a program that has no law of that name refuses them. Throws UsageError when the
+/// name is empty or known, or when the coefficient of an impact of 1 µm/s to 100 m/s is not in [0, 1].
+void add_own_restitution(const std::string& name, RestitutionLaw law);
 
 /// A law that a scene can choose: its name, its keys, and how it is made from their values.
 struct RestitutionEntry {

@@ -72,4 +72,11 @@ struct StoredRun {
 };
 StoredRun load_checkpoint(const std::filesystem::path& file);
 
+/// The same of the newest whole checkpoint of a run's folder.
+StoredRun load_newest_checkpoint(const std::filesystem::path& folder);
+
+/// Writes a state, where kicks meet, as the checkpoint of a run that has written nothing yet: in a folder of its own
+/// and under the name checkpoint_000000.h5, `keeler resume` goes on from it. Throws IoError.
+void store_checkpoint(const std::filesystem::path& file, const SimulationState& state, const Scene& scene);
+
 } // namespace keeler

@@ -159,6 +159,9 @@ struct TableScene {
 
 /// As load_scene(); the scene has box.size, and no start.from.
 TableScene load_table_scene(const std::string& path, const std::vector<std::string>& overrides);
+/// The same from text; `name` stands for the file in messages.
+TableScene parse_table_scene(const std::string& text, const std::string& name,
+                             const std::vector<std::string>& overrides = {});
 
 /// The scene in a snapshot or checkpoint, for what exists already: the box, the sizes and whatever else only the start
 /// needed are not read (their ranges alone are checked), so a file of radii or a start file may be gone.

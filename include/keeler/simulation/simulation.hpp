@@ -39,7 +39,15 @@ public:
   /// then that of an unfinished step and must not be stored.
   void advance();
 
+  /// The same particles with other elements, radii, masses or spins, given from outside where kicks meet (the step is a
+  /// multiple of the scene's kick_interval()). Ids and their order must be those of the state. The energy that this
+  /// brings counts as part of the start. Throws InvariantError, and then nothing has changed, when a number is not
+  /// finite or particles overlap by more than rounding.
+  void replace(Particles particles);
+
   const SimulationState& state() const { return state_; }
+  /// The state itself, its arrays where they are in memory; nothing else may be asked of the simulation afterwards.
+  SimulationState take_state() && { return std::move(state_); }
   double orbits() const { return static_cast<double>(state_.step) * scene_.time.step; }
 
   /// The body of a moonlet, k < state().moonlets.size().
@@ -65,6 +73,7 @@ public:
   DriftPhase& drift() { return drift_; }
 
 private:
+  Patch patch_of(const Particles& particles) const;
   void accelerate(std::size_t f);
   void half_kick(std::size_t f);
   void move_on();

@@ -1,15 +1,12 @@
-#include "transport_report.hpp"
+#include <keeler/runs/transport_report.hpp>
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/mean.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/diagnostics/viscosity.hpp>
 #include <keeler/gravity/fft.hpp>
-
-#include <fmt/format.h>
 
 #include <cmath>
 #include <limits>
@@ -22,17 +19,6 @@ using Json = nlohmann::ordered_json;
 Json or_null(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
 }
-
-// How many m²/s the two other units of a viscosity are: r² Ω and G² Σ²/Ω³.
-struct ViscosityUnits {
-  explicit ViscosityUnits(const Patch& patch) {
-    const double r = mean_radius(patch), omega = patch.orbital_frequency;
-    const double g_sigma = newton_g_si * surface_density(patch);
-    radii = r * r * omega;
-    gravity = g_sigma * g_sigma / (omega * omega * omega);
-  }
-  double radii, gravity;
-};
 
 Estimate at_an_instant(double value) {
   return {value, std::numeric_limits<double>::quiet_NaN()};
@@ -47,21 +33,14 @@ void add_viscosity(Json& json, const std::string& name, const std::optional<Esti
   json[name + "_viscosity_g2_sigma2_omega3"] = in(units.gravity);
 }
 
-std::string with_error(const Estimate& e, double unit) {
-  return std::isfinite(e.error) ? fmt::format("{:.4g} +- {:.1g}", e.value / unit, e.error / unit)
-                                : fmt::format("{:.3g}", e.value / unit);
-}
-
-void print_viscosity(const char* label, const char* name, const std::optional<Estimate>& nu,
-                     const ViscosityUnits& units) {
-  if (nu)
-    fmt::print("{:<20} {:<14} {} m^2/s = {:.3g} r^2 Omega = {:.3g} G^2 Sigma^2/Omega^3\n", label, name,
-               with_error(*nu, 1.0), nu->value / units.radii, nu->value / units.gravity);
-  else
-    fmt::print("{:<20} {:<14} not measured\n", label, name);
-}
-
 } // namespace
+
+ViscosityUnits::ViscosityUnits(const Patch& patch) {
+  const double r = mean_radius(patch), omega = patch.orbital_frequency;
+  const double g_sigma = newton_g_si * surface_density(patch);
+  radii = r * r * omega;
+  gravity = g_sigma * g_sigma / (omega * omega * omega);
+}
 
 TransportReport TransportReport::of_run(const std::filesystem::path& folder, const RingScale& scale,
                                         const OrbitWindow& window) {
@@ -115,29 +94,6 @@ void TransportReport::add_to(Json& json, const Patch& patch) const {
   json["until_orbit"] = t ? Json(t->until_orbit) : Json(nullptr);
   json["since_found"] = t ? Json(t->since_found) : Json(nullptr);
   json["steady"] = t && of_run_ ? Json(t->steady) : Json(nullptr);
-}
-
-void TransportReport::print(const Patch& patch) const {
-  if (!transport_) {
-    fmt::print("viscosities          not known because series.csv has fewer than three rows with all stresses here\n");
-    return;
-  }
-  const ViscosityUnits units(patch);
-  const Transport& t = *transport_;
-  if (of_run_)
-    fmt::print("viscosities          orbits {} to {}, {}\n", figures(t.since_orbit, 4), figures(t.until_orbit, 4),
-               t.steady ? "where the run is steady" : "which are not steady or too few to tell: run longer");
-  print_viscosity(of_run_ ? "" : "viscosity", "translational", t.translational, units);
-  if (of_run_)
-    print_viscosity("", "collisional", t.collisional, units);
-  print_viscosity("", "gravitational", t.gravitational, units);
-  if (!of_run_)
-    return;
-  print_viscosity("", "total", t.total, units);
-  print_viscosity("", "from the loss", t.from_loss, units);
-  if (t.balance)
-    fmt::print("energy balance       {}: energy lost over the work of the shear; 1 but for its error\n",
-               with_error(*t.balance, 1.0));
 }
 
 } // namespace keeler

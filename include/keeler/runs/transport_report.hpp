@@ -1,4 +1,4 @@
-// What `keeler analyze` prints of the transport of angular momentum: the viscosities of a run from its series, or those
+// The transport of angular momentum as `keeler analyze` reports it: the viscosities of a run from its series, or those
 // of a snapshot at its instant.
 #pragma once
 
@@ -13,6 +13,13 @@
 
 namespace keeler {
 
+/// How many m²/s the two other units of a viscosity are.
+struct ViscosityUnits {
+  explicit ViscosityUnits(const Patch& patch);
+  double radii = 0.0;   ///< r² Ω
+  double gravity = 0.0; ///< G² Σ²/Ω³
+};
+
 class TransportReport {
 public:
   /// Of a run's folder: from its series. Without a viscosity when that has too few rows in the window.
@@ -24,9 +31,10 @@ public:
   /// None: the series has too few rows for a viscosity.
   const std::optional<Transport>& transport() const { return transport_; }
 
-  /// The unit of the other two forms of each viscosity is made from the patch.
+  bool is_of_run() const { return of_run_; }
+
+  /// Under the names of `keeler analyze --json`. The units of the other two forms of each viscosity are the patch's.
   void add_to(nlohmann::ordered_json& json, const Patch& patch) const;
-  void print(const Patch& patch) const;
 
 private:
   std::optional<Transport> transport_;

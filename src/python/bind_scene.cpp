@@ -1,0 +1,51 @@
+// Scenes, and restitution laws of a user's own.
+#include "bindings.hpp"
+
+#include <keeler/collision/restitution.hpp>
+#include <keeler/scene/doubts.hpp>
+#include <keeler/scene/scene.hpp>
+
+#include <pybind11/stl.h>
+
+#include <cstdint>
+
+namespace py = pybind11;
+
+namespace keeler::python {
+namespace {
+
+using CFunction = double (*)(double speed, double radius_low, double radius_high);
+
+void add_c_function(const std::string& name, std::uintptr_t address) {
+  const auto function = reinterpret_cast<CFunction>(address);
+  add_own_restitution(
+      name, [function](const Impact& impact) { return function(impact.speed, impact.radius_low, impact.radius_high); });
+}
+
+std::vector<std::string> remarks(const Scene& scene) {
+  std::vector<std::string> lines = scene.notices;
+  for (const std::string& doubt : doubts(scene))
+    lines.push_back(doubt);
+  return lines;
+}
+
+} // namespace
+
+void bind_scene(py::module_& module) {
+  py::class_<Scene>(module, "Scene")
+      .def(py::init([](const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
+                       const std::optional<std::string>& from) { return parse_scene(text, name, overrides, from); }),
+           py::arg("text"), py::arg("name"), py::arg("overrides"), py::arg("start_from") = py::none())
+      .def_readonly("text", &Scene::resolved)
+      .def_readonly("title", &Scene::title)
+      .def_property_readonly("remarks", &remarks)
+      .def_property_readonly("orbital_frequency", [](const Scene& scene) { return scene.planet.orbital_frequency; })
+      .def_property_readonly("tick", [](const Scene& scene) { return scene.time.step; })
+      .def_property_readonly("kick_interval", &Scene::kick_interval)
+      .def_property_readonly(
+          "end", [](const Scene& scene) { return static_cast<double>(scene.time.end_step) * scene.time.step; });
+  module.def("stored_scene", &parse_stored_scene, py::arg("text"), py::arg("name"));
+  module.def("add_restitution_law", &add_c_function, py::arg("name"), py::arg("address"));
+}
+
+} // namespace keeler::python

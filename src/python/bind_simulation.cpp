@@ -1,0 +1,193 @@
+// A running simulation: views of its state, its course, and changes from outside.
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "held_simulation.hpp"
+#include "snapshot.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/threads.hpp>
+#include <keeler/runs/run.hpp>
+#include <keeler/runs/state_hash.hpp>
+#include <keeler/states/initial.hpp>
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <bit>
+
+namespace keeler::python {
+namespace {
+
+using Held = HeldSimulation;
+
+std::unique_ptr<Held> from_scene(const Scene& scene) {
+  return std::make_unique<Held>(scene, initial_patch(scene));
+}
+
+std::unique_ptr<Held> from_snapshot(const PythonSnapshot& snapshot, const std::string& name, const Scene& scene) {
+  return std::make_unique<Held>(scene, patch_from_snapshot(snapshot.patch, name, scene));
+}
+
+std::unique_ptr<Held> from_stored(StoredRun stored) {
+  return std::make_unique<Held>(stored.scene, std::move(stored.state));
+}
+
+// --- views: of bodies in memory, by their strides
+
+py::capsule share_of(const Held& held) {
+  return {new std::shared_ptr<Keep>(held.keep()),
+          [](void* share) { delete static_cast<std::shared_ptr<Keep>*>(share); }};
+}
+
+py::array elements(const Held& held) {
+  const std::vector<Body>& bodies = held.state().particles.bodies;
+  static_assert(sizeof(Elements) == 6 * sizeof(double));
+  return view(&bodies.data()->elements.guiding_x, {static_cast<py::ssize_t>(bodies.size()), 6},
+              {sizeof(Body), sizeof(double)}, share_of(held));
+}
+
+template<double Body::*Field> py::array of_bodies(const Held& held) {
+  const std::vector<Body>& bodies = held.state().particles.bodies;
+  return view(&(bodies.data()->*Field), {static_cast<py::ssize_t>(bodies.size())}, {sizeof(Body)}, share_of(held));
+}
+
+py::array ids(const Held& held) {
+  return view(held.state().particles.ids, share_of(held));
+}
+
+// --- copies in Cartesian form, in the order of memory
+
+// m and m/s.
+std::pair<py::array, py::array> motion(const Held& held) {
+  const SimulationState& state = held.state();
+  const std::size_t count = state.particles.size();
+  py::array_t<double> positions({static_cast<py::ssize_t>(count), py::ssize_t{3}});
+  py::array_t<double> velocities({static_cast<py::ssize_t>(count), py::ssize_t{3}});
+  double *const x = positions.mutable_data(), *const v = velocities.mutable_data();
+  {
+    require_own_threads();
+    const py::gil_scoped_release unlocked;
+    const Rotation rotation = held.simulation().boundary().rotation();
+    const Frequencies& frequencies = held.scene().planet.frequencies;
+    const double omega = held.scene().planet.orbital_frequency;
+    parallel_for(count, [&](std::size_t k) {
+      const State at = state_at(state.particles.bodies[k].elements, frequencies, rotation);
+      Eigen::Map<Vec3>(x + 3 * k) = at.position;
+      Eigen::Map<Vec3>(v + 3 * k) = omega * at.velocity;
+    });
+  }
+  return {sealed(std::move(positions)), sealed(std::move(velocities))};
+}
+
+// rad/s, against the stars, in Hill's frame now.
+py::object spins(const Held& held) {
+  const SimulationState& state = held.state();
+  if (!state.particles.rough)
+    return py::none();
+  const SpinTurn turn(-0.5 * state.step_length);
+  std::vector<Vec3> now(state.particles.size());
+  for (std::size_t k = 0; k < now.size(); ++k)
+    now[k] = turn.from_epoch(state.particles.spins[k]);
+  return scaled_copy(now, held.scene().planet.orbital_frequency);
+}
+
+PythonSnapshot snapshot(const Held& held) {
+  require_own_threads();
+  const py::gil_scoped_release unlocked;
+  return {held.simulation().patch(), held.scene().resolved};
+}
+
+// --- changes
+
+bool same_bits(const double* a, const double* b) {
+  const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
+  return bits(a[0]) == bits(b[0]) && bits(a[1]) == bits(b[1]) && bits(a[2]) == bits(b[2]);
+}
+
+// Arrays in the order of memory. Only particles whose place or velocity differs get new elements: from one form to the
+// other and back, a bit or two is lost.
+void replace(Held& held, const Doubles& positions, const Doubles& velocities, const Doubles& radii,
+             const Doubles& masses, const std::optional<Doubles>& changed_spins) {
+  const SimulationState& state = held.state();
+  const std::size_t count = state.particles.size();
+  const double omega = held.scene().planet.orbital_frequency;
+  const auto [old_positions, old_velocities] = motion(held);
+  const Doubles before_x = old_positions, before_v = old_velocities;
+  vectors_from(positions, count, "positions"), vectors_from(velocities, count, "velocities"); // their shapes
+  const std::vector<double> new_radii = numbers_from(radii, count, "radii"),
+                            new_masses = numbers_from(masses, count, "masses");
+  Particles particles = state.particles;
+  const Rotation rotation = held.simulation().boundary().rotation();
+  for (std::size_t k = 0; k < count; ++k) {
+    const double *const x = positions.data() + 3 * k, *const v = velocities.data() + 3 * k;
+    Body& body = particles.bodies[k];
+    body.radius = new_radii[k], body.mass = new_masses[k];
+    if (!same_bits(x, before_x.data() + 3 * k) || !same_bits(v, before_v.data() + 3 * k))
+      body.elements = elements_from({Vec3(x[0], x[1], x[2]), Vec3(v[0], v[1], v[2]) / omega},
+                                    held.scene().planet.frequencies, rotation);
+  }
+  if (changed_spins) {
+    const SpinTurn turn(-0.5 * state.step_length);
+    const std::vector<Vec3> rows = vectors_from(*changed_spins, count, "spins", 1.0 / omega);
+    for (std::size_t k = 0; k < count; ++k)
+      particles.spins[k] = turn.to_epoch(rows[k]);
+  }
+  held.replace(std::move(particles));
+}
+
+py::array contacts(Held& held) {
+  const std::vector<ContactRecord> rows = held.take_contacts();
+  return py::array_t<ContactRecord>(static_cast<py::ssize_t>(rows.size()), rows.data());
+}
+
+void save(const Held& held, const std::filesystem::path& file) {
+  const SimulationState& state = held.state();
+  const py::gil_scoped_release unlocked;
+  store_checkpoint(file, state, held.scene());
+}
+
+py::dict counts(const Held& held) {
+  const SimulationState& state = held.state();
+  py::dict numbers;
+  numbers["collisions"] = state.collisions.fast;
+  numbers["slow_contacts"] = state.collisions.slow;
+  numbers["steps"] = state.control.steps;
+  return numbers;
+}
+
+} // namespace
+
+void bind_simulation(py::module_& module) {
+  PYBIND11_NUMPY_DTYPE(ContactRecord, time_orbits, low_id, high_id, x_m, y_m, z_m, normal_speed_m_s,
+                       tangential_speed_m_s, energy_lost_j);
+  py::class_<Held>(module, "Simulation")
+      .def(py::init(&from_scene), py::arg("scene"))
+      .def(py::init(&from_snapshot), py::arg("snapshot"), py::arg("name"), py::arg("scene"))
+      .def_static("load", [](const std::filesystem::path& file) { return from_stored(load_checkpoint(file)); })
+      .def_static("resume",
+                  [](const std::filesystem::path& folder) { return from_stored(load_newest_checkpoint(folder)); })
+      .def("__len__", [](const Held& held) { return held.state().particles.size(); })
+      .def_property_readonly("scene", &Held::scene, py::return_value_policy::reference_internal)
+      .def_property_readonly("orbits", [](const Held& held) { return held.simulation().orbits(); })
+      .def_property_readonly("tick", [](const Held& held) { return held.state().step; })
+      .def_property_readonly(
+          "epoch",
+          [](const Held& held) { return held.simulation().orbits() + 0.5 * held.state().step_length / two_pi; })
+      .def_property_readonly("state_hash", [](const Held& held) { return state_hash(held.state(), held.scene()); })
+      .def("advance", &Held::advance, py::arg("until_tick"))
+      .def("elements", &elements)
+      .def("radii", &of_bodies<&Body::radius>)
+      .def("masses", &of_bodies<&Body::mass>)
+      .def("ids", &ids)
+      .def("motion", &motion)
+      .def("spins", &spins)
+      .def("snapshot", &snapshot)
+      .def("replace", &replace, py::arg("positions"), py::arg("velocities"), py::arg("radii"), py::arg("masses"),
+           py::arg("spins"))
+      .def("record_contacts", &Held::record_contacts, py::arg("minimum_speed"))
+      .def("take_contacts", &contacts)
+      .def("save", &save, py::arg("file"))
+      .def("counts", &counts);
+}
+
+} // namespace keeler::python

@@ -1,0 +1,165 @@
+// Snapshots: a patch at one instant with the scene it is of; files, starts and pictures of it, and what is measured.
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "held_simulation.hpp"
+#include "snapshot.hpp"
+
+#include <keeler/cells/overlap.hpp>
+#include <keeler/core/interrupt.hpp>
+#include <keeler/diagnostics/analysis.hpp>
+#include <keeler/io/series.hpp>
+#include <keeler/io/snapshot.hpp>
+#include <keeler/render/patch_picture.hpp>
+#include <keeler/runs/analysis_numbers.hpp>
+#include <keeler/runs/measured_part.hpp>
+#include <keeler/states/clumped.hpp>
+#include <keeler/states/from_table.hpp>
+#include <keeler/states/initial.hpp>
+#include <keeler/states/tiled.hpp>
+
+#include "keyboard.hpp"
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+namespace keeler::python {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What takes long is done without the interpreter's lock, and an interrupt ends it at once: nothing could be kept.
+template<class Make> auto made(const Make& make) {
+  require_own_threads();
+  const Keyboard keyboard;
+  try {
+    const Interruptible by_keyboard(keyboard.stop_flag());
+    const py::gil_scoped_release unlocked;
+    return make();
+  } catch (const Interrupted&) {
+    raise_interrupts();
+    throw;
+  }
+}
+
+PythonSnapshot read(const fs::path& file) {
+  const py::gil_scoped_release unlocked;
+  Snapshot snapshot = read_snapshot(file);
+  return {std::move(snapshot.patch), std::move(snapshot.meta.scene)};
+}
+
+void write(const PythonSnapshot& snapshot, const fs::path& file) {
+  const py::gil_scoped_release unlocked;
+  write_snapshot(file, snapshot.patch, {snapshot.scene, collect_provenance({})});
+}
+
+PythonSnapshot generate(const Scene& scene, bool clumped) {
+  return made([&] {
+    return PythonSnapshot{clumped ? clumped_state(scene).patch : initial_patch(scene), scene.resolved};
+  });
+}
+
+// No fresh start makes this state, so the scene that goes with it starts from a file, and keeps all of it.
+PythonSnapshot tile(const PythonSnapshot& snapshot, std::size_t nx, std::size_t ny, const std::string& name) {
+  return made([&] {
+    const Scene scene = parse_scene(snapshot.scene, name, {"start.keep=1.0"}, name);
+    const Patch patch = patch_from_snapshot(snapshot.patch, name, scene);
+    require_apart(patch, "'" + name + "'");
+    return PythonSnapshot{tiled_patch(patch, nx, ny), scene.resolved};
+  });
+}
+
+PythonSnapshot from_arrays(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
+                           const Doubles& positions, const std::optional<Doubles>& velocities, const Doubles& radii,
+                           const std::optional<Doubles>& masses, bool relaxed) {
+  ParticleTable table;
+  table.file = "the arrays";
+  const auto count = positions.ndim() > 0 ? static_cast<std::size_t>(positions.shape(0)) : 0;
+  table.places = vectors_from(positions, count, "positions");
+  table.radii = numbers_from(radii, count, "radii");
+  if (velocities)
+    table.velocities = vectors_from(*velocities, count, "velocities");
+  if (masses)
+    table.masses = numbers_from(*masses, count, "masses");
+  return made([&] {
+    const TableScene of = parse_table_scene(text, name, overrides);
+    Patch patch = patch_from_table(table, of);
+    if (relaxed)
+      relax(patch);
+    require_apart(patch, table.file);
+    return PythonSnapshot{std::move(patch), parse_scene(of.scene.resolved, name, {}, table.file).resolved};
+  });
+}
+
+// JSON, which Python's own reader makes dictionaries of.
+std::string analyze_snapshot(const PythonSnapshot& snapshot) {
+  return made([&] {
+    const Patch& patch = snapshot.patch;
+    auto numbers = numbers_of(analyze(std::span(&patch, 1)), largest_overlap(patch).depth);
+    TransportReport::of_snapshot(patch, parse_stored_scene(snapshot.scene, "snapshot").gravity).add_to(numbers, patch);
+    return numbers.dump();
+  });
+}
+
+std::string analyze_path(const fs::path& path, const std::optional<double>& since, const std::optional<double>& until) {
+  return made([&] {
+    const MeasuredPart part = measured_part(path, {since, until});
+    double overlap = 0.0;
+    for (const Patch& patch : part.stored.patches)
+      overlap = std::max(overlap, largest_overlap(patch).depth);
+    auto numbers = numbers_of(analyze(part.stored.patches), overlap);
+    part.transport.add_to(numbers, part.stored.patches.back());
+    return numbers.dump();
+  });
+}
+
+py::dict series(const fs::path& file) {
+  const SeriesTable table = read_series(file);
+  py::dict columns;
+  for (std::size_t c = 0; c < table.names.size(); ++c) {
+    const std::vector<double>& column = table.columns[c];
+    columns[py::str(table.names[c])] = py::array_t<double>(static_cast<py::ssize_t>(column.size()), column.data());
+  }
+  return columns;
+}
+
+void render(const PythonSnapshot& snapshot, const fs::path& file, const std::string& title, int width) {
+  const py::gil_scoped_release unlocked;
+  render_patch(snapshot.patch, file.string(), {title, width});
+}
+
+py::object array_or_none(const std::vector<Vec3>& rows, double factor) {
+  return rows.empty() ? py::object(py::none()) : py::object(scaled_copy(rows, factor));
+}
+
+} // namespace
+
+void bind_snapshot(py::module_& module) {
+  using Self = const PythonSnapshot&;
+  py::class_<PythonSnapshot>(module, "Snapshot")
+      .def("__len__", [](Self self) { return self.patch.size(); })
+      .def_property_readonly("positions",
+                             [](const py::object& self) { return view(self.cast<Self>().patch.positions, self); })
+      .def("velocities", [](Self self) { return scaled_copy(self.patch.velocities, self.patch.orbital_frequency); })
+      .def("spins", [](Self self) { return array_or_none(self.patch.spins, self.patch.orbital_frequency); })
+      .def_property_readonly("radii", [](const py::object& self) { return view(self.cast<Self>().patch.radii, self); })
+      .def_property_readonly("masses",
+                             [](const py::object& self) { return view(self.cast<Self>().patch.masses, self); })
+      .def_property_readonly("ids", [](const py::object& self) { return view(self.cast<Self>().patch.ids, self); })
+      .def_property_readonly("box", [](Self self) { return std::pair(self.patch.box.size_x, self.patch.box.size_y); })
+      .def_property_readonly("shear_offset", [](Self self) { return self.patch.offset; })
+      .def_property_readonly("orbital_frequency", [](Self self) { return self.patch.orbital_frequency; })
+      .def_property_readonly("time_orbits", [](Self self) { return self.patch.time_orbits; })
+      .def_readonly("scene", &PythonSnapshot::scene)
+      .def("save", &write, py::arg("file"))
+      .def("analyze", &analyze_snapshot)
+      .def("tile", &tile, py::arg("nx"), py::arg("ny"), py::arg("name"))
+      .def("render", &render, py::arg("file"), py::arg("title"), py::arg("width"));
+  module.def("read_snapshot", &read, py::arg("file"));
+  module.def("read_series", &series, py::arg("file"));
+  module.def("generate", &generate, py::arg("scene"), py::arg("clumped"));
+  module.def("analyze", &analyze_path, py::arg("path"), py::arg("since"), py::arg("until"));
+  module.def("from_arrays", &from_arrays, py::arg("text"), py::arg("name"), py::arg("overrides"), py::arg("positions"),
+             py::arg("velocities"), py::arg("radii"), py::arg("masses"), py::arg("relax"));
+}
+
+} // namespace keeler::python

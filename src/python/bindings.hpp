@@ -1,0 +1,13 @@
+// What each file of the module adds to it.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace keeler::python {
+
+void bind_errors(pybind11::module_& module);
+void bind_scene(pybind11::module_& module);
+void bind_snapshot(pybind11::module_& module);
+void bind_simulation(pybind11::module_& module);
+
+} // namespace keeler::python

@@ -1,0 +1,53 @@
+// Contacts that Python asked for, as they happen.
+#pragma once
+
+#include <keeler/core/units.hpp>
+#include <keeler/simulation/simulation.hpp>
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace keeler::python {
+
+/// One row of Simulation.contacts(), in SI.
+struct ContactRecord {
+  double time_orbits;
+  std::uint64_t low_id, high_id;
+  double x_m, y_m, z_m; ///< where the spheres touch, beside the particle with the lower id
+  double normal_speed_m_s, tangential_speed_m_s;
+  double energy_lost_j;
+};
+
+class ContactRecorder : public DriftObserver {
+public:
+  ContactRecorder(double minimum_speed, double orbital_frequency)
+      : minimum_speed_(minimum_speed), omega_(orbital_frequency) {}
+
+  /// The simulation whose contacts come next.
+  void watch(Simulation& simulation) {
+    simulation_ = &simulation;
+    simulation.drift().observe(this);
+  }
+
+  bool looks_on() const override { return false; }
+  bool wants_records() const override { return true; }
+  void recorded(std::span<const CollisionRecord> records) override {
+    const SimulationState& state = simulation_->state();
+    const double middle = simulation_->orbits() + 0.5 * state.step_length / two_pi;
+    for (const CollisionRecord& c : records)
+      if (c.normal_speed * omega_ >= minimum_speed_)
+        rows_.push_back({middle + c.time / two_pi, c.low_id, c.high_id, c.place.x(), c.place.y(), c.place.z(),
+                         c.normal_speed * omega_, c.tangential_speed * omega_, c.energy_lost * omega_ * omega_});
+  }
+
+  std::vector<ContactRecord> take() { return std::exchange(rows_, {}); }
+
+private:
+  double minimum_speed_, omega_;
+  const Simulation* simulation_ = nullptr;
+  std::vector<ContactRecord> rows_;
+};
+
+} // namespace keeler::python

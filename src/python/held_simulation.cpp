@@ -1,0 +1,128 @@
+#include "held_simulation.hpp"
+
+#include "keyboard.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/interrupt.hpp>
+
+#include <unistd.h>
+
+namespace keeler::python {
+namespace {
+
+std::atomic<pid_t> computed_in = 0; // the process whose threads there are
+
+} // namespace
+
+void require_own_threads() {
+  pid_t none = 0;
+  if (computed_in.compare_exchange_strong(none, getpid()) || none == getpid())
+    return;
+  throw Error(ExitCode::run_time, "this process was forked from one in which Keeler had computed, and threads do not "
+                                  "survive that; start it by multiprocessing's \"spawn\" or \"forkserver\"");
+}
+
+// Who computes; a second thread is told.
+class HeldSimulation::AtWork {
+public:
+  explicit AtWork(std::atomic<bool>& flag) : flag_(flag) {
+    if (flag_.exchange(true))
+      throw Error(ExitCode::run_time, "this simulation is at work in another thread; wait for it, or use a second one");
+  }
+  ~AtWork() { flag_ = false; }
+  AtWork(const AtWork&) = delete;
+  AtWork& operator=(const AtWork&) = delete;
+
+private:
+  std::atomic<bool>& flag_;
+};
+
+HeldSimulation::HeldSimulation(const Scene& scene, const Patch& start) : scene_(scene) {
+  require_own_threads();
+  const pybind11::gil_scoped_release unlocked;
+  simulation_ = std::make_unique<Simulation>(scene_, start);
+}
+
+HeldSimulation::HeldSimulation(const Scene& scene, SimulationState state) : scene_(scene) {
+  require_own_threads();
+  const pybind11::gil_scoped_release unlocked;
+  simulation_ = std::make_unique<Simulation>(scene_, std::move(state));
+}
+
+HeldSimulation::~HeldSimulation() {
+  if (simulation_ && keep_.use_count() > 1)
+    keep_->state = std::move(*simulation_).take_state();
+}
+
+const Simulation& HeldSimulation::simulation() const {
+  if (at_work_)
+    throw Error(ExitCode::run_time, "this simulation is at work in another thread; wait for it, or use a second one");
+  if (given_up_)
+    throw Error(ExitCode::run_time,
+                "a step of this simulation was given up on request, and its state with it; load the "
+                "last one that was saved, or begin again");
+  return *simulation_;
+}
+
+void HeldSimulation::make_way_for_views() {
+  if (keep_.use_count() == 1)
+    return;
+  SimulationState copy = simulation_->state();
+  keep_->state = std::move(*simulation_).take_state();
+  keep_ = std::make_shared<Keep>();
+  simulation_ = std::make_unique<Simulation>(scene_, std::move(copy));
+  if (recorder_)
+    recorder_->watch(*simulation_);
+}
+
+void HeldSimulation::step_until(std::int64_t until_tick) {
+  const Keyboard keyboard;
+  const Interruptible by_keyboard(keyboard.give_up());
+  const pybind11::gil_scoped_release unlocked;
+  const std::int64_t interval = scene_.kick_interval();
+  while (simulation_->state().step < until_tick && !(keyboard.stop() && simulation_->state().step % interval == 0))
+    simulation_->advance();
+}
+
+void HeldSimulation::advance(std::int64_t until_tick) {
+  simulation(); // fit to go on
+  const AtWork here(at_work_);
+  require_own_threads();
+  make_way_for_views();
+  while (simulation_->state().step < until_tick) {
+    try {
+      step_until(until_tick);
+    } catch (const Error&) { // an unfinished step: interrupted, or an invariant broke
+      given_up_ = true;
+      raise_interrupts();
+      throw;
+    }
+    raise_interrupts();
+  }
+}
+
+void HeldSimulation::replace(Particles particles) {
+  simulation();
+  const AtWork here(at_work_);
+  require_own_threads();
+  make_way_for_views();
+  const pybind11::gil_scoped_release unlocked;
+  simulation_->replace(std::move(particles));
+}
+
+void HeldSimulation::record_contacts(std::optional<double> minimum_speed) {
+  simulation();
+  simulation_->drift().observe(nullptr);
+  recorder_.reset();
+  if (!minimum_speed)
+    return;
+  recorder_ = std::make_unique<ContactRecorder>(*minimum_speed, scene_.planet.orbital_frequency);
+  recorder_->watch(*simulation_);
+}
+
+std::vector<ContactRecord> HeldSimulation::take_contacts() {
+  simulation();
+  return recorder_ ? recorder_->take() : std::vector<ContactRecord>();
+}
+
+} // namespace keeler::python

@@ -1,0 +1,69 @@
+// A simulation that Python holds: it computes without the interpreter's lock, heeds the keyboard, and keeps what Python
+// looks at as it was.
+#pragma once
+
+#include "contact_record.hpp"
+
+#include <keeler/simulation/simulation.hpp>
+
+#include <pybind11/pybind11.h>
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+namespace keeler::python {
+
+/// Arrays on the state hold a share of its Keep. When the simulation moves on and somebody has such a share, the state
+/// is left to them as it is, and the simulation goes on with a copy.
+struct Keep {
+  std::optional<SimulationState> state; ///< once the simulation has left it
+};
+
+/// Computing in a process that was forked after its parent had computed would wait for threads that the fork did not
+/// copy. Throws Error (run_time) there.
+void require_own_threads();
+
+class HeldSimulation {
+public:
+  HeldSimulation(const Scene& scene, const Patch& start);
+  HeldSimulation(const Scene& scene, SimulationState state);
+  ~HeldSimulation();
+  HeldSimulation(const HeldSimulation&) = delete;
+  HeldSimulation& operator=(const HeldSimulation&) = delete;
+
+  const Scene& scene() const { return scene_; }
+
+  /// Throws Error (run_time) when it is at work in another thread, or had to give up a step.
+  const Simulation& simulation() const;
+  const SimulationState& state() const { return simulation().state(); }
+
+  /// Steps until that tick, a multiple of the scene's kick interval. Interrupts are raised at the next such multiple;
+  /// a second one gives up the step at hand, and then nothing more can be asked.
+  void advance(std::int64_t until_tick);
+
+  /// For arrays on the state.
+  std::shared_ptr<Keep> keep() const { return keep_; }
+
+  void replace(Particles particles);
+
+  /// Contacts are recorded from now on, those at least as fast (m/s); none: they are not.
+  void record_contacts(std::optional<double> minimum_speed);
+  /// Those of since the last call.
+  std::vector<ContactRecord> take_contacts();
+
+private:
+  class AtWork;
+  void make_way_for_views();
+  void step_until(std::int64_t until_tick);
+
+  Scene scene_;
+  std::shared_ptr<Keep> keep_ = std::make_shared<Keep>();
+  std::unique_ptr<Simulation> simulation_;
+  std::unique_ptr<ContactRecorder> recorder_;
+  std::atomic<bool> at_work_ = false;
+  bool given_up_ = false;
+};
+
+} // namespace keeler::python

@@ -1,0 +1,133 @@
+"""Runs with a folder, sweeps, and what they leave."""
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+
+from . import _core, snapshots
+from .errors import InvariantError, IoError, RunError, UsageError
+
+
+class Run:
+    """The folder of a run, read. ``series`` is a dictionary of arrays, one a column of series.csv, units in the names;
+    ``snapshots`` a list of Snapshots, each read when it is asked for; ``summary`` the numbers of summary.json (None
+    while the run works); ``scene`` the resolved scene as text."""
+
+    def __init__(self, folder):
+        self.folder = Path(folder)
+        if not (self.folder / "scene.toml").is_file():
+            raise IoError(f"'{folder}' holds no run (scene.toml is missing); name the folder of a run")
+
+    def __repr__(self):
+        return f"<keeler.Run: {self.folder}, {len(self.snapshots)} snapshots>"
+
+    @property
+    def scene(self):
+        return (self.folder / "scene.toml").read_text(encoding="utf-8")
+
+    @property
+    def series(self):
+        return _core.read_series(self.folder / "series.csv")
+
+    @property
+    def moonlets(self):
+        """The columns of moonlets.csv, as ``series``. Raises IoError where the scene has none."""
+        return _core.read_series(self.folder / "moonlets.csv")
+
+    @property
+    def summary(self):
+        file = self.folder / "summary.json"
+        return json.loads(file.read_text(encoding="utf-8")) if file.exists() else None
+
+    @property
+    def snapshots(self):
+        return _Snapshots(sorted(self.folder.glob("snap_*.hdf"), key=lambda file: (len(file.name), file.name)))
+
+    def analyze(self, since=None, until=None):
+        """The numbers of ``keeler analyze DIR --json``, as a dictionary, from one orbit to another (default: from where
+        on the run is steady). Raises UsageError, IoError."""
+        return json.loads(_core.analyze(self.folder, since, until))
+
+
+class _Snapshots:
+    """Files that are read when one is asked for."""
+
+    def __init__(self, files):
+        self.files = files
+
+    def __len__(self):
+        return len(self.files)
+
+    def __getitem__(self, which):
+        if isinstance(which, slice):
+            return _Snapshots(self.files[which])
+        return snapshots.read(self.files[which])
+
+
+def read(path):
+    """A snapshot file as a Snapshot, the folder of a run as a Run. Raises IoError, UsageError."""
+    path = Path(path)
+    if path.is_dir():
+        return Run(path)
+    if not path.exists():
+        raise IoError(f"there is no '{path}'; name a snapshot or the folder of a run")
+    return snapshots.read(path)
+
+
+def program():
+    """The path of the program ``keeler`` of this version. Raises RunError."""
+    package = Path(__file__).parent  # not resolved: in a build, links to the sources stand here
+    for place in (package / "bin" / "keeler", package.parent.parent / "keeler", shutil.which("keeler")):
+        if place and Path(place).is_file():
+            said = subprocess.run([place, "--version"], capture_output=True, text=True, check=False).stdout.split()
+            if said[-1:] == [_core.version()]:
+                return str(place)
+    raise RunError(f"the program keeler {_core.version()} is not there; install it beside the package, or add it to PATH")
+
+
+def _call(arguments):
+    """Runs the program; its errors as exceptions."""
+    done = subprocess.run([program(), *map(str, arguments)], capture_output=True, text=True, check=False)
+    if done.returncode == 0:
+        return done.stdout
+    kind = {2: UsageError, 3: InvariantError, 4: IoError}.get(done.returncode, RunError)
+    lines = [line[len("keeler: ") :] for line in done.stderr.splitlines() if line.startswith("keeler: ")]
+    raise kind(lines[-1] if lines else f"keeler ended with {done.returncode}")
+
+
+def sweep(grid, folder, *, jobs=None):
+    """``keeler sweep GRID -o FOLDER``: many runs, each a process. What is finished already is not run again.
+
+    Returns {"runs": rows of sweep.csv, "points": rows of points.csv} as lists of dictionaries, numbers as floats. Raises
+    UsageError for a grid that cannot be, RunError when runs failed (sweep.csv says which).
+    """
+    _call(["sweep", grid, "-o", folder, *(["--jobs", jobs] if jobs else [])])
+    return {name: _rows(Path(folder) / file) for name, file in (("runs", "sweep.csv"), ("points", "points.csv"))}
+
+
+def _rows(file):
+    import csv
+
+    def number(text):
+        try:
+            return float(text)
+        except ValueError:
+            return text or None
+
+    if not file.exists():
+        return []
+    with open(file, newline="", encoding="utf-8") as table:
+        return [{name: number(value) for name, value in row.items()} for row in csv.DictReader(table)]
+
+
+def render(what, file=None, **look):
+    """The picture of a Snapshot, a Simulation, a snapshot file or the last state of a run's folder: see
+    Snapshot.plot()."""
+    if not hasattr(what, "plot"):
+        what = read(what)
+        if isinstance(what, Run):
+            what = what.snapshots[-1]
+    return what.plot(file, **look)
+
+

@@ -1,0 +1,71 @@
+"""Scenes as Python gives them: a file, a text, a dictionary, and overrides."""
+
+import json
+import math
+import os
+from pathlib import Path
+
+from . import _core
+from .errors import UsageError
+
+
+def _toml(value, place):
+    """A value as TOML, in one line."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, os.PathLike):
+        return json.dumps(os.fspath(value), ensure_ascii=False)
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{json.dumps(str(k))} = {_toml(v, f'{place}.{k}')}" for k, v in value.items()) + " }"
+    if hasattr(value, "tolist"):  # arrays and numbers of numpy
+        value = value.tolist()
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, float):
+        if not math.isfinite(value):
+            raise UsageError(f"{place} is {value}; give a finite number")
+        return repr(value)
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_toml(v, place) for v in value) + "]"
+    raise UsageError(f"{place} is {value!r} ({type(value).__name__}); a scene has texts, numbers, lists and tables")
+
+
+def overrides_of(tables, place=""):
+    """{"time": {"end": 2}} and {"time.end": 2} as ["time.end=2"]."""
+    lines = []
+    for name, value in tables.items():
+        path = place + name
+        lines += overrides_of(value, path + ".") if isinstance(value, dict) else [f"{path}={_toml(value, path)}"]
+    return lines
+
+
+def source(scene):
+    """(text, name for messages) of a scene: a path, a text with a line break, a dictionary, or a snapshot's."""
+    if isinstance(scene, dict):
+        lines = (f"{json.dumps(str(key))} = {_toml(value, key)}" for key, value in scene.items())
+        return "\n".join(lines) + "\n", "scene"
+    if isinstance(scene, str) and "\n" in scene:
+        return scene, "scene"
+    try:
+        path = Path(scene)
+    except TypeError:
+        raise UsageError(
+            f"a scene cannot be {scene!r}; give the path of a scene file, its text, or a dictionary of its tables"
+        ) from None
+    try:
+        return path.read_text(encoding="utf-8"), str(path)
+    except UnicodeDecodeError:
+        raise UsageError(f"'{path}' is no text; give the path of a scene file") from None
+    except OSError as error:
+        raise UsageError(f"cannot read the scene '{path}': {error.strerror}; name a scene file") from None
+
+
+def read(scene, overrides, start_from=None):
+    """The checked scene."""
+    text, name = source(scene)
+    try:
+        return _core.Scene(text, name, overrides_of(overrides), start_from)
+    except UsageError as error:
+        raise UsageError(str(error).removeprefix("--set ")) from None

@@ -1,0 +1,329 @@
+"""Simulations in memory."""
+
+import sys
+import tempfile
+import time
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+
+from . import _core, scenes, snapshots
+from .errors import UsageError
+from .snapshots import Snapshot
+
+#: Columns of ``Simulation.elements``: X and Y of the guiding centre, and the vectors of eccentricity and inclination.
+ELEMENTS = ("X", "Y", "e cos phi", "e sin phi", "i sin zeta", "i cos zeta")
+
+
+class Simulation:
+    """A patch of ring that runs in memory; nothing is written unless asked.
+
+    ::
+
+        sim = keeler.Simulation("scene.toml", time={"end": 5.0})
+        sim.run(5.0, every=0.5, callback=lambda sim: print(sim.orbits, sim.analyze()["toomre_q"]))
+
+    ``scene`` is the path of a scene file, the text of one, or a dictionary of its tables. ``start`` is a Snapshot or
+    the file of one to start from. Other arguments override keys of the scene: ``time={"end": 5.0}``, or
+    ``**{"time.end": 5.0}``. Raises UsageError for a scene that cannot be.
+
+    The state's bits are those of ``keeler run`` with the same scene, for any number of threads.
+
+    **Arrays** have one row a particle, in the order in which the program keeps them: neighbours in space are neighbours
+    in memory. That order changes as they move; ``ids`` tells who is who, and ``by_id(array)`` puts rows into the order
+    of the ids. They may only be read. ``elements``, ``radii``, ``masses`` and ``ids`` look at the state itself, without a copy;
+    ``positions`` and ``velocities`` are computed when they are first asked for after a step. An array that is kept
+    stays as it was when the simulation moves on (which costs a copy of the state, once).
+    """
+
+    def __init__(self, scene, start=None, **overrides):
+        if start is None:
+            core = _core.Simulation(scenes.read(scene, overrides))
+        else:
+            if not isinstance(start, Snapshot):
+                start = snapshots.read(start)
+            core = _core.Simulation(start._core, start._name, scenes.read(scene, overrides, start._name))
+        self._begin(core)
+
+    def _begin(self, core):
+        self._core = core
+        self._motion = None
+
+    @classmethod
+    def _of(cls, core):
+        simulation = cls.__new__(cls)
+        simulation._begin(core)
+        return simulation
+
+    def __len__(self):
+        return len(self._core)
+
+    def __repr__(self):
+        return f"<keeler.Simulation: {len(self)} particles at orbit {self.orbits:g}>"
+
+    # --- the state
+
+    @property
+    def orbits(self):
+        """The time in orbits."""
+        return self._core.orbits
+
+    @property
+    def state_hash(self):
+        """32 hexadecimal digits: two states with the same hash are the same, to the bit, and go on alike."""
+        return self._core.state_hash
+
+    @property
+    def scene(self):
+        """The resolved scene as text: every key, with what was filled in."""
+        return self._core.scene.text
+
+    @property
+    def remarks(self):
+        """What the program would remark about the scene, a line each."""
+        return self._core.scene.remarks
+
+    @property
+    def orbital_frequency(self):
+        """Omega, rad/s: velocities and frequencies of the elements are in units of it."""
+        return self._core.scene.orbital_frequency
+
+    @property
+    def elements(self):
+        """(N, 6) m: X, Y, e cos, e sin, i sin, i cos (keeler.ELEMENTS) at ``epoch``. A view."""
+        return self._core.elements()
+
+    @property
+    def epoch(self):
+        """The time, in orbits, at which ``elements`` stand: the middle of the step to come."""
+        return self._core.epoch
+
+    @property
+    def ids(self):
+        """(N,) who is who; they never change. A view."""
+        return self._core.ids()
+
+    @property
+    def radii(self):
+        """(N,) m. A view."""
+        return self._core.radii()
+
+    @property
+    def masses(self):
+        """(N,) kg. A view."""
+        return self._core.masses()
+
+    @property
+    def positions(self):
+        """(N, 3) m, Hill's frame: x outward, y along the orbit, z up."""
+        return self._moving()[0]
+
+    @property
+    def velocities(self):
+        """(N, 3) m/s, Hill's frame, the shear included."""
+        return self._moving()[1]
+
+    @property
+    def spins(self):
+        """(N, 3) rad/s against the stars, in Hill's frame; None of smooth particles."""
+        return self._core.spins()
+
+    def _moving(self):
+        if self._motion is None:
+            self._motion = self._core.motion()
+        return self._motion
+
+    def by_id(self, array):
+        """A copy of an array, its rows in the order of the ids."""
+        array = np.asarray(array)
+        if array.shape[:1] != (len(self),):
+            raise UsageError(f"the array has {array.shape[0] if array.ndim else 'no'} rows; give one a particle ({len(self)})")
+        return array[np.argsort(self.ids)]
+
+    def snapshot(self):
+        """The state as a Snapshot: a copy in SI, in the order of the ids."""
+        return Snapshot(self._core.snapshot(), f"the simulation at orbit {self.orbits:g}")
+
+    def analyze(self):
+        """The numbers of ``keeler analyze --json`` on a snapshot, as a dictionary: names with units."""
+        return self.snapshot().analyze()
+
+    @property
+    def collisions_so_far(self):
+        """{"collisions": faster than v_cut, "slow_contacts": bounced elastically, "steps": done} since the start."""
+        return self._core.counts()
+
+    # --- its course
+
+    def run(self, until=None, *, every=None, callback=None, progress=False):
+        """Runs until that time (orbits; default: the scene's end).
+
+        ``callback(sim)`` is called every so many orbits, and at the end; what it raises ends the run. Times are rounded
+        to whole kick intervals, where kicks and drifts meet. ``progress`` shows a line on standard error.
+
+        Ctrl-C is heeded at the next such time, with KeyboardInterrupt, and the run can go on; a second one gives up the
+        step at hand, and then the simulation is lost. Raises InvariantError when a step comes to what cannot be.
+        """
+        core, scene = self._core, self._core.scene
+        interval = scene.kick_interval
+        end = _ticks(scene.end if until is None else until, "until", scene)
+        if end < core.tick:
+            raise UsageError(f"until is orbit {until}, and the simulation is at orbit {self.orbits:g}; give a later time")
+        if (every is None) != (callback is None):
+            raise UsageError("every and callback go together: every so many orbits, the callback is called")
+        between = max(interval, _ticks(every, "every", scene)) if every is not None else None
+        line = _ProgressLine(core.tick, end) if progress else None
+        piece = between or end
+        if line:
+            piece = min(piece, max(interval, (end - core.tick) // 200 // interval * interval))
+        while core.tick < end:
+            target = min(end, (core.tick // piece + 1) * piece)
+            if between:
+                target = min(target, (core.tick // between + 1) * between)
+            self._motion = None
+            core.advance(target)
+            if callback and (core.tick % between == 0 or core.tick == end):
+                callback(self)
+            if line:
+                line.show(core.tick, self.orbits)
+        if line:
+            line.end()
+        return self
+
+    def step(self, count=1):
+        """``count`` kick intervals: the shortest time after which a state can be looked at."""
+        if count < 0:
+            raise UsageError(f"count is {count}; give a number of steps, 0 or more")
+        self._motion = None
+        self._core.advance(self._core.tick + count * self._core.scene.kick_interval)
+        return self
+
+    @contextmanager
+    def collisions(self, minimum_speed=0.0):
+        """Records contacts whose normal speed is at least that (m/s)::
+
+            with sim.collisions(minimum_speed=0.002) as contacts:
+                sim.run(sim.orbits + 1.0)
+                rows = contacts()
+
+        ``contacts()`` gives those since it was last called, as an array with the fields time_orbits, low_id, high_id,
+        x_m, y_m, z_m (where the spheres touch, beside the particle with the lower id), normal_speed_m_s,
+        tangential_speed_m_s, energy_lost_j.
+        """
+        self._core.record_contacts(float(minimum_speed))
+        try:
+            yield self._core.take_contacts
+        finally:
+            self._core.record_contacts(None)
+
+    # --- changes and files
+
+    @contextmanager
+    def edit(self):
+        """Changes the state: within, ``positions``, ``velocities``, ``radii``, ``masses`` and ``spins`` are copies to
+        write to, rows in the order of ``sim.ids``::
+
+            with sim.edit() as state:
+                state.velocities[:, 2] += 1e-4
+
+        At the end they become the state, unless the block raises. Raises InvariantError, and changes nothing, when a
+        number is not finite or particles overlap; UsageError for arrays of another shape. The energy that a change
+        brings counts as part of the start.
+        """
+        state = _Edited(self)
+        yield state
+        self._core.replace(state.positions, state.velocities, state.radii, state.masses, state.spins)
+        self._motion = None
+
+    def save(self, file):
+        """Writes the whole state to a checkpoint, from which load() goes on to the bit. As checkpoint_000000.h5 in a
+        folder of its own, ``keeler resume FOLDER`` goes on from it too. Raises IoError."""
+        self._core.save(file)
+
+    def plot(self, file=None, **look):
+        """The picture of the state, as Snapshot.plot()."""
+        return self.snapshot().plot(file, **look)
+
+    def show(self, **look):
+        """The picture in a notebook; in a terminal its file's name is what there is to see."""
+        picture = self.plot(**look)
+        if "IPython" in sys.modules:
+            from IPython.display import display
+
+            display(picture)
+            return None
+        return picture
+
+    def _repr_png_(self):
+        return self.plot(width=1000)._repr_png_()
+
+    # --- to other processes, and copies
+
+    def __reduce__(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "state.h5"
+            self.save(file)
+            return _from_bytes, (file.read_bytes(),)
+
+
+class _Edited:
+    def __init__(self, sim):
+        self.positions = np.array(sim.positions)
+        self.velocities = np.array(sim.velocities)
+        self.radii = np.array(sim.radii)
+        self.masses = np.array(sim.masses)
+        spins = sim.spins
+        self.spins = None if spins is None else np.array(spins)
+        self.ids = np.array(sim.ids)
+
+
+def _ticks(orbits, name, scene):
+    try:
+        orbits = float(orbits)
+    except (TypeError, ValueError):
+        raise UsageError(f"{name} is {orbits!r}; give a time in orbits") from None
+    count = orbits / (scene.tick * scene.kick_interval)
+    if not 0.0 <= count < 1e15:
+        raise UsageError(f"{name} is {orbits} orbits; give a time from 0 to {1e15 * scene.tick:g}")
+    return round(count) * scene.kick_interval
+
+
+class _ProgressLine:
+    def __init__(self, first, end):
+        self.first, self.end_tick, self.begin, self.shown = first, end, time.monotonic(), 0.0
+
+    def show(self, tick, orbits):
+        now = time.monotonic()
+        if now - self.shown < 0.2 and tick < self.end_tick:
+            return
+        self.shown = now
+        share = (tick - self.first) / (self.end_tick - self.first)
+        left = (now - self.begin) * (1.0 - share) / share if share > 0.0 else float("nan")
+        print(f"\r{100.0 * share:3.0f} %  orbit {orbits:.4g}  {left:.0f} s left ", end="", file=sys.stderr, flush=True)
+
+    def end(self):
+        print(file=sys.stderr)
+
+
+def load(file):
+    """The simulation that Simulation.save() wrote, or that a checkpoint of a run holds. Raises IoError."""
+    return Simulation._of(_core.Simulation.load(file))
+
+
+def resume(folder):
+    """The newest checkpoint of a run's folder, as a simulation in memory; the folder stays as it is. Raises IoError."""
+    return Simulation._of(_core.Simulation.resume(folder))
+
+
+def from_arrays(scene, positions, radii, velocities=None, masses=None, *, relax=False, **overrides):
+    """A simulation of your own particles in the scene's box: see start_from_arrays()."""
+    start = snapshots.start_from_arrays(scene, positions, radii, velocities, masses, relax=relax, **overrides)
+    return Simulation(start.scene, start=start)
+
+
+def _from_bytes(data):
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "state.h5"
+        file.write_bytes(data)
+        return load(file)

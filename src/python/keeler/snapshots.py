@@ -1,0 +1,120 @@
+"""Snapshots: a patch of ring at one instant."""
+
+import json
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from . import _core, scenes
+from .errors import UsageError
+
+
+class Picture:
+    """A picture; a notebook shows it. ``data`` is the PNG."""
+
+    def __init__(self, data):
+        self.data = data
+
+    def _repr_png_(self):
+        return self.data
+
+    def save(self, file):
+        Path(file).write_bytes(self.data)
+
+
+class Snapshot:
+    """A patch of ring at one instant, in SI units, N particles in the order of their ids.
+
+    ``positions`` (N, 3) m and ``velocities`` (N, 3) m/s in Hill's frame (x outward, y along the orbit, z up; the shear
+    is in the velocities), ``radii`` (N,) m, ``masses`` (N,) kg, ``ids`` (N,), ``spins`` (N, 3) rad/s against the stars
+    or None. All arrays may only be read. ``box`` is (L_x, L_y) in m; at this instant the neighbour boxes at larger x are
+    shifted along y by ``shear_offset`` m a box. ``scene`` is the resolved scene as text.
+    """
+
+    def __init__(self, core, name="snapshot"):
+        self._core = core
+        self._name = name
+        self._velocities = None
+
+    def __len__(self):
+        return len(self._core)
+
+    def __repr__(self):
+        x, y = self.box
+        return f"<keeler.Snapshot: {len(self)} particles in {x:g} m x {y:g} m at orbit {self.orbits:g}>"
+
+    positions = property(lambda self: self._core.positions)
+    radii = property(lambda self: self._core.radii)
+    masses = property(lambda self: self._core.masses)
+    ids = property(lambda self: self._core.ids)
+    spins = property(lambda self: self._core.spins())
+    box = property(lambda self: self._core.box)
+    shear_offset = property(lambda self: self._core.shear_offset)
+    orbital_frequency = property(lambda self: self._core.orbital_frequency, doc="Omega, rad/s.")
+    orbits = property(lambda self: self._core.time_orbits, doc="Its time in orbits.")
+    scene = property(lambda self: self._core.scene)
+
+    @property
+    def velocities(self):
+        if self._velocities is None:
+            self._velocities = self._core.velocities()
+        return self._velocities
+
+    def analyze(self):
+        """The numbers of ``keeler analyze --json``, as a dictionary: names with units."""
+        return json.loads(self._core.analyze())
+
+    def save(self, file):
+        """Writes a snapshot file; give it the ending .hdf. Raises IoError."""
+        self._core.save(file)
+
+    def tile(self, nx, ny):
+        """The snapshot repeated nx times along the radius and ny times along the orbit. Raises UsageError."""
+        return Snapshot(self._core.tile(nx, ny, self._name), self._name)
+
+    def plot(self, file=None, *, title="Ring patch", width=1600):
+        """The picture of ``keeler render``: from above, and edge-on. Written to a PNG where a file is named."""
+        if file is not None:
+            self._core.render(file, title, width)
+            return Picture(Path(file).read_bytes())
+        with tempfile.TemporaryDirectory() as folder:
+            return self.plot(Path(folder) / "picture.png", title=title, width=width)
+
+    def _repr_png_(self):
+        return self.plot(width=1000)._repr_png_()
+
+
+def generate(scene, *, clumped=False, **overrides):
+    """The state that a scene starts from, as a Snapshot.
+
+    ``clumped``: evolved under its own gravity until its wakes have settled, as ``keeler generate --clumped`` (minutes).
+    Raises UsageError for a scene that cannot be, RunError when wakes do not settle.
+    """
+    return Snapshot(_core.generate(scenes.read(scene, overrides), clumped))
+
+
+def tile(snapshot, nx, ny):
+    """A snapshot, or the file of one, repeated into a larger patch. Raises UsageError, IoError."""
+    if not isinstance(snapshot, Snapshot):
+        snapshot = read(snapshot)
+    return snapshot.tile(nx, ny)
+
+
+def start_from_arrays(scene, positions, radii, velocities=None, masses=None, *, relax=False, **overrides):
+    """A start of your own particles, as a Snapshot in the scene's box.
+
+    positions (N, 3) m, velocities (N, 3) m/s or None (circular orbits), radii (N,) m or one number, masses (N,) kg or
+    one number or None (of the scene's density). Particle k gets the id k. ``relax`` moves particles that overlap apart.
+    Raises UsageError, naming the row, for particles that no ring has; InvariantError for overlaps.
+    """
+    text, name = scenes.source(scene)
+    arrays = [None if a is None else np.asarray(a, dtype=float) for a in (positions, velocities, radii, masses)]
+    return Snapshot(_core.from_arrays(text, name, scenes.overrides_of(overrides), *arrays, relax), "the arrays")
+
+
+def read(file):
+    """The snapshot in a file. Raises IoError."""
+    if not Path(file).is_file():
+        raise UsageError(f"'{file}' is no file; name a snapshot, snap_NNNNNN.hdf")
+    return Snapshot(_core.read_snapshot(file), str(file))

@@ -1,0 +1,45 @@
+#include "keyboard.hpp"
+
+#include <pybind11/pybind11.h>
+
+namespace keeler::python {
+namespace {
+
+struct sigaction before; // the interpreter's
+
+bool in_main_thread() {
+  const auto threading = pybind11::module_::import("threading");
+  return threading.attr("current_thread")().is(threading.attr("main_thread")());
+}
+
+} // namespace
+
+Keyboard::Keyboard() {
+  if (!in_main_thread())
+    return;
+  sigaction(SIGINT, nullptr, &before);
+  if ((before.sa_flags & SA_SIGINFO) != 0 || before.sa_handler == SIG_DFL || before.sa_handler == SIG_IGN)
+    return; // somebody else's, or nobody's
+  stop_ = give_up_ = false;
+  struct sigaction now = before;
+  now.sa_handler = note;
+  watching_ = sigaction(SIGINT, &now, nullptr) == 0;
+}
+
+Keyboard::~Keyboard() {
+  if (watching_)
+    sigaction(SIGINT, &before, nullptr);
+}
+
+void Keyboard::note(int signal) {
+  if (stop_.exchange(true))
+    give_up_ = true;
+  before.sa_handler(signal);
+}
+
+void raise_interrupts() {
+  if (PyErr_CheckSignals() != 0)
+    throw pybind11::error_already_set();
+}
+
+} // namespace keeler::python

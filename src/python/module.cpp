@@ -1,0 +1,47 @@
+// The compiled part of the Python package `keeler`: thin, so that the package beside it (src/python/keeler) holds what
+// a user reads. Docstrings are there.
+#include "bindings.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/threads.hpp>
+#include <keeler/core/version.hpp>
+
+namespace py = pybind11;
+
+namespace keeler::python {
+namespace {
+
+PyObject* raised_for(ExitCode code, const py::module_& errors) {
+  const char* name = code == ExitCode::usage          ? "UsageError"
+                     : code == ExitCode::invariant    ? "InvariantError"
+                     : code == ExitCode::input_output ? "IoError"
+                                                      : "RunError";
+  return errors.attr(name).ptr();
+}
+
+} // namespace
+
+// The classes are Python's own (keeler/errors.py), with two bases each.
+void bind_errors(py::module_&) {
+  py::register_exception_translator([](std::exception_ptr pointer) {
+    try {
+      if (pointer)
+        std::rethrow_exception(pointer);
+    } catch (const Error& error) {
+      PyErr_SetString(raised_for(error.code(), py::module_::import("keeler.errors")), error.what());
+    }
+  });
+}
+
+} // namespace keeler::python
+
+PYBIND11_MODULE(_core, module) {
+  using namespace keeler;
+  module.def("version", &program_version);
+  module.def("threads", &threads);
+  module.def("set_threads", &set_threads, py::arg("count"));
+  python::bind_errors(module);
+  python::bind_scene(module);
+  python::bind_snapshot(module);
+  python::bind_simulation(module);
+}
