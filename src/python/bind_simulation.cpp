@@ -1,6 +1,7 @@
 // A running simulation: views of its state, its course, and changes from outside.
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "computing.hpp"
 #include "held_simulation.hpp"
 #include "snapshot.hpp"
 
@@ -20,16 +21,21 @@ namespace {
 
 using Held = HeldSimulation;
 
+// From a patch or a stored state.
+template<class Make> std::unique_ptr<Held> begun(const Scene& scene, const Make& start) {
+  return std::make_unique<Held>(scene, made([&] { return std::make_unique<Simulation>(scene, start()); }));
+}
+
 std::unique_ptr<Held> from_scene(const Scene& scene) {
-  return std::make_unique<Held>(scene, initial_patch(scene));
+  return begun(scene, [&] { return initial_patch(scene); });
 }
 
 std::unique_ptr<Held> from_snapshot(const PythonSnapshot& snapshot, const std::string& name, const Scene& scene) {
-  return std::make_unique<Held>(scene, patch_from_snapshot(snapshot.patch, name, scene));
+  return begun(scene, [&] { return patch_from_snapshot(snapshot.patch, name, scene); });
 }
 
 std::unique_ptr<Held> from_stored(StoredRun stored) {
-  return std::make_unique<Held>(stored.scene, std::move(stored.state));
+  return begun(stored.scene, [&] { return std::move(stored.state); });
 }
 
 // --- views: of bodies in memory, by their strides
@@ -64,18 +70,15 @@ std::pair<py::array, py::array> motion(const Held& held) {
   py::array_t<double> positions({static_cast<py::ssize_t>(count), py::ssize_t{3}});
   py::array_t<double> velocities({static_cast<py::ssize_t>(count), py::ssize_t{3}});
   double *const x = positions.mutable_data(), *const v = velocities.mutable_data();
-  {
-    require_own_threads();
-    const py::gil_scoped_release unlocked;
-    const Rotation rotation = held.simulation().boundary().rotation();
-    const Frequencies& frequencies = held.scene().planet.frequencies;
-    const double omega = held.scene().planet.orbital_frequency;
-    parallel_for(count, [&](std::size_t k) {
-      const State at = state_at(state.particles.bodies[k].elements, frequencies, rotation);
-      Eigen::Map<Vec3>(x + 3 * k) = at.position;
-      Eigen::Map<Vec3>(v + 3 * k) = omega * at.velocity;
-    });
-  }
+  const Rotation rotation = held.simulation().boundary().rotation();
+  const Frequencies& frequencies = held.scene().planet.frequencies;
+  const double omega = held.scene().planet.orbital_frequency;
+  require_own_threads();
+  parallel_for(count, [&](std::size_t k) {
+    const State at = state_at(state.particles.bodies[k].elements, frequencies, rotation);
+    Eigen::Map<Vec3>(x + 3 * k) = at.position;
+    Eigen::Map<Vec3>(v + 3 * k) = omega * at.velocity;
+  });
   return {sealed(std::move(positions)), sealed(std::move(velocities))};
 }
 
@@ -93,7 +96,6 @@ py::object spins(const Held& held) {
 
 PythonSnapshot snapshot(const Held& held) {
   require_own_threads();
-  const py::gil_scoped_release unlocked;
   return {held.simulation().patch(), held.scene().resolved};
 }
 
@@ -142,7 +144,6 @@ py::array contacts(Held& held) {
 
 void save(const Held& held, const std::filesystem::path& file) {
   const SimulationState& state = held.state();
-  const py::gil_scoped_release unlocked;
   store_checkpoint(file, state, held.scene());
 }
 

@@ -1,11 +1,11 @@
 // Snapshots: a patch at one instant with the scene it is of; files, starts and pictures of it, and what is measured.
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "held_simulation.hpp"
+#include "computing.hpp"
 #include "snapshot.hpp"
 
 #include <keeler/cells/overlap.hpp>
-#include <keeler/core/interrupt.hpp>
+#include <keeler/core/error.hpp>
 #include <keeler/diagnostics/analysis.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/io/snapshot.hpp>
@@ -17,8 +17,6 @@
 #include <keeler/states/initial.hpp>
 #include <keeler/states/tiled.hpp>
 
-#include "keyboard.hpp"
-
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -26,20 +24,6 @@ namespace keeler::python {
 namespace {
 
 namespace fs = std::filesystem;
-
-// What takes long is done without the interpreter's lock, and an interrupt ends it at once: nothing could be kept.
-template<class Make> auto made(const Make& make) {
-  require_own_threads();
-  const Keyboard keyboard;
-  try {
-    const Interruptible by_keyboard(keyboard.stop_flag());
-    const py::gil_scoped_release unlocked;
-    return make();
-  } catch (const Interrupted&) {
-    raise_interrupts();
-    throw;
-  }
-}
 
 PythonSnapshot read(const fs::path& file) {
   const py::gil_scoped_release unlocked;
@@ -74,6 +58,8 @@ PythonSnapshot from_arrays(const std::string& text, const std::string& name, con
   ParticleTable table;
   table.file = "the arrays";
   const auto count = positions.ndim() > 0 ? static_cast<std::size_t>(positions.shape(0)) : 0;
+  if (count == 0)
+    throw UsageError("positions has no rows; give one of x, y, z a particle");
   table.places = vectors_from(positions, count, "positions");
   table.radii = numbers_from(radii, count, "radii");
   if (velocities)

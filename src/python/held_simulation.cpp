@@ -1,27 +1,10 @@
 #include "held_simulation.hpp"
 
-#include "keyboard.hpp"
+#include "computing.hpp"
 
 #include <keeler/core/error.hpp>
-#include <keeler/core/interrupt.hpp>
-
-#include <unistd.h>
 
 namespace keeler::python {
-namespace {
-
-std::atomic<pid_t> computed_in = 0; // the process whose threads there are
-
-} // namespace
-
-void require_own_threads() {
-  pid_t none = 0;
-  if (computed_in.compare_exchange_strong(none, getpid()) || none == getpid())
-    return;
-  throw Error(ExitCode::run_time, "this process was forked from one in which Keeler had computed, and threads do not "
-                                  "survive that; start it by multiprocessing's \"spawn\" or \"forkserver\"");
-}
-
 // Who computes; a second thread is told.
 class HeldSimulation::AtWork {
 public:
@@ -36,18 +19,6 @@ public:
 private:
   std::atomic<bool>& flag_;
 };
-
-HeldSimulation::HeldSimulation(const Scene& scene, const Patch& start) : scene_(scene) {
-  require_own_threads();
-  const pybind11::gil_scoped_release unlocked;
-  simulation_ = std::make_unique<Simulation>(scene_, start);
-}
-
-HeldSimulation::HeldSimulation(const Scene& scene, SimulationState state) : scene_(scene) {
-  require_own_threads();
-  const pybind11::gil_scoped_release unlocked;
-  simulation_ = std::make_unique<Simulation>(scene_, std::move(state));
-}
 
 HeldSimulation::~HeldSimulation() {
   if (simulation_ && keep_.use_count() > 1)

@@ -21,14 +21,10 @@ struct Keep {
   std::optional<SimulationState> state; ///< once the simulation has left it
 };
 
-/// Computing in a process that was forked after its parent had computed would wait for threads that the fork did not
-/// copy. Throws Error (run_time) there.
-void require_own_threads();
-
 class HeldSimulation {
 public:
-  HeldSimulation(const Scene& scene, const Patch& start);
-  HeldSimulation(const Scene& scene, SimulationState state);
+  HeldSimulation(const Scene& scene, std::unique_ptr<Simulation> simulation)
+      : scene_(scene), simulation_(std::move(simulation)) {}
   ~HeldSimulation();
   HeldSimulation(const HeldSimulation&) = delete;
   HeldSimulation& operator=(const HeldSimulation&) = delete;

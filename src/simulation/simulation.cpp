@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstring>
 
 namespace keeler {
 namespace {
@@ -249,7 +250,8 @@ void Simulation::replace(Particles particles) {
   require_sound(after);
   require_apart(after, "the changed state");
   const ParticleMeans before = means();
-  state_.particles = std::move(particles);
+  std::swap(state_.particles, particles);
+  wrap_changed(particles);
   const ParticleMeans now = means();
   state_.energy.epicyclic += now.epicyclic_energy - before.epicyclic_energy;
   state_.energy.azimuthal += now.azimuthal - before.azimuthal;
@@ -257,14 +259,27 @@ void Simulation::replace(Particles particles) {
   drift_.release();
   undisturbed_ = false;
   forces_ = make_forces(scene_, state_);
-  rebase(0.0); // back into the cell
   for (std::size_t f = 0; f < forces_.size(); ++f)
     accelerate(f);
 }
 
+// Into the cell, those that may be far from it. The others stay to the bit where the last kick has left them.
+void Simulation::wrap_changed(const Particles& before) {
+  const double offset = state_.epoch_offset();
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    Elements& el = state_.particles.bodies[k].elements;
+    if (std::memcmp(&el, &before.bodies[k].elements, sizeof el) == 0)
+      continue;
+    const Image image = state_.box.image_into_cell(el.guiding_x, el.guiding_y, offset);
+    el = state_.box.image_of(el, image, offset);
+    if (image != Image{} && !state_.moonlets.empty())
+      note_wrap(k, image, offset);
+  }
+}
+
 Patch Simulation::patch_of(const Particles& particles) const {
-  Patch patch = make_patch(particles, state_.box, state_.boundary_offset(), scene_.planet.frequencies,
-                           -0.5 * state_.step_length);
+  Patch patch =
+      make_patch(particles, state_.box, state_.boundary_offset(), scene_.planet.frequencies, -0.5 * state_.step_length);
   patch.orbital_frequency = scene_.planet.orbital_frequency;
   patch.time_orbits = orbits();
   return patch;

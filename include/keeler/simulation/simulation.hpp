@@ -74,6 +74,7 @@ public:
 
 private:
   Patch patch_of(const Particles& particles) const;
+  void wrap_changed(const Particles& before);
   void accelerate(std::size_t f);
   void half_kick(std::size_t f);
   void move_on();

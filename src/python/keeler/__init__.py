@@ -95,6 +95,9 @@ def add_restitution_law(name, function):
     The name enters the scene and ``state_hash``: a program that has no law of that name refuses to go on with such a
     run. Raises UsageError for a coefficient out of range, or a name that is taken.
     """
-    address = function if isinstance(function, int) else _ctypes.cast(function, _ctypes.c_void_p).value
+    try:
+        address = function if isinstance(function, int) else _ctypes.cast(function, _ctypes.c_void_p).value
+    except _ctypes.ArgumentError:
+        raise UsageError(f"{function!r} is not compiled; give a ctypes function or the address of one") from None
     _core.add_restitution_law(name, address)
     _own_laws.append(function)

@@ -16,8 +16,9 @@ class Run:
 
     def __init__(self, folder):
         self.folder = Path(folder)
-        if not (self.folder / "scene.toml").is_file():
-            raise IoError(f"'{folder}' holds no run (scene.toml is missing); name the folder of a run")
+        for needed in ("scene.toml", "snap_000000.hdf"):
+            if not (self.folder / needed).is_file():
+                raise IoError(f"'{folder}' holds no run ({needed} is missing); name the folder of a run")
 
     def __repr__(self):
         return f"<keeler.Run: {self.folder}, {len(self.snapshots)} snapshots>"

@@ -99,3 +99,21 @@ TEST_CASE("the rebound asks the law about the impact, and only above the cut") {
   CHECK(!slow.fast);
   CHECK(slow.speed == 0.01);
 }
+
+TEST_CASE("a law of one's own is known by its name, and to the program that brought it alone") {
+  const RestitutionEntry& own = restitution_laws().back();
+  REQUIRE(std::string(own.name) == "own");
+  const auto named = [](const std::string& name) {
+    Parameters parameters;
+    parameters.set("name", name);
+    return parameters;
+  };
+  CHECK_THROWS_WITH_AS(own.make(named("soft-ice")), doctest::Contains("'soft-ice' is a function of the program"),
+                       UsageError);
+  add_own_restitution("soft-ice", [](const Impact& impact) { return 1.0 / (1.0 + impact.speed / impact.radius_low); });
+  CHECK(own.make(named("soft-ice"))({.speed = 2.0, .radius_low = 2.0, .radius_high = 1.0}) == 0.5);
+  CHECK_THROWS_AS(add_own_restitution("soft-ice", constant_restitution(0.5)), UsageError); // taken
+  CHECK_THROWS_AS(add_own_restitution("", constant_restitution(0.5)), UsageError);
+  CHECK_THROWS_AS(add_own_restitution("bouncy", constant_restitution(1.1)), UsageError);
+  CHECK_THROWS_AS(add_own_restitution("nothing", [](const Impact&) { return std::nan(""); }), UsageError);
+}

@@ -107,6 +107,7 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
                                           "collisions.restitution.value",
                                           "collisions.restitution.table",
                                           "collisions.restitution.critical_speed",
+                                          "collisions.restitution.name",
                                           "collisions.restitution.speed",
                                           "collisions.restitution.radius",
                                           "gravity.force_error",

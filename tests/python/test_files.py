@@ -1,0 +1,162 @@
+"""What Python writes and reads, against the program: states, snapshots, series, sweeps, pictures."""
+
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import keeler
+from scenes import RING, ring
+
+
+def program(*arguments):
+    done = subprocess.run([keeler.program(), *map(str, arguments)], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise AssertionError(f"keeler {arguments}: {done.stderr}")
+    return done.stdout
+
+
+class InAFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def scene_file(self, sim):
+        file = self.folder / "scene.toml"
+        file.write_text(sim.scene)
+        return file
+
+
+class AsTheProgram(InAFolder):
+    SCENES = {
+        "collisions": ring(),
+        "gravity by tree": ring(gravity={"solver": "tree", "kick_every": 2}),
+        "gravity by mesh": ring(gravity={"solver": "fft"}),
+        "friction": ring(collisions={"friction": {"tangential_restitution": 0.5}}),
+        "automatic step": ring(gravity={"solver": "tree"}, time={"step": "auto", "end": 0.125}),
+    }
+
+    def test_the_same_bits_and_the_same_numbers(self):
+        for name, scene in self.SCENES.items():
+            with self.subTest(name):
+                sim = keeler.Simulation(scene)
+                run = self.folder / name
+                program("run", self.scene_file(sim), "-o", run)
+                sim.run()
+                self.assertEqual(sim.state_hash, keeler.read(run).summary["state_hash"])
+                last = keeler.read(run).snapshots[-1]
+                for field in ("positions", "radii", "masses", "ids"):
+                    np.testing.assert_array_equal(getattr(last, field), getattr(sim.snapshot(), field))
+                np.testing.assert_allclose(last.velocities, sim.snapshot().velocities, rtol=1e-15)
+                said = json.loads(program("analyze", run / "snap_000001.hdf", "--json"))
+                mine = sim.analyze()
+                self.assertEqual(list(mine), list(said))
+                for key in ("particle_count", "optical_depth", "toomre_q", "wake_contrast", "largest_overlap"):
+                    self.assertAlmostEqual(mine[key], said[key], places=12)
+
+    def test_a_saved_state_goes_on_here_and_there(self):
+        sim = keeler.Simulation(ring(gravity={"solver": "tree", "kick_every": 2})).run(0.1)
+        run = self.folder / "run"
+        run.mkdir()
+        sim.save(run / "checkpoint_000000.h5")
+        loaded, resumed = keeler.load(run / "checkpoint_000000.h5"), keeler.resume(run)
+        self.assertEqual(loaded.state_hash, sim.state_hash)
+        program("resume", run)
+        end = sim.run().state_hash
+        self.assertEqual(loaded.run().state_hash, end)
+        self.assertEqual(resumed.run().state_hash, end)
+        self.assertEqual(keeler.read(run).summary["state_hash"], end)
+
+    def test_a_run_read(self):
+        run = self.folder / "run"
+        sim = keeler.Simulation(RING, output={"series_every": 0.02, "snapshot_every": 0.1})
+        program("run", self.scene_file(sim), "-o", run)
+        read = keeler.read(run)
+        self.assertEqual(len(read.series["time_orbits"]), 11)
+        np.testing.assert_allclose(read.series["time_orbits"], np.arange(11) * 0.02, atol=1e-12)
+        self.assertEqual([snapshot.orbits for snapshot in read.snapshots], [0.0, 0.1, 0.2])
+        self.assertEqual(len(read.snapshots[1:]), 2)
+        self.assertEqual(read.scene, sim.scene)
+        said = json.loads(program("analyze", run, "--since", 0.1, "--json"))
+        self.assertEqual(read.analyze(since=0.1), said)
+        with self.assertRaises(keeler.UsageError):
+            read.analyze(since=5.0)
+        with self.assertRaises(keeler.IoError):
+            read.moonlets
+        with self.assertRaisesRegex(keeler.IoError, "holds no run"):
+            keeler.read(self.folder)
+        with self.assertRaises(keeler.IoError):
+            keeler.read(self.folder / "nothing")
+
+    def test_a_sweep(self):
+        grid = self.folder / "grid.toml"
+        self.scene_file(keeler.Simulation(RING))
+        grid.write_text('scene = "scene.toml"\nseeds = [1, 2]\n'
+                        '[[axis]]\nkey = "collisions.restitution.value"\nvalues = [0.3, 0.6]\n')
+        tables = keeler.sweep(grid, self.folder / "sweep")
+        self.assertEqual([row["seed"] for row in tables["runs"]], [1.0, 2.0, 1.0, 2.0])
+        self.assertEqual([row["finished_runs"] for row in tables["points"]], [2.0, 2.0])
+        grid.write_text("scene = 3\n")
+        with self.assertRaises(keeler.UsageError):
+            keeler.sweep(grid, self.folder / "other")
+
+
+class Starts(InAFolder):
+    def test_generate_and_tile(self):
+        start = keeler.generate(RING)
+        self.assertEqual(len(start), len(keeler.Simulation(RING)))
+        tiled = keeler.tile(start, 2, 3)
+        self.assertEqual((len(tiled), tiled.box), (6 * len(start), (120.0, 180.0)))
+        start.save(self.folder / "start.hdf")
+        program("tile", self.folder / "start.hdf", 2, 3, "-o", self.folder / "tiled.hdf")
+        np.testing.assert_array_equal(tiled.positions, keeler.read(self.folder / "tiled.hdf").positions)
+        sim = keeler.Simulation(RING, start=tiled)
+        self.assertEqual(len(sim), len(tiled))
+        self.assertEqual(sim.state_hash, keeler.Simulation(tiled.scene, start=tiled).state_hash)
+
+    def test_arrays_of_ones_own(self):
+        places = np.array([[-10.0, 0.0, 0.0], [10.0, 5.0, 1.0]])
+        sim = keeler.from_arrays(RING, places, 1.5)
+        np.testing.assert_allclose(sim.by_id(sim.positions), places, atol=1e-12)
+        circular = np.column_stack([[0, 0], -1.5 * sim.orbital_frequency * places[:, 0]])
+        np.testing.assert_allclose(sim.by_id(sim.velocities)[:, :2], circular, rtol=2e-2, atol=1e-9)
+        sim.run(0.1)
+        overlapping = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]
+        with self.assertRaises(keeler.InvariantError):
+            keeler.from_arrays(RING, overlapping, 1.0)
+        apart = keeler.from_arrays(RING, overlapping, 1.0, relax=True).positions
+        self.assertGreaterEqual(np.linalg.norm(apart[0] - apart[1]), 2.0)
+        for wrong in (
+            dict(positions=places, radii=-1.0), dict(positions=places[0], radii=1.0),
+                      dict(positions=places, radii=[1.0]), dict(positions=places * np.nan, radii=1.0),
+                      dict(positions=1e6 * places, radii=1.0), dict(positions=np.zeros((0, 3)), radii=1.0)):
+            with self.assertRaises(keeler.UsageError) as caught:
+                keeler.from_arrays(RING, **wrong)
+            self.assertNotIn("\n", str(caught.exception))
+
+    def test_pictures(self):
+        sim = keeler.Simulation(RING)
+        picture = sim.plot(self.folder / "ring.png", width=400)
+        self.assertEqual((self.folder / "ring.png").read_bytes(), picture.data)
+        self.assertTrue(sim._repr_png_().startswith(b"\x89PNG"))
+        self.assertEqual(keeler.render(sim.snapshot(), width=400).data, picture.data)
+
+    def test_faults_of_files(self):
+        (self.folder / "damaged.hdf").write_bytes(b"nothing")
+        with self.assertRaises(keeler.IoError):
+            keeler.read(self.folder / "damaged.hdf")
+        with self.assertRaises(OSError):
+            keeler.load(self.folder / "none.h5")
+        with self.assertRaises(keeler.IoError):
+            keeler.resume(self.folder)
+        with self.assertRaises(keeler.IoError):
+            keeler.Simulation(RING).save(self.folder / "no" / "folder.h5")
+
+
+if __name__ == "__main__":
+    unittest.main()

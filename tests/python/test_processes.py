@@ -1,0 +1,119 @@
+"""Other processes, copies, memory: what is not inherited says so, nothing leaks, nothing is printed."""
+
+import copy
+import gc
+import multiprocessing
+import os
+import pickle
+import resource
+import subprocess
+import sys
+import unittest
+
+import numpy as np
+
+import keeler
+from scenes import RING, ring
+
+
+def run(seed):
+    return keeler.Simulation(RING, particles={"seed": seed}).run(0.05).state_hash
+
+
+def refused(seed):
+    try:
+        run(seed)
+    except keeler.RunError as error:
+        return str(error)
+    return "it ran"
+
+
+def resident_mb():
+    with open("/proc/self/statm", encoding="ascii") as statm:
+        return int(statm.read().split()[1]) * resource.getpagesize() / 1e6
+
+
+class Processes(unittest.TestCase):
+    def test_a_fork_says_no_once_keeler_has_computed(self):
+        run(1)
+        with multiprocessing.get_context("fork").Pool(1) as pool:
+            self.assertIn("forked", pool.map(refused, [1])[0])
+
+    def test_spawned_processes_compute(self):
+        with multiprocessing.get_context("spawn").Pool(2) as pool:
+            self.assertEqual(pool.map(run, [1, 2]), [run(1), run(2)])
+
+    def test_a_fork_before_anything_was_computed_computes(self):
+        code = ("import multiprocessing, test_processes as t\n"
+                "with multiprocessing.get_context('fork').Pool(2) as pool: print(len(set(pool.map(t.run, [1, 2]))))")
+        said = subprocess.run([sys.executable, "-B", "-c", code], capture_output=True, text=True, check=True,
+                              cwd=os.path.dirname(os.path.abspath(__file__)), timeout=120)
+        self.assertEqual((said.stdout, said.stderr), ("2\n", ""))
+
+    def test_pickles_and_copies_go_on_to_the_bit(self):
+        sim = keeler.Simulation(ring(gravity={"solver": "tree"})).run(0.05)
+        others = [pickle.loads(pickle.dumps(sim)), copy.copy(sim), copy.deepcopy(sim)]
+        sim.run(0.1)
+        for other in others:
+            self.assertEqual(other.run(0.1).state_hash, sim.state_hash)
+
+    def test_nothing_is_printed_unasked(self):
+        code = ("import keeler, scenes\n"
+                "sim = keeler.Simulation(scenes.RING).run(); sim.analyze(); sim.plot()\n"
+                "keeler.generate(scenes.RING).tile(2, 2)")
+        said = subprocess.run([sys.executable, "-B", "-c", code], capture_output=True, text=True, check=True,
+                              cwd=os.path.dirname(os.path.abspath(__file__)), timeout=120)
+        self.assertEqual((said.stdout, said.stderr), ("", ""))
+
+    def test_progress_when_asked(self):
+        code = "import keeler, scenes; keeler.Simulation(scenes.RING).run(progress=True)"
+        said = subprocess.run([sys.executable, "-B", "-c", code], capture_output=True, text=True, check=True,
+                              cwd=os.path.dirname(os.path.abspath(__file__)), timeout=120)
+        self.assertIn("100 %  orbit 0.2", said.stderr)
+        self.assertEqual(said.stdout, "")
+
+
+class Memory(unittest.TestCase):
+    def test_ten_thousand_simulations_made_and_dropped(self):
+        few = ring(box={"size": [12.0, 12.0]})
+        scene = keeler.Simulation(few).scene
+        start = keeler.generate(few)
+
+        def make(count):
+            for _ in range(count):
+                sim = keeler.Simulation(scene, start=start)
+                kept = [sim.elements, sim.ids, sim.positions]
+                sim.step()
+                del sim
+                del kept
+            gc.collect()
+
+        make(1000)
+        before = resident_mb()
+        make(int(os.environ.get("KEELER_SIMULATIONS", "10000")))
+        self.assertLess(resident_mb() - before, 8.0)  # less than 1 kB each
+
+    def test_references_are_given_back(self):
+        sim = keeler.Simulation(RING)
+        before = sys.getrefcount(sim), sys.getrefcount(sim._core)
+        for _ in range(100):
+            sim.elements, sim.masses, sim.snapshot(), sim.analyze()
+            with sim.collisions() as contacts:
+                sim.step()
+                contacts()
+            del contacts
+            with self.assertRaises(keeler.UsageError):
+                sim.run(-1.0)
+        self.assertEqual((sys.getrefcount(sim), sys.getrefcount(sim._core)), before)
+
+    def test_a_view_outlives_its_simulation(self):
+        sim = keeler.Simulation(RING)
+        elements, wanted = sim.elements, np.array(sim.elements)
+        del sim
+        gc.collect()
+        keeler.Simulation(RING, particles={"seed": 5}).run(0.05)
+        np.testing.assert_array_equal(elements, wanted)
+
+
+if __name__ == "__main__":
+    unittest.main()
