@@ -33,7 +33,9 @@ PythonSnapshot read(const fs::path& file) {
 
 void write(const PythonSnapshot& snapshot, const fs::path& file) {
   const py::gil_scoped_release unlocked;
-  write_snapshot(file, snapshot.patch, {snapshot.scene, collect_provenance({})});
+  const std::string scene =
+      snapshot.is_a_start ? parse_scene(snapshot.scene, file.string(), {}, file.string()).resolved : snapshot.scene;
+  write_snapshot(file, snapshot.patch, {scene, collect_provenance({})});
 }
 
 PythonSnapshot generate(const Scene& scene, bool clumped) {
@@ -48,7 +50,7 @@ PythonSnapshot tile(const PythonSnapshot& snapshot, std::size_t nx, std::size_t 
     const Scene scene = parse_scene(snapshot.scene, name, {"start.keep=1.0"}, name);
     const Patch patch = patch_from_snapshot(snapshot.patch, name, scene);
     require_apart(patch, "'" + name + "'");
-    return PythonSnapshot{tiled_patch(patch, nx, ny), scene.resolved};
+    return PythonSnapshot{tiled_patch(patch, nx, ny), scene.resolved, true};
   });
 }
 
@@ -72,7 +74,7 @@ PythonSnapshot from_arrays(const std::string& text, const std::string& name, con
     if (relaxed)
       relax(patch);
     require_apart(patch, table.file);
-    return PythonSnapshot{std::move(patch), parse_scene(of.scene.resolved, name, {}, table.file).resolved};
+    return PythonSnapshot{std::move(patch), parse_scene(of.scene.resolved, name, {}, table.file).resolved, true};
   });
 }
 

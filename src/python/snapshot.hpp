@@ -9,7 +9,8 @@ namespace keeler::python {
 
 struct PythonSnapshot {
   Patch patch;
-  std::string scene; ///< resolved, as TOML
+  std::string scene;       ///< resolved, as TOML
+  bool is_a_start = false; ///< no fresh start makes it: its scene starts from the file that it is written to
 };
 
 } // namespace keeler::python

@@ -115,6 +115,8 @@ class Starts(InAFolder):
         start.save(self.folder / "start.hdf")
         program("tile", self.folder / "start.hdf", 2, 3, "-o", self.folder / "tiled.hdf")
         np.testing.assert_array_equal(tiled.positions, keeler.read(self.folder / "tiled.hdf").positions)
+        tiled.save(self.folder / "by_hand.hdf")
+        self.assertIn(str(self.folder / "by_hand.hdf"), keeler.read(self.folder / "by_hand.hdf").scene)
         sim = keeler.Simulation(RING, start=tiled)
         self.assertEqual(len(sim), len(tiled))
         self.assertEqual(sim.state_hash, keeler.Simulation(tiled.scene, start=tiled).state_hash)
