@@ -52,17 +52,18 @@ RestitutionLaw own_restitution(const std::string& name) {
 
 } // namespace
 
-void add_own_restitution(const std::string& name, RestitutionLaw law) {
+void add_own_restitution(const std::string& name, const RestitutionLaw& law) {
   if (name.empty())
     throw UsageError("a restitution law of one's own needs a name; states and checkpoints know it by that");
   for (double speed = 1e-6; speed < 101.0; speed *= 10.0)
     if (const double kept = law({speed, 1.0, 1.0}); !(kept >= 0.0 && kept <= 1.0))
-      throw UsageError(fmt::format("the restitution law '{}' gives {:g} for an impact of {:g} m/s; coefficients are from "
-                                   "0 to 1",
-                                   name, kept, speed));
+      throw UsageError(
+          fmt::format("the restitution law '{}' gives {:g} for an impact of {:g} m/s; coefficients are from "
+                      "0 to 1",
+                      name, kept, speed));
   OwnLaws& own = own_laws();
   const std::lock_guard lock(own.guard);
-  if (!own.laws.try_emplace(name, std::move(law)).second)
+  if (!own.laws.try_emplace(name, law).second)
     throw UsageError(fmt::format("there is a restitution law '{}' already; give this one another name", name));
 }
 

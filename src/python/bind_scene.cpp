@@ -17,7 +17,7 @@ namespace {
 using CFunction = double (*)(double speed, double radius_low, double radius_high);
 
 void add_c_function(const std::string& name, std::uintptr_t address) {
-  const auto function = reinterpret_cast<CFunction>(address);
+  const auto function = reinterpret_cast<CFunction>(address); // NOLINT(performance-no-int-to-ptr): ctypes gives numbers
   add_own_restitution(
       name, [function](const Impact& impact) { return function(impact.speed, impact.radius_low, impact.radius_high); });
 }

@@ -23,14 +23,15 @@ PyObject* raised_for(ExitCode code, const py::module_& errors) {
 
 // The classes are Python's own (keeler/errors.py), with two bases each.
 void bind_errors(py::module_&) {
-  py::register_exception_translator([](std::exception_ptr pointer) {
-    try {
-      if (pointer)
-        std::rethrow_exception(pointer);
-    } catch (const Error& error) {
-      PyErr_SetString(raised_for(error.code(), py::module_::import("keeler.errors")), error.what());
-    }
-  });
+  py::register_exception_translator(
+      [](std::exception_ptr pointer) { // NOLINT(performance-unnecessary-value-param): its type
+        try {
+          if (pointer)
+            std::rethrow_exception(pointer);
+        } catch (const Error& error) {
+          PyErr_SetString(raised_for(error.code(), py::module_::import("keeler.errors")), error.what());
+        }
+      });
 }
 
 } // namespace keeler::python
