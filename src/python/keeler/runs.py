@@ -1,12 +1,14 @@
 """Runs with a folder, sweeps, and what they leave."""
 
 import json
+import os
 import shutil
 import subprocess
+import tempfile
 from pathlib import Path
 
-from . import _core, snapshots
-from .errors import InvariantError, IoError, RunError, UsageError
+from . import _core, scenes, snapshots
+from .errors import Error, InvariantError, IoError, RunError, UsageError
 
 
 class Run:
@@ -68,6 +70,8 @@ class _Snapshots:
 
 def read(path):
     """A snapshot file as a Snapshot, the folder of a run as a Run. Raises IoError, UsageError."""
+    if not isinstance(path, (str, os.PathLike)):
+        raise UsageError(f"{path!r} is no path; name a snapshot or the folder of a run")
     path = Path(path)
     if path.is_dir():
         return Run(path)
@@ -79,7 +83,8 @@ def read(path):
 def program():
     """The path of the program ``keeler`` of this version. Raises RunError."""
     package = Path(__file__).parent  # not resolved: in a build, links to the sources stand here
-    for place in (package / "bin" / "keeler", package.parent.parent / "keeler", shutil.which("keeler")):
+    installed = [prefix / "bin" / "keeler" for prefix in list(package.parents)[3:4]]  # PREFIX/lib/python3/dist-packages
+    for place in (package / "bin" / "keeler", package.parent.parent / "keeler", *installed, shutil.which("keeler")):
         if place and Path(place).is_file():
             said = subprocess.run([place, "--version"], capture_output=True, text=True, check=False).stdout.split()
             if said[-1:] == [_core.version()]:
@@ -100,11 +105,32 @@ def _call(arguments):
 def sweep(grid, folder, *, jobs=None):
     """``keeler sweep GRID -o FOLDER``: many runs, each a process. What is finished already is not run again.
 
+    ``grid`` is the path of a grid's file, or a dictionary of what it holds, whose ``"scene"`` may be a dictionary too.
+    Paths in a dictionary are relative to the current folder.
+
     Returns {"runs": rows of sweep.csv, "points": rows of points.csv} as lists of dictionaries, numbers as floats. Raises
     UsageError for a grid that cannot be, RunError when runs failed (sweep.csv says which).
     """
-    _call(["sweep", grid, "-o", folder, *(["--jobs", jobs] if jobs else [])])
+    with tempfile.TemporaryDirectory() as place:
+        if isinstance(grid, dict):
+            grid = _written(grid, Path(place))
+        try:
+            _call(["sweep", grid, "-o", folder, *(["--jobs", jobs] if jobs else [])])
+        except Error as error:
+            raise type(error)(str(error).replace(f"{place}{os.sep}", "")) from None
     return {name: _rows(Path(folder) / file) for name, file in (("runs", "sweep.csv"), ("points", "points.csv"))}
+
+
+def _written(grid, place):
+    """The file of a grid that is a dictionary."""
+    scene = grid.get("scene")
+    if isinstance(scene, dict):
+        (place / "scene.toml").write_text(scenes.source(scene)[0], encoding="utf-8")
+        grid = {**grid, "scene": "scene.toml"}
+    elif isinstance(scene, (str, os.PathLike)):
+        grid = {**grid, "scene": os.path.abspath(scene)}
+    (place / "grid.toml").write_text(scenes.source(grid)[0], encoding="utf-8")
+    return place / "grid.toml"
 
 
 def _rows(file):

@@ -20,7 +20,7 @@ def _toml(value, place):
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{json.dumps(str(k))} = {_toml(v, f'{place}.{k}')}" for k, v in value.items()) + " }"
     if hasattr(value, "tolist"):  # arrays and numbers of numpy
-        value = value.tolist()
+        return _toml(value.tolist(), place)
     if isinstance(value, int):
         return str(value)
     if isinstance(value, float):
@@ -37,7 +37,8 @@ def overrides_of(tables, place=""):
     lines = []
     for name, value in tables.items():
         path = place + name
-        lines += overrides_of(value, path + ".") if isinstance(value, dict) else [f"{path}={_toml(value, path)}"]
+        below = overrides_of(value, path + ".") if isinstance(value, dict) else None
+        lines += below or [f"{path}={_toml(value, path)}"]  # an empty table says something: {"gravity": {}}
     return lines
 
 

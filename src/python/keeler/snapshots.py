@@ -1,6 +1,7 @@
 """Snapshots: a patch of ring at one instant."""
 
 import json
+import os
 import tempfile
 from pathlib import Path
 
@@ -76,6 +77,8 @@ class Snapshot:
     def plot(self, file=None, *, title="Ring patch", width=1600):
         """The picture of ``keeler render``: from above, and edge-on. Written to a PNG where a file is named."""
         if file is not None:
+            if Path(file).suffix != ".png":
+                raise UsageError(f"'{file}' cannot be written: pictures are PNGs; give it the ending .png")
             self._core.render(file, title, width)
             return Picture(Path(file).read_bytes())
         with tempfile.TemporaryDirectory() as folder:
@@ -83,6 +86,12 @@ class Snapshot:
 
     def _repr_png_(self):
         return self.plot(width=1000)._repr_png_()
+
+    def __reduce__(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "snapshot.hdf"
+            self.save(file)
+            return _from_bytes, (file.read_bytes(), self._name)
 
 
 def generate(scene, *, clumped=False, **overrides):
@@ -115,6 +124,13 @@ def start_from_arrays(scene, positions, radii, velocities=None, masses=None, *, 
 
 def read(file):
     """The snapshot in a file. Raises IoError."""
-    if not Path(file).is_file():
+    if not isinstance(file, (str, os.PathLike)) or not Path(file).is_file():
         raise UsageError(f"'{file}' is no file; name a snapshot, snap_NNNNNN.hdf")
     return Snapshot(_core.read_snapshot(file), str(file))
+
+
+def _from_bytes(data, name):
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "snapshot.hdf"
+        file.write_bytes(data)
+        return Snapshot(_core.read_snapshot(file), name)
