@@ -93,6 +93,14 @@ class AsTheProgram(InAFolder):
         with self.assertRaises(keeler.IoError):
             keeler.read(self.folder / "nothing")
 
+    def test_a_run_with_a_folder(self):
+        run = keeler.run(RING, self.folder / "run", time={"end": 0.1}, output={"series_every": 0.01})
+        self.assertEqual(run.summary["state_hash"], keeler.Simulation(RING).run(0.1).state_hash)
+        self.assertIsNotNone(run.analyze(since=0.0)["total_viscosity_m2_s"])
+        with self.assertRaisesRegex(keeler.UsageError, "is not empty"):
+            keeler.run(RING, self.folder / "run")
+        self.assertAlmostEqual(keeler.run(RING, self.folder / "run", until=0.05, force=True).summary["time_orbits"], 0.05)
+
     def test_a_sweep(self):
         grid = self.folder / "grid.toml"
         self.scene_file(keeler.Simulation(RING))

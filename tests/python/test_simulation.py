@@ -151,6 +151,9 @@ class Course(unittest.TestCase):
         for wrong in ({"every": 0.1}, {"callback": print}, {"every": "often", "callback": print}):
             with self.assertRaises(keeler.UsageError):
                 sim.run(0.2, **wrong)
+        for wrong in (-1, 1.5):
+            with self.assertRaises(keeler.UsageError):
+                sim.step(wrong)
 
     def interrupted(self, presses):
         sim = keeler.Simulation(ring(box={"size": [300.0, 300.0]}, time={"step": 5e-4, "end": 500.0}))
@@ -208,8 +211,9 @@ class Course(unittest.TestCase):
             keeler.set_threads(threads)
             hashes.add(keeler.Simulation(RING).run(0.1).state_hash)
         self.assertEqual(len(hashes), 1)
-        with self.assertRaises(keeler.UsageError):
-            keeler.set_threads(100000)
+        for wrong in (100000, 0, "2", 1.5):
+            with self.assertRaises(keeler.UsageError):
+                keeler.set_threads(wrong)
 
 
 class Changes(unittest.TestCase):
@@ -253,6 +257,10 @@ class Changes(unittest.TestCase):
             with self.assertRaises(error), self.sim.edit() as state:
                 change(state)
             self.assertEqual(self.sim.state_hash, before)
+        with self.assertRaises(AttributeError), self.sim.edit() as state:
+            state.position = 0.0
+        with self.assertRaises(ValueError), self.sim.edit() as state:
+            state.ids[:] = 0
         with self.assertRaises(KeyError), self.sim.edit() as state:
             state.masses *= 2.0
             raise KeyError

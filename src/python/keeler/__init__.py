@@ -19,7 +19,7 @@ What there is:
 
 - ``Simulation``: a patch that runs in memory. ``load``, ``resume``, ``from_arrays`` make one from what exists.
 - ``Snapshot``: a patch at one instant. ``generate``, ``tile``, ``start_from_arrays`` make one; ``read`` reads one.
-- ``Run``: the folder of a run, from ``read(folder)``: series, snapshots, summary. ``sweep`` makes many runs.
+- ``Run``: the folder of a run, from ``run`` or ``read(folder)``: series, snapshots, summary. ``sweep`` makes many runs.
 - ``render``: a picture of any of them. ``add_restitution_law``: a law of one's own.
 - ``set_threads``, ``threads``: results are the same, bit for bit, for any number.
 - ``Error`` and its four kinds: ``UsageError``, ``InvariantError``, ``IoError``, ``RunError``.
@@ -38,7 +38,7 @@ if "GOMP_SPINCOUNT" not in _os.environ and "OMP_WAIT_POLICY" not in _os.environ:
 
 from . import _core
 from .errors import Error, InvariantError, IoError, RunError, UsageError
-from .runs import Run, program, read, render, sweep
+from .runs import Run, program, read, render, run, sweep
 from .simulation import ELEMENTS, Simulation, from_arrays, load, resume
 from .snapshots import Picture, Snapshot, generate, start_from_arrays, tile
 
@@ -63,6 +63,7 @@ __all__ = [
     "read",
     "render",
     "resume",
+    "run",
     "set_threads",
     "start_from_arrays",
     "sweep",
@@ -77,7 +78,9 @@ def threads():
 
 
 def set_threads(count):
-    """Sets how many threads loops of this Python thread use from now on. Raises UsageError."""
+    """Sets how many threads, at least 1, loops of this Python thread use from now on. Raises UsageError."""
+    if not isinstance(count, int) or count < 1:
+        raise UsageError(f"{count!r} threads are asked for; give a whole number, 1 or more")
     _core.set_threads(count)
 
 

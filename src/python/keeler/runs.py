@@ -102,6 +102,21 @@ def _call(arguments):
     raise kind(lines[-1] if lines else f"keeler ended with {done.returncode}")
 
 
+def run(scene, folder, *, until=None, force=False, **overrides):
+    """``keeler run SCENE -o FOLDER``: a run with series, snapshots and checkpoints, which outlives this process's end.
+
+    Returns its Run: ``run.series``, ``run.analyze()`` with all viscosities. A folder that holds a run is refused unless
+    ``force``. Ctrl-C stops it with a checkpoint; ``keeler resume FOLDER`` goes on. Raises as the program ends: UsageError,
+    InvariantError, IoError, RunError.
+    """
+    with tempfile.TemporaryDirectory() as place:
+        file = Path(place) / "scene.toml"
+        file.write_text(scenes.read(scene, overrides).text, encoding="utf-8")
+        end = [] if until is None else ["--until", until]
+        _call(["run", file, "-o", folder, *end, *(["--force"] if force else [])])
+    return Run(folder)
+
+
 def sweep(grid, folder, *, jobs=None):
     """``keeler sweep GRID -o FOLDER``: many runs, each a process. What is finished already is not run again.
 

@@ -24,8 +24,8 @@ class Simulation:
         sim = keeler.Simulation("scene.toml", time={"end": 5.0})
         sim.run(5.0, every=0.5, callback=lambda sim: print(sim.orbits, sim.analyze()["toomre_q"]))
 
-    ``scene`` is the path of a scene file, the text of one, or a dictionary of its tables. ``start`` is a Snapshot or
-    the file of one to start from. Other arguments override keys of the scene: ``time={"end": 5.0}``, or
+    ``scene`` is the path of a scene file, the text of one, or a dictionary of its tables. ``start`` is what to start
+    from: a Snapshot, the file of one, or a Simulation as it stands. Other arguments override keys of the scene: ``time={"end": 5.0}``, or
     ``**{"time.end": 5.0}``. Raises UsageError for a scene that cannot be.
 
     The state's bits are those of ``keeler run`` with the same scene, for any number of threads.
@@ -41,7 +41,9 @@ class Simulation:
         if start is None:
             core = _core.Simulation(scenes.read(scene, overrides))
         else:
-            if not isinstance(start, Snapshot):
+            if isinstance(start, Simulation):
+                start = start.snapshot()
+            elif not isinstance(start, Snapshot):
                 start = snapshots.read(start)
             core = _core.Simulation(start._core, start._name, scenes.read(scene, overrides, start._name))
         self._begin(core)
@@ -193,8 +195,8 @@ class Simulation:
 
     def step(self, count=1):
         """``count`` kick intervals: the shortest time after which a state can be looked at."""
-        if count < 0:
-            raise UsageError(f"count is {count}; give a number of steps, 0 or more")
+        if not isinstance(count, int) or count < 0:
+            raise UsageError(f"count is {count!r}; give a whole number of steps, 0 or more")
         self._motion = None
         self._core.advance(self._core.tick + count * self._core.scene.kick_interval)
         return self
@@ -268,6 +270,10 @@ class Simulation:
 
 
 class _Edited:
+    """What edit() gives to write to; a name that it has not is an error."""
+
+    __slots__ = ("positions", "velocities", "radii", "masses", "spins", "ids")
+
     def __init__(self, sim):
         self.positions = np.array(sim.positions)
         self.velocities = np.array(sim.velocities)
@@ -276,6 +282,7 @@ class _Edited:
         spins = sim.spins
         self.spins = None if spins is None else np.array(spins)
         self.ids = np.array(sim.ids)
+        self.ids.flags.writeable = False
 
 
 def _ticks(orbits, name, scene):
