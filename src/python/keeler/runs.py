@@ -102,7 +102,7 @@ def _call(arguments):
     raise kind(lines[-1] if lines else f"keeler ended with {done.returncode}")
 
 
-def run(scene, folder, *, until=None, force=False, **overrides):
+def run(scene, folder, *, force=False, **overrides):
     """``keeler run SCENE -o FOLDER``: a run with series, snapshots and checkpoints, which outlives this process's end.
 
     Returns its Run: ``run.series``, ``run.analyze()`` with all viscosities. A folder that holds a run is refused unless
@@ -112,8 +112,7 @@ def run(scene, folder, *, until=None, force=False, **overrides):
     with tempfile.TemporaryDirectory() as place:
         file = Path(place) / "scene.toml"
         file.write_text(scenes.read(scene, overrides).text, encoding="utf-8")
-        end = [] if until is None else ["--until", until]
-        _call(["run", file, "-o", folder, *end, *(["--force"] if force else [])])
+        _call(["run", file, "-o", folder, *(["--force"] if force else [])])
     return Run(folder)
 
 
