@@ -42,11 +42,13 @@ std::vector<Subject> literature_subjects();
 std::vector<Subject> overstability_subjects();
 std::vector<Subject> particle_subjects();
 std::vector<Subject> satellite_subjects();
+std::vector<Subject> moonlet_subjects();
 
 /// A run of a scene of examples/ with some keys set, in a folder that is gone afterwards.
 struct Ran {
   std::string command; ///< that does the same
   SeriesTable series;
+  SeriesTable moonlets; ///< empty in a scene that has none
   std::vector<Patch> snapshots;
 };
 Ran run_example(const std::string& example, const std::vector<std::string>& overrides);

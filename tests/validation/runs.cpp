@@ -21,6 +21,8 @@ Ran run_example(const std::string& example, const std::vector<std::string>& over
   for (const std::string& key : overrides)
     ran.command += fmt::format(" --set '{}'", key);
   ran.series = read_series(work / "run" / "series.csv");
+  if (std::filesystem::exists(work / "run" / "moonlets.csv"))
+    ran.moonlets = read_series(work / "run" / "moonlets.csv");
   ran.snapshots = load_patches(work / "run", 1e9).patches;
   return ran;
 }
