@@ -15,8 +15,8 @@
 namespace keeler {
 namespace {
 
-constexpr std::array<const char*, 8> known = {"x", "y", "z", "vx", "vy", "vz", "r", "m"};
-constexpr std::size_t first_velocity = 3, radius = 6, mass = 7;
+constexpr std::array<const char*, 11> known = {"x", "y", "z", "vx", "vy", "vz", "r", "m", "sx", "sy", "sz"};
+constexpr std::size_t first_velocity = 3, radius = 6, mass = 7, first_spin = 8;
 
 // By column of `known`; empty where the table does not have it.
 using KnownColumns = std::array<std::vector<double>, known.size()>;
@@ -25,7 +25,7 @@ using KnownColumns = std::array<std::vector<double>, known.size()>;
 KnownColumns sort_out(const std::vector<std::string>& names, std::vector<std::vector<double>> values,
                       const std::string& place) {
   const auto fail = [&](const std::string& message) {
-    throw UsageError(fmt::format("{}: {} (the columns are x y z vx vy vz r, and m)", place, message));
+    throw UsageError(fmt::format("{}: {} (the columns are x y z vx vy vz r, m, and sx sy sz)", place, message));
   };
   std::array<bool, known.size()> has{};
   KnownColumns columns;
@@ -38,9 +38,13 @@ KnownColumns sort_out(const std::vector<std::string>& names, std::vector<std::ve
     has[column] = true;
     columns[column] = std::move(values[k]);
   }
-  const bool any_velocity = has[first_velocity] || has[first_velocity + 1] || has[first_velocity + 2];
-  for (std::size_t column = 0; column < mass; ++column)
-    if (!has[column] && (column < first_velocity || column == radius || any_velocity))
+  const auto any = [&](std::size_t first) { return has[first] || has[first + 1] || has[first + 2]; };
+  const auto needed = [&](std::size_t column) { // places, the radius, and whole vectors
+    return column < first_velocity || column == radius || (column < radius && any(first_velocity)) ||
+           (column >= first_spin && any(first_spin));
+  };
+  for (std::size_t column = 0; column < known.size(); ++column)
+    if (!has[column] && needed(column))
       fail(fmt::format("the column '{}' is missing; add it", known[column]));
   return columns;
 }
@@ -60,7 +64,8 @@ ParticleTable table_of(const std::string& file, KnownColumns columns, std::vecto
           as_vectors(columns, first_velocity),
           std::move(columns[radius]),
           std::move(columns[mass]),
-          std::move(lines)};
+          std::move(lines),
+          as_vectors(columns, first_spin)};
 }
 
 ParticleTable read_text_table(std::span<const std::byte> bytes, const std::string& file) {
@@ -68,7 +73,7 @@ ParticleTable read_text_table(std::span<const std::byte> bytes, const std::strin
   Columns columns = parse_columns(text, file);
   if (columns.names.empty())
     throw UsageError(fmt::format("{}: the table is empty (not even columns are named); begin with a line \"{}\"", file,
-                                 fmt::join(known, ",")));
+                                 fmt::join(std::span(known).first(first_spin), ",")));
   const std::string header = fmt::format("{}:{}", file, columns.header_line);
   return table_of(file, sort_out(columns.names, std::move(columns.values), header), std::move(columns.lines));
 }

@@ -33,15 +33,24 @@ bool inside(const Patch& patch, std::size_t k) {
   return within(state.position.x(), state.position.y()) || within(el.guiding_x, el.guiding_y);
 }
 
-} // namespace
-
-Patch patch_from_table(const ParticleTable& table, const TableScene& of) {
-  const Scene& scene = of.scene;
+void require_fitting(const ParticleTable& table, const TableScene& of) {
   if (table.masses.empty() && !of.density)
     throw UsageError(
         fmt::format("{}: no column m, and the scene has no particles.density (one of them gives the masses); "
                     "add either",
                     table.file));
+  if (!table.spins.empty() && !of.scene.collisions.friction)
+    throw UsageError(
+        fmt::format("{}: sx sy sz are spins, but the scene's particles are smooth (it has no [collisions.friction]); "
+                    "add that table to the scene or remove the columns",
+                    table.file));
+}
+
+} // namespace
+
+Patch patch_from_table(const ParticleTable& table, const TableScene& of) {
+  require_fitting(table, of);
+  const Scene& scene = of.scene;
   Patch patch;
   patch.frequencies = scene.planet.frequencies;
   patch.orbital_frequency = scene.planet.orbital_frequency;
@@ -55,6 +64,8 @@ Patch patch_from_table(const ParticleTable& table, const TableScene& of) {
   for (std::size_t k = 0; k < table.size(); ++k)
     patch.velocities.push_back(table.velocities.empty() ? Vec3(0.0, -patch.box.shear * table.places[k].x(), 0.0)
                                                         : Vec3(table.velocities[k] / patch.orbital_frequency));
+  for (const Vec3& spin : table.spins)
+    patch.spins.emplace_back(spin / patch.orbital_frequency);
   patch.ids.resize(table.size());
   std::iota(patch.ids.begin(), patch.ids.end(), std::uint64_t{0});
   const double narrow = std::min(patch.box.size_x, patch.box.size_y);

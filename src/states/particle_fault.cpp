@@ -18,6 +18,9 @@ std::string particle_fault(const Patch& patch, std::size_t k) {
   const Vec3 &place = patch.positions[k], &velocity = patch.velocities[k];
   if (!place.allFinite() || !velocity.allFinite())
     return "a place or a velocity that is not finite";
+  const Vec3 spin = patch.spins.empty() ? Vec3(Vec3::Zero()) : patch.spins[k];
+  if (!spin.allFinite())
+    return "a spin that is not finite";
   struct Quantity {
     const KeyRange& range;
     const char* what;
@@ -25,12 +28,13 @@ std::string particle_fault(const Patch& patch, std::size_t k) {
   };
   const double radius = patch.radii[k];
   const Vec3 shear(0.0, -patch.box.shear * place.x(), 0.0);
-  const std::array<Quantity, 4> quantities = {
+  const std::array<Quantity, 5> quantities = {
       {{radii, "a radius (m)", radius},
        {densities, "a density (kg/m^3, by its mass and radius)",
         patch.masses[k] / (4.0 / 3.0 * pi * radius * radius * radius)},
        {places, "a coordinate (m)", place.cwiseAbs().maxCoeff()},
-       {speeds, "a speed (m/s, beyond the shear)", (velocity - shear).norm() * patch.orbital_frequency}}};
+       {speeds, "a speed (m/s, beyond the shear)", (velocity - shear).norm() * patch.orbital_frequency},
+       {speeds, "a speed of its equator (m/s, by its spin)", spin.norm() * radius * patch.orbital_frequency}}};
   for (const Quantity& q : quantities)
     if (!q.range.contains(q.value))
       return fmt::format("{} of {} (possible is {})", q.what, figures(q.value, 3), q.range.words());

@@ -41,7 +41,7 @@ runs 0 generate "$work/scene.toml" --set particles.density=900 --from-table "$wo
 grep -qF "note: the table has no velocities: all orbits are circular" "$work/err" || fail "circular: $(cat "$work/err")"
 
 made x,y,r,m 0,0,1,4000
-refused 2 "a column missing" "table.csv:1: the column 'z' is missing; add it (the columns are x y z vx vy vz r, and m)"
+refused 2 "a column missing" "table.csv:1: the column 'z' is missing; add it (the columns are x y z vx vy vz r, m, and sx sy sz)"
 made x,y,z,vx,r,m 0,0,0,0,1,4000
 refused 2 "half of the velocities" "table.csv:1: the column 'vy' is missing"
 made id,x,y,z,r,m 0,0,0,0,1,4000
@@ -79,6 +79,15 @@ runs 0 generate "$work/scene.toml" --from-table "$work/table.csv" --relax -o "$w
 prints "relaxed" "2 pairs of particles overlap"
 prints "relaxed" "moved 4 particles apart, by "
 runs 0 run "$work/scene.toml" --from "$work/relaxed.hdf" -o "$work/relaxed"
+
+made x,y,z,r,m,sx,sy,sz 0,0,0,1,4000,1e-4,0,-2e-4 10,10,0,1,4000,0,0,3e-4
+refused 2 "spins of smooth particles" "table.csv: sx sy sz are spins, but the scene's particles are smooth"
+runs 0 generate "$work/scene.toml" --set collisions.friction.tangential_restitution=0.5 --from-table "$work/table.csv" \
+  -o "$work/rough.hdf"
+h5dump -d /PartType1/Spins "$work/rough.hdf" >"$work/spins"
+grep -qF "(1,0): 0, 0, 0.0003" "$work/spins" || fail "spins: $(cat "$work/spins")"
+made x,y,z,r,m,sz 0,0,0,1,4000,1e-4
+refused 2 "a part of the spins" "table.csv:1: the column 'sx' is missing; add it"
 
 made x,y,z,r,m 0,0,0,1,4000
 refuses "a start beside it" "start.from cannot stand beside a table of particles" \

@@ -18,6 +18,7 @@ struct ParticleTable {
   std::vector<double> radii;      ///< m
   std::vector<double> masses;     ///< kg; empty: not given
   std::vector<std::size_t> lines; ///< in the text; empty for HDF5
+  std::vector<Vec3> spins{};      ///< rad/s, against the stars; empty: not given
 
   std::size_t size() const { return radii.size(); }
 
@@ -26,9 +27,9 @@ struct ParticleTable {
 };
 
 /// Reads a text with a line of names and a row a particle (files/columns.hpp), or an HDF5 file with an array for each
-/// column in its root and nothing else. The columns are x y z vx vy vz r m, in any order; m may be missing, and vx vy
-/// vz all together. Numbers are not judged. Throws UsageError, naming file and row, where it is no such table or has no
-/// row; IoError where the file cannot be read or is damaged.
+/// column in its root and nothing else. The columns are x y z vx vy vz r m sx sy sz, in any order; m may be missing,
+/// and vx vy vz or sx sy sz all together. Numbers are not judged. Throws UsageError, naming file and row, where it is
+/// no such table or has no row; IoError where the file cannot be read or is damaged.
 ParticleTable read_particle_table(const std::filesystem::path& file);
 
 } // namespace keeler

@@ -61,6 +61,14 @@ TEST_CASE("columns of a table may stand in any order, in either format") {
     CHECK(table.masses == std::vector<double>{1, 10});
   }
   CHECK(table_of("x y z r\n1 2 3 4\n").velocities.empty());
+  CHECK(table_of("x y z r\n1 2 3 4\n").spins.empty());
+  for (const ParticleTable& table :
+       {table_of("sz r sy z sx y x\n1 2 3 4 5 6 7\n10 20 30 40 50 60 70\n"), table_of([](const hdf5::Handle& image) {
+          write_all(image, {"sz", "r", "sy", "z", "sx", "y", "x"});
+        })}) {
+    CHECK(table.spins == std::vector<Vec3>{Vec3(5, 3, 1), Vec3(50, 30, 10)});
+    CHECK(table.velocities.empty());
+  }
   CHECK(table_of("x y z r\n1 2 3 4\n").masses.empty());
   CHECK(table_of("x y z r\n\n1 2 3 4\n").place_of(0) == file.string() + ":3");
   CHECK(table_of([](const hdf5::Handle& image) {
@@ -70,10 +78,11 @@ TEST_CASE("columns of a table may stand in any order, in either format") {
 }
 
 TEST_CASE("a table of other columns is refused") {
-  const std::string columns = " (the columns are x y z vx vy vz r, and m)";
+  const std::string columns = " (the columns are x y z vx vy vz r, m, and sx sy sz)";
   CHECK(fault(std::string("x,y,r\n1,2,3\n")) == ":1: the column 'z' is missing; add it" + columns);
   CHECK(fault(std::string("x,y,z,m\n1,2,3,4\n")) == ":1: the column 'r' is missing; add it" + columns);
   CHECK(fault(std::string("x,y,z,vx,vy,r\n1,2,3,4,5,6\n")) == ":1: the column 'vz' is missing; add it" + columns);
+  CHECK(fault(std::string("x,y,z,r,sx,sz\n1,2,3,4,5,6\n")) == ":1: the column 'sy' is missing; add it" + columns);
   CHECK(fault(std::string("id,x,y,z,r\n0,1,2,3,4\n")) == ":1: unknown column 'id'; rename or remove it" + columns);
   CHECK(fault(std::string("x,y,z,r,x\n1,2,3,4,5\n")) == ":1: two columns 'x'; remove one of them" + columns);
   CHECK(fault(std::string("x,y,z,r\n")) == ": the table is empty (a start needs a particle); add a row for each");

@@ -73,6 +73,27 @@ TEST_CASE("a table's particles are taken as they are") {
   CHECK(circular.masses[0] == doctest::Approx(900.0 * 4.0 / 3.0 * pi).epsilon(1e-15));
 }
 
+TEST_CASE("a table's spins are those of rough particles, in rad/s against the stars; smooth ones have none") {
+  ParticleTable table = one({10.0, -5.0, 1.0}, {1e-4, -3e-3, 2e-4});
+  table.spins = {{1e-4, -2e-4, 3e-4}};
+  TableScene of = table_scene();
+  CHECK_THROWS_WITH_AS(patch_from_table(table, of),
+                       "t.csv: sx sy sz are spins, but the scene's particles are smooth (it has no "
+                       "[collisions.friction]); add that table to the scene or remove the columns",
+                       UsageError);
+  of.scene.collisions.friction = Friction{};
+  const Patch patch = patch_from_table(table, of);
+  REQUIRE(patch.spins.size() == 1);
+  CHECK((patch.spins[0] - Vec3(0.5, -1.0, 1.5)).norm() < 1e-15);
+  table.spins[0].y() = NAN;
+  CHECK_THROWS_WITH_AS(patch_from_table(table, of),
+                       "t.csv:2: the particle has a spin that is not finite; correct it or remove the row", UsageError);
+  table.spins[0].y() = 2000.0;
+  CHECK_THROWS_AS(patch_from_table(table, of), UsageError);
+  table.spins.clear();
+  CHECK(patch_from_table(table, of).spins.empty()); // they begin at 0
+}
+
 TEST_CASE("a particle that no ring has, or outside the box, is named by its row") {
   const Vec3 here(1.0, 1.0, 0.0), still(0.0, -1.5 * omega, 0.0);
   CHECK(fault(one(here, still)).empty());
