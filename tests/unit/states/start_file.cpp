@@ -66,6 +66,22 @@ TEST_CASE("a start file's particles must be possible; the first that is not is n
   CHECK(fault([](Patch& p) { p.box.size_y = 6e4; }).find("more than 1000 times as long as wide") != std::string::npos);
 }
 
+TEST_CASE("rough particles that start.keep keeps have their spins") {
+  const std::string file = (std::filesystem::temp_directory_path() / "keeler-test-kept-spins.hdf").string();
+  const std::string rough = "collisions.friction.tangential_restitution=0.5";
+  Patch patch = initial_patch(scene({rough}));
+  for (std::size_t k = 0; k < patch.size(); ++k)
+    patch.spins.emplace_back(0.1 * static_cast<double>(k), 1.0, -0.2 * static_cast<double>(k));
+  write_snapshot(file, patch, {scene().resolved, {}});
+  const Patch kept = initial_patch(scene({rough, "start.keep=0.4"}, file));
+  std::filesystem::remove(file);
+  REQUIRE(kept.size() > 5);
+  REQUIRE(kept.size() < 25);
+  REQUIRE(kept.spins.size() == kept.size());
+  for (std::size_t k = 0; k < kept.size(); ++k)
+    CHECK((kept.spins[k] - patch.spins[kept.ids[k]]).norm() < 1e-14 * patch.spins.back().norm()); // in rad/s and back
+}
+
 TEST_CASE("doubts about a patch have numbers, and a large one none") {
   const std::vector<std::string> small = doubts(scene());
   REQUIRE(small.size() == 2);
