@@ -137,8 +137,14 @@ void print_steps(const Scene& scene, const Derived& d) {
     fmt::print("; a kick each {} orbits\n", figures(kick_interval_orbits(scene)));
 }
 
-void print_moonlets(const Scene& scene) {
+void print_bodies(const Scene& scene) {
   const double g = newton_g(scene.planet.orbital_frequency);
+  for (std::size_t k = 0; k < scene.particles.aggregates.size(); ++k) {
+    const AggregateSettings& a = scene.particles.aggregates[k];
+    fmt::print("aggregate {:<8} ids {} to {}, radius {} m, mass {} kg, Hill radius {} m\n", k + 1, a.first,
+               a.first + a.count - 1, figures(a.radius, 4), figures(a.mass, 4),
+               figures(std::cbrt(g * a.mass / 3.0), 3));
+  }
   for (std::size_t k = 0; k < scene.moonlets.size(); ++k) {
     const MoonletSettings& m = scene.moonlets[k];
     fmt::print("moonlet {:<10} id {}, radius {} m, mass {} kg, Hill radius {} m\n", k + 1, scene.particles.count + k,
@@ -153,7 +159,7 @@ void print_text(const Scene& scene, const Derived& d, const std::optional<RunEst
     print_particles(scene, d);
   else
     fmt::print("box and particles  from {}\n", *scene.start_from);
-  print_moonlets(scene);
+  print_bodies(scene);
   print_steps(scene, d);
   if (d.particles_known)
     fmt::print("memory             about {:.0f} MB (an estimate)\n", d.memory_mb);

@@ -1,5 +1,6 @@
 #include "key_table.hpp"
 
+#include "aggregates.hpp"
 #include "moonlets.hpp"
 #include "presets.hpp"
 #include "start_pattern_keys.hpp"
@@ -317,6 +318,7 @@ std::vector<Key> make_keys() {
             .effect = KeyEffect::start},
            "particles.sizes", size_laws());
   add(start_pattern_keys());
+  add(aggregate_keys());
   add(moonlet_keys());
   add(collision_keys());
   add_laws(keys,
@@ -341,6 +343,7 @@ std::vector<Section> make_sections() {
       {.path = "moonlet", .replaced_by = "start.from", .repeated = true},
       {.path = "particles.step", .replaced_by = "start.from"},
       {.path = "particles.wake", .replaced_by = "start.from"},
+      {.path = "particles.aggregate", .replaced_by = "start.from", .repeated = true},
       {.path = "collisions"},
       {.path = "collisions.restitution"},
       {.path = "collisions.friction"},

@@ -7,26 +7,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 namespace keeler {
 namespace {
 
 Vec3 vector_of(const std::vector<double>& numbers) {
   return {numbers[0], numbers[1], numbers[2]};
-}
-
-std::string table_of(std::size_t k) {
-  return fmt::format("moonlet[{}]", k + 1);
-}
-
-// Distance of the nearest images.
-double distance(const Vec3& a, const Vec3& b, const Scene& scene) {
-  Vec3 d = a - b;
-  d.x() -= scene.size_x * std::round(d.x() / scene.size_x);
-  d.y() -= scene.size_y * std::round(d.y() / scene.size_y);
-  return d.norm();
 }
 
 } // namespace
@@ -86,29 +71,6 @@ std::vector<MoonletSettings> read_moonlets(Settings& settings, const std::string
     moonlets.push_back({radius, mass, vector_of(p.numbers("place")), vector_of(p.numbers("velocity"))});
   }
   return moonlets;
-}
-
-void check_moonlets(const Scene& scene, const Settings& settings) {
-  const std::vector<MoonletSettings>& moonlets = scene.moonlets;
-  for (std::size_t k = 0; k < moonlets.size(); ++k) {
-    const MoonletSettings& m = moonlets[k];
-    const std::string table = table_of(k);
-    if (!(2.0 * m.radius <= std::min(scene.size_x, scene.size_y)))
-      fail_at(settings.place(table + ".radius"),
-              fmt::format("{} is {} m across (more than a side of the box of {} m x {} m); enlarge the box or lower "
-                          "the radius",
-                          table, figures(2.0 * m.radius, 4), figures(scene.size_x, 4), figures(scene.size_y, 4)));
-    if (!(2.0 * std::fabs(m.place.x()) <= scene.size_x && 2.0 * std::fabs(m.place.y()) <= scene.size_y))
-      fail_at(settings.place(table + ".place"),
-              fmt::format("{}.place is outside the box (it reaches {} m and {} m to each side of its middle); move it",
-                          table, figures(0.5 * scene.size_x, 4), figures(0.5 * scene.size_y, 4)));
-    for (std::size_t j = 0; j < k; ++j)
-      if (const double apart = distance(m.place, moonlets[j].place, scene); apart < m.radius + moonlets[j].radius)
-        fail_at(settings.place(table),
-                fmt::format("{} and {} overlap (their centres are {} m apart, their radii {} m and {} m); move one",
-                            table_of(j), table, figures(apart, 4), figures(moonlets[j].radius, 4),
-                            figures(m.radius, 4)));
-  }
 }
 
 } // namespace keeler

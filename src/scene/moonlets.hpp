@@ -14,7 +14,4 @@ std::vector<Key> moonlet_keys();
 /// Of a scene that goes on too: how many there are, runs must know.
 std::vector<MoonletSettings> read_moonlets(Settings& settings, const std::string& name);
 
-/// Throws UsageError at the first that stands outside the box or is too large for it, or that overlaps another.
-void check_moonlets(const Scene& scene, const Settings& settings);
-
 } // namespace keeler

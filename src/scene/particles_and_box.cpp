@@ -1,5 +1,7 @@
 #include "particles_and_box.hpp"
 
+#include "aggregates.hpp"
+
 #include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/core/words.hpp>
@@ -246,6 +248,7 @@ void read_particles_and_box(Scene& scene, Settings& settings, const std::string&
   read_pattern(scene, settings);
   const std::string place = settings.place(amount.key); // before it is resolved to a count
   read_count(scene, settings, amount);
+  particles.aggregates = read_aggregates(settings, name, particles);
   check_filling(scene, place);
 }
 

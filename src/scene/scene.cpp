@@ -4,6 +4,7 @@
 #include "moonlets.hpp"
 #include "overrides.hpp"
 #include "particles_and_box.hpp"
+#include "placed_bodies.hpp"
 #include "presets.hpp"
 #include "quality.hpp"
 #include "settings.hpp"
@@ -158,7 +159,7 @@ Scene read_scene(Document document, const std::string& name, Purpose purpose, st
     scene.particles.seed = static_cast<std::uint64_t>(settings.integer("particles.seed"));
   scene.moonlets = read_moonlets(settings, name);
   if (purpose == Purpose::start && !scene.start_from)
-    check_moonlets(scene, settings);
+    check_placed_bodies(scene, settings);
   scene.collisions = read_collisions(settings, name);
   scene.gravity = read_gravity(settings, name, scene.size_x);
   scene.external_forces = read_external_forces(settings, name, scene.size_x);
@@ -194,7 +195,8 @@ double Scene::optical_depth() const {
 }
 
 double Scene::bunched_optical_depth() const {
-  return optical_depth() * particles.pattern.peak() / (1.0 - particles.bunching());
+  const double free = static_cast<double>(particles.free_count()) / static_cast<double>(particles.count);
+  return free * optical_depth() * particles.pattern.peak() / (1.0 - particles.bunching());
 }
 
 Scene parse_scene(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,

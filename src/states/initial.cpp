@@ -1,5 +1,6 @@
 #include <keeler/states/initial.hpp>
 
+#include "aggregate.hpp"
 #include "particle_fault.hpp"
 #include "placing.hpp"
 
@@ -82,6 +83,8 @@ Patch thinned(Patch patch, const Scene& scene) {
 
 // What the radii that were drawn add to the layer's height²: 1.7 τ R², with the R of the crowd.
 double own_room(const UniformRequest& request) {
+  if (request.radii.empty())
+    return 0.0;
   double area = 0.0;
   for (const double r : request.radii)
     area += pi * r * r;
@@ -103,13 +106,31 @@ Streamlines streamlines_of(const Scene& scene) {
   return streamlines;
 }
 
-std::vector<HeldBody> moonlets_of(const Scene& scene) {
-  std::vector<HeldBody> bodies;
+// The last particles are those of aggregates; they leave the crowd, which is placed around their balls.
+void take_aggregates(const Scene& scene, UniformRequest& request) {
+  std::vector<double> densities = request.densities;
+  if (densities.empty())
+    densities.assign(request.radii.size(), request.density);
+  std::size_t number = 0;
+  for (const AggregateSettings& aggregate : scene.particles.aggregates) {
+    const Material material{std::span(request.radii).subspan(aggregate.first, aggregate.count),
+                            std::span(densities).subspan(aggregate.first, aggregate.count)};
+    const std::vector<HeldBody> bodies =
+        aggregate_bodies(aggregate, ++number, material, request.frequencies, request.seed);
+    request.held.insert(request.held.end(), bodies.begin(), bodies.end());
+    request.closed.push_back({aggregate.place, aggregate.radius});
+  }
+  request.radii.resize(scene.particles.free_count());
+  if (!request.densities.empty())
+    request.densities.resize(request.radii.size());
+}
+
+void add_moonlets(const Scene& scene, UniformRequest& request) {
   for (const MoonletSettings& m : scene.moonlets) {
     const Vec3 circular(0.0, -scene.planet.frequencies.shear() * m.place.x(), 0.0);
-    bodies.push_back({m.place, circular + m.velocity / scene.planet.orbital_frequency, m.radius, m.mass});
+    request.held.push_back({m.place, circular + m.velocity / scene.planet.orbital_frequency, m.radius, m.mass});
+    request.closed.push_back({m.place, m.radius});
   }
-  return bodies;
 }
 
 UniformRequest request_of(const Scene& scene) {
@@ -122,12 +143,22 @@ UniformRequest request_of(const Scene& scene) {
   request.densities = draw_densities(scene.particles.sizes, scene.particles.count, scene.particles.seed);
   request.dispersion_x = scene.particles.velocity_dispersion * mean_radius;
   request.dispersion_z = vertical_share * request.dispersion_x;
-  request.own_room = own_room(request);
   request.streamlines = streamlines_of(scene);
-  request.held = moonlets_of(scene);
   request.pattern = scene.particles.pattern;
   request.seed = scene.particles.seed;
+  if (!scene.particles.aggregates.empty())
+    take_aggregates(scene, request);
+  add_moonlets(scene, request);
+  request.own_room = own_room(request);
   return request;
+}
+
+// An aggregate turns as one body, so its rough particles spin as it does.
+void spin_aggregates(const Scene& scene, Patch& patch) {
+  patch.spins.assign(patch.size(), Vec3::Zero());
+  for (const AggregateSettings& a : scene.particles.aggregates)
+    for (std::size_t k = a.first; k < a.first + a.count; ++k)
+      patch.spins[k].z() = a.spin;
 }
 
 } // namespace
@@ -160,6 +191,8 @@ Patch initial_patch(const Scene& scene, const std::function<void(const StartProg
     return thinned(patch_from_snapshot(*scene.start_from, scene), scene);
   Patch patch = uniform_patch(request_of(scene), progress);
   patch.orbital_frequency = scene.planet.orbital_frequency;
+  if (scene.collisions.friction && !scene.particles.aggregates.empty())
+    spin_aggregates(scene, patch);
   return patch;
 }
 

@@ -27,6 +27,8 @@ constexpr int usual_sweeps = 120, sweeps_a_round = 400, most_rounds = 12;
 } // namespace
 
 double crowd_volume(const std::vector<double>& radii) {
+  if (radii.empty())
+    return 0.0;
   double cubes = 0.0, squares_of_cubes = 0.0;
   for (const double r : radii) {
     cubes += r * r * r;
@@ -46,10 +48,10 @@ Placing::Placing(const UniformRequest& request)
       ++last;
     octaves_.push_back({first, last});
   }
-  for (std::size_t k = 0; k < request.held.size(); ++k) {
-    const HeldBody& body = request.held[k];
-    const auto particle = static_cast<std::uint32_t>(radii.size() + k);
-    spheres_.push_back({body.place, body.radius, body.place.z(), particle, true});
+  for (std::size_t k = 0; k < request.closed.size(); ++k) {
+    const auto& [centre, radius] = request.closed[k];
+    const auto number = static_cast<std::uint32_t>(radii.size() + k);
+    spheres_.push_back({centre, radius, centre.z(), number, true});
   }
 }
 

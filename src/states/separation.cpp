@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 namespace keeler {
@@ -25,6 +26,12 @@ public:
   Separation(std::vector<Sphere>& spheres, const ShearingBox& box, double offset)
       : spheres_(spheres), box_(box), offset_(offset), moves_(spheres.size(), Vec3::Zero()),
         listed_places_(spheres.size()) {}
+
+  // In a ball about the origin; nothing has a height to go back to.
+  void enclose(double ball_radius) {
+    ball_radius_ = ball_radius;
+    tether_ = 0.0;
+  }
 
   bool run(int most_sweeps, const std::function<void(int)>& after_sweep) {
     int list_age = sweeps_a_list;
@@ -53,6 +60,8 @@ private:
   bool push() {
     std::atomic<bool> overlaps = false;
     parallel_for(spheres_.size(), [&](std::size_t i) {
+      if (spheres_[i].held)
+        return;
       bool overlapping = false;
       Vec3 shift = push_on(i, overlapping);
       shift.z() += tether_ * (spheres_[i].height - spheres_[i].place.z());
@@ -80,7 +89,18 @@ private:
       shift += direction * ((wanted - distance) * its_mass / (mass + its_mass));
       overlapping = overlapping || distance < sum + enough * smaller;
     }
+    if (std::isfinite(ball_radius_))
+      push_inward(sphere, shift, overlapping);
     return shift;
+  }
+
+  void push_inward(const Sphere& sphere, Vec3& shift, bool& overlapping) const {
+    const double distance = sphere.place.norm(), room = ball_radius_ - sphere.radius;
+    const double missing = distance - (room - clearance * sphere.radius);
+    if (missing <= 0.0)
+      return;
+    shift -= sphere.place * (missing / distance);
+    overlapping = overlapping || distance > room - enough * sphere.radius;
   }
 
   // Nobody leaves its skin, so that the lists stay complete; true when a sphere would have.
@@ -103,6 +123,7 @@ private:
   std::vector<Sphere>& spheres_;
   const ShearingBox& box_;
   double offset_;
+  double ball_radius_ = std::numeric_limits<double>::infinity();
   std::vector<Vec3> moves_, listed_places_;
   NeighbourLists lists_;
   double tether_ = first_tether;
@@ -121,6 +142,14 @@ void sort_by_place(std::vector<Sphere>& spheres, const ShearingBox& box) {
 bool separate(std::vector<Sphere>& spheres, const ShearingBox& box, double offset, int most_sweeps,
               const std::function<void(int)>& after_sweep) {
   return Separation(spheres, box, offset).run(most_sweeps, after_sweep);
+}
+
+bool separate_in_ball(std::vector<Sphere>& spheres, double ball_radius, int most_sweeps) {
+  const double side = 8.0 * ball_radius; // images are out of reach
+  const ShearingBox box{side, side, 0.0, 0.0};
+  Separation separation(spheres, box, 0.0);
+  separation.enclose(ball_radius);
+  return separation.run(most_sweeps, [](int) {});
 }
 
 } // namespace keeler

@@ -61,7 +61,7 @@ Patch patch_at(const UniformRequest& request, std::vector<Vec3> places) {
   patch.frequencies = request.frequencies;
   patch.radii = request.radii;
   patch.positions = std::move(places);
-  patch.positions.resize(request.radii.size()); // without the held bodies, which come last
+  patch.positions.resize(request.radii.size()); // without the closed balls, which come last
   patch.velocities.resize(patch.size());
   patch.masses.resize(patch.size());
   patch.ids.resize(patch.size());

@@ -49,6 +49,23 @@ runs 0 generate "$work/scene.toml" --set 'particles.wake={contrast=0.5, waveleng
 one_line "a wake" "the wake has a wavelength of 26.83 m and a pitch of 26.57 degrees (2 x 1 waves fit the box)"
 refuses "a step beyond the box" "particles.step.between is [-10, 50] (two rising x within the box, from -30 to 30" \
   generate "$work/scene.toml" --set 'particles.step={between=[-10,50], factor=2.0}' -o "$work/none.hdf"
+
+# Aggregates.
+aggregate() { echo "particles.aggregate=[{ count = $1, filling = $2, place = [10, 0, 0] }]"; }
+accepts "an aggregate" generate "$work/scene.toml" --set "$(aggregate 200 0.5)" -o "$work/pile.hdf"
+runs 0 analyze "$work/pile.hdf"
+prints "an aggregate overlaps nothing" "largest overlap      0 of"
+runs 0 check "$work/scene.toml" --set "$(aggregate 200 0.5)"
+prints "check" "aggregate 1        ids "
+refuses "too full an aggregate" "particles.aggregate[1]: 12 particles cannot be packed at random to a filling of 0.64" \
+  generate "$work/scene.toml" --set "$(aggregate 12 0.64)" --set particles.sizes.min=3.9 -o "$work/none.hdf"
+refuses "an aggregate of more than there are" "is more than is left" \
+  generate "$work/scene.toml" --set "$(aggregate 100000000 0.5)" -o "$work/none.hdf"
+refuses "an aggregate wider than the box" "across (more than a side of the box" \
+  generate "$work/scene.toml" --set "$(aggregate 200 0.0001)" -o "$work/none.hdf"
+refuses "an aggregate in a moonlet" "particles.aggregate[1] and moonlet[1] overlap" generate "$work/scene.toml" \
+  --set "$(aggregate 200 0.5)" --set 'moonlet=[{ radius = 11.0, density = 900.0 }]' -o "$work/none.hdf"
+
 printf '[planet]\norbital_frequency = 1.95e-4\n[start]\nfrom = "1.hdf"\n[time]\nend = 0.002\n' >"$work/share.toml"
 for share in 1.0 0.5; do
   runs 0 generate "$work/share.toml" --set start.keep=$share -o "$work/kept-$share.hdf"

@@ -16,7 +16,8 @@ enum class RandomPurpose : std::uint32_t {
   gravity_origin = 5,
   sample = 6,
   contact = 7,
-  thinning = 8
+  thinning = 8,
+  aggregate = 9
 };
 
 /// Philox4x64-10 (Salmon et al. 2011) keyed by seed and purpose, counting draws of one id.

@@ -40,6 +40,16 @@ struct ModeSettings {
   double phase_degrees = 0.0;               ///< of Σ/⟨Σ⟩ − 1 = amplitude cos(kx + phase) at the start
 };
 
+/// A ball of the scene's own particles at the start. Aggregates have the last ids of the particles, in the order of the
+/// scene.
+struct AggregateSettings {
+  std::size_t first = 0, count = 0; ///< ids first … first + count − 1
+  double filling = 0.0;             ///< volume of these over that of the ball
+  Vec3 place = Vec3::Zero();        ///< of the middle of the ball, m
+  double spin = 1.0;                ///< about the vertical against the stars, Ω
+  double radius = 0.0, mass = 0.0;  ///< of the ball, m; kg
+};
+
 struct ParticleSettings {
   std::size_t count = 0; ///< N, derived when the file gives τ or Σ
   double density = 0.0;  ///< kg/m³; of populations the mean by volume
@@ -49,7 +59,10 @@ struct ParticleSettings {
   StreamlineSettings streamlines;
   std::vector<ModeSettings> modes; ///< none beside patterned streamlines
   DensityPattern pattern;
+  std::vector<AggregateSettings> aggregates;
 
+  /// Particles in no aggregate.
+  std::size_t free_count() const { return aggregates.empty() ? count : aggregates.front().first; }
   /// The largest that 1 − spacing of streamlines may come to be, in their mean spacing: q, or the sum of the
   /// amplitudes.
   double bunching() const;
@@ -124,7 +137,8 @@ struct Scene {
   double surface_density() const;
   /// Optical depth Σ π r² / area.
   double optical_depth() const;
-  /// The same where streamlines are closest at the start, 1/(1 − q) of it, and the pattern is densest.
+  /// The same of the particles in no aggregate, where streamlines are closest at the start, 1/(1 − q) of it, and the
+  /// pattern is densest.
   double bunched_optical_depth() const;
 };
 

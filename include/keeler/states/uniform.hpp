@@ -12,25 +12,32 @@
 
 namespace keeler {
 
-/// A body at a place of its own, around which the particles are placed.
+/// A body at a place of its own.
 struct HeldBody {
   Vec3 place, velocity;
   double radius, mass;
+};
+
+/// Where no particle is placed.
+struct ClosedBall {
+  Vec3 centre;
+  double radius;
 };
 
 /// What a uniform patch is made of. Internal units.
 struct UniformRequest {
   ShearingBox box;
   Frequencies frequencies;
-  std::vector<double> radii;     ///< m, one a particle; particle k gets id k
-  double density = 900.0;        ///< kg m⁻³
-  std::vector<double> densities; ///< one a particle in its place; empty: all have the same
-  double dispersion_x = 1.0;     ///< c_x, m rad⁻¹
-  double dispersion_z = 0.65;    ///< c_z, m rad⁻¹
-  double own_room = 0.0;         ///< m²: the layer's height is √(c_z²/ν² + own_room)
-  Streamlines streamlines;       ///< that the mean motion follows; circles unless given
-  std::vector<HeldBody> held;    ///< they come after the particles, with the ids that follow; no two may overlap
-  DensityPattern pattern;        ///< of the guiding centres on them
+  std::vector<double> radii;      ///< m, one a particle; particle k gets id k
+  double density = 900.0;         ///< kg m⁻³
+  std::vector<double> densities;  ///< one a particle in its place; empty: all have the same
+  double dispersion_x = 1.0;      ///< c_x, m rad⁻¹
+  double dispersion_z = 0.65;     ///< c_z, m rad⁻¹
+  double own_room = 0.0;          ///< m²: the layer's height is √(c_z²/ν² + own_room)
+  Streamlines streamlines;        ///< that the mean motion follows; circles unless given
+  std::vector<HeldBody> held;     ///< they come after the particles, with the ids that follow
+  std::vector<ClosedBall> closed; ///< they hold all the held bodies; no two may overlap
+  DensityPattern pattern;         ///< of the guiding centres on them
   std::uint64_t seed = 1;
 };
 

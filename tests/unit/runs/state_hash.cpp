@@ -125,9 +125,10 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
     if (other == others.end()) { // has no place in this scene beside the others
       CHECK((needless.count(key.path) == 1 || key.section() == "particles.streamlines" ||
              key.section() == "particles.modes" || key.section() == "particles.step" ||
-             key.section() == "particles.wake" || key.section() == "moonlet" || key.section() == "satellite"));
+             key.section() == "particles.wake" || key.section() == "particles.aggregate" ||
+             key.section() == "moonlet" || key.section() == "satellite"));
       CHECK((key.effect == motion || key.section() != "satellite"));
-      CHECK((key.effect == start || key.section() != "moonlet"));
+      CHECK((key.effect == start || (key.section() != "moonlet" && key.section() != "particles.aggregate")));
       continue;
     }
     ++seen;

@@ -50,6 +50,13 @@ TEST_CASE("moonlets stand where the scene says, with the last ids, and nothing o
   }
 }
 
+TEST_CASE("moonlets that touch keep their places, and grains keep clear of them") {
+  const Scene scene = scene_with("[[moonlet]]\nradius = 6.0\ndensity = 450.0\nplace = [-6, 0, 0]\n"
+                                 "[[moonlet]]\nradius = 6.0\ndensity = 450.0\nplace = [6, 0, 0]\n",
+                                 "sizes = { law = \"equal\", radius = 0.5 }\n");
+  CHECK(largest_overlap(initial_patch(scene)).depth == 0.0);
+}
+
 TEST_CASE("a start with moonlets has the same bits for any number of threads") {
   const Scene scene = scene_with(moonlets, "sizes = { law = \"power\", exponent = 3.0, min = 0.2, max = 3.0 }\n");
   const int before = threads();

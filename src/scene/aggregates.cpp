@@ -1,0 +1,94 @@
+#include "aggregates.hpp"
+
+#include <keeler/core/units.hpp>
+#include <keeler/core/words.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+// The ball is that of the radii as they are drawn: aggregates and their surroundings must not overlap.
+void find_balls(std::vector<AggregateSettings>& aggregates, const ParticleSettings& particles) {
+  if (aggregates.empty())
+    return;
+  const std::vector<double> radii = draw_radii(particles.sizes, particles.count, particles.seed),
+                            densities = draw_densities(particles.sizes, particles.count, particles.seed);
+  for (AggregateSettings& a : aggregates) {
+    double cubes = 0.0;
+    for (std::size_t k = a.first; k < a.first + a.count; ++k) {
+      const double cube = radii[k] * radii[k] * radii[k];
+      cubes += cube;
+      a.mass += 4.0 / 3.0 * pi * (densities.empty() ? particles.density : densities[k]) * cube;
+    }
+    a.radius = std::cbrt(cubes / a.filling);
+  }
+}
+
+} // namespace
+
+std::vector<Key> aggregate_keys() {
+  using enum KeyType;
+  const auto own = [](Key key) {
+    key.path = "particles.aggregate." + key.path;
+    key.effect = KeyEffect::start;
+    return key;
+  };
+  return {
+      own({.path = "count",
+           .type = integer,
+           .example = "500",
+           .unit = "1",
+           .meaning = "how many of the particles make a ball at the start, one in each table [[particles.aggregate]]",
+           .range = {.low = 1, .high = 1e9}}),
+      own({.path = "filling",
+           .type = number,
+           .fallback = "0.5",
+           .unit = "1",
+           .meaning = "their volume over that of the ball, packed at random",
+           .range = {.low = 0, .high = 0.64, .low_open = true}}),
+      own({.path = "place",
+           .type = triple,
+           .fallback = "[0.0, 0.0, 0.0]",
+           .unit = "m",
+           .meaning = "the middle of the ball: outward, along the orbit and up from the middle of the box"}),
+      own({.path = "spin",
+           .type = number,
+           .fallback = "1.0",
+           .unit = "Omega",
+           .meaning = "its spin about the vertical against the stars; 1 keeps one face to the planet",
+           .range = {.low = -100, .high = 100}}),
+  };
+}
+
+std::vector<AggregateSettings> read_aggregates(Settings& settings, const std::string& name,
+                                               const ParticleSettings& particles) {
+  std::vector<AggregateSettings> aggregates;
+  std::size_t total = 0;
+  for (const std::string& table : settings.tables("particles.aggregate")) {
+    const Parameters p = settings.parameters(table, name);
+    const auto count = static_cast<std::size_t>(p.integer("count"));
+    if (count > particles.count - total)
+      fail_at(settings.place(table + ".count"),
+              fmt::format("{}.count = {} is more than is left (the scene has {}, of which {} are in the aggregates "
+                          "before); lower it or give the scene more particles",
+                          table, count, counted(particles.count, "particle"), total));
+    total += count;
+    const std::vector<double> place = p.numbers("place");
+    aggregates.push_back({.count = count,
+                          .filling = p.number("filling"),
+                          .place = {place[0], place[1], place[2]},
+                          .spin = p.number("spin")});
+  }
+  std::size_t first = particles.count - total;
+  for (AggregateSettings& a : aggregates) {
+    a.first = first;
+    first += a.count;
+  }
+  find_balls(aggregates, particles);
+  return aggregates;
+}
+
+} // namespace keeler

@@ -1,0 +1,68 @@
+#include "placed_bodies.hpp"
+
+#include <keeler/core/words.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+struct PlacedBody {
+  std::string table;
+  std::string size_key; // what makes it large
+  Vec3 place;
+  double radius;
+};
+
+std::vector<PlacedBody> placed_bodies(const Scene& scene) {
+  std::vector<PlacedBody> bodies;
+  for (const AggregateSettings& a : scene.particles.aggregates)
+    bodies.push_back({fmt::format("particles.aggregate[{}]", bodies.size() + 1), "count", a.place, a.radius});
+  const std::size_t aggregates = bodies.size();
+  for (const MoonletSettings& m : scene.moonlets)
+    bodies.push_back({fmt::format("moonlet[{}]", bodies.size() - aggregates + 1), "radius", m.place, m.radius});
+  return bodies;
+}
+
+// Of the nearest images.
+double distance(const Vec3& a, const Vec3& b, const Scene& scene) {
+  Vec3 d = a - b;
+  d.x() -= scene.size_x * std::round(d.x() / scene.size_x);
+  d.y() -= scene.size_y * std::round(d.y() / scene.size_y);
+  return d.norm();
+}
+
+void check_in_box(const PlacedBody& body, const Scene& scene, const Settings& settings) {
+  const std::string size = body.table + "." + body.size_key, place = body.table + ".place";
+  if (!(2.0 * body.radius <= std::min(scene.size_x, scene.size_y)))
+    fail_at(settings.place(size),
+            fmt::format("{} is {} m across (more than a side of the box of {} m x {} m); enlarge the box or lower "
+                        "the {}",
+                        body.table, figures(2.0 * body.radius, 4), figures(scene.size_x, 4), figures(scene.size_y, 4),
+                        body.size_key));
+  if (!(2.0 * std::fabs(body.place.x()) <= scene.size_x && 2.0 * std::fabs(body.place.y()) <= scene.size_y))
+    fail_at(settings.place(place),
+            fmt::format("{} is outside the box (it reaches {} m and {} m to each side of its middle); move it", place,
+                        figures(0.5 * scene.size_x, 4), figures(0.5 * scene.size_y, 4)));
+}
+
+} // namespace
+
+void check_placed_bodies(const Scene& scene, const Settings& settings) {
+  const std::vector<PlacedBody> bodies = placed_bodies(scene);
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    const PlacedBody& body = bodies[k];
+    check_in_box(body, scene, settings);
+    for (std::size_t j = 0; j < k; ++j)
+      if (const double apart = distance(body.place, bodies[j].place, scene); apart < body.radius + bodies[j].radius)
+        fail_at(settings.place(body.table),
+                fmt::format("{} and {} overlap (their centres are {} m apart, their radii {} m and {} m); move one",
+                            bodies[j].table, body.table, figures(apart, 4), figures(bodies[j].radius, 4),
+                            figures(body.radius, 4)));
+  }
+}
+
+} // namespace keeler
