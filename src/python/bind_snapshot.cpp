@@ -56,7 +56,7 @@ PythonSnapshot tile(const PythonSnapshot& snapshot, std::size_t nx, std::size_t 
 
 PythonSnapshot from_arrays(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
                            const Doubles& positions, const std::optional<Doubles>& velocities, const Doubles& radii,
-                           const std::optional<Doubles>& masses, bool relaxed) {
+                           const std::optional<Doubles>& masses, const std::optional<Doubles>& spins, bool relaxed) {
   ParticleTable table;
   table.file = "the arrays";
   const auto count = positions.ndim() > 0 ? static_cast<std::size_t>(positions.shape(0)) : 0;
@@ -68,6 +68,8 @@ PythonSnapshot from_arrays(const std::string& text, const std::string& name, con
     table.velocities = vectors_from(*velocities, count, "velocities");
   if (masses)
     table.masses = numbers_from(*masses, count, "masses");
+  if (spins)
+    table.spins = vectors_from(*spins, count, "spins");
   return made([&] {
     const TableScene of = parse_table_scene(text, name, overrides);
     Patch patch = patch_from_table(table, of);
@@ -147,7 +149,7 @@ void bind_snapshot(py::module_& module) {
   module.def("generate", &generate, py::arg("scene"), py::arg("clumped"));
   module.def("analyze", &analyze_path, py::arg("path"), py::arg("since"), py::arg("until"));
   module.def("from_arrays", &from_arrays, py::arg("text"), py::arg("name"), py::arg("overrides"), py::arg("positions"),
-             py::arg("velocities"), py::arg("radii"), py::arg("masses"), py::arg("relax"));
+             py::arg("velocities"), py::arg("radii"), py::arg("masses"), py::arg("spins"), py::arg("relax"));
 }
 
 } // namespace keeler::python

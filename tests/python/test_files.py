@@ -137,6 +137,11 @@ class Starts(InAFolder):
         circular = np.column_stack([[0, 0], -1.5 * sim.orbital_frequency * places[:, 0]])
         np.testing.assert_allclose(sim.by_id(sim.velocities)[:, :2], circular, rtol=2e-2, atol=1e-9)
         sim.run(0.1)
+        spin = [[0.0, 0.0, 1e-4], [1e-5, 0.0, 0.0]]
+        rough = ring(collisions={"friction": {"tangential_restitution": 0.5}})
+        np.testing.assert_allclose(keeler.from_arrays(rough, places, 1.5, spins=spin).spins, spin, atol=1e-19)
+        with self.assertRaises(keeler.UsageError):
+            keeler.from_arrays(RING, places, 1.5, spins=spin)
         overlapping = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]
         with self.assertRaises(keeler.InvariantError):
             keeler.from_arrays(RING, overlapping, 1.0)

@@ -323,9 +323,9 @@ def resume(folder):
     return Simulation._of(_core.Simulation.resume(folder))
 
 
-def from_arrays(scene, positions, radii, velocities=None, masses=None, *, relax=False, **overrides):
+def from_arrays(scene, positions, radii, velocities=None, masses=None, spins=None, *, relax=False, **overrides):
     """A simulation of your own particles in the scene's box: see start_from_arrays()."""
-    start = snapshots.start_from_arrays(scene, positions, radii, velocities, masses, relax=relax, **overrides)
+    start = snapshots.start_from_arrays(scene, positions, radii, velocities, masses, spins, relax=relax, **overrides)
     return Simulation(start.scene, start=start)
 
 

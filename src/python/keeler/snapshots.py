@@ -110,15 +110,16 @@ def tile(snapshot, nx, ny):
     return snapshot.tile(nx, ny)
 
 
-def start_from_arrays(scene, positions, radii, velocities=None, masses=None, *, relax=False, **overrides):
+def start_from_arrays(scene, positions, radii, velocities=None, masses=None, spins=None, *, relax=False, **overrides):
     """A start of your own particles, as a Snapshot in the scene's box.
 
     positions (N, 3) m, velocities (N, 3) m/s or None (circular orbits), radii (N,) m or one number, masses (N,) kg or
-    one number or None (of the scene's density). Particle k gets the id k. ``relax`` moves particles that overlap apart.
+    one number or None (of the scene's density), spins (N, 3) rad/s against the stars where the scene has friction.
+    Particle k gets the id k. ``relax`` moves particles that overlap apart.
     Raises UsageError, naming the row, for particles that no ring has; InvariantError for overlaps.
     """
     text, name = scenes.source(scene)
-    arrays = [None if a is None else np.asarray(a, dtype=float) for a in (positions, velocities, radii, masses)]
+    arrays = [None if a is None else np.asarray(a, dtype=float) for a in (positions, velocities, radii, masses, spins)]
     return Snapshot(_core.from_arrays(text, name, scenes.overrides_of(overrides), *arrays, relax), "the arrays")
 
 
