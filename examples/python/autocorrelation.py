@@ -1,7 +1,7 @@
 """The autocorrelation of self-gravity wakes: how long, how wide and how inclined they are, the mean of many instants.
 
 xi(d) = <sigma(r) sigma(r + d)>/<sigma>^2 - 1, with sigma the surface density. The box is periodic in the sheared
-coordinate y - s x/L_x, where s is the shear offset of that instant: there the mean over r is a product of Fourier
+coordinate y + s x/L_x, where s is the shear offset of that instant: there the mean over r is a product of Fourier
 transforms. Particles count as points, so xi(0) also holds each particle with itself.
 """
 
@@ -11,7 +11,7 @@ from common import RING, arguments, plt
 
 figure, quick = arguments(__doc__, "autocorrelation.png")
 cell = 1.5  # m
-d = np.arange(-50, 51) * cell
+d = np.arange(-28, 29) * cell if quick else np.arange(-50, 51) * cell  # up to half of the box
 dx, dy = np.meshgrid(d, d, indexing="ij")
 maps = []
 
@@ -22,11 +22,11 @@ def correlate(sim):
     state = sim.snapshot()
     (length, width), offset = state.box, state.shear_offset
     x, y = state.positions[:, 0], state.positions[:, 1]
-    u, v = x / length, (y - offset * x / length) / width  # periodic, period 1
+    u, v = x / length, (y + offset * x / length) / width  # periodic, period 1
     shape = round(length / cell), round(width / cell)
     mass = np.histogram2d(u % 1.0, v % 1.0, shape, [[0, 1], [0, 1]], weights=state.masses)[0]
     xi = np.fft.ifft2(np.abs(np.fft.fft2(mass / mass.mean() - 1.0)) ** 2).real / mass.size
-    i, j = dx / length * shape[0], (dy - offset * dx / length) / width * shape[1]  # separations in cells
+    i, j = dx / length * shape[0], (dy + offset * dx / length) / width * shape[1]  # separations in cells
     maps.append(xi[np.rint(i).astype(int) % shape[0], np.rint(j).astype(int) % shape[1]])
 
 

@@ -1,5 +1,7 @@
 #include "arrays.hpp"
 
+#include "computing.hpp"
+
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
 
@@ -27,6 +29,7 @@ py::array sealed(py::array array) {
 }
 
 py::array scaled_copy(std::span<const Vec3> rows, double factor) {
+  require_own_threads();
   py::array_t<double> array({static_cast<py::ssize_t>(rows.size()), py::ssize_t{3}});
   double* const out = array.mutable_data();
   parallel_for(rows.size(), [&](std::size_t k) {

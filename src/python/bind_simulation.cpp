@@ -106,6 +106,18 @@ bool same_bits(const double* a, const double* b) {
   return bits(a[0]) == bits(b[0]) && bits(a[1]) == bits(b[1]) && bits(a[2]) == bits(b[2]);
 }
 
+void change_spins(Particles& particles, const Doubles& spins, const py::object& before, double after, double omega) {
+  if (before.is_none())
+    throw UsageError("spins are given, and the particles of this scene are smooth; leave them None, or give the scene "
+                     "[collisions.friction]");
+  const auto old = before.cast<Doubles>();
+  const SpinTurn turn(after);
+  const std::vector<Vec3> rows = vectors_from(spins, particles.size(), "spins", 1.0 / omega);
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (!same_bits(spins.data() + 3 * k, old.data() + 3 * k))
+      particles.spins[k] = turn.to_epoch(rows[k]);
+}
+
 // Arrays in the order of memory. Only particles whose place or velocity differs get new elements: from one form to the
 // other and back, a bit or two is lost.
 void replace(Held& held, const Doubles& positions, const Doubles& velocities, const Doubles& radii,
@@ -128,12 +140,8 @@ void replace(Held& held, const Doubles& positions, const Doubles& velocities, co
       body.elements = elements_from({Vec3(x[0], x[1], x[2]), Vec3(v[0], v[1], v[2]) / omega},
                                     held.scene().planet.frequencies, rotation);
   }
-  if (changed_spins) {
-    const SpinTurn turn(-0.5 * state.step_length);
-    const std::vector<Vec3> rows = vectors_from(*changed_spins, count, "spins", 1.0 / omega);
-    for (std::size_t k = 0; k < count; ++k)
-      particles.spins[k] = turn.to_epoch(rows[k]);
-  }
+  if (changed_spins)
+    change_spins(particles, *changed_spins, spins(held), -0.5 * state.step_length, omega);
   held.replace(std::move(particles));
 }
 
@@ -170,11 +178,18 @@ void bind_simulation(py::module_& module) {
       .def("__len__", [](const Held& held) { return held.state().particles.size(); })
       .def_property_readonly("scene", &Held::scene, py::return_value_policy::reference_internal)
       .def_property_readonly("orbits", [](const Held& held) { return held.simulation().orbits(); })
+      .def_property_readonly(
+          "box", [](const Held& held) { return std::pair(held.state().box.size_x, held.state().box.size_y); })
+      .def_property_readonly("shear_offset", [](const Held& held) { return held.state().boundary_offset(); })
       .def_property_readonly("tick", [](const Held& held) { return held.state().step; })
       .def_property_readonly(
           "epoch",
           [](const Held& held) { return held.simulation().orbits() + 0.5 * held.state().step_length / two_pi; })
-      .def_property_readonly("state_hash", [](const Held& held) { return state_hash(held.state(), held.scene()); })
+      .def_property_readonly("state_hash",
+                             [](const Held& held) {
+                               require_own_threads();
+                               return state_hash(held.state(), held.scene());
+                             })
       .def("advance", &Held::advance, py::arg("until_tick"))
       .def("elements", &elements)
       .def("radii", &of_bodies<&Body::radius>)

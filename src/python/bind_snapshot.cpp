@@ -25,16 +25,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-PythonSnapshot read(const fs::path& file) {
+PythonSnapshot read(const fs::path& file, bool is_a_start) {
+  require_own_threads();
   const py::gil_scoped_release unlocked;
   Snapshot snapshot = read_snapshot(file);
-  return {std::move(snapshot.patch), std::move(snapshot.meta.scene)};
+  return {std::move(snapshot.patch), std::move(snapshot.meta.scene), is_a_start};
 }
 
-void write(const PythonSnapshot& snapshot, const fs::path& file) {
+// As a start, its scene names the file; for copies in memory it stays as it is.
+void write(const PythonSnapshot& snapshot, const fs::path& file, bool as_it_is) {
+  require_own_threads();
   const py::gil_scoped_release unlocked;
-  const std::string scene =
-      snapshot.is_a_start ? parse_scene(snapshot.scene, file.string(), {}, file.string()).resolved : snapshot.scene;
+  const std::string scene = snapshot.is_a_start && !as_it_is
+                                ? parse_scene(snapshot.scene, file.string(), {}, file.string()).resolved
+                                : snapshot.scene;
   write_snapshot(file, snapshot.patch, {scene, collect_provenance({})});
 }
 
@@ -113,6 +117,7 @@ py::dict series(const fs::path& file) {
 }
 
 void render(const PythonSnapshot& snapshot, const fs::path& file, const std::string& title, int width) {
+  require_own_threads();
   const py::gil_scoped_release unlocked;
   render_patch(snapshot.patch, file.string(), {title, width});
 }
@@ -140,11 +145,12 @@ void bind_snapshot(py::module_& module) {
       .def_property_readonly("orbital_frequency", [](Self self) { return self.patch.orbital_frequency; })
       .def_property_readonly("time_orbits", [](Self self) { return self.patch.time_orbits; })
       .def_readonly("scene", &PythonSnapshot::scene)
-      .def("save", &write, py::arg("file"))
+      .def_readonly("is_a_start", &PythonSnapshot::is_a_start)
+      .def("save", &write, py::arg("file"), py::arg("as_it_is") = false)
       .def("analyze", &analyze_snapshot)
       .def("tile", &tile, py::arg("nx"), py::arg("ny"), py::arg("name"))
       .def("render", &render, py::arg("file"), py::arg("title"), py::arg("width"));
-  module.def("read_snapshot", &read, py::arg("file"));
+  module.def("read_snapshot", &read, py::arg("file"), py::arg("is_a_start") = false);
   module.def("read_series", &series, py::arg("file"));
   module.def("generate", &generate, py::arg("scene"), py::arg("clumped"));
   module.def("analyze", &analyze_path, py::arg("path"), py::arg("since"), py::arg("until"));

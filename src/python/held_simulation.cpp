@@ -3,14 +3,21 @@
 #include "computing.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/stopwatch.hpp>
 
 namespace keeler::python {
+namespace {
+
+constexpr double between_signals = 0.2; // s: the interpreter's handlers of other signals wait no longer
+
+} // namespace
 // Who computes; a second thread is told.
 class HeldSimulation::AtWork {
 public:
   explicit AtWork(std::atomic<bool>& flag) : flag_(flag) {
     if (flag_.exchange(true))
-      throw Error(ExitCode::run_time, "this simulation is at work in another thread; wait for it, or use a second one");
+      throw Error(ExitCode::run_time,
+                  "this simulation is at work, in another thread or below this call; wait for it, or use a second one");
   }
   ~AtWork() { flag_ = false; }
   AtWork(const AtWork&) = delete;
@@ -27,7 +34,8 @@ HeldSimulation::~HeldSimulation() {
 
 const Simulation& HeldSimulation::simulation() const {
   if (at_work_)
-    throw Error(ExitCode::run_time, "this simulation is at work in another thread; wait for it, or use a second one");
+    throw Error(ExitCode::run_time,
+                "this simulation is at work, in another thread or below this call; wait for it, or use a second one");
   if (given_up_)
     throw Error(ExitCode::run_time,
                 "a step of this simulation was given up on request, and its state with it; load the "
@@ -51,8 +59,14 @@ void HeldSimulation::step_until(std::int64_t until_tick) {
   const Interruptible by_keyboard(keyboard.give_up());
   const pybind11::gil_scoped_release unlocked;
   const std::int64_t interval = scene_.kick_interval();
-  while (simulation_->state().step < until_tick && !(keyboard.stop() && simulation_->state().step % interval == 0))
+  double elapsed = 0.0;
+  const Stopwatch watch(elapsed);
+  const auto must_return = [&] {
+    return simulation_->state().step % interval == 0 && (keyboard.stop() || watch.elapsed() > between_signals);
+  };
+  do
     simulation_->advance();
+  while (simulation_->state().step < until_tick && !must_return());
 }
 
 void HeldSimulation::advance(std::int64_t until_tick) {
@@ -82,7 +96,8 @@ void HeldSimulation::replace(Particles particles) {
 }
 
 void HeldSimulation::record_contacts(std::optional<double> minimum_speed) {
-  simulation();
+  if (minimum_speed)
+    simulation(); // fit to go on; recording ends in any state
   simulation_->drift().observe(nullptr);
   recorder_.reset();
   if (!minimum_speed)
@@ -92,7 +107,6 @@ void HeldSimulation::record_contacts(std::optional<double> minimum_speed) {
 }
 
 std::vector<ContactRecord> HeldSimulation::take_contacts() {
-  simulation();
   return recorder_ ? recorder_->take() : std::vector<ContactRecord>();
 }
 

@@ -1,8 +1,11 @@
 """What Python writes and reads, against the program: states, snapshots, series, sweeps, pictures."""
 
 import json
-import os
+import pickle
+import signal
 import subprocess
+import sys
+import time
 import tempfile
 import unittest
 from pathlib import Path
@@ -102,6 +105,20 @@ class AsTheProgram(InAFolder):
         again = keeler.run(RING, self.folder / "run", force=True, time={"end": 0.05})
         self.assertAlmostEqual(again.summary["time_orbits"], 0.05)
 
+    def test_ctrl_c_leaves_a_checkpoint(self):
+        code = "import keeler, sys; keeler.run(sys.argv[1], sys.argv[2], time={'end': 500.0})"
+        scene = self.scene_file(keeler.Simulation(ring(box={"size": [200.0, 200.0]})))
+        run = self.folder / "run"
+        with subprocess.Popen([sys.executable, "-c", code, scene, run], stderr=subprocess.DEVNULL) as process:
+            for _ in range(600):
+                if (run / "log.jsonl").exists() and (run / "series.csv").exists():
+                    break
+                time.sleep(0.05)
+            time.sleep(0.3)
+            process.send_signal(signal.SIGINT)
+        self.assertEqual(process.returncode, -signal.SIGINT)
+        self.assertGreater(keeler.resume(run).orbits, 0.0)
+
     def test_a_sweep(self):
         grid = self.folder / "grid.toml"
         self.scene_file(keeler.Simulation(RING))
@@ -126,6 +143,10 @@ class Starts(InAFolder):
         np.testing.assert_array_equal(tiled.positions, keeler.read(self.folder / "tiled.hdf").positions)
         tiled.save(self.folder / "by_hand.hdf")
         self.assertIn(str(self.folder / "by_hand.hdf"), keeler.read(self.folder / "by_hand.hdf").scene)
+        copied = pickle.loads(pickle.dumps(tiled))
+        self.assertEqual(copied.scene, tiled.scene)
+        copied.save(self.folder / "copied.hdf")
+        self.assertIn(str(self.folder / "copied.hdf"), keeler.read(self.folder / "copied.hdf").scene)
         sim = keeler.Simulation(RING, start=tiled)
         self.assertEqual(len(sim), len(tiled))
         self.assertEqual(sim.state_hash, keeler.Simulation(tiled.scene, start=tiled).state_hash)
@@ -161,6 +182,9 @@ class Starts(InAFolder):
         self.assertEqual((self.folder / "ring.png").read_bytes(), picture.data)
         self.assertTrue(sim._repr_png_().startswith(b"\x89PNG"))
         self.assertEqual(keeler.render(sim.snapshot(), width=400).data, picture.data)
+        run = keeler.run(RING, self.folder / "run", start=sim, time={"end": 0.002})
+        np.testing.assert_allclose(run.snapshots[0].positions, sim.snapshot().positions, rtol=0.0, atol=1e-12)
+        self.assertEqual(keeler.render(run, width=400).data, keeler.render(run.snapshots[-1], width=400).data)
 
     def test_faults_of_files(self):
         (self.folder / "damaged.hdf").write_bytes(b"nothing")

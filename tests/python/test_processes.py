@@ -6,6 +6,8 @@ import multiprocessing
 import os
 import pickle
 import resource
+import select
+import signal
 import subprocess
 import sys
 import unittest
@@ -28,6 +30,15 @@ def refused(seed):
     return "it ran"
 
 
+def looked_at(what):
+    """What a fork says to a look at large states that it inherited."""
+    try:
+        what()
+    except keeler.RunError as error:
+        return str(error)
+    return "it looked"
+
+
 def resident_mb():
     with open("/proc/self/statm", encoding="ascii") as statm:
         return int(statm.read().split()[1]) * resource.getpagesize() / 1e6
@@ -38,6 +49,31 @@ class Processes(unittest.TestCase):
         run(1)
         with multiprocessing.get_context("fork").Pool(1) as pool:
             self.assertIn("forked", pool.map(refused, [1])[0])
+
+    def test_each_look_at_an_inherited_state_says_no(self):
+        friction = {"restitution": {"law": "constant", "value": 0.5}, "friction": {"tangential_restitution": 0.5}}
+        sim = keeler.Simulation(ring(box={"size": [250.0, 250.0]}, collisions=friction)).run(0.004)
+        snapshot = sim.snapshot()
+        looks = {
+            "positions": lambda: sim.positions, "spins": lambda: sim.spins, "hash": lambda: sim.state_hash,
+            "snapshot": sim.snapshot, "velocities": lambda: snapshot.velocities, "analyze": snapshot.analyze,
+            "plot": snapshot.plot, "tile": lambda: snapshot.tile(2, 1), "run": sim.step,
+        }
+        sim._motion = None
+        for name, look in looks.items():
+            read, write = os.pipe()
+            child = os.fork()
+            if child == 0:
+                os.write(write, looked_at(look).encode())
+                os._exit(0)
+            os.close(write)
+            with self.subTest(name), os.fdopen(read) as said:
+                ready = select.select([said], [], [], 20.0)[0]
+                if not ready:
+                    os.kill(child, signal.SIGKILL)
+                os.waitpid(child, 0)
+                self.assertTrue(ready, "it hangs")
+                self.assertIn("forked", said.read())
 
     def test_spawned_processes_compute(self):
         with multiprocessing.get_context("spawn").Pool(2) as pool:

@@ -107,6 +107,18 @@ class Arrays(unittest.TestCase):
         self.assertEqual(self.sim.state_hash, other.run(0.2).state_hash)
         self.assertEqual(len(kept), 10)
 
+    def test_images_stand_where_the_shear_offset_says(self):
+        sim = self.sim.run(0.13)
+        (length, width), offset = sim.box, sim.shear_offset
+        self.assertGreater(min(offset, width - offset), 1.0)  # its sign can be seen
+        first, second = np.split(sim.snapshot().tile(2, 1).positions, 2)  # the copies, each in the order of the ids
+        apart = second - first
+        np.testing.assert_allclose(np.abs(apart[:, 0]), length, atol=1e-9)
+        shift = (apart[:, 1] + np.sign(apart[:, 0]) * offset) / width
+        np.testing.assert_allclose(shift, np.round(shift), atol=1e-9)
+        wrong = (apart[:, 1] - np.sign(apart[:, 0]) * offset) / width
+        self.assertGreater(np.abs(wrong - np.round(wrong)).min(), 1e-3)
+
     def test_rows_by_id(self):
         sim = self.sim.run(0.2)
         self.assertFalse(np.array_equal(sim.ids, np.arange(len(sim))))
@@ -154,6 +166,26 @@ class Course(unittest.TestCase):
         for wrong in (-1, 1.5):
             with self.assertRaises(keeler.UsageError):
                 sim.step(wrong)
+        sim.step(np.int64(1))
+        with self.assertRaisesRegex(keeler.UsageError, "orbit 0.2"):
+            sim.run(0.3).run()
+
+    def test_other_signals_are_heeded_while_it_runs(self):
+        class TooLong(Exception):
+            pass
+
+        def stop(*_):
+            raise TooLong
+
+        before = signal.signal(signal.SIGALRM, stop)
+        self.addCleanup(signal.signal, signal.SIGALRM, before)
+        sim = keeler.Simulation(ring(box={"size": [200.0, 200.0]}, time={"step": 5e-4, "end": 500.0}))
+        begin = time.monotonic()
+        signal.setitimer(signal.ITIMER_REAL, 0.3)
+        with self.assertRaises(TooLong):
+            sim.run()
+        self.assertLess(time.monotonic() - begin, 10.0)
+        sim.step()
 
     def interrupted(self, presses):
         sim = keeler.Simulation(ring(box={"size": [300.0, 300.0]}, time={"step": 5e-4, "end": 500.0}))
@@ -266,11 +298,31 @@ class Changes(unittest.TestCase):
             raise KeyError
         self.assertEqual(self.sim.state_hash, before)
 
+    def test_a_simulation_that_moves_on_within_is_refused(self):
+        def moves():
+            self.sim.run(0.1)
+
+        def is_changed():
+            with self.sim.edit():
+                pass
+
+        for meanwhile in (is_changed, moves):
+            with self.assertRaisesRegex(keeler.UsageError, "within edit"), self.sim.edit() as state:
+                state.masses *= 2.0
+                meanwhile()
+            self.assertLess(self.sim.masses.max(), 450.0 * 4.2)
+
     def test_spins(self):
         friction = {"restitution": {"law": "constant", "value": 0.5}, "friction": {"tangential_restitution": 0.5}}
         sim = keeler.Simulation(ring(collisions=friction)).run(0.05)
         with sim.edit() as state:
             state.spins[:] = [0.0, 0.0, 2.0 * sim.orbital_frequency]
+        before = sim.state_hash
+        with sim.edit():
+            pass
+        self.assertEqual(sim.state_hash, before)
+        with self.assertRaisesRegex(keeler.UsageError, "smooth"), self.sim.edit() as state:
+            state.spins = np.ones((len(self.sim), 3))
         np.testing.assert_allclose(sim.spins, [[0.0, 0.0, 2.0 * sim.orbital_frequency]] * len(sim), atol=1e-18)
         self.assertIsNone(self.sim.spins)
 
@@ -297,6 +349,18 @@ class Contacts(unittest.TestCase):
         lost = 0.5 * 0.5 * sim.masses[0] * 0.75 * rows["normal_speed_m_s"] ** 2
         np.testing.assert_allclose(rows["energy_lost_j"][fast], lost[fast], rtol=1e-9)
         self.assertEqual(len(view), len(sim))
+
+    def test_the_last_rows_come_after_the_block(self):
+        sim = keeler.Simulation(RING)
+        with sim.collisions() as contacts:
+            sim.run(0.1)
+            with self.assertRaises(keeler.UsageError), sim.collisions():
+                pass
+            sim.run(0.15)
+        counted = sum(sim.collisions_so_far[name] for name in ("collisions", "slow_contacts"))
+        self.assertEqual((len(contacts()), len(contacts())), (counted, 0))
+        with self.assertRaises(keeler.UsageError), sim.collisions(float("nan")):
+            pass
 
     def test_none_slower_than_asked(self):
         sim = keeler.Simulation(RING)
@@ -345,8 +409,9 @@ class Laws(unittest.TestCase):
         keeler.add_restitution_law("once", self.functions.half)
         with self.assertRaisesRegex(keeler.UsageError, "already"):
             keeler.add_restitution_law("once", self.functions.half)
-        with self.assertRaises(keeler.UsageError):
-            keeler.add_restitution_law("python", lambda speed, low, high: 0.5)
+        for wrong in (lambda speed, low, high: 0.5, 0, -5, True, None, "half", b"half", 2**70):
+            with self.assertRaisesRegex(keeler.UsageError, "no compiled function"):
+                keeler.add_restitution_law("python", wrong)
 
 
 class Errors(unittest.TestCase):

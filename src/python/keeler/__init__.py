@@ -36,7 +36,7 @@ if "GOMP_SPINCOUNT" not in _os.environ and "OMP_WAIT_POLICY" not in _os.environ:
     _os.environ["OMP_WAIT_POLICY"] = "passive"
     _os.environ["GOMP_SPINCOUNT"] = "6000"
 
-from . import _core
+from . import _core, scenes
 from .errors import Error, InvariantError, IoError, RunError, UsageError
 from .runs import Run, program, read, render, run, sweep
 from .simulation import ELEMENTS, Simulation, from_arrays, load, resume
@@ -79,9 +79,7 @@ def threads():
 
 def set_threads(count):
     """Sets how many threads, at least 1, loops of this Python thread use from now on. Raises UsageError."""
-    if not isinstance(count, int) or count < 1:
-        raise UsageError(f"{count!r} threads are asked for; give a whole number, 1 or more")
-    _core.set_threads(count)
+    _core.set_threads(scenes.whole_number(count, "count", 1, 1024))
 
 
 _own_laws = []  # functions that Keeler calls must live as long as it
@@ -98,9 +96,11 @@ def add_restitution_law(name, function):
     The name enters the scene and ``state_hash``: a program that has no law of that name refuses to go on with such a
     run. Raises UsageError for a coefficient out of range, or a name that is taken.
     """
-    try:
-        address = function if isinstance(function, int) else _ctypes.cast(function, _ctypes.c_void_p).value
-    except _ctypes.ArgumentError:
-        raise UsageError(f"{function!r} is not compiled; give a ctypes function or the address of one") from None
+    if isinstance(function, (_ctypes._CFuncPtr, _ctypes.c_void_p)):
+        address = _ctypes.cast(function, _ctypes.c_void_p).value
+    else:
+        address = 0 if isinstance(function, bool) or not isinstance(function, int) else function
+    if not address or not 0 < address < 2**64:
+        raise UsageError(f"{function!r} is no compiled function; give a ctypes function or the address of one")
     _core.add_restitution_law(name, address)
     _own_laws.append(function)

@@ -3,6 +3,7 @@
 import json
 import os
 import shutil
+import signal
 import subprocess
 import tempfile
 from pathlib import Path
@@ -93,26 +94,39 @@ def program():
 
 
 def _call(arguments):
-    """Runs the program; its errors as exceptions."""
-    done = subprocess.run([program(), *map(str, arguments)], capture_output=True, text=True, check=False)
-    if done.returncode == 0:
-        return done.stdout
-    kind = {2: UsageError, 3: InvariantError, 4: IoError}.get(done.returncode, RunError)
-    lines = [line[len("keeler: ") :] for line in done.stderr.splitlines() if line.startswith("keeler: ")]
-    raise kind(lines[-1] if lines else f"keeler ended with {done.returncode}")
+    """Runs the program; its errors as exceptions. Ctrl-C reaches it from here alone, and it takes the time it needs."""
+    command = [program(), *map(str, arguments)]
+    with subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True
+    ) as process:
+        try:
+            said = process.communicate()[1]
+        except BaseException:
+            process.send_signal(signal.SIGINT)
+            process.communicate()
+            raise
+    if process.returncode == 0:
+        return
+    kind = {2: UsageError, 3: InvariantError, 4: IoError}.get(process.returncode, RunError)
+    lines = [line[len("keeler: ") :] for line in said.splitlines() if line.startswith("keeler: ")]
+    raise kind(lines[-1] if lines else f"keeler ended with {process.returncode}")
 
 
-def run(scene, folder, *, force=False, **overrides):
+def run(scene, folder, *, start=None, force=False, **overrides):
     """``keeler run SCENE -o FOLDER``: a run with series, snapshots and checkpoints, which outlives this process's end.
 
-    Returns its Run: ``run.series``, ``run.analyze()`` with all viscosities. A folder that holds a run is refused unless
+    ``start`` is what to start from, as of a Simulation. Returns its Run: ``run.series``, ``run.analyze()`` with all viscosities. A folder that holds a run is refused unless
     ``force``. Ctrl-C stops it with a checkpoint; ``keeler resume FOLDER`` goes on. Raises as the program ends: UsageError,
     InvariantError, IoError, RunError.
     """
     with tempfile.TemporaryDirectory() as place:
-        file = Path(place) / "scene.toml"
-        file.write_text(scenes.read(scene, overrides).text, encoding="utf-8")
-        _call(["run", file, "-o", folder, *(["--force"] if force else [])])
+        file, source = Path(place) / "scene.toml", []
+        if start is not None:
+            start = snapshots.as_snapshot(start)
+            start.save(Path(place) / "start.hdf")
+            source = ["--from", Path(place) / "start.hdf"]
+        file.write_text(scenes.read(scene, overrides, start and start._name).text, encoding="utf-8")
+        _call(["run", file, "-o", folder, *source, *(["--force"] if force else [])])
     return Run(folder)
 
 
@@ -166,7 +180,8 @@ def render(what, file=None, **look):
     """The picture of a Snapshot, a Simulation, a snapshot file or the last state of a run's folder: see
     Snapshot.plot()."""
     if not hasattr(what, "plot"):
-        what = read(what)
+        if not isinstance(what, Run):
+            what = read(what)
         if isinstance(what, Run):
             what = what.snapshots[-1]
     return what.plot(file, **look)

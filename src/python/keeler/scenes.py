@@ -2,6 +2,7 @@
 
 import json
 import math
+import operator
 import os
 from pathlib import Path
 
@@ -61,6 +62,17 @@ def source(scene):
         raise UsageError(f"'{path}' is no text; give the path of a scene file") from None
     except OSError as error:
         raise UsageError(f"cannot read the scene '{path}': {error.strerror}; name a scene file") from None
+
+
+def whole_number(value, name, least, most):
+    """An int of anything that is a whole number."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        number = None
+    if number is None or not least <= number <= most:
+        raise UsageError(f"{name} is {value!r}; give a whole number from {least} to {most}")
+    return number
 
 
 def read(scene, overrides, start_from=None):

@@ -37,20 +37,21 @@ class Simulation:
     stays as it was when the simulation moves on (which costs a copy of the state, once).
     """
 
+    __slots__ = ("_core", "_motion", "_recording", "_changes", "__weakref__")
+
     def __init__(self, scene, start=None, **overrides):
         if start is None:
             core = _core.Simulation(scenes.read(scene, overrides))
         else:
-            if isinstance(start, Simulation):
-                start = start.snapshot()
-            elif not isinstance(start, Snapshot):
-                start = snapshots.read(start)
+            start = snapshots.as_snapshot(start)
             core = _core.Simulation(start._core, start._name, scenes.read(scene, overrides, start._name))
         self._begin(core)
 
     def _begin(self, core):
         self._core = core
         self._motion = None
+        self._recording = False
+        self._changes = 0
 
     @classmethod
     def _of(cls, core):
@@ -90,6 +91,16 @@ class Simulation:
     def orbital_frequency(self):
         """Omega, rad/s: velocities and frequencies of the elements are in units of it."""
         return self._core.scene.orbital_frequency
+
+    @property
+    def box(self):
+        """(L_x, L_y) in m."""
+        return self._core.box
+
+    @property
+    def shear_offset(self):
+        """m: the image in the box (n, m) stands now at x + n L_x, y + m L_y - n shear_offset."""
+        return self._core.shear_offset
 
     @property
     def elements(self):
@@ -171,7 +182,7 @@ class Simulation:
         interval = scene.kick_interval
         end = _ticks(scene.end if until is None else until, "until", scene)
         if end < core.tick:
-            raise UsageError(f"until is orbit {until}, and the simulation is at orbit {self.orbits:g}; give a later time")
+            raise UsageError(f"until is orbit {scene.end if until is None else until:g}, and the simulation is at orbit {self.orbits:g}; give a later time")
         if (every is None) != (callback is None):
             raise UsageError("every and callback go together: every so many orbits, the callback is called")
         between = max(interval, _ticks(every, "every", scene)) if every is not None else None
@@ -179,24 +190,25 @@ class Simulation:
         piece = between or end
         if line:
             piece = min(piece, max(interval, (end - core.tick) // 200 // interval * interval))
-        while core.tick < end:
-            target = min(end, (core.tick // piece + 1) * piece)
-            if between:
-                target = min(target, (core.tick // between + 1) * between)
-            self._motion = None
-            core.advance(target)
-            if callback and (core.tick % between == 0 or core.tick == end):
-                callback(self)
+        try:
+            while core.tick < end:
+                target = min(end, (core.tick // piece + 1) * piece)
+                if between:
+                    target = min(target, (core.tick // between + 1) * between)
+                self._motion = None
+                core.advance(target)
+                if callback and (core.tick % between == 0 or core.tick == end):
+                    callback(self)
+                if line:
+                    line.show(core.tick, self.orbits)
+        finally:
             if line:
-                line.show(core.tick, self.orbits)
-        if line:
-            line.end()
+                line.end()
         return self
 
     def step(self, count=1):
         """``count`` kick intervals: the shortest time after which a state can be looked at."""
-        if not isinstance(count, int) or count < 0:
-            raise UsageError(f"count is {count!r}; give a whole number of steps, 0 or more")
+        count = scenes.whole_number(count, "count", 0, 10**12)
         self._motion = None
         self._core.advance(self._core.tick + count * self._core.scene.kick_interval)
         return self
@@ -211,13 +223,20 @@ class Simulation:
 
         ``contacts()`` gives those since it was last called, as an array with the fields time_orbits, low_id, high_id,
         x_m, y_m, z_m (where the spheres touch, beside the particle with the lower id), normal_speed_m_s,
-        tangential_speed_m_s, energy_lost_j.
+        tangential_speed_m_s, energy_lost_j. After the block it gives the last ones.
         """
+        if self._recording:
+            raise UsageError("contacts are recorded already; end that block first")
+        if not minimum_speed >= 0.0:
+            raise UsageError(f"minimum_speed is {minimum_speed}; give a speed in m/s, 0 or more")
         self._core.record_contacts(float(minimum_speed))
+        self._recording = True
+        contacts = _Contacts(self._core)
         try:
-            yield self._core.take_contacts
+            yield contacts
         finally:
-            self._core.record_contacts(None)
+            contacts.end()
+            self._recording = False
 
     # --- changes and files
 
@@ -230,11 +249,15 @@ class Simulation:
                 state.velocities[:, 2] += 1e-4
 
         At the end they become the state, unless the block raises. Raises InvariantError, and changes nothing, when a
-        number is not finite or particles overlap; UsageError for arrays of another shape. The energy that a change
+        number is not finite or particles overlap; UsageError for arrays of another shape, or when the simulation has moved
+        on within the block. The energy that a change
         brings counts as part of the start.
         """
-        state = _Edited(self)
+        state, begun = _Edited(self), (self._core.tick, self._changes)
         yield state
+        if begun != (self._core.tick, self._changes):
+            raise UsageError("the simulation has moved on, or was changed, within edit(); its rows may be others now")
+        self._changes += 1
         self._core.replace(state.positions, state.velocities, state.radii, state.masses, state.spins)
         self._motion = None
 
@@ -267,6 +290,21 @@ class Simulation:
             file = Path(folder) / "state.h5"
             self.save(file)
             return _from_bytes, (file.read_bytes(),)
+
+
+class _Contacts:
+    def __init__(self, core):
+        self.core, self.last = core, None
+
+    def __call__(self):
+        if self.last is None:
+            return self.core.take_contacts()
+        rows, self.last = self.last, self.last[:0]
+        return rows
+
+    def end(self):
+        self.last = self.core.take_contacts()
+        self.core.record_contacts(None)
 
 
 class _Edited:

@@ -30,7 +30,8 @@ class Snapshot:
     ``positions`` (N, 3) m and ``velocities`` (N, 3) m/s in Hill's frame (x outward, y along the orbit, z up; the shear
     is in the velocities), ``radii`` (N,) m, ``masses`` (N,) kg, ``ids`` (N,), ``spins`` (N, 3) rad/s against the stars
     or None. All arrays may only be read. ``box`` is (L_x, L_y) in m; at this instant the neighbour boxes at larger x are
-    shifted along y by ``shear_offset`` m a box. ``scene`` is the resolved scene as text.
+    shifted along y by -``shear_offset`` m a box: the image
+    in the box (n, m) stands at x + n L_x, y + m L_y - n shear_offset. ``scene`` is the resolved scene as text.
     """
 
     def __init__(self, core, name="snapshot"):
@@ -90,8 +91,8 @@ class Snapshot:
     def __reduce__(self):
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "snapshot.hdf"
-            self.save(file)
-            return _from_bytes, (file.read_bytes(), self._name)
+            self._core.save(file, as_it_is=True)
+            return _from_bytes, (file.read_bytes(), self._name, self._core.is_a_start)
 
 
 def generate(scene, *, clumped=False, **overrides):
@@ -130,8 +131,15 @@ def read(file):
     return Snapshot(_core.read_snapshot(file), str(file))
 
 
-def _from_bytes(data, name):
+def as_snapshot(start):
+    """A Snapshot of what a user may start from: a Snapshot, the file of one, or a Simulation."""
+    if isinstance(start, Snapshot):
+        return start
+    return start.snapshot() if hasattr(start, "snapshot") else read(start)
+
+
+def _from_bytes(data, name, is_a_start):
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "snapshot.hdf"
         file.write_bytes(data)
-        return Snapshot(_core.read_snapshot(file), name)
+        return Snapshot(_core.read_snapshot(file, is_a_start), name)
