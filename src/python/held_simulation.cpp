@@ -10,14 +10,19 @@ namespace {
 
 constexpr double between_signals = 0.2; // s: the interpreter's handlers of other signals wait no longer
 
+[[noreturn]] void refuse_at_work() {
+  throw Error(ExitCode::run_time,
+              "this simulation is at work, in another thread or below this call; wait for it, or use a second one");
+}
+
 } // namespace
+
 // Who computes; a second thread is told.
 class HeldSimulation::AtWork {
 public:
   explicit AtWork(std::atomic<bool>& flag) : flag_(flag) {
     if (flag_.exchange(true))
-      throw Error(ExitCode::run_time,
-                  "this simulation is at work, in another thread or below this call; wait for it, or use a second one");
+      refuse_at_work();
   }
   ~AtWork() { flag_ = false; }
   AtWork(const AtWork&) = delete;
@@ -34,8 +39,7 @@ HeldSimulation::~HeldSimulation() {
 
 const Simulation& HeldSimulation::simulation() const {
   if (at_work_)
-    throw Error(ExitCode::run_time,
-                "this simulation is at work, in another thread or below this call; wait for it, or use a second one");
+    refuse_at_work();
   if (given_up_)
     throw Error(ExitCode::run_time,
                 "a step of this simulation was given up on request, and its state with it; load the "
@@ -77,7 +81,7 @@ void HeldSimulation::advance(std::int64_t until_tick) {
   while (simulation_->state().step < until_tick) {
     try {
       step_until(until_tick);
-    } catch (const Error&) { // an unfinished step: interrupted, or an invariant broke
+    } catch (...) { // an unfinished step: interrupted, an invariant broke, or there is no memory
       given_up_ = true;
       raise_interrupts();
       throw;
@@ -96,6 +100,8 @@ void HeldSimulation::replace(Particles particles) {
 }
 
 void HeldSimulation::record_contacts(std::optional<double> minimum_speed) {
+  if (at_work_)
+    refuse_at_work();
   if (minimum_speed)
     simulation(); // fit to go on; recording ends in any state
   simulation_->drift().observe(nullptr);
@@ -107,6 +113,8 @@ void HeldSimulation::record_contacts(std::optional<double> minimum_speed) {
 }
 
 std::vector<ContactRecord> HeldSimulation::take_contacts() {
+  if (at_work_)
+    refuse_at_work();
   return recorder_ ? recorder_->take() : std::vector<ContactRecord>();
 }
 

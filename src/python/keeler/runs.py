@@ -113,11 +113,11 @@ def _call(arguments):
 
 
 def run(scene, folder, *, start=None, force=False, **overrides):
-    """``keeler run SCENE -o FOLDER``: a run with series, snapshots and checkpoints, which outlives this process's end.
+    """``keeler run SCENE -o FOLDER``: a run with series, snapshots and checkpoints, in a process of its own.
 
-    ``start`` is what to start from, as of a Simulation. Returns its Run: ``run.series``, ``run.analyze()`` with all viscosities. A folder that holds a run is refused unless
-    ``force``. Ctrl-C stops it with a checkpoint; ``keeler resume FOLDER`` goes on. Raises as the program ends: UsageError,
-    InvariantError, IoError, RunError.
+    ``start`` is what to start from, as of a Simulation. Returns its Run: ``run.series``, ``run.analyze()`` with all
+    viscosities. A folder that holds a run is refused unless ``force``. Ctrl-C stops it with a checkpoint;
+    ``keeler resume FOLDER`` goes on. Raises as the program ends: UsageError, InvariantError, IoError, RunError.
     """
     with tempfile.TemporaryDirectory() as place:
         file, source = Path(place) / "scene.toml", []

@@ -25,15 +25,15 @@ class Simulation:
         sim.run(5.0, every=0.5, callback=lambda sim: print(sim.orbits, sim.analyze()["toomre_q"]))
 
     ``scene`` is the path of a scene file, the text of one, or a dictionary of its tables. ``start`` is what to start
-    from: a Snapshot, the file of one, or a Simulation as it stands. Other arguments override keys of the scene: ``time={"end": 5.0}``, or
-    ``**{"time.end": 5.0}``. Raises UsageError for a scene that cannot be.
+    from: a Snapshot, the file of one, or a Simulation as it stands. Other arguments override keys of the scene:
+    ``time={"end": 5.0}``, or ``**{"time.end": 5.0}``. Raises UsageError for a scene that cannot be.
 
     The state's bits are those of ``keeler run`` with the same scene, for any number of threads.
 
     **Arrays** have one row a particle, in the order in which the program keeps them: neighbours in space are neighbours
     in memory. That order changes as they move; ``ids`` tells who is who, and ``by_id(array)`` puts rows into the order
-    of the ids. They may only be read. ``elements``, ``radii``, ``masses`` and ``ids`` look at the state itself, without a copy;
-    ``positions`` and ``velocities`` are computed when they are first asked for after a step. An array that is kept
+    of the ids. They may only be read. ``elements``, ``radii``, ``masses`` and ``ids`` look at the state itself, without a
+    copy; ``positions`` and ``velocities`` are computed when they are first asked for after a step. An array that is kept
     stays as it was when the simulation moves on (which costs a copy of the state, once).
     """
 
@@ -182,7 +182,8 @@ class Simulation:
         interval = scene.kick_interval
         end = _ticks(scene.end if until is None else until, "until", scene)
         if end < core.tick:
-            raise UsageError(f"until is orbit {scene.end if until is None else until:g}, and the simulation is at orbit {self.orbits:g}; give a later time")
+            asked = scene.end if until is None else until
+            raise UsageError(f"until is orbit {asked:g}, and the simulation is at orbit {self.orbits:g}; give a later time")
         if (every is None) != (callback is None):
             raise UsageError("every and callback go together: every so many orbits, the callback is called")
         between = max(interval, _ticks(every, "every", scene)) if every is not None else None
@@ -249,9 +250,8 @@ class Simulation:
                 state.velocities[:, 2] += 1e-4
 
         At the end they become the state, unless the block raises. Raises InvariantError, and changes nothing, when a
-        number is not finite or particles overlap; UsageError for arrays of another shape, or when the simulation has moved
-        on within the block. The energy that a change
-        brings counts as part of the start.
+        number is not finite or particles overlap; UsageError for arrays of another shape, or when the simulation has
+        moved on within the block. The energy that a change brings counts as part of the start.
         """
         state, begun = _Edited(self), (self._core.tick, self._changes)
         yield state
@@ -271,7 +271,7 @@ class Simulation:
         return self.snapshot().plot(file, **look)
 
     def show(self, **look):
-        """The picture in a notebook; in a terminal its file's name is what there is to see."""
+        """Shows the picture in a notebook (and returns None); elsewhere returns it."""
         picture = self.plot(**look)
         if "IPython" in sys.modules:
             from IPython.display import display
