@@ -62,6 +62,7 @@ int run(int argc, char** argv) {
   add_study(program, action, arguments);
   add_sweep(program, action);
   add_tune(program, action);
+  add_watch(program, action);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& asked) { // --help and --version

@@ -1,11 +1,13 @@
 #include "progress_line.hpp"
 
 #include "messages.hpp"
+#include "terminal.hpp"
 
 #include <keeler/core/words.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include <unistd.h>
@@ -13,7 +15,7 @@
 namespace keeler {
 namespace {
 
-constexpr int bar_width = 28;
+constexpr int longest_bar = 30, shortest_bar = 10;
 constexpr double terminal_interval_s = 0.1, log_interval_s = 10.0;
 
 std::string clock(double seconds) {
@@ -22,9 +24,16 @@ std::string clock(double seconds) {
                        : fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
-std::string bar_of(double share) {
-  const int filled = static_cast<int>(share * bar_width);
-  return fmt::format("[{}{}] ", std::string(filled, '#'), std::string(bar_width - filled, '.'));
+// The parts of a line side by side, the last ones left out where they do not fit.
+std::string line_of(const ProgressLine::Parts& parts, std::size_t columns) {
+  std::string line;
+  for (const std::string& part : parts) {
+    const std::string longer = line.empty() ? part : line + "  " + part;
+    if (!line.empty() && longer.size() > columns)
+      break;
+    line = longer;
+  }
+  return line.substr(0, columns);
 }
 
 } // namespace
@@ -43,12 +52,18 @@ bool ProgressLine::due(double elapsed_s, bool last) {
   return true;
 }
 
-void ProgressLine::print(const std::string& bar, const std::string& numbers) {
+// On a terminal the line stays shorter than its width, else redrawing would begin new ones: the bar shrinks first.
+void ProgressLine::print(std::optional<double> share, const Parts& parts) {
   if (!terminal_) {
-    write_message(numbers + "\n");
+    write_message(line_of(parts, std::string::npos) + "\n");
     return;
   }
-  write_message("\r" + bar + numbers + "\033[K");
+  const int columns = std::max(terminal_width(STDERR_FILENO) - 1, shortest_bar);
+  std::string numbers = line_of(parts, static_cast<std::size_t>(columns));
+  const int left = std::min(columns - static_cast<int>(numbers.size()) - 1, longest_bar);
+  if (share && left >= shortest_bar)
+    numbers = progress_bar(*share, left) + " " + numbers;
+  write_message("\r" + numbers + "\033[K");
   open_ = true;
 }
 
@@ -56,7 +71,7 @@ void ProgressLine::print(const std::string& bar, const std::string& numbers) {
 void ProgressLine::show(const StartProgress& p) {
   const double patience_s = terminal_ ? 0.5 : log_interval_s;
   if (p.elapsed_s >= patience_s && due(p.elapsed_s, p.share == 1.0))
-    print(bar_of(p.share), fmt::format("{:3.0f} % of the start  {} left", 100.0 * p.share, clock(p.remaining_s)));
+    print(p.share, {fmt::format("{:3.0f} % of the start", 100.0 * p.share), clock(p.remaining_s) + " left"});
   if (p.share == 1.0)
     next_s_ = 0.0; // what follows has a clock of its own
 }
@@ -65,13 +80,13 @@ void ProgressLine::show(const RunProgress& p) {
   if (!due(p.elapsed_s, p.step == p.end_step))
     return;
   const double done = static_cast<double>(p.step) / static_cast<double>(p.end_step);
-  print(bar_of(done), fmt::format("{:.3f}/{} orbits  {:3.0f} %  {} left  {:.0f} collisions/s", p.orbits,
-                                  figures(p.end_orbits), 100.0 * done, clock(p.remaining_s), p.collisions_per_second));
+  print(done, {fmt::format("{:.3f}/{} orbits", p.orbits, figures(p.end_orbits)), fmt::format("{:3.0f} %", 100.0 * done),
+               clock(p.remaining_s) + " left", fmt::format("{:.0f} collisions/s", p.collisions_per_second)});
 }
 
 void ProgressLine::show(const Progress& p) {
   if (due(p.elapsed_s, p.share == 1.0))
-    print(bar_of(p.share), fmt::format("{:3.0f} %  {} left  {}", 100.0 * p.share, clock(p.remaining_s), p.what));
+    print(p.share, {fmt::format("{:3.0f} %", 100.0 * p.share), clock(p.remaining_s) + " left", p.what});
 }
 
 void ProgressLine::note(const std::string& text) {
@@ -85,19 +100,20 @@ void ProgressLine::note(const std::string& text) {
 void ProgressLine::show(const ClumpingProgress& p) {
   if (!due(p.elapsed_s, p.settled))
     return;
-  std::string numbers = fmt::format("{:.3f} orbits  {}  contrast {:.3f}", p.orbits, clock(p.elapsed_s), p.contrast);
+  Parts parts = {fmt::format("{:.3f} orbits", p.orbits), clock(p.elapsed_s),
+                 fmt::format("contrast {:.3f}", p.contrast)};
   if (!p.settling) {
-    numbers += fmt::format("  compared from orbit {:g} on", p.criterion.least_orbits());
+    parts.push_back(fmt::format("compared from orbit {:g} on", p.criterion.least_orbits()));
   } else if (p.settling->standing < p.criterion.least_standing) {
-    numbers += "  no wakes stand out";
+    parts.push_back("no wakes stand out");
   } else {
     const auto change = [&](const WindowMeans& means) {
       return fmt::format("{:.0f} % (settled at {:.0f} %)", 100.0 * means.change(), 100.0 * means.tolerance);
     };
-    numbers += fmt::format("  viscosity changes by {}, wake lengths by {} and {}", change(p.settling->viscosity),
-                           change(p.settling->wavelength), change(p.settling->radial_wavelength));
+    parts.push_back(fmt::format("viscosity changes by {}, wake lengths by {} and {}", change(p.settling->viscosity),
+                                change(p.settling->wavelength), change(p.settling->radial_wavelength)));
   }
-  print("", numbers);
+  print(std::nullopt, parts);
 }
 
 } // namespace keeler

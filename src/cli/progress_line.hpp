@@ -1,16 +1,22 @@
-// Progress on standard error: one line that redraws itself on a terminal, one line every ten seconds elsewhere.
+// Progress on standard error: one line that redraws itself on a terminal and fits its width, one line every ten seconds
+// elsewhere.
 #pragma once
 
 #include <keeler/core/progress.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/states/clumped.hpp>
 
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace keeler {
 
 class ProgressLine {
 public:
+  /// What a line says, the most important first.
+  using Parts = std::vector<std::string>;
+
   ProgressLine();
   ~ProgressLine();
   void show(const StartProgress& progress);
@@ -24,7 +30,7 @@ public:
 private:
   // Whether it is time for the next line.
   bool due(double elapsed_s, bool last);
-  void print(const std::string& bar, const std::string& numbers);
+  void print(std::optional<double> share, const Parts& parts);
 
   bool terminal_;
   double next_s_ = 0.0;

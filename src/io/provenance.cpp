@@ -32,15 +32,6 @@ std::string host() {
   return fmt::format("{} ({} {}, {})", name.nodename, name.sysname, name.release, name.machine);
 }
 
-std::string now() {
-  const std::time_t seconds = std::time(nullptr);
-  std::tm utc = {};
-  ::gmtime_r(&seconds, &utc);
-  char text[32] = {};
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
-}
-
 // One line that a shell would take again: what is not plain is quoted.
 std::string command_line(const std::vector<std::string>& arguments) {
   std::string line;
@@ -56,6 +47,15 @@ std::string command_line(const std::vector<std::string>& arguments) {
 
 } // namespace
 
+std::string utc_now() {
+  const std::time_t seconds = std::time(nullptr);
+  std::tm utc = {};
+  ::gmtime_r(&seconds, &utc);
+  char text[32] = {};
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
 Provenance collect_provenance(const std::vector<std::string>& arguments) {
   return {{"version", program_version()},
           {"commit", source_commit()},
@@ -65,7 +65,7 @@ Provenance collect_provenance(const std::vector<std::string>& arguments) {
           {"host", host()},
           {"threads", std::to_string(threads())},
           {"arguments", command_line(arguments)},
-          {"started", now()}};
+          {"started", utc_now()}};
 }
 
 void write_provenance(const hdf5::Handle& object, const Provenance& provenance) {

@@ -148,6 +148,7 @@ void Recorder::check_forces(const Simulation& simulation) {
 void Recorder::log(const std::string& event, const nlohmann::ordered_json& details) {
   nlohmann::ordered_json line;
   line["event"] = event;
+  line["time"] = utc_now();
   line.update(details);
   const std::string text = line.dump() + "\n";
   Descriptor file(folder_.log(), O_WRONLY | O_CREAT | O_APPEND);

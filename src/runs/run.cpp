@@ -32,6 +32,10 @@ std::int64_t whole_kicks(const Scene& scene, double steps) {
   return static_cast<std::int64_t>(std::max(1.0, std::round(steps / block)) * block);
 }
 
+double end_orbits(const Scene& scene) {
+  return static_cast<double>(scene.time.end_step) * scene.time.step;
+}
+
 std::string resume_command(const RunOptions& options) {
   const std::string until = options.until_orbits ? fmt::format(" --until {}", *options.until_orbits) : "";
   return fmt::format("keeler resume {}{}", options.folder.string(), until);
@@ -156,7 +160,7 @@ private:
     const double done = static_cast<double>(state.step - first_step_);
     RunProgress p;
     p.step = state.step, p.first_step = first_step_, p.end_step = scene_.time.end_step;
-    p.orbits = simulation_.orbits(), p.end_orbits = static_cast<double>(p.end_step) * scene_.time.step;
+    p.orbits = simulation_.orbits(), p.end_orbits = end_orbits(scene_);
     p.elapsed_s = now;
     p.remaining_s = (now - start_) / done * static_cast<double>(p.end_step - p.step);
     p.collisions_per_second =
@@ -259,7 +263,7 @@ Scene until(Scene scene, const RunOptions& options, std::int64_t step) {
     throw UsageError(fmt::format("--until {:g} is too long (a step of {:g} makes more than 1e15 steps); lower it",
                                  asked, scene.time.step));
   scene.time.end_step = whole_kicks(scene, asked / scene.time.step);
-  const double end = static_cast<double>(scene.time.end_step) * scene.time.step;
+  const double end = end_orbits(scene);
   if (scene.time.end_step < step)
     throw UsageError(fmt::format("the run in '{}' is at orbit {:.6g} already (until orbit {:.6g} it cannot go); give a "
                                  "later end",
@@ -304,7 +308,9 @@ RunResult begin(const Scene& scene, const RunOptions& options, RunRequests& requ
       options.notice("note: " + doubt);
   }
   Recorder recorder(folder, scene, options.arguments, {}, std::nullopt);
-  recorder.log("started", {{"particles", simulation.state().particles.size()}, {"threads", threads()}});
+  recorder.log(
+      "started",
+      {{"particles", simulation.state().particles.size()}, {"end_orbits", end_orbits(scene)}, {"threads", threads()}});
   recorder.snapshot(simulation);
   recorder.sample(simulation);
   return carry_on(scene, options, requests, folder, simulation, recorder, start);
@@ -339,7 +345,11 @@ RunResult go_on(const RunOptions& options, RunRequests& requests) {
                                  "them",
                                  lost));
   }
-  recorder.log("resumed", {{"checkpoint", newest.path.filename().string()}, {"step", step}, {"threads", threads()}});
+  recorder.log("resumed", {{"checkpoint", newest.path.filename().string()},
+                           {"step", step},
+                           {"orbits", simulation.orbits()},
+                           {"end_orbits", end_orbits(scene)},
+                           {"threads", threads()}});
   return carry_on(scene, options, requests, folder, simulation, recorder, start);
 }
 

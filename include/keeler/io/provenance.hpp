@@ -14,4 +14,7 @@ using Provenance = std::map<std::string, std::string>;
 /// What holds for this process; `arguments` is its command line. `started` is the time of this call.
 Provenance collect_provenance(const std::vector<std::string>& arguments);
 
+/// This second: "2026-01-31T23:59:59Z".
+std::string utc_now();
+
 } // namespace keeler

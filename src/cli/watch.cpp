@@ -1,0 +1,140 @@
+// keeler watch: a run as seen from another terminal.
+#include "command.hpp"
+#include "terminal.hpp"
+
+#include <keeler/core/words.hpp>
+#include <keeler/runs/run_view.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <memory>
+#include <span>
+#include <thread>
+
+namespace keeler {
+namespace {
+
+constexpr int label_columns = 18, value_columns = 10;
+
+struct Line {
+  const char* column; ///< of the series
+  const char* label;
+  bool counts = false; ///< since the run began: its rate an orbit is shown
+};
+
+constexpr Line lines[] = {
+    {"dispersion_x_m_s", "c_x, m/s"},
+    {"dispersion_z_m_s", "c_z, m/s"},
+    {"scale_height_m", "height, m"},
+    {"collisions", "collisions/orbit", true},
+    {"energy_lost_j", "loss, J/orbit", true},
+    {"translational_viscosity_m2_s", "nu trans., m2/s"},
+    {"gravitational_viscosity_m2_s", "nu grav., m2/s"},
+    {"spin_dispersion_omega", "spins, Omega"},
+    {"step_orbits", "step, orbits"},
+};
+
+// The last values of a column that are numbers; of one that counts, its rate between rows.
+std::vector<double> values_of(const SeriesTable& series, const Line& line) {
+  const std::vector<double>& times = series.of("time_orbits");
+  const std::vector<double>& column = series.of(line.column);
+  std::vector<double> values;
+  for (std::size_t i = line.counts ? 1 : 0; i < column.size(); ++i) {
+    const double value = line.counts ? (column[i] - column[i - 1]) / (times[i] - times[i - 1]) : column[i];
+    if (std::isfinite(value))
+      values.push_back(value);
+  }
+  return values;
+}
+
+// A plot one line high: the mean of each part of the run, from the least to the largest of them.
+std::string small_plot(std::span<const double> values, std::size_t columns) {
+  static constexpr const char* heights[] = {"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
+  columns = std::min(columns, values.size());
+  std::vector<double> means;
+  for (std::size_t k = 0; k < columns; ++k) {
+    const std::span<const double> part =
+        values.subspan(k * values.size() / columns, (k + 1) * values.size() / columns - k * values.size() / columns);
+    double sum = 0.0;
+    for (const double value : part)
+      sum += value;
+    means.push_back(sum / static_cast<double>(part.size()));
+  }
+  if (means.empty())
+    return "";
+  const auto [least, largest] = std::minmax_element(means.begin(), means.end());
+  const double range = *largest - *least;
+  std::string plot;
+  for (const double mean : means)
+    plot += heights[range > 0.0 ? std::lround(7.0 * (mean - *least) / range) : 0];
+  return plot;
+}
+
+std::string remaining(double seconds) {
+  const long whole = std::lround(seconds);
+  return fmt::format("{}:{:02}:{:02} left", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+std::string standing(const RunView& view) {
+  if (!view.running)
+    return view.last_event == "finished" || view.last_event == "stopped" ? view.last_event : "not running";
+  const std::optional<double> left = view.remaining_s(static_cast<double>(std::time(nullptr)));
+  return left ? "running, " + remaining(*left) : "running";
+}
+
+// No line is longer than the terminal is wide.
+std::string text_of(const RunView& view, const std::string& folder, int width) {
+  const auto columns = static_cast<std::size_t>(width);
+  std::vector<std::string> text = {folder, standing(view),
+                                   fmt::format("orbit {} of {}", figures(view.orbits, 4), figures(view.end_orbits, 4)),
+                                   progress_bar(view.share(), std::clamp(width, 10, 60))};
+  for (const auto& [what, name] : {std::pair{"snapshot", view.snapshot}, std::pair{"checkpoint", view.checkpoint},
+                                   std::pair{"picture", view.picture}})
+    if (!name.empty())
+      text.push_back(fmt::format("{:<11} {}", what, name));
+  std::string all;
+  for (const std::string& line : text)
+    all += line.substr(0, columns) + "\n";
+  for (const Line& line : lines)
+    if (view.series.find(line.column) != nullptr) {
+      const std::vector<double> values = values_of(view.series, line);
+      if (values.empty())
+        continue;
+      const std::string numbers =
+          fmt::format("{:<{}}{:>{}}  ", line.label, label_columns, figures(values.back(), 3), value_columns);
+      all += numbers.substr(0, columns);
+      if (numbers.size() < columns)
+        all += small_plot(values, columns - numbers.size());
+      all += "\n";
+    }
+  return all;
+}
+
+// Elsewhere than on a terminal it is said once. On one it is said each second, in the same place, until the run ends.
+ExitCode watch(const std::string& folder) {
+  const bool terminal = isatty(STDOUT_FILENO) == 1;
+  for (;;) {
+    const RunView view = view_run(folder);
+    const std::string text = text_of(view, folder, terminal_width(STDOUT_FILENO));
+    fmt::print("{}{}", terminal ? "\033[H\033[J" : "", text);
+    std::fflush(stdout);
+    if (!terminal || !view.running)
+      return ExitCode::done;
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+  }
+}
+
+} // namespace
+
+void add_watch(CLI::App& program, Action& action) {
+  const auto folder = std::make_shared<std::string>();
+  CLI::App& command = *program.add_subcommand("watch", "look at a run from another terminal while it works");
+  command.add_option("DIR", *folder, "the folder of the run")->required()->type_name("");
+  command.callback([folder, &action] { action = [folder] { return watch(*folder); }; });
+}
+
+} // namespace keeler

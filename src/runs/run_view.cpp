@@ -1,0 +1,93 @@
+#include <keeler/runs/run_view.hpp>
+
+#include "run_folder.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/files/files.hpp>
+#include <keeler/runs/folder_lock.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <ctime>
+#include <sstream>
+
+namespace keeler {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Seconds since 1970 of a time in the log; none for anything else.
+std::optional<double> seconds_of(const nlohmann::json& line) {
+  const auto found = line.find("time");
+  std::tm utc = {};
+  if (found == line.end() || !found->is_string() ||
+      strptime(found->get_ref<const std::string&>().c_str(), "%Y-%m-%dT%H:%M:%SZ", &utc) == nullptr)
+    return std::nullopt;
+  return static_cast<double>(timegm(&utc));
+}
+
+void take_event(RunView& view, const nlohmann::json& line) {
+  const std::string event = line.value("event", "");
+  view.last_event = event;
+  if (event != "started" && event != "resumed")
+    return;
+  view.end_orbits = line.value("end_orbits", 0.0);
+  view.first_orbits = line.value("orbits", 0.0);
+  view.began_s = seconds_of(line);
+  view.particles = line.value("particles", view.particles);
+}
+
+// A line that is still being written, or is no JSON, says nothing.
+void read_log(RunView& view, const fs::path& file) {
+  std::istringstream lines(read_text(file));
+  for (std::string text; std::getline(lines, text);) {
+    const nlohmann::json line = nlohmann::json::parse(text, nullptr, false);
+    if (line.is_object())
+      take_event(view, line);
+  }
+}
+
+// The names are numbered: the last in their order is the newest.
+std::string newest_name(const fs::path& folder, const std::string& prefix, const std::string& ending) {
+  std::string newest;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    const bool later = name.size() != newest.size() ? name.size() > newest.size() : name > newest;
+    if (name.starts_with(prefix) && name.ends_with(ending) && later)
+      newest = name;
+  }
+  return newest;
+}
+
+} // namespace
+
+double RunView::share() const {
+  return end_orbits > 0.0 ? std::clamp(orbits / end_orbits, 0.0, 1.0) : 0.0;
+}
+
+std::optional<double> RunView::remaining_s(double now_s) const {
+  if (!running || !began_s || !(orbits > first_orbits))
+    return std::nullopt;
+  return (now_s - *began_s) / (orbits - first_orbits) * std::max(end_orbits - orbits, 0.0);
+}
+
+RunView view_run(const fs::path& path) {
+  const RunFolder folder(path);
+  if (!fs::exists(folder.log()))
+    throw IoError(fmt::format("no run in '{}' (log.jsonl is missing); name the folder of a run", path.string()));
+  RunView view;
+  view.running = folder_is_held(path);
+  read_log(view, folder.log());
+  if (fs::exists(folder.series()))
+    view.series = read_series(folder.series());
+  if (const std::vector<double>* times = view.series.find("time_orbits"); times && !times->empty())
+    view.orbits = times->back();
+  view.snapshot = newest_name(path, "snap_", ".hdf");
+  view.checkpoint = newest_name(path, "checkpoint_", ".h5");
+  view.picture = newest_name(path, "picture", ".png");
+  return view;
+}
+
+} // namespace keeler
