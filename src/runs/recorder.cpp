@@ -148,8 +148,8 @@ void Recorder::check_forces(const Simulation& simulation) {
 void Recorder::log(const std::string& event, const nlohmann::ordered_json& details) {
   nlohmann::ordered_json line;
   line["event"] = event;
-  line["time"] = utc_now();
   line.update(details);
+  line["time"] = utc_now();
   const std::string text = line.dump() + "\n";
   Descriptor file(folder_.log(), O_WRONLY | O_CREAT | O_APPEND);
   file.append_whole(std::as_bytes(std::span(text)));
