@@ -1,5 +1,6 @@
 // keeler render: pictures of a snapshot, or of the last state of a run.
 #include "command.hpp"
+#include "common_options.hpp"
 
 #include <keeler/diagnostics/autocorrelation.hpp>
 #include <keeler/diagnostics/surface.hpp>
@@ -21,7 +22,9 @@ namespace fs = std::filesystem;
 constexpr double averaged_orbits = 1.0;
 
 struct RenderOptions {
-  std::string path, output;
+  std::string path, output, colour = "height", theme = "dark";
+  int width = PictureOptions().width;
+  bool autocorrelation = false;
 };
 
 // picture.png in a run's folder, NAME.png beside a snapshot NAME.hdf.
@@ -32,21 +35,28 @@ fs::path picture_path(const RenderOptions& options) {
   return fs::is_directory(path) ? path / "picture.png" : fs::path(path).replace_extension(".png");
 }
 
-ExitCode render(const RenderOptions& options) {
+void draw_autocorrelation(const RenderOptions& options, fs::path file, const std::string& title) {
   const StoredPatches stored = load_patches(options.path, averaged_orbits);
-  const fs::path picture = picture_path(options);
+  file.replace_filename(file.stem().string() + "-autocorrelation.png");
+  const double wavelength = critical_wavelength(stored.patches.back());
+  const AutocorrelationMap map = mean_autocorrelation(stored.patches);
+  render_autocorrelation(map, find_wakes(map, wavelength), wavelength, file.string(), title);
+  fmt::print("{}\n", file.string());
+}
+
+ExitCode render(const RenderOptions& options) {
   PictureOptions look;
+  look.width = options.width;
+  look.theme = options.theme == "light" ? PictureTheme::light : PictureTheme::dark;
+  look.colour = colour_field_named(options.colour);
+  const StoredPatches stored = load_newest_patch(options.path);
+  const fs::path picture = picture_path(options);
   if (!stored.title.empty())
     look.title = stored.title;
   render_patch(stored.patches.back(), picture.string(), look);
   fmt::print("{}\n", picture.string());
-
-  fs::path correlation = picture;
-  correlation.replace_filename(picture.stem().string() + "-autocorrelation.png");
-  const double wavelength = critical_wavelength(stored.patches.back());
-  const AutocorrelationMap map = mean_autocorrelation(stored.patches);
-  render_autocorrelation(map, find_wakes(map, wavelength), wavelength, correlation.string(), look.title);
-  fmt::print("{}\n", correlation.string());
+  if (options.autocorrelation)
+    draw_autocorrelation(options, picture, look.title);
   return ExitCode::done;
 }
 
@@ -54,11 +64,22 @@ ExitCode render(const RenderOptions& options) {
 
 void add_render(CLI::App& program, Action& action) {
   const auto options = std::make_shared<RenderOptions>();
-  CLI::App& command =
-      *program.add_subcommand("render", "draw a snapshot, or the last state of a run, and its autocorrelation");
+  CLI::App& command = *program.add_subcommand("render", "draw a snapshot, or the last state of a run");
   command.add_option("FILE|DIR", options->path, "a snapshot, or the folder of a run")->required()->type_name("");
   command.add_option("-o,--output", options->output,
                      "the PNG to write (default: picture.png in the folder, or beside the file)");
+  command.add_option("--width", options->width, "of the picture (default: 1600)")
+      ->type_name("PIXELS")
+      ->check(whole_number_between(least_picture_width, most_picture_width, "a number of pixels"));
+  command.add_option("--theme", options->theme, "the page: dark (the default), or light for print")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"dark", "light"}));
+  command
+      .add_option("--colour", options->colour,
+                  "what the colours say, with a bar: size, speed, spin, cluster, density (default: height, without)")
+      ->type_name("FIELD");
+  command.add_flag("--autocorrelation", options->autocorrelation,
+                   "draw the autocorrelation of the surface density too, averaged over a run's last orbit");
   command.callback([options, &action] { action = [options] { return render(*options); }; });
 }
 

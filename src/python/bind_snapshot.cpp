@@ -119,7 +119,10 @@ py::dict series(const fs::path& file) {
 void render(const PythonSnapshot& snapshot, const fs::path& file, const std::string& title, int width) {
   require_own_threads();
   const py::gil_scoped_release unlocked;
-  render_patch(snapshot.patch, file.string(), {title, width});
+  PictureOptions look;
+  look.title = title;
+  look.width = width;
+  render_patch(snapshot.patch, file.string(), look);
 }
 
 py::object array_or_none(const std::vector<Vec3>& rows, double factor) {

@@ -28,4 +28,11 @@ inline constexpr Colour ink{0.93, 0.91, 0.86};
 inline constexpr Colour faint_ink{0.62, 0.61, 0.60};
 inline constexpr Colour accent{0.45, 0.80, 0.95};
 
+/// Of a page around its views.
+struct Theme {
+  Colour page, ink, faint_ink;
+};
+inline constexpr Theme dark_theme{page_colour, ink, faint_ink};
+inline constexpr Theme light_theme{{1.0, 1.0, 1.0}, {0.10, 0.10, 0.12}, {0.36, 0.36, 0.38}};
+
 } // namespace keeler

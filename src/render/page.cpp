@@ -2,11 +2,16 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/files/descriptor.hpp>
+#include <keeler/files/files.hpp>
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
+
+#include <fcntl.h>
 
 namespace keeler {
 namespace {
@@ -151,14 +156,31 @@ double Page::show(const std::string& text, const TextStyle& style, bool draw) {
   return x;
 }
 
-void Page::save(const std::string& path) {
+std::vector<std::byte> Page::png() {
+  std::vector<std::byte> bytes;
+  const auto take = [](void* to, const unsigned char* data, unsigned int length) {
+    const auto* begin = reinterpret_cast<const std::byte*>(data);
+    static_cast<std::vector<std::byte>*>(to)->insert(static_cast<std::vector<std::byte>*>(to)->end(), begin,
+                                                     begin + length);
+    return CAIRO_STATUS_SUCCESS;
+  };
   cairo_status_t status = cairo_status(cairo_);
   if (status == CAIRO_STATUS_SUCCESS)
-    status = cairo_surface_write_to_png(surface_, path.c_str());
+    status = cairo_surface_write_to_png_stream(surface_, take, &bytes);
   if (status != CAIRO_STATUS_SUCCESS)
-    throw IoError(
-        fmt::format("cannot write the picture '{}': {}; choose a directory that exists, is writable and has room", path,
-                    cairo_status_to_string(status)));
+    throw Error(ExitCode::run_time, fmt::format("cannot draw the picture: {}", cairo_status_to_string(status)));
+  return bytes;
+}
+
+void Page::save(const std::string& path) {
+  std::error_code none;
+  if (std::filesystem::exists(path, none) && !std::filesystem::is_regular_file(path, none)) {
+    Descriptor device(path, O_WRONLY); // has no name to take
+    device.write_all(png());
+    device.close();
+  } else {
+    write_file(path, png());
+  }
 }
 
 } // namespace keeler

@@ -6,6 +6,7 @@
 
 #include <cairo.h>
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -49,7 +50,9 @@ public:
   double text(PagePoint base, const std::string& text, const TextStyle& style, bool upward = false);
   double text_width(const std::string& text, const TextStyle& style);
 
-  /// Throws IoError when drawing failed or the file cannot be written.
+  /// The picture as the bytes of a PNG file. Throws Error when drawing failed.
+  std::vector<std::byte> png();
+  /// Writes it; the name always stands for a complete file. Throws IoError when that fails.
   void save(const std::string& path);
 
 private:

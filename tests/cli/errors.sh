@@ -107,6 +107,12 @@ for command in analyze render; do
   refuses_with 4 "$command, no snapshot" "no snapshot" $command "$work/empty"
   refuses_with 4 "$command of a checkpoint" "checkpoint_" $command "$(newest_checkpoint "$work/taken")"
 done
+refuses "a field that is not there" "'mass' is no field of a picture; choose one of height, size, speed, spin" \
+  render "$work/taken" -o "$work/none.png" --colour mass
+refuses "spins of smooth particles" "choose another field" render "$work/taken" -o "$work/none.png" --colour spin
+refuses "a theme that is not there" "--theme" render "$work/taken" -o "$work/none.png" --theme green
+refuses "a picture of no width" "'0' is not a number of pixels" render "$work/taken" -o "$work/none.png" --width 0
+[ -e "$work/none.png" ] && fail "a refused picture was written"
 refuses_with 4 "a picture below a file" "file/picture.png" render "$work/taken" -o "$work/file/picture.png"
 for start in absent.hdf good.toml taken/scene.toml; do
   runs 4 run "$work/scene.toml" --from "$work/$start" -o "$none"

@@ -119,11 +119,19 @@ is_png() {
 accepts "render a folder" render "$work/run"
 prints "render a folder" "$work/run/picture.png"
 is_png "$work/run/picture.png"
+[ -e "$work/run/picture-autocorrelation.png" ] && fail "an autocorrelation that nobody asked for"
+accepts "render the autocorrelation" render "$work/run" --autocorrelation
+prints "render the autocorrelation" "$work/run/picture-autocorrelation.png"
 is_png "$work/run/picture-autocorrelation.png"
 accepts "render a file" render "$work/run/snap_000000.hdf"
 is_png "$work/run/snap_000000.png"
 accepts "render to a name" render "$work/run/snap_000000.hdf" -o "$work/mine.png"
 is_png "$work/mine.png"
+for field in size speed cluster density; do
+  accepts "render $field" render "$work/run" -o "$work/$field.png" --colour $field --width 600 --theme light
+  is_png "$work/$field.png"
+  [ "$(od -An -tu1 -j 16 -N 4 "$work/$field.png" | tr -s ' ')" = " 0 0 2 88" ] || fail "$field: not 600 pixels wide"
+done
 
 # A full standard output is not success.
 if [ -e /dev/full ]; then

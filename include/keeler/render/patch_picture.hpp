@@ -3,15 +3,34 @@
 #pragma once
 
 #include <keeler/particles/patch.hpp>
+#include <keeler/render/colour_field.hpp>
 
+#include <optional>
 #include <string>
 
 namespace keeler {
 
+enum class PictureTheme { dark, light }; ///< of the page; the views always have a dark sky
+
+/// What pictures must share to be compared: those of a movie have one.
+struct PictureScale {
+  double half_height = 0.0; ///< nearly all particles stand in |z| up to this, m
+  double depth = 0.0;       ///< the height with the brightest shade, m
+  ColourRange colours;      ///< of the field; not used for heights
+
+  /// Widens it until it holds the other one too.
+  void include(const PictureScale& other);
+};
+
 struct PictureOptions {
   std::string title = "Ring patch";
   int width = 1600; ///< of the whole picture, pixels; everything else scales with it
+  PictureTheme theme = PictureTheme::dark;
+  ColourField colour = ColourField::height;
+  std::optional<PictureScale> scale; ///< none: the patch's own
 };
+
+inline constexpr int least_picture_width = 200, most_picture_width = 8000; // pixels
 
 /// A rectangle of whole pixels; y runs down.
 struct PixelFrame {
@@ -22,13 +41,18 @@ struct PixelFrame {
 struct PictureLayout {
   int width = 0, height = 0; ///< of the whole picture, pixels
   PixelFrame top_view, edge_view;
+  int foot = 0; ///< where the lines below the views begin
   double pixels_per_metre = 0.0;
   double half_height = 0.0; ///< the edge view shows |z| up to this, m
 };
 
+/// Of one patch. Throws UsageError when it does not have the field.
+PictureScale picture_scale(const Patch& patch, ColourField field);
+
 PictureLayout layout_of(const Patch& patch, const PictureOptions& options);
 
-/// Writes a PNG. Throws UsageError when there are no particles, IoError when the file cannot be written.
+/// Writes a PNG. Throws UsageError when there are no particles or not the field, IoError when the file cannot be
+/// written.
 void render_patch(const Patch& patch, const std::string& path, const PictureOptions& options = {});
 
 } // namespace keeler

@@ -185,7 +185,10 @@ bool local_times_figure(const FinderStudyData& data, const fs::path& folder) {
 bool draw_finder_figures(const FinderStudyData& data) {
   const fs::path folder = data.folder / "figures";
   fs::create_directories(folder);
-  render_patch(data.states[1].patch, (folder / "figure3.png").string(), {"Clumped by self-gravity, equal sizes", 700});
+  PictureOptions look;
+  look.title = "Clumped by self-gravity, equal sizes";
+  look.width = 700;
+  render_patch(data.states[1].patch, (folder / "figure3.png").string(), look);
   bool drawn = figure1(data, folder);
   drawn &= figure2(folder);
   drawn &= figure4(data, folder);

@@ -28,6 +28,13 @@ Patch spheres(const std::vector<Vec3>& places) {
   return patch;
 }
 
+PictureOptions named(const std::string& title, int width) {
+  PictureOptions options;
+  options.title = title;
+  options.width = width;
+  return options;
+}
+
 constexpr double bright = 90.0, dark = 10.0;
 
 // Brightness where (x, y) of the top view or (x, z) of the edge view is.
@@ -42,7 +49,7 @@ double shown(const Picture& picture, const PixelFrame& f, const PictureLayout& l
 TEST_CASE("a picture shows the particles where they are, before a dark sky") {
   const TemporaryPng file("patch");
   const Patch patch = spheres({{-20.0, 12.0, 1.0}, {30.0, -10.0, -3.0}});
-  const PictureOptions options{"Two spheres", 800};
+  const PictureOptions options = named("Two spheres", 800);
   render_patch(patch, file.path(), options);
   const Picture picture(file.path());
   const PictureLayout layout = layout_of(patch, options);
@@ -68,7 +75,7 @@ TEST_CASE("images fill the edges, across the shear as well") {
   // The first reaches over the outer edge, 20 m farther back there; the second over the upper edge; the third stands
   // outside the cell by its eccentricity and shows as the image that is inside.
   const Patch patch = spheres({{49.5, -5.0, 0.0}, {10.0, 29.5, 0.0}, {-60.0, 0.0, 0.0}});
-  const PictureOptions options{"Images", 1600};
+  const PictureOptions options = named("Images", 1600);
   render_patch(patch, file.path(), options);
   const Picture picture(file.path());
   const PictureLayout layout = layout_of(patch, options);
@@ -84,7 +91,7 @@ TEST_CASE("images fill the edges, across the shear as well") {
 TEST_CASE("the higher particle lies in front, whatever the order in memory") {
   const TemporaryPng one("front"), two("back");
   Patch patch = spheres({{0.0, 0.0, 5.0}, {1.0, 0.0, -5.0}});
-  const PictureOptions options{"Order", 800};
+  const PictureOptions options = named("Order", 800);
   render_patch(patch, one.path(), options);
   std::swap(patch.positions[0], patch.positions[1]);
   std::swap(patch.ids[0], patch.ids[1]);
@@ -106,7 +113,7 @@ TEST_CASE("many particles smaller than a pixel keep their light") {
     patch.radii.push_back(0.098);
     patch.masses.push_back(2.0);
   }
-  const PictureOptions options{"Dust", 400};
+  const PictureOptions options = named("Dust", 400);
   render_patch(patch, file.path(), options);
   const Picture picture(file.path());
   const PixelFrame f = layout_of(patch, options).top_view;
@@ -123,7 +130,7 @@ TEST_CASE("a picture that cannot be written is an input/output error, an empty p
   const Patch patch = spheres({{0.0, 0.0, 0.0}});
   for (const char* path : {"/nowhere/at/all.png", "/dev/full"}) {
     CAPTURE(path);
-    CHECK_THROWS_AS(render_patch(patch, path, {"No room", 400}), IoError);
+    CHECK_THROWS_AS(render_patch(patch, path, named("No room", 400)), IoError);
   }
   CHECK_THROWS_AS(render_patch(spheres({}), "never.png"), UsageError);
 }

@@ -1,0 +1,127 @@
+#include <keeler/render/colour_field.hpp>
+
+#include "density_map.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/diagnostics/clusters.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+namespace keeler {
+namespace {
+
+constexpr std::array<std::pair<const char*, ColourField>, 6> fields = {{{"height", ColourField::height},
+                                                                        {"size", ColourField::size},
+                                                                        {"speed", ColourField::speed},
+                                                                        {"spin", ColourField::spin},
+                                                                        {"cluster", ColourField::cluster},
+                                                                        {"density", ColourField::density}}};
+
+// Relative to the mean motion (0, −S x, 0); Ω turns rad⁻¹ into s⁻¹.
+std::vector<double> speeds(const Patch& patch) {
+  std::vector<double> values;
+  for (std::size_t k = 0; k < patch.size(); ++k) {
+    const Vec3 relative = patch.velocities[k] + Vec3(0.0, patch.box.shear * patch.positions[k].x(), 0.0);
+    values.push_back(1e3 * patch.orbital_frequency * relative.norm());
+  }
+  return values;
+}
+
+std::vector<double> spins(const Patch& patch) {
+  if (patch.spins.empty())
+    throw UsageError("no colours of spins: the particles of this snapshot are smooth and have none; choose another "
+                     "field, or run a scene with collisions.friction");
+  std::vector<double> values;
+  for (const Vec3& spin : patch.spins)
+    values.push_back(spin.z());
+  return values;
+}
+
+std::vector<double> cluster_sizes(const Patch& patch) {
+  std::vector<double> values(patch.size(), 1.0);
+  for (const Cluster& cluster : find_clusters(patch))
+    for (const std::uint32_t member : cluster.members)
+      values[member] = static_cast<double>(cluster.members.size());
+  return values;
+}
+
+} // namespace
+
+ColourField colour_field_named(const std::string& name) {
+  std::string names;
+  for (const auto& [known, field] : fields) {
+    if (name == known)
+      return field;
+    names += (names.empty() ? "" : ", ") + std::string(known);
+  }
+  throw UsageError(fmt::format("--colour: '{}' is no field of a picture; choose one of {}", name, names));
+}
+
+double ColourRange::share(double value) const {
+  if (!(high > low))
+    return 0.5;
+  return std::clamp(logarithmic ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low), 0.0,
+                    1.0);
+}
+
+double ColourRange::middle() const {
+  return logarithmic ? std::sqrt(low * high) : 0.5 * (low + high);
+}
+
+std::vector<double> field_values(const Patch& patch, ColourField field) {
+  switch (field) {
+  case ColourField::size:
+    return patch.radii;
+  case ColourField::speed:
+    return speeds(patch);
+  case ColourField::spin:
+    return spins(patch);
+  case ColourField::cluster:
+    return cluster_sizes(patch);
+  case ColourField::density:
+    return DensityMap(patch).inner_values();
+  case ColourField::height:
+    break;
+  }
+  std::vector<double> heights;
+  for (const Vec3& position : patch.positions)
+    heights.push_back(position.z());
+  return heights;
+}
+
+ColourRange colour_range(std::vector<double> values, ColourField field) {
+  const bool whole = field == ColourField::size || field == ColourField::cluster; // few stand out, and they matter
+  const auto quantile = [&](double share) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+  };
+  const double low = quantile(whole ? 0.0 : 0.01), high = quantile(whole ? 1.0 : 0.99);
+  return {low, high, whole};
+}
+
+std::string label_of(ColourField field) {
+  switch (field) {
+  case ColourField::height:
+    return "height, m";
+  case ColourField::size:
+    return "radius, m";
+  case ColourField::speed:
+    return "speed relative to the shear, mm/s";
+  case ColourField::spin:
+    return "spin about the vertical, Ω";
+  case ColourField::cluster:
+    return "members of the cluster";
+  case ColourField::density:
+    return "surface density, kg/m²";
+  }
+  return {};
+}
+
+} // namespace keeler

@@ -1,0 +1,22 @@
+// The images of particles that may reach into the cell.
+#pragma once
+
+#include <keeler/particles/patch.hpp>
+
+#include <cstddef>
+
+namespace keeler {
+
+/// visit(k, place) for every particle's image in the cell and those around it.
+template<class Visit> void for_each_image(const Patch& patch, const Visit& visit) {
+  const ShearingBox& box = patch.box;
+  for (std::size_t k = 0; k < patch.size(); ++k) {
+    const Vec3& p = patch.positions[k];
+    const Vec3 inside = p + box.displacement(box.image_into_cell(p.x(), p.y(), patch.offset), patch.offset);
+    for (int nx = -1; nx <= 1; ++nx)
+      for (int ny = -2; ny <= 2; ++ny)
+        visit(k, Vec3(inside + box.displacement({nx, ny}, patch.offset)));
+  }
+}
+
+} // namespace keeler
