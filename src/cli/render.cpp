@@ -6,6 +6,7 @@
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/diagnostics/wakes.hpp>
 #include <keeler/render/autocorrelation_picture.hpp>
+#include <keeler/render/movie.hpp>
 #include <keeler/render/patch_picture.hpp>
 #include <keeler/runs/stored_patches.hpp>
 
@@ -24,7 +25,7 @@ constexpr double averaged_orbits = 1.0;
 struct RenderOptions {
   std::string path, output, colour = "height", theme = "dark";
   int width = PictureOptions().width;
-  bool autocorrelation = false;
+  bool autocorrelation = false, movie = false;
 };
 
 // picture.png in a run's folder, NAME.png beside a snapshot NAME.hdf.
@@ -44,11 +45,36 @@ void draw_autocorrelation(const RenderOptions& options, fs::path file, const std
   fmt::print("{}\n", file.string());
 }
 
-ExitCode render(const RenderOptions& options) {
+PictureOptions look_of(const RenderOptions& options) {
   PictureOptions look;
   look.width = options.width;
   look.theme = options.theme == "light" ? PictureTheme::light : PictureTheme::dark;
   look.colour = colour_field_named(options.colour);
+  return look;
+}
+
+ExitCode draw_movie(const RenderOptions& options) {
+  if (!fs::is_directory(options.path))
+    throw UsageError(fmt::format("no movie of '{}': it is no folder; name the folder of a run", options.path));
+  const fs::path movie = !options.output.empty() ? fs::path(options.output)
+                                                 : options.path / fs::path(has_ffmpeg() ? "movie.mp4" : "movie.png");
+  require_movie_name(movie.string());
+  require_writable_folder(fs::absolute(movie).parent_path(), movie);
+  const std::vector<fs::path> snapshots = snapshots_in(options.path);
+  PictureOptions look = look_of(options);
+  if (const std::string title = load_newest_patch(snapshots.front()).title; !title.empty())
+    look.title = title;
+  render_movie(
+      snapshots.size(), [&](std::size_t k) { return load_newest_patch(snapshots[k]).patches.back(); }, movie.string(),
+      look);
+  fmt::print("{}\n", movie.string());
+  return ExitCode::done;
+}
+
+ExitCode render(const RenderOptions& options) {
+  PictureOptions look = look_of(options);
+  if (options.movie)
+    return draw_movie(options);
   const StoredPatches stored = load_newest_patch(options.path);
   const fs::path picture = picture_path(options);
   if (!stored.title.empty())
@@ -67,7 +93,7 @@ void add_render(CLI::App& program, Action& action) {
   CLI::App& command = *program.add_subcommand("render", "draw a snapshot, or the last state of a run");
   command.add_option("FILE|DIR", options->path, "a snapshot, or the folder of a run")->required()->type_name("");
   command.add_option("-o,--output", options->output,
-                     "the PNG to write (default: picture.png in the folder, or beside the file)");
+                     "the file to write (default: picture.png in the folder, or beside the file)");
   command.add_option("--width", options->width, "of the picture (default: 1600)")
       ->type_name("PIXELS")
       ->check(whole_number_between(least_picture_width, most_picture_width, "a number of pixels"));
@@ -78,8 +104,13 @@ void add_render(CLI::App& program, Action& action) {
       .add_option("--colour", options->colour,
                   "what the colours say, with a bar: size, speed, spin, cluster, density (default: height, without)")
       ->type_name("FIELD");
-  command.add_flag("--autocorrelation", options->autocorrelation,
-                   "draw the autocorrelation of the surface density too, averaged over a run's last orbit");
+  CLI::Option* const autocorrelation =
+      command.add_flag("--autocorrelation", options->autocorrelation,
+                       "draw the autocorrelation of the surface density too, averaged over a run's last orbit");
+  command
+      .add_flag("--movie", options->movie,
+                "draw all snapshots of a run at one scale: movie.mp4 by ffmpeg, or movie.png where that is missing")
+      ->excludes(autocorrelation);
   command.callback([options, &action] { action = [options] { return render(*options); }; });
 }
 

@@ -9,23 +9,13 @@
 
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include <fcntl.h>
 #include <unistd.h>
 
 namespace keeler {
 namespace {
-
-// Removes a file when the scope is left, unless it was kept.
-struct Leftover {
-  std::filesystem::path file;
-  bool keep = false;
-  ~Leftover() {
-    std::error_code ignored;
-    if (!keep)
-      std::filesystem::remove(file, ignored);
-  }
-};
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
@@ -40,21 +30,30 @@ template<class Bytes> Bytes read(const std::filesystem::path& file) {
 
 } // namespace
 
+NewFile::NewFile(std::filesystem::path file) : file_(std::move(file)), temporary_(file_.string() + ".tmp") {}
+
+NewFile::~NewFile() {
+  std::error_code ignored;
+  if (!kept_ && std::filesystem::is_regular_file(temporary_, ignored))
+    std::filesystem::remove(temporary_, ignored);
+}
+
+void NewFile::keep() {
+  Descriptor(temporary_, O_RDONLY).sync();
+  std::error_code error;
+  std::filesystem::rename(temporary_, file_, error);
+  if (error)
+    throw IoError(fmt::format("cannot write '{}': {}", file_.string(), error.message()));
+  kept_ = true;
+  Descriptor(folder_of(file_), O_RDONLY | O_DIRECTORY).sync();
+}
+
 void write_file(const std::filesystem::path& file, std::span<const std::byte> content) {
-  const std::filesystem::path temporary = file.string() + ".tmp";
-  {
-    Descriptor out(temporary, O_WRONLY | O_CREAT | O_TRUNC);
-    Leftover leftover{temporary};
-    out.write_all(content);
-    out.sync();
-    out.close();
-    std::error_code error;
-    std::filesystem::rename(temporary, file, error);
-    if (error)
-      throw IoError(fmt::format("cannot write '{}': {}", file.string(), error.message()));
-    leftover.keep = true;
-  }
-  Descriptor(folder_of(file), O_RDONLY | O_DIRECTORY).sync();
+  NewFile unfinished(file);
+  Descriptor out(unfinished.temporary(), O_WRONLY | O_CREAT | O_TRUNC);
+  out.write_all(content);
+  out.close();
+  unfinished.keep();
 }
 
 void write_text(const std::filesystem::path& file, std::string_view text) {

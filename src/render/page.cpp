@@ -27,6 +27,11 @@ std::uint32_t packed(const Colour& colour) {
   return 0xff000000u | byte(colour.r) << 16 | byte(colour.g) << 8 | byte(colour.b);
 }
 
+void require_drawn(cairo_status_t status) {
+  if (status != CAIRO_STATUS_SUCCESS)
+    throw Error(ExitCode::run_time, fmt::format("cannot draw the picture: {}", cairo_status_to_string(status)));
+}
+
 } // namespace
 
 Page::Page(int width, int height, const Colour& background)
@@ -156,6 +161,14 @@ double Page::show(const std::string& text, const TextStyle& style, bool draw) {
   return x;
 }
 
+std::span<const std::byte> Page::pixels() {
+  require_drawn(cairo_status(cairo_));
+  cairo_surface_flush(surface_);
+  const auto* data = reinterpret_cast<const std::byte*>(cairo_image_surface_get_data(surface_));
+  return {data,
+          static_cast<std::size_t>(cairo_image_surface_get_stride(surface_)) * static_cast<std::size_t>(height())};
+}
+
 std::vector<std::byte> Page::png() {
   std::vector<std::byte> bytes;
   const auto take = [](void* to, const unsigned char* data, unsigned int length) {
@@ -164,11 +177,8 @@ std::vector<std::byte> Page::png() {
                                                      begin + length);
     return CAIRO_STATUS_SUCCESS;
   };
-  cairo_status_t status = cairo_status(cairo_);
-  if (status == CAIRO_STATUS_SUCCESS)
-    status = cairo_surface_write_to_png_stream(surface_, take, &bytes);
-  if (status != CAIRO_STATUS_SUCCESS)
-    throw Error(ExitCode::run_time, fmt::format("cannot draw the picture: {}", cairo_status_to_string(status)));
+  require_drawn(cairo_status(cairo_));
+  require_drawn(cairo_surface_write_to_png_stream(surface_, take, &bytes));
   return bytes;
 }
 

@@ -7,6 +7,7 @@
 #include <cairo.h>
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,11 @@ public:
   double text(PagePoint base, const std::string& text, const TextStyle& style, bool upward = false);
   double text_width(const std::string& text, const TextStyle& style);
 
+  int width() const { return cairo_image_surface_get_width(surface_); }
+  int height() const { return cairo_image_surface_get_height(surface_); }
+
+  /// Rows of four bytes a pixel: blue, green, red, and one unused. Throws Error when drawing failed.
+  std::span<const std::byte> pixels();
   /// The picture as the bytes of a PNG file. Throws Error when drawing failed.
   std::vector<std::byte> png();
   /// Writes it; the name always stands for a complete file. Throws IoError when that fails.

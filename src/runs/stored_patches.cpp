@@ -18,22 +18,6 @@ bool earlier(const fs::path& a, const fs::path& b) {
   return x.size() != y.size() ? x.size() < y.size() : x < y;
 }
 
-std::vector<fs::path> snapshots_in(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("snap_") && name.ends_with(".hdf"))
-      files.push_back(entry.path());
-  }
-  if (files.empty())
-    throw IoError(
-        fmt::format("no snapshot in '{}' (snap_NNNNNN.hdf is missing); name a snapshot file or the folder of a run",
-                    folder.string()));
-  std::sort(files.begin(), files.end(), earlier);
-  return files;
-}
-
 constexpr double rounding = 1.0 + 1e-9; // of times in orbits
 
 Snapshot load(const fs::path& file) {
@@ -54,6 +38,22 @@ void take(StoredPatches& stored, Snapshot snapshot, const fs::path& file) {
 }
 
 } // namespace
+
+std::vector<fs::path> snapshots_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("snap_") && name.ends_with(".hdf"))
+      files.push_back(entry.path());
+  }
+  if (files.empty())
+    throw IoError(
+        fmt::format("no snapshot in '{}' (snap_NNNNNN.hdf is missing); name a snapshot file or the folder of a run",
+                    folder.string()));
+  std::sort(files.begin(), files.end(), earlier);
+  return files;
+}
 
 StoredPatches load_newest_patch(const fs::path& path) {
   return load_patches(path, 0.0);

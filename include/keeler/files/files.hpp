@@ -11,6 +11,23 @@
 
 namespace keeler {
 
+/// A file in the making, for whoever fills it piece by piece: it is NAME.tmp until it is kept, and goes when it is not.
+class NewFile {
+public:
+  explicit NewFile(std::filesystem::path file);
+  ~NewFile();
+  NewFile(const NewFile&) = delete;
+  NewFile& operator=(const NewFile&) = delete;
+
+  const std::filesystem::path& temporary() const { return temporary_; }
+  /// Forces it to disk and gives it its name. Throws IoError.
+  void keep();
+
+private:
+  std::filesystem::path file_, temporary_;
+  bool kept_ = false;
+};
+
 /// Writes a file as described above; after a failure neither NAME.tmp nor a changed NAME is left. Throws IoError.
 /// A process that sets a file-size limit must ignore SIGXFSZ, else that signal ends it before the error is seen.
 void write_file(const std::filesystem::path& file, std::span<const std::byte> content);

@@ -19,6 +19,9 @@ struct StoredPatches {
   bool driven = false;                    ///< it has other forces besides
 };
 
+/// The snapshots of a run's folder, oldest first. Throws IoError when there is none.
+std::vector<std::filesystem::path> snapshots_in(const std::filesystem::path& folder);
+
 /// A snapshot file gives that snapshot; a run's folder gives those of its last `orbits` orbits, the newest always among
 /// them. Throws IoError when there is none.
 StoredPatches load_patches(const std::filesystem::path& path, double orbits);

@@ -1,0 +1,81 @@
+#include <keeler/render/movie.hpp>
+
+#include "movie_file.hpp"
+#include "patch_page.hpp"
+
+#include <keeler/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+#include <unistd.h>
+
+namespace keeler {
+namespace {
+
+PictureScale common_scale(std::size_t count, const std::function<Patch(std::size_t)>& patch, ColourField field) {
+  std::optional<PictureScale> scale;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Patch here = patch(k);
+    if (here.size() == 0)
+      continue; // drawing it says so
+    const PictureScale own = picture_scale(here, field);
+    if (scale)
+      scale->include(own);
+    else
+      scale = own;
+  }
+  return scale.value_or(PictureScale());
+}
+
+} // namespace
+
+bool has_ffmpeg() {
+  const char* const folders = std::getenv("PATH");
+  std::istringstream path(folders ? folders : "");
+  for (std::string folder; std::getline(path, folder, ':');) {
+    const std::filesystem::path program = std::filesystem::path(folder.empty() ? "." : folder) / "ffmpeg";
+    if (std::filesystem::is_regular_file(program) && access(program.c_str(), X_OK) == 0)
+      return true;
+  }
+  return false;
+}
+
+void require_movie_name(const std::string& path) {
+  const std::string ending = std::filesystem::path(path).extension().string();
+  if (ending != ".mp4" && ending != ".png")
+    throw UsageError(fmt::format(
+        "'{}' cannot be a movie: movies are .mp4 files or animated .png files; give it such an ending", path));
+  if (ending == ".mp4" && !has_ffmpeg())
+    throw UsageError(fmt::format(
+        "'{}' cannot be made: the program ffmpeg is not on PATH; install the package ffmpeg, or name a .png", path));
+}
+
+void render_movie(std::size_t count, const std::function<Patch(std::size_t)>& patch, const std::string& path,
+                  const PictureOptions& options) {
+  require_movie_name(path);
+  PictureOptions look = options;
+  look.scale = common_scale(count, patch, options.colour);
+  std::unique_ptr<MovieFile> movie;
+  int width = 0, height = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::unique_ptr<Page> page = patch_page(patch(k), look);
+    if (!movie) {
+      width = page->width();
+      height = page->height();
+      movie = new_movie(path, width, height, count);
+    }
+    if (page->width() != width || page->height() != height)
+      throw UsageError(fmt::format("no movie '{}': the box changes at picture {}; draw the parts of the run by "
+                                   "themselves",
+                                   path, k + 1));
+    movie->add(*page);
+  }
+  if (movie)
+    movie->finish();
+}
+
+} // namespace keeler

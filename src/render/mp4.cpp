@@ -1,0 +1,142 @@
+// MP4 by a child process: ffmpeg gets the pixels of the pages through a pipe.
+#include "movie_file.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/files/files.hpp>
+#include <keeler/render/movie.hpp>
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace keeler {
+namespace {
+
+std::vector<std::string> arguments(const std::filesystem::path& file, int width, int height) {
+  return {"ffmpeg", "-nostdin", "-loglevel", "error", "-xerror", "-y",
+          // Cairo's pixels, blue first, the fourth byte unused.
+          "-f", "rawvideo", "-pixel_format", "bgr0", "-video_size", fmt::format("{}x{}", width, height), "-framerate",
+          std::to_string(movie_frames_a_second), "-i", "pipe:0",
+          // This chroma format needs even sides.
+          "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-preset", "veryfast", "-crf", "20", "-pix_fmt",
+          "yuv420p", "-f", "mp4", "file:" + file.string()};
+}
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+class Mp4 : public MovieFile {
+public:
+  Mp4(const std::filesystem::path& file, int width, int height);
+  ~Mp4() override;
+  void add(Page& page) override;
+  void finish() override;
+
+private:
+  bool ended_well();
+  std::string first_message() const;
+  [[noreturn]] void fail() const;
+
+  std::filesystem::path name_;
+  NewFile file_;
+  std::unique_ptr<std::FILE, CloseFile> messages_; // what ffmpeg says, in a file without a name
+  int pipe_ = -1;
+  pid_t process_ = -1; // -1: it has ended
+};
+
+Mp4::Mp4(const std::filesystem::path& file, int width, int height)
+    : name_(file), file_(file), messages_(std::tmpfile()) {
+  int ends[2];
+  if (!messages_ || pipe2(ends, O_CLOEXEC) != 0)
+    throw IoError(fmt::format("cannot write the movie '{}': {}", name_.string(), std::strerror(errno)));
+  std::vector<std::string> words = arguments(file_.temporary(), width, height);
+  std::vector<char*> pointers;
+  for (std::string& word : words)
+    pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, fileno(messages_.get()), STDERR_FILENO);
+  const int error = posix_spawnp(&process_, "ffmpeg", &actions, nullptr, pointers.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[0]);
+  pipe_ = ends[1];
+  if (error != 0) {
+    process_ = -1;
+    close(pipe_);
+    throw IoError(
+        fmt::format("cannot write the movie '{}': ffmpeg does not start: {}", name_.string(), std::strerror(error)));
+  }
+}
+
+Mp4::~Mp4() {
+  if (process_ < 0)
+    return;
+  kill(process_, SIGKILL); // it would finish a movie of half the run
+  ended_well();
+}
+
+// A closed pipe says that the movie ends; true when ffmpeg wrote all of it.
+bool Mp4::ended_well() {
+  close(pipe_);
+  int status = 0;
+  while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+  }
+  process_ = -1;
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+std::string Mp4::first_message() const {
+  char line[400] = "";
+  std::rewind(messages_.get());
+  if (std::fgets(line, sizeof line, messages_.get()) == nullptr)
+    return "nothing";
+  return std::string(line, std::strcspn(line, "\n"));
+}
+
+void Mp4::fail() const {
+  throw IoError(fmt::format("cannot write the movie '{}'; ffmpeg says: {}; choose a folder that is writable and has "
+                            "room, or name a .png",
+                            name_.string(), first_message()));
+}
+
+void Mp4::add(Page& page) {
+  std::span<const std::byte> pixels = page.pixels();
+  while (!pixels.empty()) {
+    const ssize_t written = write(pipe_, pixels.data(), pixels.size());
+    if (written < 0 && errno == EINTR)
+      continue;
+    if (written < 0) {
+      ended_well();
+      fail();
+    }
+    pixels = pixels.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+void Mp4::finish() {
+  if (!ended_well())
+    fail();
+  file_.keep();
+}
+
+} // namespace
+
+std::unique_ptr<MovieFile> new_mp4(const std::filesystem::path& file, int width, int height) {
+  return std::make_unique<Mp4>(file, width, height);
+}
+
+} // namespace keeler
