@@ -1,0 +1,77 @@
+#!/usr/bin/env bash
+# clean_debian.sh SOURCE_DIR FOLDER: Keeler's Debian packages on a Debian 12 that holds nothing else. The program follows the
+# first page of the tutorial, as it was installed; the Python package and the library work; nothing is left after their
+# removal. Then the same with what the Containerfile does, and without root. Needs root, debootstrap and the network, else it
+# is skipped (77). FOLDER keeps the clean system for the next time.
+set -euo pipefail
+source_dir=$1
+mkdir -p "$2"
+folder=$(realpath "$2")
+packages=$source_dir/build/package
+clean=$folder/clean
+system=$folder/system
+
+[ "$(id -u)" = 0 ] || { echo "skipped: needs root"; exit 77; }
+command -v debootstrap >/dev/null || { echo "skipped: needs debootstrap, which scripts/setup test installs"; exit 77; }
+
+# inside COMMAND...: in the system, whose mounts end with the command
+inside() {
+  # shellcheck disable=SC2016 # for the other shell
+  unshare --mount --propagation private sh -c '
+    system=$1; shift
+    mount -t proc proc "$system/proc" && mount --bind /dev "$system/dev" &&
+    mount -t devpts devpts "$system/dev/pts" -o newinstance,ptmxmode=0666 && exec chroot "$system" "$@"' \
+    sh "$system" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 ${http_proxy:+"http_proxy=$http_proxy"} \
+    ${https_proxy:+"https_proxy=$https_proxy"} DEBIAN_FRONTEND=noninteractive "$@" </dev/null
+}
+fresh_system() {
+  rm -rf "$system"
+  cp -a "$clean" "$system"
+  cp -L /etc/resolv.conf "$system/etc/"
+  cp "$packages"/*.deb "$system/tmp/"
+}
+install_packages() {
+  inside sh -c "apt-get -qq update && apt-get -qq install -y --no-install-recommends $* >/dev/null"
+}
+
+if [ ! -d "$clean" ]; then
+  echo "=== a clean Debian"
+  rm -rf "$clean.part"
+  debootstrap --variant=minbase bookworm "$clean.part" http://deb.debian.org/debian >"$folder/debootstrap.log"
+  mv "$clean.part" "$clean"
+fi
+"$source_dir/scripts/package"
+
+echo "=== keeler: the tutorial's first page"
+fresh_system
+install_packages '/tmp/keeler_*.deb'
+mkdir "$system/root/tutorial"
+awk '/^## Your first patch/ { page = 1 } /^## A figure of your own/ { page = 0 }
+     page && /^```toml/ { kind = "toml"; getline; print "cat >" $2 " <<\"END\"" }
+     page && /^```sh/ { kind = "sh"; next }
+     /^```$/ { if (kind == "toml") print "END"; kind = ""; next }
+     kind { print }' "$system/usr/share/doc/keeler/docs/tutorial.md" >"$system/root/tutorial/page"
+inside sh -c 'cd /root/tutorial && sh -ex page'
+for file in first/summary.json first/picture.png without/summary.json; do
+  [ -s "$system/root/tutorial/$file" ] || { echo "FAILED: the tutorial left no $file"; exit 1; }
+done
+inside sh -c 'keeler check /usr/share/keeler/examples/a-ring-wakes/scene.toml'
+
+echo "=== python3-keeler, libkeeler-dev"
+install_packages '/tmp/python3-keeler_*.deb /tmp/libkeeler-dev_*.deb' g++ make
+inside python3 -c 'import keeler; print(keeler.program())'
+inside sh -ec 'cp -r /usr/share/keeler/examples/embed /tmp/embed
+  cmake -S /tmp/embed -B /tmp/embed/build && cmake --build /tmp/embed/build && /tmp/embed/build/embed'
+inside sh -c 'apt-get -qq purge -y keeler python3-keeler libkeeler-dev >/dev/null'
+left=$(find "$system/usr" -path '*keeler*')
+[ -z "$left" ] || { echo "FAILED: the packages leave $left"; exit 1; }
+
+echo "=== what the Containerfile does"
+fresh_system
+run=$(sed -e :join -e '/\\$/{N;s/\\\n//;b join' -e '}' "$source_dir/Containerfile" | sed -n 's/^RUN \(.*apt-get.*\)/\1/p')
+[ -n "$run" ] || { echo "FAILED: the Containerfile installs nothing"; exit 1; }
+inside sh -c "$run"
+inside su keeler -c 'cd && cp /usr/share/keeler/examples/equilibrium/scene.toml . &&
+  keeler run scene.toml -o run --set time.end=1 && keeler render --movie run && test -s run/movie.mp4'
+rm -rf "$system"
+echo "passed"
