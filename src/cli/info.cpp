@@ -1,5 +1,6 @@
-// keeler info: what is in a snapshot, a checkpoint or a file of contacts.
+// keeler info: what is in a snapshot, a checkpoint or a file of contacts, or in a folder of results.
 #include "command.hpp"
+#include "folder_info.hpp"
 
 #include <keeler/io/contacts.hpp>
 #include <keeler/io/describe.hpp>
@@ -10,6 +11,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
 #include <memory>
 
 namespace keeler {
@@ -80,22 +82,25 @@ void print_text(const nlohmann::ordered_json& json) {
 
 void add_info(CLI::App& program, Action& action) {
   struct Options {
-    std::string file;
+    std::string path;
     bool json = false;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App& command = *program.add_subcommand("info", "show what is in a snapshot, a checkpoint or a file of contacts");
-  command.add_option("FILE", options->file, "a snapshot, a checkpoint or a file of contacts")
+  CLI::App& command = *program.add_subcommand("info", "show what is in a file or a folder of results");
+  command
+      .add_option("FILE|DIR", options->path,
+                  "a snapshot, a checkpoint or a file of contacts; the folder of a run, a sweep or a study")
       ->required()
       ->type_name("");
   command.add_flag("--json", options->json, "print it as JSON");
   command.callback([options, &action] {
     action = [options] {
-      const nlohmann::ordered_json json = describe(options->file);
+      const bool folder = std::filesystem::is_directory(options->path);
+      const nlohmann::ordered_json json = folder ? describe_folder(options->path) : describe(options->path);
       if (options->json)
         fmt::print("{}\n", json.dump(2));
       else
-        print_text(json);
+        folder ? print_folder(json) : print_text(json);
       return ExitCode::done;
     };
   });

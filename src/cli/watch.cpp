@@ -80,10 +80,8 @@ std::string remaining(double seconds) {
 }
 
 std::string standing(const RunView& view) {
-  if (!view.running)
-    return view.last_event == "finished" || view.last_event == "stopped" ? view.last_event : "not running";
   const std::optional<double> left = view.remaining_s(static_cast<double>(std::time(nullptr)));
-  return left ? "running, " + remaining(*left) : "running";
+  return left ? view.state() + ", " + remaining(*left) : view.state();
 }
 
 // No line is longer than the terminal is wide.

@@ -29,14 +29,23 @@ std::optional<double> seconds_of(const nlohmann::json& line) {
 }
 
 void take_event(RunView& view, const nlohmann::json& line) {
-  const std::string event = line.value("event", "");
-  view.last_event = event;
-  if (event != "started" && event != "resumed")
-    return;
-  view.end_orbits = line.value("end_orbits", 0.0);
-  view.first_orbits = line.value("orbits", 0.0);
-  view.began_s = seconds_of(line);
-  view.particles = line.value("particles", view.particles);
+  const std::string event = view.last_event = line.value("event", "");
+  if (event == "started" || event == "resumed") {
+    if (view.unended)
+      view.ended_s.reset();
+    view.unended = true;
+    view.end_orbits = line.value("end_orbits", 0.0);
+    view.first_orbits = line.value("orbits", 0.0);
+    view.began_s = seconds_of(line);
+    view.particles = line.value("particles", view.particles);
+  } else if (event == "finished" || event == "stopped" || event == "given up") {
+    view.unended = false;
+    const std::optional<double> now = seconds_of(line);
+    if (view.ended_s && view.began_s && now)
+      *view.ended_s += *now - *view.began_s;
+    else
+      view.ended_s.reset();
+  }
 }
 
 // A line that is still being written, or is no JSON, says nothing.
@@ -67,8 +76,21 @@ double RunView::share() const {
   return end_orbits > 0.0 ? std::clamp(orbits / end_orbits, 0.0, 1.0) : 0.0;
 }
 
+std::string RunView::state() const {
+  if (running)
+    return "running";
+  return last_event == "finished" || last_event == "stopped" ? last_event : "not running";
+}
+
+std::optional<double> RunView::wall_s(double now_s) const {
+  if (!ended_s || !unended)
+    return ended_s;
+  return running && began_s ? std::optional(*ended_s + now_s - *began_s) : std::nullopt;
+}
+
 std::optional<double> RunView::remaining_s(double now_s) const {
-  if (!running || !began_s || !(orbits > first_orbits))
+  constexpr double least_s = 2.0; // the log knows whole seconds
+  if (!running || !began_s || !(orbits > first_orbits) || now_s - *began_s < least_s)
     return std::nullopt;
   return (now_s - *began_s) / (orbits - first_orbits) * std::max(end_orbits - orbits, 0.0);
 }

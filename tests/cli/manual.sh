@@ -77,5 +77,7 @@ names analyze
 accepts "info" info "$(newest_checkpoint "$work/run")" --json
 sed -i '/^  "fields"/,/^  }/{/^    /d}; /^  "attributes"/,/^  }/{/^    /d}' "$work/out" # names of the file, not of the program
 names info
+accepts "info of a folder" info "$work/run" --json
+names info
 
 report

@@ -1,0 +1,266 @@
+#include "folder_info.hpp"
+
+#include <keeler/batch/run_folders.hpp>
+#include <keeler/core/error.hpp>
+#include <keeler/core/words.hpp>
+#include <keeler/files/files.hpp>
+#include <keeler/io/describe.hpp>
+#include <keeler/runs/folder_lock.hpp>
+#include <keeler/runs/run_stage.hpp>
+#include <keeler/runs/run_view.hpp>
+#include <keeler/scene/scene.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace keeler {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+Json or_null(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+// Files may come and go while a run works: what is gone counts nothing.
+std::uintmax_t size_of(const fs::path& file) {
+  std::error_code gone;
+  const std::uintmax_t size = fs::file_size(file, gone);
+  return gone ? 0 : size;
+}
+
+std::uintmax_t size_of_all(const fs::path& folder) {
+  std::uintmax_t size = 0;
+  std::error_code gone;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder, gone))
+    if (entry.is_regular_file(gone))
+      size += size_of(entry.path());
+  return size;
+}
+
+// The files of a folder with such names, in their order.
+std::vector<fs::path> files_named(const fs::path& folder, const std::string& beginning, const std::string& ending) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(beginning) && name.ends_with(ending))
+      files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// None for a file that is damaged.
+std::optional<FileDescription> description_of(const fs::path& file) {
+  try {
+    return describe_file(file);
+  } catch (const IoError&) {
+    return std::nullopt;
+  }
+}
+
+Json value_of_field(const FileDescription& file, const std::string& name) {
+  for (const FieldDescription& field : file.fields)
+    if (field.name == name)
+      return field.value.empty() ? Json(field.shape.front()) : Json::parse(field.value);
+  return nullptr;
+}
+
+// What tells the files of a kind apart: the time of a snapshot, the step of a checkpoint, the rows of contacts.
+void add_mark(Json& line, const std::optional<FileDescription>& file) {
+  line["damaged"] = !file;
+  if (!file)
+    return;
+  if (file->kind == FileKind::snapshot)
+    line["time_orbits"] = std::stod(file->attributes.at("RingBox/time_orbits"));
+  else if (file->kind == FileKind::checkpoint)
+    line["steps"] = value_of_field(*file, "steps");
+  else
+    line["contact_count"] = value_of_field(*file, "Step");
+}
+
+// Which program wrote a file.
+void add_writer(Json& json, const FileDescription& file) {
+  const std::string group = file.kind == FileKind::checkpoint ? "provenance/" : "Code/";
+  for (const char* const name : {"version", "commit", "host"})
+    json[name] = file.attributes.at(group + name);
+  json["threads"] = std::stoi(file.attributes.at(group + "threads"));
+}
+
+// Lines of the files; the last whole one says which program wrote them.
+Json files_of(Json& json, const fs::path& folder, const std::string& beginning, const std::string& ending) {
+  Json lines = Json::array();
+  for (const fs::path& path : files_named(folder, beginning, ending)) {
+    const std::optional<FileDescription> file = description_of(path);
+    if (!fs::exists(path))
+      continue; // a run at work keeps two checkpoints
+    Json line = {{"file", path.filename().string()}, {"bytes", size_of(path)}};
+    add_mark(line, file);
+    lines.push_back(line);
+    if (file)
+      add_writer(json, *file);
+  }
+  return lines;
+}
+
+Json describe_run(const fs::path& folder) {
+  const RunView view = view_run(folder);
+  const auto now = static_cast<double>(std::time(nullptr));
+  const fs::path scene = folder / "scene.toml";
+  Json json = {{"folder", folder.string()}, {"kind", "run"}, {"state", view.state()}};
+  json["title"] = fs::exists(scene) ? parse_stored_scene(read_text(scene), scene.string()).title : "";
+  json["particle_count"] = view.particles;
+  json["time_orbits"] = view.orbits;
+  json["end_orbits"] = view.end_orbits;
+  json["remaining_s"] = or_null(view.remaining_s(now));
+  json["wall_s"] = or_null(view.wall_s(now));
+  for (const char* const name : {"version", "commit", "host", "threads"})
+    json[name] = nullptr;
+  json["bytes"] = size_of_all(folder);
+  json["snapshots"] = files_of(json, folder, "snap_", ".hdf");
+  json["checkpoints"] = files_of(json, folder, "checkpoint_", ".h5");
+  json["contacts"] = files_of(json, folder, "collisions_", ".h5");
+  json["series"] = {
+      {"rows", view.series.rows()}, {"columns", view.series.names.size()}, {"bytes", size_of(folder / "series.csv")}};
+  return json;
+}
+
+const char* stage_of(const fs::path& run) {
+  if (folder_is_held(run))
+    return "running";
+  switch (run_stage(run)) {
+  case RunStage::finished:
+    return "finished";
+  case RunStage::resumable:
+    return "resumable";
+  case RunStage::begun:
+    return "begun";
+  case RunStage::absent:
+    break;
+  }
+  return "empty";
+}
+
+// The runs of a sweep, or of a study that has runs.
+Json runs_of(const RunFolders& folders) {
+  Json runs = Json::object();
+  for (const char* const stage : {"finished", "running", "resumable", "begun", "empty", "failed"})
+    runs[stage] = 0;
+  std::error_code none;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folders.path() / "runs", none)) {
+    const bool failed = folders.failure_of(entry.path().filename().string()).has_value();
+    Json& count = runs[failed ? "failed" : stage_of(entry.path())];
+    count = count.get<int>() + 1;
+  }
+  return runs;
+}
+
+Json names_of_files(const fs::path& folder) {
+  Json names = Json::array();
+  for (const fs::path& file : files_named(folder, "", ""))
+    if (fs::is_regular_file(file) && file.filename() != "claims")
+      names.push_back(file.filename().string());
+  return names;
+}
+
+Json describe_many(const fs::path& folder) {
+  const fs::path study = folder / "study.json";
+  Json json = {{"folder", folder.string()}, {"kind", fs::exists(study) ? "study" : "sweep"}};
+  if (fs::exists(study)) {
+    const Json begun = Json::parse(read_text(study), nullptr, false);
+    json["study"] = begun.is_object() && begun.contains("study") ? begun["study"] : Json(nullptr);
+  }
+  if (fs::is_directory(folder / "runs"))
+    json["runs"] = runs_of(RunFolders(folder));
+  json["files"] = names_of_files(folder);
+  json["bytes"] = size_of_all(folder);
+  return json;
+}
+
+std::string size_in_words(const Json& bytes) {
+  const auto size = bytes.get<double>();
+  return size < 1e6 ? fmt::format("{:.3g} kB", 1e-3 * size) : fmt::format("{} MB", figures(1e-6 * size, 4));
+}
+
+// What lies on disk of one kind: how many, how large, and the first and the last.
+void print_files(const char* what, const Json& files, const char* mark, const char* unit) {
+  std::uintmax_t bytes = 0;
+  for (const Json& file : files)
+    bytes += file["bytes"].get<std::uintmax_t>();
+  fmt::print("{:<12}{}{}\n", what, files.size(), files.empty() ? "" : ", " + size_in_words(bytes));
+  for (const Json& file : files)
+    fmt::print("  {:<24}{:<20}{}\n", file["file"].get<std::string>(),
+               file["damaged"].get<bool>() ? "damaged" : fmt::format("{} {}", unit, figures(file[mark].get<double>())),
+               size_in_words(file["bytes"]));
+}
+
+std::string clock(const Json& seconds) {
+  if (seconds.is_null())
+    return "not known";
+  const auto whole = static_cast<long>(seconds.get<double>());
+  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+void print_run(const Json& json) {
+  const auto text = [&](const char* key) { return json[key].get<std::string>(); };
+  const std::string state = text("state");
+  fmt::print("folder      {}\ntitle       {}\n", text("folder"), text("title"));
+  fmt::print("state       {}{}\n", state,
+             state == "finished"  ? std::string()
+             : state == "running" ? ", " + clock(json["remaining_s"]) + " left"
+                                  : "; \"keeler resume " + text("folder") + "\" goes on");
+  fmt::print("orbits      {} of {}\n", figures(json["time_orbits"].get<double>(), 4),
+             figures(json["end_orbits"].get<double>(), 4));
+  fmt::print("particles   {}\nwall time   {}\n", json["particle_count"].get<std::uint64_t>(), clock(json["wall_s"]));
+  if (!json["version"].is_null())
+    fmt::print("written by  keeler {}, commit {}, {} on {}\n", text("version"), text("commit"),
+               counted(json["threads"].get<std::uint64_t>(), "thread"), text("host"));
+  fmt::print("on disk     {}\n", size_in_words(json["bytes"]));
+  print_files("snapshots", json["snapshots"], "time_orbits", "orbit");
+  print_files("checkpoints", json["checkpoints"], "steps", "step");
+  if (!json["contacts"].empty())
+    print_files("contacts", json["contacts"], "contact_count", "rows:");
+  fmt::print("series      {} of {}, {}\n", counted(json["series"]["rows"].get<std::uint64_t>(), "row"),
+             counted(json["series"]["columns"].get<std::uint64_t>(), "column"), size_in_words(json["series"]["bytes"]));
+}
+
+void print_many(const Json& json) {
+  fmt::print("folder      {}\nkind        {}", json["folder"].get<std::string>(), json["kind"].get<std::string>());
+  if (const auto study = json.find("study"); study != json.end() && study->is_string())
+    fmt::print(", {}", study->get<std::string>());
+  fmt::print("\non disk     {}\n", size_in_words(json["bytes"]));
+  if (json.contains("runs"))
+    for (const auto& [stage, count] : json["runs"].items())
+      if (count.get<int>() > 0)
+        fmt::print("runs        {} {}\n", count.get<int>(), stage);
+  for (const Json& name : json["files"])
+    fmt::print("file        {}\n", name.get<std::string>());
+}
+
+} // namespace
+
+Json describe_folder(const fs::path& folder) {
+  if (fs::exists(folder / "log.jsonl"))
+    return describe_run(folder);
+  if (fs::exists(folder / "study.json") || fs::exists(folder / "claims"))
+    return describe_many(folder);
+  throw IoError(fmt::format("'{}' holds no run, sweep or study (no log.jsonl, claims or study.json is in it); name the "
+                            "folder of one",
+                            folder.string()));
+}
+
+void print_folder(const Json& json) {
+  if (json["kind"] == "run")
+    print_run(json);
+  else
+    print_many(json);
+}
+
+} // namespace keeler
