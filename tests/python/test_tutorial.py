@@ -1,4 +1,5 @@
-"""The tutorial: a reader who does what it says, in one folder and in its order, gets what it says."""
+"""The tutorial: a reader who does what it says, in one folder and in its order, gets what it says. The questions and answers
+of the manual go on from its run."""
 
 import os
 import re
@@ -10,7 +11,7 @@ from pathlib import Path
 
 import keeler
 
-TUTORIAL = Path(os.environ["KEELER_SOURCE_DIR"]) / "docs" / "tutorial.md"
+DOCS = Path(os.environ["KEELER_SOURCE_DIR"]) / "docs"
 
 
 class Tutorial(unittest.TestCase):
@@ -37,7 +38,7 @@ class Tutorial(unittest.TestCase):
         return None
 
     def test_all(self):
-        page = TUTORIAL.read_text(encoding="utf-8")
+        page = (DOCS / "tutorial.md").read_text(encoding="utf-8")
         blocks = re.findall(r"```(\w+)\n(.*?)```", page[page.index("## Your first patch") :], re.S)
         self.assertGreater(len(blocks), 8)
         printed = ""
@@ -49,6 +50,9 @@ class Tutorial(unittest.TestCase):
                 printed = self.follow(kind, block) or ""
         for name in re.findall(r"`([a-z-]+/?[a-z-]*\.(?:png|csv|hdf))`", page):
             self.assertTrue((self.folder / name).exists() or list(self.folder.glob(f"*/{name}")), name)
+        questions = (DOCS / "manual" / "faq.md").read_text(encoding="utf-8")
+        for kind, block in re.findall(r"```(\w+)\n(.*?)```", questions, re.S):
+            self.follow(kind, block)
 
 
 if __name__ == "__main__":
