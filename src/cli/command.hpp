@@ -21,6 +21,7 @@ void add_generate(CLI::App& program, Action& action, const std::vector<std::stri
 void add_run(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
 void add_resume(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
 void add_info(CLI::App& program, Action& action);
+void add_convert(CLI::App& program, Action& action);
 void add_analyze(CLI::App& program, Action& action);
 void add_render(CLI::App& program, Action& action);
 void add_bench(CLI::App& program, Action& action);

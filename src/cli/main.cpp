@@ -56,6 +56,7 @@ int run(int argc, char** argv) {
   add_run(program, action, arguments);
   add_resume(program, action, arguments);
   add_info(program, action);
+  add_convert(program, action);
   add_analyze(program, action);
   add_render(program, action);
   add_bench(program, action);

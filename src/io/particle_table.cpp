@@ -4,19 +4,40 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/files/columns.hpp>
+#include <keeler/files/descriptor.hpp>
 #include <keeler/files/files.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+
+#include <fcntl.h>
 
 namespace keeler {
 namespace {
 
-constexpr std::array<const char*, 11> known = {"x", "y", "z", "vx", "vy", "vz", "r", "m", "sx", "sy", "sz"};
+struct Column {
+  const char* name;
+  const char* unit; ///< behind the name where it is given
+
+  std::string with_unit() const { return fmt::format("{}_{}", name, unit); }
+};
+
+constexpr std::array<Column, 11> known = {{{"x", "m"},
+                                           {"y", "m"},
+                                           {"z", "m"},
+                                           {"vx", "m_s"},
+                                           {"vy", "m_s"},
+                                           {"vz", "m_s"},
+                                           {"r", "m"},
+                                           {"m", "kg"},
+                                           {"sx", "rad_s"},
+                                           {"sy", "rad_s"},
+                                           {"sz", "rad_s"}}};
 constexpr std::size_t first_velocity = 3, radius = 6, mass = 7, first_spin = 8;
+constexpr const char* id_column = "id";
 
 // By column of `known`; empty where the table does not have it.
 using KnownColumns = std::array<std::vector<double>, known.size()>;
@@ -30,7 +51,12 @@ KnownColumns sort_out(const std::vector<std::string>& names, std::vector<std::ve
   std::array<bool, known.size()> has{};
   KnownColumns columns;
   for (std::size_t k = 0; k < names.size(); ++k) {
-    const auto column = static_cast<std::size_t>(std::find(known.begin(), known.end(), names[k]) - known.begin());
+    if (names[k] == id_column)
+      continue;
+    const auto is_named = [&](const Column& column) {
+      return names[k] == column.name || names[k] == column.with_unit();
+    };
+    const auto column = static_cast<std::size_t>(std::find_if(known.begin(), known.end(), is_named) - known.begin());
     if (column == known.size())
       fail(fmt::format("unknown column '{}'; rename or remove it", names[k]));
     if (has[column])
@@ -45,7 +71,7 @@ KnownColumns sort_out(const std::vector<std::string>& names, std::vector<std::ve
   };
   for (std::size_t column = 0; column < known.size(); ++column)
     if (!has[column] && needed(column))
-      fail(fmt::format("the column '{}' is missing; add it", known[column]));
+      fail(fmt::format("the column '{}' is missing; add it", known[column].name));
   return columns;
 }
 
@@ -72,8 +98,9 @@ ParticleTable read_text_table(std::span<const std::byte> bytes, const std::strin
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   Columns columns = parse_columns(text, file);
   if (columns.names.empty())
-    throw UsageError(fmt::format("{}: the table is empty (not even columns are named); begin with a line \"{}\"", file,
-                                 fmt::join(std::span(known).first(first_spin), ",")));
+    throw UsageError(fmt::format("{}: the table is empty (not even columns are named); begin with a line "
+                                 "\"x,y,z,vx,vy,vz,r,m\"",
+                                 file));
   const std::string header = fmt::format("{}:{}", file, columns.header_line);
   return table_of(file, sort_out(columns.names, std::move(columns.values), header), std::move(columns.lines));
 }
@@ -102,6 +129,10 @@ ParticleTable read_hdf5_table(std::span<const std::byte> bytes, const std::strin
   return table_of(file, sort_out(names, std::move(values), file), {});
 }
 
+void append_vector(fmt::memory_buffer& row, const Vec3& v) {
+  fmt::format_to(std::back_inserter(row), ",{},{},{}", v.x(), v.y(), v.z());
+}
+
 } // namespace
 
 std::string ParticleTable::place_of(std::size_t particle) const {
@@ -119,6 +150,34 @@ ParticleTable read_particle_table(const std::filesystem::path& file) {
   } catch (const IoError& error) {
     throw IoError(fmt::format("cannot read '{}' as HDF5: {}", file.string(), error.what()));
   }
+}
+
+void write_particle_table(const std::filesystem::path& file, const Patch& patch) {
+  constexpr std::size_t piece = std::size_t{1} << 22;
+  NewFile unfinished(file);
+  Descriptor out(unfinished.temporary(), O_WRONLY | O_CREAT | O_TRUNC);
+  fmt::memory_buffer text;
+  const auto write_text_so_far = [&] {
+    out.write_all(std::as_bytes(std::span(text.data(), text.size())));
+    text.clear();
+  };
+  fmt::format_to(std::back_inserter(text), "{}", id_column);
+  for (std::size_t column = 0; column < (patch.spins.empty() ? first_spin : known.size()); ++column)
+    fmt::format_to(std::back_inserter(text), ",{}", known[column].with_unit());
+  for (std::size_t k = 0; k < patch.size(); ++k) {
+    fmt::format_to(std::back_inserter(text), "\n{}", patch.ids[k]);
+    append_vector(text, patch.positions[k]);
+    append_vector(text, patch.velocities[k] * patch.orbital_frequency);
+    fmt::format_to(std::back_inserter(text), ",{},{}", patch.radii[k], patch.masses[k]);
+    if (!patch.spins.empty())
+      append_vector(text, patch.spins[k] * patch.orbital_frequency);
+    if (text.size() >= piece)
+      write_text_so_far();
+  }
+  text.push_back('\n');
+  write_text_so_far();
+  out.close();
+  unfinished.keep();
 }
 
 } // namespace keeler

@@ -44,8 +44,8 @@ made x,y,r,m 0,0,1,4000
 refused 2 "a column missing" "table.csv:1: the column 'z' is missing; add it (the columns are x y z vx vy vz r, m, and sx sy sz)"
 made x,y,z,vx,r,m 0,0,0,0,1,4000
 refused 2 "half of the velocities" "table.csv:1: the column 'vy' is missing"
-made id,x,y,z,r,m 0,0,0,0,1,4000
-refused 2 "an unknown column" "table.csv:1: unknown column 'id'; rename or remove it"
+made name,x,y,z,r,m 0,0,0,0,1,4000
+refused 2 "an unknown column" "table.csv:1: unknown column 'name'; rename or remove it"
 made x,y,z,r,m 0,0,0,1,4000 5,5,5,nan,4000
 refused 2 "nan" "table.csv:3: the particle has a radius (m) of nan"
 made x,y,z,r,m 0,nan,0,1,4000

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <keeler/core/vector.hpp>
+#include <keeler/particles/patch.hpp>
 
 #include <cstddef>
 #include <filesystem>
@@ -27,9 +28,14 @@ struct ParticleTable {
 };
 
 /// Reads a text with a line of names and a row a particle (files/columns.hpp), or an HDF5 file with an array for each
-/// column in its root and nothing else. The columns are x y z vx vy vz r m sx sy sz, in any order; m may be missing,
-/// and vx vy vz or sx sy sz all together. Numbers are not judged. Throws UsageError, naming file and row, where it is
-/// no such table or has no row; IoError where the file cannot be read or is damaged.
+/// column in its root and nothing else. The columns are x y z vx vy vz r m sx sy sz, in any order, with or without
+/// their units behind them (x_m, vx_m_s, r_m, m_kg, sx_rad_s); m may be missing, and vx vy vz or sx sy sz all together.
+/// A column id is passed over. Numbers are not judged. Throws UsageError, naming file and row, where it is no such
+/// table or has no row; IoError where the file cannot be read or is damaged.
 ParticleTable read_particle_table(const std::filesystem::path& file);
+
+/// Writes the particles of a patch as a text that reads back to the same bits: the id, then the columns above with
+/// their units. Complete or not at all. Throws IoError.
+void write_particle_table(const std::filesystem::path& file, const Patch& patch);
 
 } // namespace keeler

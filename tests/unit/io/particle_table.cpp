@@ -49,6 +49,18 @@ void write_all(const hdf5::Handle& image, const std::vector<std::string>& names)
 
 } // namespace
 
+TEST_CASE("columns may have their units, and an id that is passed over") {
+  const ParticleTable table = table_of("id,x_m,y,z_m,vx_m_s,vy_m_s,vz_m_s,r_m,m_kg,sx_rad_s,sy_rad_s,sz_rad_s\n"
+                                       "7,1,2,3,4,5,6,7,8,9,10,11\n");
+  REQUIRE(table.size() == 1);
+  CHECK(table.places[0] == Vec3(1, 2, 3));
+  CHECK(table.velocities[0] == Vec3(4, 5, 6));
+  CHECK(table.radii[0] == 7.0);
+  CHECK(table.masses[0] == 8.0);
+  CHECK(table.spins[0] == Vec3(9, 10, 11));
+  CHECK(fault(std::string("x_kg,y,z,r\n1,2,3,4\n")).find("unknown column 'x_kg'") != std::string::npos);
+}
+
 TEST_CASE("columns of a table may stand in any order, in either format") {
   for (const ParticleTable& table : {table_of("m,r,vz,vy,vx,z,y,x\n1,2,3,4,5,6,7,8\n10,20,30,40,50,60,70,80\n"),
                                      table_of([](const hdf5::Handle& image) {
@@ -83,7 +95,7 @@ TEST_CASE("a table of other columns is refused") {
   CHECK(fault(std::string("x,y,z,m\n1,2,3,4\n")) == ":1: the column 'r' is missing; add it" + columns);
   CHECK(fault(std::string("x,y,z,vx,vy,r\n1,2,3,4,5,6\n")) == ":1: the column 'vz' is missing; add it" + columns);
   CHECK(fault(std::string("x,y,z,r,sx,sz\n1,2,3,4,5,6\n")) == ":1: the column 'sy' is missing; add it" + columns);
-  CHECK(fault(std::string("id,x,y,z,r\n0,1,2,3,4\n")) == ":1: unknown column 'id'; rename or remove it" + columns);
+  CHECK(fault(std::string("name,x,y,z,r\n0,1,2,3,4\n")) == ":1: unknown column 'name'; rename or remove it" + columns);
   CHECK(fault(std::string("x,y,z,r,x\n1,2,3,4,5\n")) == ":1: two columns 'x'; remove one of them" + columns);
   CHECK(fault(std::string("x,y,z,r\n")) == ": the table is empty (a start needs a particle); add a row for each");
   CHECK(fault(std::string("\n# nothing\n")) ==

@@ -1,0 +1,120 @@
+// keeler convert: snapshots and checkpoints for other programs, as CSV or for ParaView.
+#include "command.hpp"
+#include "common_options.hpp"
+
+#include <keeler/io/describe.hpp>
+#include <keeler/io/particle_table.hpp>
+#include <keeler/io/vtp.hpp>
+#include <keeler/runs/run.hpp>
+#include <keeler/runs/stored_patches.hpp>
+#include <keeler/simulation/simulation.hpp>
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+namespace keeler {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ConvertOptions {
+  std::string path, output, format;
+  bool force = false;
+
+  std::string ending() const { return "." + format; }
+};
+
+Patch patch_in(const fs::path& file) {
+  switch (describe_file(file).kind) {
+  case FileKind::snapshot:
+    return load_newest_patch(file).patches.back();
+  case FileKind::checkpoint: {
+    StoredRun run = load_checkpoint(file);
+    return Simulation(run.scene, std::move(run.state)).patch();
+  }
+  case FileKind::contacts:
+    break;
+  }
+  throw UsageError(fmt::format("'{}' is a file of contacts, which has no particles; name a snapshot or a checkpoint",
+                               file.string()));
+}
+
+// Returns the time of the file, in orbits.
+double convert_file(const fs::path& file, const fs::path& output, const ConvertOptions& options) {
+  const Patch patch = patch_in(file);
+  if (options.format == "csv")
+    write_particle_table(output, patch);
+  else
+    write_vtp(output, patch);
+  return patch.time_orbits;
+}
+
+void convert_one(const ConvertOptions& options) {
+  const fs::path file(options.path);
+  const fs::path output =
+      options.output.empty() ? fs::path(file).replace_extension(options.ending()) : fs::path(options.output);
+  require_new_file(output.string(), options.force, "the result");
+  convert_file(file, output, options);
+  fmt::print("{}\n", output.string());
+}
+
+// All snapshots of a run, into a folder of their own; the list for ParaView is written last.
+void convert_run(const ConvertOptions& options) {
+  const std::vector<fs::path> snapshots = snapshots_in(options.path);
+  const fs::path folder = options.output.empty() ? options.path / fs::path(options.format) : fs::path(options.output);
+  const fs::path list = folder / "snapshots.pvd";
+  const auto result_of = [&](const fs::path& snapshot) {
+    return folder / snapshot.filename().replace_extension(options.ending());
+  };
+  require_writable_folder(fs::absolute(folder).parent_path(), folder);
+  std::error_code error;
+  fs::create_directory(folder, error);
+  if (error)
+    throw IoError(fmt::format("cannot make the folder '{}': {}; name another", folder.string(), error.message()));
+  for (const fs::path& snapshot : snapshots)
+    require_new_file(result_of(snapshot).string(), options.force, "the result");
+  std::vector<VtpInstant> instants;
+  for (const fs::path& snapshot : snapshots) {
+    const fs::path result = result_of(snapshot);
+    instants.push_back({convert_file(snapshot, result, options), result.filename().string()});
+    if (options.format == "csv")
+      fmt::print("{}\n", result.string());
+  }
+  if (options.format == "vtp") {
+    write_pvd(list, instants);
+    fmt::print("{}\n", list.string());
+  }
+}
+
+} // namespace
+
+void add_convert(CLI::App& program, Action& action) {
+  const auto options = std::make_shared<ConvertOptions>();
+  CLI::App& command = *program.add_subcommand("convert", "write particles as CSV, or for ParaView");
+  command
+      .add_option("FILE|DIR", options->path, "a snapshot or a checkpoint, or the folder of a run: all its snapshots")
+      ->required()
+      ->type_name("");
+  command.add_option("--to", options->format, "csv: a row a particle; vtp: a point a particle, for ParaView")
+      ->required()
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember({"csv", "vtp"}).description(""));
+  command.add_option("-o,--output", options->output,
+                     "the file to write (default: the same name with the other ending), or for a run the folder "
+                     "(default: csv or vtp in the run's)");
+  command.add_flag("--force", options->force, "replace files that exist");
+  command.callback([options, &action] {
+    action = [options] {
+      if (fs::is_directory(options->path))
+        convert_run(*options);
+      else
+        convert_one(*options);
+      return ExitCode::done;
+    };
+  });
+}
+
+} // namespace keeler

@@ -1,0 +1,109 @@
+#include <keeler/io/vtp.hpp>
+
+#include <keeler/files/descriptor.hpp>
+#include <keeler/files/files.hpp>
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstdint>
+#include <numeric>
+#include <span>
+
+#include <fcntl.h>
+
+namespace keeler {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "files say that they are");
+static_assert(sizeof(Vec3) == 3 * sizeof(double), "arrays of vectors are written as they are in memory");
+
+// The arrays of a file: first their descriptions, then their bytes, each behind its length.
+class AppendedArrays {
+public:
+  // The element that describes it; it must live until the arrays are written.
+  template<class Row>
+  std::string add(const char* type, const char* name, int components, const char* unit, const std::vector<Row>& rows) {
+    const std::uint64_t offset = size_;
+    const std::span<const std::byte> bytes = std::as_bytes(std::span(rows));
+    arrays_.push_back(bytes);
+    size_ += sizeof(std::uint64_t) + bytes.size();
+    const std::string label =
+        *unit ? fmt::format("<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">{}</InformationKey>", unit)
+              : "";
+    return fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\">"
+                       "{}</DataArray>\n",
+                       type, name, components, offset, label);
+  }
+
+  void write(Descriptor& out) const {
+    for (const std::span<const std::byte> array : arrays_) {
+      const std::uint64_t length = array.size();
+      out.write_all(std::as_bytes(std::span(&length, 1)));
+      out.write_all(array);
+    }
+  }
+
+private:
+  std::vector<std::span<const std::byte>> arrays_;
+  std::uint64_t size_ = 0;
+};
+
+std::vector<Vec3> in_si(std::vector<Vec3> rates, double orbital_frequency) {
+  for (Vec3& rate : rates)
+    rate *= orbital_frequency;
+  return rates;
+}
+
+void write_text(Descriptor& out, std::string_view text) {
+  out.write_all(std::as_bytes(std::span(text)));
+}
+
+} // namespace
+
+void write_vtp(const std::filesystem::path& file, const Patch& patch) {
+  const std::vector<Vec3> velocities = in_si(patch.velocities, patch.orbital_frequency);
+  const std::vector<Vec3> spins = in_si(patch.spins, patch.orbital_frequency);
+  std::vector<std::int64_t> numbers(patch.size() + 1); // of the points, which are the ends of their cells too
+  std::iota(numbers.begin(), numbers.end(), std::int64_t{0});
+  const std::vector<std::int64_t> points(numbers.begin(), numbers.end() - 1), ends(numbers.begin() + 1, numbers.end());
+
+  AppendedArrays arrays;
+  std::string xml = "<?xml version=\"1.0\"?>\n"
+                    "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
+                    "<PolyData>\n";
+  xml += fmt::format("<FieldData><DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">"
+                     "{}</DataArray></FieldData>\n",
+                     patch.time_orbits);
+  xml += fmt::format("<Piece NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
+                     "NumberOfPolys=\"0\">\n<PointData>\n",
+                     patch.size());
+  xml += arrays.add("Float64", "Velocities", 3, "m/s", velocities);
+  xml += arrays.add("Float64", "Masses", 1, "kg", patch.masses);
+  xml += arrays.add("UInt64", "ParticleIDs", 1, "", patch.ids);
+  xml += arrays.add("Float64", "Radius", 1, "m", patch.radii);
+  if (!spins.empty())
+    xml += arrays.add("Float64", "Spins", 3, "rad/s", spins);
+  xml += "</PointData>\n<Points>\n" + arrays.add("Float64", "Points", 3, "m", patch.positions);
+  xml += "</Points>\n<Verts>\n" + arrays.add("Int64", "connectivity", 1, "", points);
+  xml += arrays.add("Int64", "offsets", 1, "", ends);
+  xml += "</Verts>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
+
+  NewFile unfinished(file);
+  Descriptor out(unfinished.temporary(), O_WRONLY | O_CREAT | O_TRUNC);
+  write_text(out, xml);
+  arrays.write(out);
+  write_text(out, "\n</AppendedData>\n</VTKFile>\n");
+  out.close();
+  unfinished.keep();
+}
+
+void write_pvd(const std::filesystem::path& file, const std::vector<VtpInstant>& instants) {
+  std::string xml = "<?xml version=\"1.0\"?>\n"
+                    "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n";
+  for (const VtpInstant& instant : instants)
+    xml += fmt::format("<DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", instant.time_orbits, instant.file);
+  keeler::write_text(file, xml + "</Collection>\n</VTKFile>\n");
+}
+
+} // namespace keeler

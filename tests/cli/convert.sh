@@ -1,0 +1,69 @@
+#!/bin/bash
+# convert.sh KEELER SOURCE_DIR: keeler convert: numpy and VTK read from CSV and VTP what the snapshot holds, a table goes
+# back to the state that it came from, and what cannot be converted leaves nothing behind.
+# shellcheck source=tests/cli/helpers.sh
+source "$(dirname "$0")/helpers.sh"
+small_scene
+sed -i 's/^end .*/end = 0.5/' "$work/scene.toml"
+# Debian's Python, to which its packages of h5py and VTK belong.
+read_back() { /usr/bin/python3 -B "$source_dir/tests/cli/convert.py" "$@" >"$work/read" 2>&1 || fail "$1: $(cat "$work/read")"; }
+
+runs 0 run "$work/scene.toml" -o "$work/run"
+accepts "a run as VTP" convert "$work/run" --to vtp
+prints "a run as VTP" "$work/run/vtp/snapshots.pvd"
+accepts "a run as CSV" convert "$work/run" --to csv -o "$work/csv"
+for number in 000000 000002; do
+  prints "a run as CSV" "$work/csv/snap_$number.csv"
+  read_back "$work/run/snap_$number.hdf" "$work/csv/snap_$number.csv" "$work/run/vtp/snap_$number.vtp"
+done
+read_back "$work/run/snap_000001.hdf" "$work/csv/snap_000001.csv" "$work/run/vtp/snap_000001.vtp" "$work/run/vtp/snapshots.pvd"
+printf '0 snap_000000.vtp\n0.25 snap_000001.vtp\n0.5 snap_000002.vtp\n' | diff - "$work/read" || fail "the times of the series"
+
+# A checkpoint at the time of a snapshot has its particles.
+runs 0 convert "$(newest_checkpoint "$work/run")" --to csv -o "$work/end.csv"
+runs 0 convert "$(newest_checkpoint "$work/run")" --to vtp -o "$work/end.vtp"
+read_back "$work/run/snap_000002.hdf" "$work/end.csv" "$work/end.vtp"
+
+# Spins.
+sed '/^\[gravity\]/,/^solver/d' "$work/scene.toml" >"$work/rough.toml"
+echo '[collisions.friction]' >>"$work/rough.toml"
+echo 'tangential_restitution = 0.5' >>"$work/rough.toml"
+runs 0 run "$work/rough.toml" -o "$work/rough" --set time.end=0.1
+for format in csv vtp; do runs 0 convert "$work/rough/snap_000001.hdf" --to $format; done
+read_back "$work/rough"/snap_000001.{hdf,csv,vtp}
+grep -q sx_rad_s "$work/rough/snap_000001.csv" || fail "no spins"
+
+# A table is a start: the same particles.
+runs 0 generate "$work/scene.toml" --from-table "$work/csv/snap_000000.csv" -o "$work/again.hdf"
+for dataset in Coordinates Masses Radius ParticleIDs; do
+  same_bytes "a table as a start" "$work/run/snap_000000.hdf" "$work/again.hdf" "/PartType1/$dataset"
+done
+runs 0 convert "$work/again.hdf" --to csv
+runs 0 convert "$work/again.hdf" --to vtp
+read_back "$work/run/snap_000000.hdf" "$work/again.csv" "$work/again.vtp"
+
+# nothing_new NAME: no file lies about that was not there
+nothing_new() { compgen -G "$work/new*" && fail "$1 left something"; }
+refuses "no format" "--to" convert "$work/run"
+refuses "another format" "--to" convert "$work/run" --to xls
+refuses "an existing file" "add --force" convert "$work/again.hdf" --to csv
+refuses "an existing folder" "add --force" convert "$work/run" --to vtp
+runs 0 convert "$work/run" --to vtp --force
+refuses_with 4 "no folder to write into" "make it, or name another" convert "$work/run" --to vtp -o "$work/new/a"
+nothing_new "no folder to write into"
+refuses_with 4 "no snapshot" "cannot read" convert "$work/scene.toml" --to csv -o "$work/new.csv"
+nothing_new "no snapshot"
+mkdir "$work/empty"
+refuses_with 4 "a folder without snapshots" "no snapshot in" convert "$work/empty" --to vtp
+[ "$(find "$work/empty" | wc -l)" -eq 1 ] || fail "a folder without snapshots got something"
+for format in csv vtp; do
+  (
+    ulimit -f 4
+    exec "$keeler" convert "$work/again.hdf" --to $format -o "$work/new.$format" >"$work/out" 2>"$work/err"
+  )
+  code=$?
+  [ "$code" -eq 4 ] || fail "a full disk, $format: exit $code: $(cat "$work/err")"
+  one_line "a full disk, $format" "cannot write '$work/new.$format"
+  nothing_new "a full disk, $format"
+done
+report
