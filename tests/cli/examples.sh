@@ -1,25 +1,31 @@
 #!/bin/bash
 # examples.sh KEELER SOURCE_DIR: the commands in the READMEs of the examples' scenes work as they stand there;
-# runs are cut to two steps, and what is clumped to a quarter of the box with steps that are coarse. So do the sweeps of
-# examples/papers.
+# runs are cut to two steps, and what is clumped to a quarter of the box with steps that are coarse. So do those of the
+# gallery, and the sweeps of examples/papers.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 ln -s "$source_dir/examples" "$work/examples"
 cd "$work" || exit 1
-for scene in examples/*/scene.toml; do
-  readme=${scene%/*}/README.md
-  count=0
+# follow PAGE: does what its indented lines say, but for sweeps
+follow() {
+  local count=0 program command
   while read -r program command; do
-    [ "$program" = keeler ] || { fail "$readme: not a command of keeler: $program $command"; continue; }
+    [ "$program" = keeler ] || { fail "$1: not a command of keeler: $program $command"; continue; }
+    [[ $command == sweep* ]] && continue
     [[ $command == run* ]] && command+=" --set time.end=0.002"
     [[ $command == *--clumped* ]] &&
       command+=" --set box.size_in_wavelengths=[2,2] --set time.step=4e-3 --set gravity.kick_every=4"
     # shellcheck disable=SC2086 # several words
     runs 0 $command
     count=$((count + 1))
-  done < <(sed -n 's/^    //p' "$readme")
-  [ "$count" -ge 2 ] || fail "$readme: $count commands"
+  done < <(sed -n 's/^    //p' "$1")
+  [ "$count" -ge 2 ] || fail "$1: $count commands"
+}
+for scene in examples/*/scene.toml; do
+  follow "${scene%/*}/README.md"
 done
+rm -r runs # the gallery has other runs of these names
+follow "$source_dir/docs/gallery.md"
 
 # The papers' sweeps: one seed, a few steps.
 cp -r "$source_dir/examples" "$work/short"
