@@ -13,6 +13,7 @@ system=$folder/system
 
 [ "$(id -u)" = 0 ] || { echo "skipped: needs root"; exit 77; }
 command -v debootstrap >/dev/null || { echo "skipped: needs debootstrap, which scripts/setup test installs"; exit 77; }
+[ -n "${http_proxy-}" ] || getent hosts deb.debian.org >/dev/null || { echo "skipped: no network"; exit 77; }
 
 # inside COMMAND...: in the system, whose mounts end with the command
 inside() {
