@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# clean_debian.sh SOURCE_DIR FOLDER: Keeler's Debian packages on a Debian 12 that holds nothing else. The program follows the
-# first page of the tutorial, as it was installed; the Python package and the library work; nothing is left after their
-# removal. Then the same with what the Containerfile does, and without root. Needs root, debootstrap and the network, else it
-# is skipped (77). FOLDER keeps the clean system for the next time.
+# clean_debian.sh SOURCE_DIR FOLDER: Keeler's Debian packages, made and installed on a Debian 12 that holds nothing else. The
+# program follows the first page of the tutorial, as it was installed; the Python package and the library work; nothing is left
+# after their removal. Then the same with what the Containerfile does, and without root. Needs root, debootstrap and the
+# network, else it is skipped (77). FOLDER keeps the clean system for the next time.
 set -euo pipefail
-source_dir=$1
+source_dir=$(realpath "$1")
 mkdir -p "$2"
 folder=$(realpath "$2")
 packages=$source_dir/build/package
@@ -15,24 +15,34 @@ system=$folder/system
 command -v debootstrap >/dev/null || { echo "skipped: needs debootstrap, which scripts/setup test installs"; exit 77; }
 [ -n "${http_proxy-}" ] || getent hosts deb.debian.org >/dev/null || { echo "skipped: no network"; exit 77; }
 
-# inside COMMAND...: in the system, whose mounts end with the command
+# inside COMMAND...: in the system, which sees the folders `shared`; all mounts end with the command
+shared=()
 inside() {
   # shellcheck disable=SC2016 # for the other shell
-  unshare --mount --propagation private sh -c '
+  unshare --mount --propagation private sh -ec '
     system=$1; shift
-    mount -t proc proc "$system/proc" && mount --bind /dev "$system/dev" &&
-    mount -t devpts devpts "$system/dev/pts" -o newinstance,ptmxmode=0666 && exec chroot "$system" "$@"' \
-    sh "$system" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 ${http_proxy:+"http_proxy=$http_proxy"} \
-    ${https_proxy:+"https_proxy=$https_proxy"} DEBIAN_FRONTEND=noninteractive "$@" </dev/null
+    mount -t proc proc "$system/proc"
+    mount --bind /dev "$system/dev"
+    mount -t devpts devpts "$system/dev/pts" -o newinstance,ptmxmode=0666
+    while [ "$1" != -- ]; do
+      mkdir -p "$system$1"
+      mount --bind "$1" "$system$1"
+      shift
+    done
+    shift
+    exec chroot "$system" "$@"' \
+    sh "$system" "${shared[@]}" -- env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 \
+    ${http_proxy:+"http_proxy=$http_proxy"} ${https_proxy:+"https_proxy=$https_proxy"} DEBIAN_FRONTEND=noninteractive \
+    "$@" </dev/null
 }
 fresh_system() {
   rm -rf "$system"
   cp -a "$clean" "$system"
   cp -L /etc/resolv.conf "$system/etc/"
-  cp "$packages"/*.deb "$system/tmp/"
+  inside apt-get -qq update
 }
 install_packages() {
-  inside sh -c "apt-get -qq update && apt-get -qq install -y --no-install-recommends $* >/dev/null"
+  inside sh -c "apt-get -qq install -y --no-install-recommends $* >/dev/null"
 }
 
 if [ ! -d "$clean" ]; then
@@ -41,10 +51,19 @@ if [ ! -d "$clean" ]; then
   debootstrap --variant=minbase bookworm "$clean.part" http://deb.debian.org/debian >"$folder/debootstrap.log"
   mv "$clean.part" "$clean"
 fi
-"$source_dir/scripts/package"
+
+echo "=== scripts/package"
+fresh_system
+rm -rf "$packages"
+shared=("$source_dir")
+cache=${CCACHE_DIR:-$HOME/.cache/ccache}
+[ ! -d "$cache" ] || shared+=("$cache")
+inside env CCACHE_DIR="$cache" "$source_dir/scripts/package"
+shared=()
 
 echo "=== keeler: the tutorial's first page"
 fresh_system
+cp "$packages"/*.deb "$system/tmp/"
 install_packages '/tmp/keeler_*.deb'
 mkdir "$system/root/tutorial"
 awk '/^## Your first patch/ { page = 1 } /^## A figure of your own/ { page = 0 }
@@ -69,6 +88,7 @@ left=$(find "$system/usr" -path '*keeler*')
 
 echo "=== what the Containerfile does"
 fresh_system
+cp "$packages"/*.deb "$system/tmp/"
 run=$(sed -e :join -e '/\\$/{N;s/\\\n//;b join' -e '}' "$source_dir/Containerfile" | sed -n 's/^RUN \(.*apt-get.*\)/\1/p')
 [ -n "$run" ] || { echo "FAILED: the Containerfile installs nothing"; exit 1; }
 inside sh -c "$run"
