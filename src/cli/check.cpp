@@ -105,22 +105,6 @@ void print_estimate(const RunEstimate& cost) {
              parts, cost.dominating());
 }
 
-std::string words_of(const GravitySettings& gravity) {
-  using Solver = GravitySettings::Solver;
-  switch (gravity.solver) {
-  case Solver::direct:
-    return "direct sum";
-  case Solver::tree:
-    return fmt::format("tree, opening angle {:g}", gravity.opening_angle);
-  case Solver::mesh:
-    return fmt::format("mesh, spacing {:g} mean distances", gravity.mesh_spacing);
-  case Solver::axisymmetric:
-    return fmt::format("axisymmetric, waves from {:g} m up", gravity.shortest_wavelength);
-  default:
-    return fmt::format("fft, asked for an rms force error of {:g}", gravity.force_error);
-  }
-}
-
 void print_steps(const Scene& scene, const Derived& d) {
   if (scene.time.automatic)
     fmt::print("steps              automatic, from 1/{} to 1/{} orbits\n", TimeSettings::ticks_per_orbit,
@@ -130,7 +114,7 @@ void print_steps(const Scene& scene, const Derived& d) {
   if (!scene.gravity)
     return;
   fmt::print("gravity            {}",
-             words_of(d.particles_known ? chosen_for(d.particle_count, *scene.gravity) : *scene.gravity));
+             in_words(d.particles_known ? chosen_for(d.particle_count, *scene.gravity) : *scene.gravity));
   if (scene.time.automatic)
     fmt::print("\n");
   else

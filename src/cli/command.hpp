@@ -24,6 +24,7 @@ void add_info(CLI::App& program, Action& action);
 void add_convert(CLI::App& program, Action& action);
 void add_analyze(CLI::App& program, Action& action);
 void add_render(CLI::App& program, Action& action);
+void add_report(CLI::App& program, Action& action);
 void add_bench(CLI::App& program, Action& action);
 void add_study(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
 void add_sweep(CLI::App& program, Action& action);

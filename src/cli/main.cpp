@@ -59,6 +59,7 @@ int run(int argc, char** argv) {
   add_convert(program, action);
   add_analyze(program, action);
   add_render(program, action);
+  add_report(program, action);
   add_bench(program, action);
   add_study(program, action, arguments);
   add_sweep(program, action);

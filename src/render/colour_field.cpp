@@ -1,6 +1,7 @@
 #include <keeler/render/colour_field.hpp>
 
 #include "density_map.hpp"
+#include "patch_views.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/diagnostics/clusters.hpp>
@@ -104,6 +105,16 @@ ColourRange colour_range(std::vector<double> values, ColourField field) {
   };
   const double low = quantile(whole ? 0.0 : 0.01), high = quantile(whole ? 1.0 : 0.99);
   return {low, high, whole};
+}
+
+std::vector<std::array<std::uint8_t, 3>> bar_colours(std::size_t count) {
+  const auto byte = [](double channel) { return static_cast<std::uint8_t>(std::lround(255.0 * channel)); };
+  std::vector<std::array<std::uint8_t, 3>> colours;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Colour colour = field_colour((static_cast<double>(k) + 0.5) / static_cast<double>(count));
+    colours.push_back({byte(colour.r), byte(colour.g), byte(colour.b)});
+  }
+  return colours;
 }
 
 std::string label_of(ColourField field) {

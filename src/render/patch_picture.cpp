@@ -164,6 +164,10 @@ std::unique_ptr<Page> patch_page(const Patch& patch, const PictureOptions& asked
   return page;
 }
 
+std::vector<std::byte> patch_png(const Patch& patch, const PictureOptions& options) {
+  return patch_page(patch, options)->png();
+}
+
 void render_patch(const Patch& patch, const std::string& path, const PictureOptions& options) {
   patch_page(patch, options)->save(path);
 }

@@ -4,6 +4,8 @@
 #include <keeler/orbit/toomre.hpp>
 #include <keeler/particles/patch.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -118,6 +120,22 @@ Derived derive(const Scene& scene) {
                                                  particles.velocity_dispersion, scene.planet.frequencies.nu));
   d.memory_mb = 1e-6 * (cost::program_bytes + bytes_per_particle(scene) * static_cast<double>(particles.count));
   return d;
+}
+
+std::string in_words(const GravitySettings& gravity) {
+  using Solver = GravitySettings::Solver;
+  switch (gravity.solver) {
+  case Solver::direct:
+    return "direct sum";
+  case Solver::tree:
+    return fmt::format("tree, opening angle {:g}", gravity.opening_angle);
+  case Solver::mesh:
+    return fmt::format("mesh, spacing {:g} mean distances", gravity.mesh_spacing);
+  case Solver::axisymmetric:
+    return fmt::format("axisymmetric, waves from {:g} m up", gravity.shortest_wavelength);
+  default:
+    return fmt::format("fft, asked for an rms force error of {:g}", gravity.force_error);
+  }
 }
 
 } // namespace keeler

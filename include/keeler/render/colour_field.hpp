@@ -3,6 +3,9 @@
 
 #include <keeler/particles/patch.hpp>
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -37,6 +40,9 @@ std::vector<double> field_values(const Patch& patch, ColourField field);
 
 /// All but the outermost two in a hundred of the values; at least one value.
 ColourRange colour_range(std::vector<double> values, ColourField field);
+
+/// The colours of the bar from its low end to its high one: red, green and blue of each, from 0 to 255.
+std::vector<std::array<std::uint8_t, 3>> bar_colours(std::size_t count);
 
 /// What stands below the bar: the quantity and its unit.
 std::string label_of(ColourField field);

@@ -5,8 +5,10 @@
 #include <keeler/particles/patch.hpp>
 #include <keeler/render/colour_field.hpp>
 
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace keeler {
 
@@ -50,6 +52,9 @@ struct PictureLayout {
 PictureScale picture_scale(const Patch& patch, ColourField field);
 
 PictureLayout layout_of(const Patch& patch, const PictureOptions& options);
+
+/// The picture as the bytes of a PNG file. Throws UsageError when there are no particles or not the field.
+std::vector<std::byte> patch_png(const Patch& patch, const PictureOptions& options = {});
 
 /// Writes a PNG. Throws UsageError when there are no particles or not the field, IoError when the file cannot be
 /// written.

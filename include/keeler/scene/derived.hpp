@@ -5,6 +5,7 @@
 #include <keeler/scene/scene.hpp>
 
 #include <cstdint>
+#include <string>
 
 namespace keeler {
 
@@ -75,5 +76,8 @@ struct Derived {
 };
 
 Derived derive(const Scene& scene);
+
+/// "tree, opening angle 0.6".
+std::string in_words(const GravitySettings& gravity);
 
 } // namespace keeler

@@ -1,0 +1,55 @@
+// keeler report: a run as one page.
+#include "command.hpp"
+#include "common_options.hpp"
+#include "terminal.hpp"
+
+#include <keeler/files/files.hpp>
+#include <keeler/run_report/run_report.hpp>
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+namespace keeler {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ReportOptions {
+  std::string folder, output;
+  RunReportOptions page;
+  ThreadOption threads;
+};
+
+ExitCode report(ReportOptions& options) {
+  options.threads.apply();
+  const fs::path file = options.output.empty() ? fs::path(options.folder) / "report.html" : fs::path(options.output);
+  if (fs::is_directory(file))
+    throw UsageError(fmt::format("'{}' is a folder (a report is one file); name a file in it", file.string()));
+  if (!fs::is_directory(options.folder))
+    throw UsageError(fmt::format("no report of '{}': it is no folder; name the folder of a run", options.folder));
+  require_writable_folder(fs::absolute(file).parent_path(), file);
+  const std::string page = run_report(options.folder, options.page);
+  write_text(file, page);
+  fmt::print("{}\n", file.string());
+  return ExitCode::done;
+}
+
+} // namespace
+
+void add_report(CLI::App& program, Action& action) {
+  const auto options = std::make_shared<ReportOptions>();
+  CLI::App& command = *program.add_subcommand(
+      "report", "write a page about a run: pictures, a view in 3-D, plots, numbers, scene, cost");
+  command.add_option("DIR", options->folder, "the folder of the run")->required()->type_name("");
+  command.add_option("-o,--output", options->output, "the file to write (default: report.html in the folder)");
+  command
+      .add_option("--snapshots", options->page.snapshots,
+                  "how many snapshots the 3-D view has at most, evenly through the run (default: 8)")
+      ->check(whole_number_between(1, 1000, "a number of snapshots"));
+  options->threads.add_to(command);
+  command.callback([options, &action] { action = [options] { return report(*options); }; });
+}
+
+} // namespace keeler

@@ -1,0 +1,146 @@
+#include "particle_view.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/report/html.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+namespace keeler {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double finest = 65535.0; // of 16 bits
+constexpr std::size_t bar_colour_count = 256;
+
+template<class T> std::string digits_of(const std::vector<T>& values) { // little-endian, as browsers read it
+  return base64(std::as_bytes(std::span(values)));
+}
+
+// count numbers out of values, evenly.
+template<class T> std::vector<T> thinned(const std::vector<T>& values, std::size_t count) {
+  std::vector<T> some;
+  some.reserve(count);
+  for (std::size_t k = 0; k < count; ++k)
+    some.push_back(values[k * values.size() / count]);
+  return some;
+}
+
+// Of all snapshots: the corner with the lowest numbers, and the length of a 16-bit unit along each axis.
+struct Grid {
+  Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
+
+  void include(const std::vector<Vec3>& places) {
+    for (const Vec3& place : places) {
+      low = low.cwiseMin(place);
+      high = high.cwiseMax(place);
+    }
+  }
+  double unit(int axis) const { return (high[axis] - low[axis]) / finest; }
+  // All x, then all y, then all z.
+  std::vector<std::uint16_t> planes(const std::vector<Vec3>& places) const {
+    std::vector<std::uint16_t> numbers;
+    numbers.reserve(3 * places.size());
+    for (int axis = 0; axis < 3; ++axis)
+      for (const Vec3& place : places)
+        numbers.push_back(
+            static_cast<std::uint16_t>(unit(axis) > 0.0 ? std::lround((place[axis] - low[axis]) / unit(axis)) : 0));
+    return numbers;
+  }
+};
+
+std::vector<std::uint8_t> shares(const std::vector<double>& values, const ColourRange& range) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(values.size());
+  for (const double value : values)
+    bytes.push_back(static_cast<std::uint8_t>(std::lround(255.0 * range.share(value))));
+  return bytes;
+}
+
+bool all_equal(const std::vector<double>& values) {
+  return std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) == values.end();
+}
+
+Json json_of(const ColourRange& range) {
+  return {{"low", range.low}, {"middle", range.middle()}, {"high", range.high}};
+}
+
+} // namespace
+
+// Heights are known from the places, sizes do not change: neither is stored a snapshot.
+void ParticleView::choose_fields(const Patch& patch) {
+  fields_ = {{"speed", ColourField::speed, {}}, {"cluster", ColourField::cluster, {}}};
+  if (!patch.spins.empty())
+    fields_.push_back({"spin", ColourField::spin, {}});
+}
+
+void ParticleView::add(const Patch& patch, const std::string& file) {
+  const std::size_t count = std::min(patch.size(), most_particles_);
+  const bool first = snapshots_.empty();
+  if (first) {
+    of_ = patch.size();
+    size_x_ = patch.box.size_x;
+    size_y_ = patch.box.size_y;
+    radii_ = thinned(patch.radii, count);
+    choose_fields(patch);
+  } else if (patch.size() != of_) {
+    throw IoError(fmt::format("'{}' has {} particles and the run's first snapshot {}; they are of different runs", file,
+                              patch.size(), of_));
+  }
+  Shown shown{file, patch.time_orbits, thinned(patch.positions, count), {}};
+  for (Field& f : fields_) {
+    const std::vector<double> values = field_values(patch, f.field);
+    const ColourRange range = colour_range(values, f.field);
+    f.range =
+        first ? range
+              : ColourRange{std::min(f.range.low, range.low), std::max(f.range.high, range.high), range.logarithmic};
+    shown.values.push_back(thinned(values, count));
+  }
+  snapshots_.push_back(std::move(shown));
+}
+
+Json ParticleView::fields() const {
+  Json all = Json::array();
+  for (std::size_t k = 0; k < fields_.size(); ++k) {
+    const Field& f = fields_[k];
+    Json field = {{"name", f.name}, {"label", label_of(f.field)}, {"range", json_of(f.range)}};
+    for (const Shown& shown : snapshots_)
+      field["bytes"].push_back(digits_of(shares(shown.values[k], f.range)));
+    all.push_back(field);
+  }
+  if (!all_equal(radii_)) {
+    const ColourRange range = colour_range(radii_, ColourField::size);
+    all.push_back({{"name", "size"},
+                   {"label", label_of(ColourField::size)},
+                   {"range", json_of(range)},
+                   {"bytes", {digits_of(shares(radii_, range))}}});
+  }
+  return all;
+}
+
+Json ParticleView::json() const {
+  Grid grid;
+  for (const Shown& shown : snapshots_)
+    grid.include(shown.places);
+  Json json;
+  json["count"] = radii_.size();
+  json["of"] = of_;
+  json["box_m"] = {size_x_, size_y_};
+  json["low_m"] = {grid.low.x(), grid.low.y(), grid.low.z()};
+  json["unit_m"] = {grid.unit(0), grid.unit(1), grid.unit(2)};
+  json["radii"] = digits_of(std::vector<float>(radii_.begin(), radii_.end()));
+  json["colours"] = digits_of(bar_colours(bar_colour_count));
+  json["height_label"] = label_of(ColourField::height);
+  json["fields"] = fields();
+  for (const Shown& shown : snapshots_)
+    json["snapshots"].push_back(
+        {{"file", shown.file}, {"time_orbits", shown.time_orbits}, {"places", digits_of(grid.planes(shown.places))}});
+  return json;
+}
+
+} // namespace keeler

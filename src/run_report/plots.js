@@ -1,0 +1,92 @@
+// The run's series, drawn by dygraphs. Plots are zoomed together along their axis of time.
+"use strict";
+(function () {
+  const element = document.getElementById("series-data");
+  if (!element)
+    return;
+  const data = JSON.parse(element.textContent);
+  const colours = ["#2166ac", "#b2182b", "#1b7837", "#762a83"];
+
+  // dygraphs wants a row a time, [low, middle, high] for each curve; curves without a row then have null.
+  function rows(curves) {
+    const table = new Map();
+    curves.forEach((curve, which) => curve.points.forEach(([time, mean, error]) => {
+      if (!table.has(time))
+        table.set(time, [time].concat(curves.map(() => null)));
+      const half = error === null ? 0 : error;
+      table.get(time)[which + 1] = [mean - half, mean, mean + half];
+    }));
+    return Array.from(table.values()).sort((a, b) => a[0] - b[0]);
+  }
+
+  function figures(value, error) {
+    if (value === null)
+      return "unknown";
+    return error === null ? value.toPrecision(4) : `${value.toPrecision(4)} ± ${error.toPrecision(2)}`;
+  }
+
+  function means(plot) {
+    return plot.curves.filter((curve) => curve.mean)
+      .map((curve) => `${curve.name}: ${figures(curve.mean.value, curve.mean.error)}`).join("; ");
+  }
+
+  function shade(pen, area, graph) {
+    if (!data.steady)
+      return;
+    const left = graph.toDomXCoord(data.steady[0]), right = graph.toDomXCoord(data.steady[1]);
+    pen.fillStyle = "rgba(70, 90, 120, 0.10)";
+    pen.fillRect(left, area.y, right - left, area.h);
+  }
+
+  function part(parent, tag, name) {
+    const made = document.createElement(tag);
+    made.className = name;
+    parent.appendChild(made);
+    return made;
+  }
+
+  const graphs = [];
+  let zooming = false;
+  function zoom(from, to) {
+    if (zooming)
+      return;
+    zooming = true;
+    graphs.forEach((graph) => graph.updateOptions({ dateWindow: from === null ? null : [from, to] }));
+    zooming = false;
+  }
+
+  // All boxes stand before the first chart takes its width from its own.
+  function box(plot) {
+    const all = part(document.getElementById("plots"), "div", "plot");
+    part(all, "h3", "").textContent = plot.unit ? `${plot.title}, ${plot.unit}` : plot.title;
+    const legend = part(all, "div", "legend"), chart = part(all, "div", "chart");
+    part(all, "p", "means").textContent = means(plot);
+    return { plot: plot, legend: legend, chart: chart };
+  }
+
+  const plain = (value) => String(Number(value.toPrecision(6)));
+
+  function draw({ plot, legend, chart }) {
+    const graph = new Dygraph(chart, rows(plot.curves), {
+      labels: ["orbit"].concat(plot.curves.map((curve) => curve.name)),
+      customBars: true,
+      connectSeparatedPoints: true,
+      colors: colours,
+      legend: "always",
+      labelsDiv: legend,
+      xlabel: "orbits",
+      strokeWidth: 1.5,
+      axisLabelFontSize: 12,
+      xLabelHeight: 16,
+      axes: {
+        x: { axisLabelFormatter: plain, valueFormatter: plain },
+        y: { axisLabelFormatter: plain, valueFormatter: (value) => value.toPrecision(4), axisLabelWidth: 76 },
+      },
+      underlayCallback: shade,
+      zoomCallback: (from, to) => zoom(from, to),
+    });
+    graphs.push(graph);
+  }
+
+  data.plots.map(box).forEach(draw);
+})();

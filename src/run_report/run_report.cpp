@@ -1,0 +1,312 @@
+#include <keeler/run_report/run_report.hpp>
+
+#include "accuracy.hpp"
+#include "assets.hpp"
+#include "number_tables.hpp"
+#include "particle_view.hpp"
+#include "series_plots.hpp"
+
+#include <keeler/cells/overlap.hpp>
+#include <keeler/core/version.hpp>
+#include <keeler/core/words.hpp>
+#include <keeler/diagnostics/analysis.hpp>
+#include <keeler/diagnostics/surface.hpp>
+#include <keeler/files/files.hpp>
+#include <keeler/io/series.hpp>
+#include <keeler/io/snapshot.hpp>
+#include <keeler/render/patch_picture.hpp>
+#include <keeler/report/html.hpp>
+#include <keeler/runs/analysis_numbers.hpp>
+#include <keeler/runs/measured_part.hpp>
+#include <keeler/runs/run_view.hpp>
+#include <keeler/scene/derived.hpp>
+#include <keeler/scene/doubts.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace keeler {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+// Pictures through time, and what keeps a page small: widths in pixels, and how many bytes a picture has at most.
+constexpr std::size_t most_pictures = 4;
+constexpr int picture_width = 1200, earlier_picture_width = 600, narrowest_picture = 300;
+constexpr std::size_t picture_bytes = 1'600'000, earlier_picture_bytes = 430'000;
+
+// Snapshots are measured only up to so many particles in all: a page of large patches is wanted soon, too.
+constexpr std::size_t most_measured_particles = 3'000'000;
+
+// `most` places out of `count`, evenly, the first and the last among them.
+std::vector<std::size_t> evenly(std::size_t count, std::size_t most) {
+  std::vector<std::size_t> places;
+  const std::size_t n = std::min(count, std::max<std::size_t>(most, 1));
+  for (std::size_t k = 0; k < n; ++k)
+    places.push_back(n == 1 ? count - 1 : k * (count - 1) / (n - 1));
+  return places;
+}
+
+// JSON in a page: "</script>" in a title must not end the element.
+std::string data_element(const std::string& id, const Json& json) {
+  std::string text = json.dump();
+  for (std::size_t at = text.find("</"); at != std::string::npos; at = text.find("</", at + 3))
+    text.insert(at + 1, "\\");
+  return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id, text);
+}
+
+std::string section(const std::string& id, const std::string& title, const std::string& content) {
+  return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n", id, title, content);
+}
+
+std::string folded(const std::string& title, const std::string& content) {
+  return fmt::format("<details><summary>{}</summary>\n{}</details>\n", title, content);
+}
+
+std::string note(const std::string& text) {
+  return "<p>" + html_inline(text) + "</p>\n";
+}
+
+bool has_view() {
+  return !asset("three.min.js").empty() && !asset("OrbitControls.js").empty();
+}
+
+bool has_plots() {
+  return !asset("dygraph.min.js").empty();
+}
+
+// Narrower than asked for where it would be larger than `bytes`; the width stays so for the pictures to come.
+std::vector<std::byte> picture_within(std::size_t bytes, const Patch& patch, PictureOptions& look) {
+  for (;;) {
+    std::vector<std::byte> png = patch_png(patch, look);
+    if (png.size() <= bytes || look.width <= narrowest_picture)
+      return png;
+    const double share = 0.95 * std::sqrt(static_cast<double>(bytes) / static_cast<double>(png.size()));
+    look.width = std::max(narrowest_picture, static_cast<int>(share * look.width));
+  }
+}
+
+// The newest of them in any case.
+void thin_out(std::vector<Patch>& patches) {
+  const std::size_t most = std::max<std::size_t>(1, most_measured_particles / patches.back().size());
+  std::vector<Patch> some;
+  for (const std::size_t place : evenly(patches.size(), most))
+    some.push_back(std::move(patches[place]));
+  patches = std::move(some);
+}
+
+std::string figure(const Patch& patch, const std::vector<std::byte>& png) {
+  return fmt::format("<figure><img alt=\"the patch at orbit {0}\" src=\"data:image/png;base64,{1}\">"
+                     "<figcaption>orbit {0}</figcaption></figure>\n",
+                     figures(patch.time_orbits, 4), base64(png));
+}
+
+class RunPage {
+public:
+  RunPage(const fs::path& folder, const RunReportOptions& options)
+      : folder_(folder), options_(options), run_(view_run(folder)), files_(snapshots_in(folder)) {}
+
+  std::string html();
+
+private:
+  void say(const std::string& text) const {
+    if (options_.progress)
+      options_.progress(text);
+  }
+
+  void look_at_snapshots();
+  std::string pictures() const;
+  std::string view() const;
+  std::string plots(const TransportReport& transport) const;
+  std::string measured(const MeasuredPart& part) const;
+  std::string accuracy() const;
+  std::string scene_section() const;
+  std::string provenance() const;
+  std::string head() const;
+  std::string facts() const;
+
+  fs::path folder_;
+  const RunReportOptions& options_;
+  RunView run_;
+  std::vector<fs::path> files_;
+  ParticleView particles_{most_particles_in_view};
+  std::vector<Patch> pictured_;
+  SnapshotMeta meta_; // of the newest snapshot
+  std::optional<Scene> scene_;
+  Json summary_; // null while the run works, and when it was killed
+};
+
+void RunPage::look_at_snapshots() {
+  const std::vector<std::size_t> viewed = evenly(files_.size(), options_.snapshots);
+  const std::vector<std::size_t> drawn = evenly(viewed.size(), most_pictures);
+  for (std::size_t k = 0; k < viewed.size(); ++k) {
+    const fs::path& file = files_[viewed[k]];
+    say(fmt::format("reading {}", file.filename().string()));
+    Snapshot snapshot = read_snapshot(file);
+    require_sound(snapshot.patch);
+    particles_.add(snapshot.patch, file.filename().string());
+    meta_ = std::move(snapshot.meta);
+    if (std::find(drawn.begin(), drawn.end(), k) != drawn.end())
+      pictured_.push_back(std::move(snapshot.patch));
+  }
+  scene_ = parse_stored_scene(meta_.scene, files_.back().string());
+}
+
+// The newest one large, those before small, at one scale.
+std::string RunPage::pictures() const {
+  PictureOptions look;
+  look.title = scene_->title.empty() ? "Ring patch" : scene_->title;
+  for (const Patch& patch : pictured_) {
+    const PictureScale scale = picture_scale(patch, look.colour);
+    if (look.scale)
+      look.scale->include(scale);
+    else
+      look.scale = scale;
+  }
+  look.width = earlier_picture_width;
+  std::string earlier;
+  for (std::size_t k = 0; k + 1 < pictured_.size(); ++k)
+    earlier += figure(pictured_[k], picture_within(earlier_picture_bytes, pictured_[k], look));
+  look.width = picture_width;
+  const std::string last = figure(pictured_.back(), picture_within(picture_bytes, pictured_.back(), look));
+  return section("pictures", "The patch", last + "<div class=\"earlier\">\n" + earlier + "</div>\n");
+}
+
+std::string RunPage::view() const {
+  if (!has_view())
+    return section("view", "In three dimensions",
+                   note("This program was built without the library three.js, so there is no view here."));
+  return section("view", "In three dimensions", std::string(asset("view.html"))) +
+         data_element("view-data", particles_.json());
+}
+
+std::string RunPage::plots(const TransportReport& report) const {
+  if (run_.series.rows() < 2)
+    return section("series", "Through time", note("The series has fewer than two rows."));
+  if (!has_plots())
+    return section("series", "Through time",
+                   note("This program was built without the library dygraphs, so the series is not drawn here."));
+  std::optional<Transport> steady;
+  std::string words = "No part of the run is known to be steady, so no means are told.";
+  if (const auto& t = report.transport(); t && t->since_found) {
+    steady = *t;
+    words = fmt::format("Means are of orbits {} to {} (shaded), {}; errors by blocks, neighbouring rows being "
+                        "correlated.",
+                        figures(t->since_orbit, 3), figures(t->until_orbit, 4),
+                        t->steady ? "where the run is steady" : "the best there is, though the run is not steady yet");
+  }
+  words +=
+      " A curve is the mean of rows that follow each other, the band its standard error where a mean is of several "
+      "rows. Drag along an axis to zoom, double-click to see all.";
+  const RingScale scale = RingScale::of(pictured_.back(), !scene_->external_forces.empty());
+  return section("series", "Through time", note(words) + "<div id=\"plots\"></div>\n") +
+         data_element("series-data", series_plots(run_.series, scale, steady));
+}
+
+std::string RunPage::measured(const MeasuredPart& part) const {
+  double overlap = 0.0;
+  for (const Patch& patch : part.stored.patches)
+    overlap = std::max(overlap, largest_overlap(patch).depth);
+  Json numbers = numbers_of(analyze(part.stored.patches), overlap);
+  part.transport.add_to(numbers, part.stored.patches.back());
+  return section(
+      "measured", "Measured",
+      note(fmt::format("As `keeler analyze` measures, structure in {}; viscosities and the balance are of the "
+                       "same orbits as the means above.",
+                       counted(part.stored.patches.size(), "snapshot"))) +
+          measured_tables(numbers) + folded("All numbers, by their names in JSON", all_numbers(numbers)));
+}
+
+std::string RunPage::accuracy() const {
+  if (!summary_.is_object())
+    return section("accuracy", "Accuracy and its price",
+                   note("The run has not ended, so it has no account yet (summary.json is missing)."));
+  std::string speed;
+  const Json ns = summary_.value("ns_per_particle_step", Json::object());
+  for (const auto& [name, value] : ns.items())
+    speed += fmt::format("{}{} {} ns", speed.empty() ? "" : ", ", name, figures(value.get<double>(), 3));
+  return section(
+      "accuracy", "Accuracy and its price",
+      accuracy_table(*scene_, summary_) + "<h3>Time</h3>\n" + timing_table(summary_) +
+          note(fmt::format("{}, {} s of processor time, {} MB at most. A particle and step: {}.",
+                           counted(summary_.value("threads", 0U), "thread"), figures(summary_.value("cpu_s", 0.0), 4),
+                           figures(summary_.value("peak_memory_mb", 0.0), 4), speed)));
+}
+
+std::string RunPage::scene_section() const {
+  const Patch& last = pictured_.back();
+  std::string words;
+  for (const std::string& notice : scene_->notices)
+    words += note("Note: " + notice);
+  for (const std::string& doubt :
+       doubts(*scene_, {last.size(), last.box.size_x, last.box.size_y, critical_wavelength(last)}))
+    words += note("Note: " + doubt);
+  return section("scene", "The scene",
+                 derived_table(*scene_, last) + words +
+                     folded("As it was run, every key", "<pre>" + html_text(meta_.scene) + "</pre>\n"));
+}
+
+std::string RunPage::provenance() const {
+  std::vector<std::vector<std::string>> rows = {{"the newest snapshot was made by", ""}};
+  for (const auto& [name, value] : meta_.provenance)
+    rows.push_back({name, value});
+  if (summary_.is_object())
+    rows.push_back({"state hash", summary_.value("state_hash", "")});
+  rows.push_back({"this page by", "keeler " + program_version()});
+  if (has_view())
+    rows.push_back({"with three.js", "© 2010–2019 the three.js authors, MIT licence, threejs.org"});
+  if (has_plots())
+    rows.push_back({"with dygraphs", "© Dan Vanderkam and others, MIT licence, dygraphs.com"});
+  return section("provenance", "Provenance", html_table(rows));
+}
+
+std::string RunPage::facts() const {
+  const std::string state = run_.running                        ? "still working"
+                            : !summary_.is_object()             ? "broken off"
+                            : summary_.value("finished", false) ? "finished"
+                                                                : "stopped before its end";
+  return note(fmt::format("{} particles, {} of {} orbits, {}.", pictured_.back().size(), figures(run_.orbits, 4),
+                          figures(run_.end_orbits, 4), state));
+}
+
+std::string RunPage::head() const {
+  std::string styles;
+  for (const char* name : {"page.css", "dygraph.min.css"})
+    styles += asset(name);
+  return fmt::format("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+                     "content=\"width=device-width\">\n<title>{}</title>\n<style>\n{}</style></head>\n",
+                     html_text(scene_->title.empty() ? folder_.string() : scene_->title), styles);
+}
+
+std::string scripts() {
+  std::string all;
+  for (const char* name : {"three.min.js", "OrbitControls.js", "dygraph.min.js", "plots.js", "view.js"})
+    all += fmt::format("<script>\n{}\n</script>\n", asset(name));
+  return all;
+}
+
+std::string RunPage::html() {
+  look_at_snapshots();
+  if (const fs::path file = folder_ / "summary.json"; fs::exists(file))
+    summary_ = Json::parse(read_text(file), nullptr, false);
+  say("measuring");
+  MeasuredPart part = measured_part(folder_, {});
+  thin_out(part.stored.patches);
+  const std::string title = scene_->title.empty() ? folder_.filename().string() : scene_->title;
+  return head() + "<body>\n<h1>" + html_text(title) + "</h1>\n" + facts() + pictures() + view() +
+         plots(part.transport) + measured(part) + accuracy() + scene_section() + provenance() + scripts() +
+         "</body></html>\n";
+}
+
+} // namespace
+
+std::string run_report(const fs::path& folder, const RunReportOptions& options) {
+  return RunPage(folder, options).html();
+}
+
+} // namespace keeler

@@ -1,0 +1,218 @@
+"""keeler report: what its page holds against the run's files, and what a browser makes of it, from a file, without a
+network. The screenshots stand beside the tests that ran, to be looked at."""
+
+import base64
+import csv
+import json
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+KEELER = os.environ["KEELER_PROGRAM"]
+SCREENSHOTS = Path(os.environ["KEELER_SCREENSHOTS"])
+SNAPSHOTS, SHOWN = 6, 3  # that the run writes, that the view has
+
+SCENE = """
+title = "A ring of </script> & spins"
+planet.preset = "saturn-a-ring"
+box.size = [60.0, 60.0]
+particles = { optical_depth = 0.4, density = 450.0, sizes = { law = "power", min = 0.5, max = 2.0, exponent = 3.0 } }
+collisions = { restitution = { law = "constant", value = 0.5 }, friction = { tangential_restitution = 0.2 } }
+gravity.solver = "tree"
+time = { step = 2e-3, end = 1.0 }
+output = { snapshot_every = 0.2, series_every = 0.002, stress_every = 0.02 }
+"""
+
+
+def keeler(*arguments):
+    return subprocess.run([KEELER, *map(str, arguments)], capture_output=True, text=True, timeout=250)
+
+
+def numbers(digits, dtype):
+    return np.frombuffer(base64.b64decode(digits), dtype=dtype)
+
+
+class Report(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.results = Path(cls.folder.name) / "run"
+        scene = Path(cls.folder.name) / "scene.toml"
+        scene.write_text(SCENE)
+        for arguments in (("run", scene, "-o", cls.results), ("report", cls.results, "--snapshots", SHOWN)):
+            done = keeler(*arguments)
+            assert done.returncode == 0, done.stderr
+        cls.page = (cls.results / "report.html").read_text()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def data(self, name):
+        return json.loads(re.search(f'id="{name}-data">(.*?)</script>', self.page, re.S).group(1))
+
+    def test_one_file(self):
+        """Nothing is fetched: neither from a network nor from beside the page."""
+        markup = re.sub(r"<(script|style)\b.*?</\1>", "", self.page, flags=re.S)
+        for link in re.findall(r'(?:src|href)="([^"]*)"', markup):
+            self.assertTrue(link.startswith("data:image/png;base64,"), link[:80])
+        self.assertIn("A ring of &lt;/script&gt; &amp; spins", markup)
+        for title in ("The patch", "In three dimensions", "Through time", "Measured", "Accuracy and its price",
+                      "The scene", "Provenance"):
+            self.assertIn(f"<h2>{title}</h2>", markup)
+
+    def test_places_and_colours(self):
+        view = self.data("view")
+        files = [f"snap_{k:06d}.hdf" for k in (0, 2, 5)]  # evenly from the first to the last
+        self.assertEqual([snapshot["file"] for snapshot in view["snapshots"]], files)
+        fields = {field["name"]: field for field in view["fields"]}
+        self.assertEqual(set(fields), {"speed", "cluster", "spin", "size"})
+        unit = np.array(view["unit_m"])
+        for k, shown in enumerate(view["snapshots"]):
+            with h5py.File(self.results / shown["file"]) as file:
+                part = file["PartType1"]
+                places, radii, spins = part["Coordinates"][:], part["Radius"][:], part["Spins"][:, 2]
+                omega = file["RingBox"].attrs["Omega"]
+            self.assertEqual(view["count"], len(radii))
+            found = np.array(view["low_m"]) + numbers(shown["places"], "<u2").reshape(3, -1).T * unit
+            self.assertLessEqual(np.max(np.abs(found - places) / unit), 0.5 + 1e-6)
+            np.testing.assert_array_equal(numbers(view["radii"], "<f4"), radii.astype("f4"))
+            low, high = fields["spin"]["range"]["low"], fields["spin"]["range"]["high"]
+            share = np.clip((spins / omega - low) / (high - low), 0.0, 1.0)
+            self.assertLessEqual(np.max(np.abs(numbers(fields["spin"]["bytes"][k], "u1") - 255.0 * share)), 0.5 + 1e-6)
+
+    def test_curves(self):
+        with open(self.results / "series.csv") as file:
+            rows = list(csv.DictReader(file))
+        plots = self.data("series")["plots"]
+        curves = {curve["name"]: np.array(curve["points"], dtype=float) for plot in plots for curve in plot["curves"]}
+        time = np.array([float(row["time_orbits"]) for row in rows])
+        height = np.array([float(row["scale_height_m"]) for row in rows])
+        points = curves["√⟨z²⟩"]
+        self.assertEqual(len(points), 200)
+        edges = [k * len(rows) // 200 for k in range(201)]
+        for k, (t, mean, error) in enumerate(points):
+            part = slice(edges[k], edges[k + 1])
+            self.assertAlmostEqual(t, time[part].mean(), places=10)
+            self.assertAlmostEqual(mean, height[part].mean(), places=10)
+            n = edges[k + 1] - edges[k]
+            self.assertAlmostEqual(error, height[part].std(ddof=1) / np.sqrt(n), places=10)
+        # The rate of a number that counts, over all of the run.
+        collisions = curves["faster than v_cut"]
+        self.assertAlmostEqual(np.mean(collisions[:, 1]) / (float(rows[-1]["collisions"]) / time[-1]), 1.0, delta=0.02)
+        drawn = {name for name in rows[0]} - {"step", "time_orbits"}
+        self.assertGreaterEqual(len(curves), len(drawn) - 2)  # two columns share nothing, the fluxes are viscosities
+
+    def test_refusals(self):
+        empty = Path(self.folder.name) / "empty"
+        empty.mkdir(exist_ok=True)
+        bare = Path(self.folder.name) / "bare"
+        bare.mkdir(exist_ok=True)
+        (bare / "log.jsonl").write_text("{}\n")
+        for arguments, code, words in (
+            ((empty,), 4, "log.jsonl is missing"),
+            ((bare,), 4, "snap_NNNNNN.hdf is missing"),
+            ((empty / "none",), 2, "no folder"),
+            ((self.results, "-o", self.results), 2, "is a folder"),
+            ((self.results, "--snapshots", "0"), 2, "snapshots"),
+            ((self.results, "-o", empty / "no" / "report.html"), 4, "no"),
+        ):
+            done = keeler("report", *arguments)
+            self.assertEqual((done.returncode, done.stderr.count("\n")), (code, 1), done.stderr)
+            self.assertIn(words, done.stderr)
+        self.assertEqual(list(empty.iterdir()), [])
+
+    def test_run_without_its_end(self):
+        """As a run looks that works still, or was killed."""
+        summary = self.results / "summary.json"
+        kept = summary.read_text()
+        summary.unlink()
+        try:
+            page = self.results.parent / "broken.html"
+            self.assertEqual(keeler("report", self.results, "-o", page, "--snapshots", 1).returncode, 0)
+            self.assertIn("broken off", page.read_text())
+            self.assertIn("no account yet", page.read_text())
+        finally:
+            summary.write_text(kept)
+
+    def test_browser(self):
+        from selenium import webdriver
+        from selenium.webdriver.chrome.service import Service
+        from selenium.webdriver.common.by import By
+        from selenium.webdriver.support.ui import Select, WebDriverWait
+
+        options = webdriver.ChromeOptions()
+        options.binary_location = "/usr/bin/chromium"
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+        for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--use-gl=angle",
+                         "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--window-size=1300,1000"):
+            options.add_argument(argument)
+        browser = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+        self.addCleanup(browser.quit)
+
+        def shot(name):
+            browser.save_screenshot(str(SCREENSHOTS / f"report-{name}.png"))
+
+        def lit():
+            """Which pixels of the view are not sky, and its bytes."""
+            return browser.execute_script(
+                "const from = document.querySelector('#stage canvas'), to = document.createElement('canvas');"
+                "to.width = from.width; to.height = from.height;"
+                "const pen = to.getContext('2d'); pen.drawImage(from, 0, 0);"
+                "const all = pen.getImageData(0, 0, to.width, to.height).data;"
+                "let lit = 0, sum = 0;"
+                "for (let k = 0; k < all.length; k += 4) {"
+                "  if (all[k] + all[k + 1] + all[k + 2] > 60) ++lit;"
+                "  sum = (31 * sum + all[k] + 7 * all[k + 1] + 13 * all[k + 2]) % 1000003; }"
+                "return [lit, sum, all.length / 4];")
+
+        browser.get((self.results / "report.html").as_uri())
+        WebDriverWait(browser, 60).until(lambda it: it.find_elements(By.CSS_SELECTOR, "#stage canvas"))
+        shot("top")
+        browser.execute_script("document.getElementById('view').scrollIntoView()")
+        shot("view")
+        count, first, size = lit()
+        self.assertGreater(count, 0.01 * size)
+
+        seen = {first}
+        def changed(what):
+            found = lit()[1]
+            self.assertNotIn(found, seen, what)
+            seen.add(found)
+
+        for field in ("speed", "cluster", "spin", "size"):
+            Select(browser.find_element(By.ID, "field")).select_by_visible_text(field)
+            changed(field)
+        browser.find_element(By.CSS_SELECTOR, "[data-look=above]").click()
+        changed("seen from above")
+        shot("above")
+        moment = browser.find_element(By.ID, "moment")
+        self.assertIn("snap_000005.hdf", moment.text)
+        browser.execute_script("const it = document.getElementById('time'); it.value = 0;"
+                               "it.dispatchEvent(new Event('input'));")
+        self.assertIn("snap_000000.hdf", moment.text)
+        changed("another snapshot")
+        webdriver.ActionChains(browser).drag_and_drop_by_offset(
+            browser.find_element(By.CSS_SELECTOR, "#stage canvas"), 120, 60).perform()
+        changed("turned by dragging")
+
+        browser.execute_script("document.getElementById('series').scrollIntoView()")
+        shot("series")
+        charts = browser.find_elements(By.CSS_SELECTOR, ".chart")
+        self.assertEqual(len(charts), len(self.data("series")["plots"]))
+        for chart in charts:
+            self.assertGreater(chart.size["width"], 300)
+            self.assertTrue(chart.find_elements(By.TAG_NAME, "canvas"))
+        browser.execute_script("document.getElementById('measured').scrollIntoView()")
+        shot("measured")
+        self.assertEqual([line for line in browser.get_log("browser") if line["level"] != "INFO"], [])
+
+
+if __name__ == "__main__":
+    unittest.main()
