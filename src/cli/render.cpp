@@ -25,7 +25,7 @@ constexpr double averaged_orbits = 1.0;
 struct RenderOptions {
   std::string path, output, colour = "height", theme = "dark";
   int width = PictureOptions().width;
-  bool autocorrelation = false, movie = false;
+  bool oblique = false, autocorrelation = false, movie = false;
 };
 
 // picture.png in a run's folder, NAME.png beside a snapshot NAME.hdf.
@@ -50,6 +50,7 @@ PictureOptions look_of(const RenderOptions& options) {
   look.width = options.width;
   look.theme = options.theme == "light" ? PictureTheme::light : PictureTheme::dark;
   look.colour = colour_field_named(options.colour);
+  look.oblique = options.oblique;
   return look;
 }
 
@@ -104,6 +105,7 @@ void add_render(CLI::App& program, Action& action) {
       .add_option("--colour", options->colour,
                   "what the colours say, with a bar: size, speed, spin, cluster, density (default: height, without)")
       ->type_name("FIELD");
+  command.add_flag("--oblique", options->oblique, "see the patch from 35 degrees above its plane, not from above");
   CLI::Option* const autocorrelation =
       command.add_flag("--autocorrelation", options->autocorrelation,
                        "draw the autocorrelation of the surface density too, averaged over a run's last orbit");

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <numbers>
 
 namespace keeler {
 namespace {
@@ -113,7 +114,9 @@ PictureLayout layout_of(const Patch& patch, const PictureOptions& options) {
   const double u = options.width / 1600.0;
   const ShearingBox& box = patch.box;
   PictureLayout layout;
-  layout.pixels_per_metre = std::min(1480.0 * u / box.size_x, 2200.0 * u / box.size_y);
+  layout.elevation = (options.oblique ? PictureOptions::oblique_elevation : 90.0) * std::numbers::pi / 180.0;
+  const double tall = box.size_y * std::sin(layout.elevation); // of the upper view, m
+  layout.pixels_per_metre = std::min(1480.0 * u / box.size_x, 2200.0 * u / tall);
   const auto pixels = [&](double metres) {
     return std::max(1, static_cast<int>(std::lround(metres * layout.pixels_per_metre)));
   };
@@ -126,7 +129,7 @@ PictureLayout layout_of(const Patch& patch, const PictureOptions& options) {
 
   layout.width = options.width;
   const int left = static_cast<int>(std::lround(60 * u)), gap = static_cast<int>(std::lround(64 * u));
-  layout.top_view = {left, static_cast<int>(std::lround(124 * u)), pixels(box.size_x), pixels(box.size_y)};
+  layout.top_view = {left, static_cast<int>(std::lround(124 * u)), pixels(box.size_x), pixels(tall)};
   layout.top_view.left += (options.width - 2 * left - layout.top_view.width) / 2; // a tall box stands in the middle
   layout.edge_view = {layout.top_view.left, layout.top_view.top + layout.top_view.height + gap, layout.top_view.width,
                       pixels(2.0 * layout.half_height)};
@@ -140,6 +143,8 @@ PictureLayout layout_of(const Patch& patch, const PictureOptions& options) {
 std::unique_ptr<Page> patch_page(const Patch& patch, const PictureOptions& asked) {
   if (patch.size() == 0)
     throw UsageError("the patch holds no particles, so there is nothing to draw; choose another snapshot");
+  if (asked.oblique && asked.colour == ColourField::density)
+    throw UsageError("no oblique view of the surface density: it is a map seen from above; choose another field");
   PictureOptions options = asked;
   if (!options.scale)
     options.scale = picture_scale(patch, options.colour);
@@ -154,7 +159,10 @@ std::unique_ptr<Page> patch_page(const Patch& patch, const PictureOptions& asked
     page->frame(f.left, f.top, f.width, f.height, mix(theme.page, theme.faint_ink, 0.5));
   draw_header(*page, patch, options, theme, u);
   draw_scale(*page, patch, layout, theme.ink, u);
-  draw_upward(*page, layout.top_view, {"along the orbit", "orbit"}, theme.ink, u);
+  const std::string oblique =
+      fmt::format("along the orbit, seen {:g}° above the plane", PictureOptions::oblique_elevation);
+  draw_upward(*page, layout.top_view,
+              {options.oblique ? oblique.c_str() : "along the orbit", "along the orbit", "orbit"}, theme.ink, u);
   draw_upward(*page, layout.edge_view, {"height", "z"}, theme.ink, u);
   page->text({static_cast<double>(layout.edge_view.left), layout.foot + 36 * u},
              "edge-on at the same scale, seen along the orbit; the far end of the box fades",

@@ -28,15 +28,23 @@ struct Shown {
   double toward_viewer = 0.0;
 };
 
-// Everything that reaches into the cell, images included.
-std::vector<Shown> visible(const Patch& patch, ColourField field, const PictureScale& scale) {
+// From where one sees the upper view: what is up in it, and what is toward the viewer.
+struct Sight {
+  explicit Sight(double elevation)
+      : up(0.0, std::sin(elevation), std::cos(elevation)), near(0.0, -std::cos(elevation), std::sin(elevation)) {}
+  Vec3 up, near;
+};
+
+// Everything that reaches into a frame as wide as the cell and so tall on either side of its middle, images included.
+std::vector<Shown> visible(const Patch& patch, ColourField field, const PictureScale& scale, const Vec3& up,
+                           double half_tall) {
   const bool has_values = field != ColourField::height && field != ColourField::density;
   const std::vector<double> values = has_values ? field_values(patch, field) : std::vector<double>();
   std::vector<Shown> shown;
   shown.reserve(patch.size() + patch.size() / 8);
   for_each_image(patch, [&](std::size_t k, const Vec3& image) {
     const double r = patch.radii[k];
-    if (std::fabs(image.x()) < 0.5 * patch.box.size_x + r && std::fabs(image.y()) < 0.5 * patch.box.size_y + r)
+    if (std::fabs(image.x()) < 0.5 * patch.box.size_x + r && std::fabs(image.dot(up)) < half_tall + r)
       shown.push_back({image, r, patch.ids[k], has_values ? scale.colours.share(values[k]) : 0.0});
   });
   return shown;
@@ -65,10 +73,11 @@ Raster density_view(const Patch& patch, const PictureLayout& layout, const Pictu
 Raster top_view(const PictureLayout& layout, ColourField field, const PictureScale& scale, std::vector<Shown>& shown) {
   Raster raster(layout.top_view.width, layout.top_view.height, space_colour);
   const double pixels = layout.pixels_per_metre;
-  sort_along(shown, Vec3::UnitZ());
+  const Sight sight(layout.elevation);
+  sort_along(shown, sight.near);
   for (const Shown& s : shown)
-    raster.sphere(0.5 * raster.width() + pixels * s.position.x(), 0.5 * raster.height() - pixels * s.position.y(),
-                  pixels * s.radius,
+    raster.sphere(0.5 * raster.width() + pixels * s.position.x(),
+                  0.5 * raster.height() - pixels * s.position.dot(sight.up), pixels * s.radius,
                   field == ColourField::height ? ramp(ring_colours, 0.5 + 0.5 * s.position.z() / scale.depth)
                                                : field_colour(s.share));
   return raster;
@@ -96,10 +105,14 @@ Colour field_colour(double share) {
 }
 
 PatchViews patch_views(const Patch& patch, const PictureLayout& layout, ColourField field, const PictureScale& scale) {
-  std::vector<Shown> shown = visible(patch, field, scale);
-  Raster top =
-      field == ColourField::density ? density_view(patch, layout, scale) : top_view(layout, field, scale, shown);
-  return {std::move(top), edge_view(patch, layout, field, shown)};
+  const double half_y = 0.5 * patch.box.size_y;
+  std::vector<Shown> cell = visible(patch, field, scale, Vec3::UnitY(), half_y);
+  Raster edge = edge_view(patch, layout, field, cell);
+  if (field == ColourField::density)
+    return {density_view(patch, layout, scale), std::move(edge)};
+  const Sight sight(layout.elevation);
+  std::vector<Shown> above = visible(patch, field, scale, sight.up, half_y * std::sin(layout.elevation));
+  return {top_view(layout, field, scale, above), std::move(edge)};
 }
 
 } // namespace keeler

@@ -29,7 +29,9 @@ struct PictureOptions {
   int width = 1600; ///< of the whole picture, pixels; everything else scales with it
   PictureTheme theme = PictureTheme::dark;
   ColourField colour = ColourField::height;
-  std::optional<PictureScale> scale; ///< none: the patch's own
+  bool oblique = false; ///< the upper view is seen from this far above the plane instead of from above
+  static constexpr double oblique_elevation = 35.0; // degrees
+  std::optional<PictureScale> scale;                ///< none: the patch's own
 };
 
 inline constexpr int least_picture_width = 200, most_picture_width = 8000; // pixels
@@ -46,6 +48,7 @@ struct PictureLayout {
   int foot = 0; ///< where the lines below the views begin
   double pixels_per_metre = 0.0;
   double half_height = 0.0; ///< the edge view shows |z| up to this, m
+  double elevation = 0.0;   ///< of who sees the upper view, above the plane, rad
 };
 
 /// Of one patch. Throws UsageError when it does not have the field.

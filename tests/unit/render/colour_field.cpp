@@ -116,6 +116,34 @@ TEST_CASE("colours show the field; the bar lies below the views") {
   CHECK(picture.warmth(layout.edge_view.left + 206, bar) > 100.0);
 }
 
+TEST_CASE("an oblique view shortens lengths along the orbit and lifts what is high") {
+  Patch patch = three();
+  patch.positions[0].z() = 12.0;
+  patch.positions[1] = {40.0, 29.5, 11.0}; // above the frame, so its image from below shows: y − L_y
+  PictureOptions options;
+  options.width = 800;
+  options.oblique = true;
+  const PictureLayout layout = layout_of(patch, options);
+  const double sine = std::sin(layout.elevation), cosine = std::cos(layout.elevation);
+  CHECK(layout.elevation == doctest::Approx(35.0 / 180.0 * M_PI));
+  CHECK(layout.top_view.height == doctest::Approx(layout.pixels_per_metre * box.size_y * sine).epsilon(0.01));
+  const test::TemporaryPng file("oblique");
+  render_patch(patch, file.path(), options);
+  const test::Picture picture(file.path());
+  const auto brightness = [&](double x, double y, double z) {
+    const PixelFrame& f = layout.top_view;
+    return picture.brightness(f.left + static_cast<int>(0.5 * f.width + layout.pixels_per_metre * x),
+                              f.top +
+                                  static_cast<int>(0.5 * f.height - layout.pixels_per_metre * (y * sine + z * cosine)));
+  };
+  CHECK(brightness(-20.0, 0.0, 12.0) > 60.0);
+  CHECK(brightness(-20.0, 0.0, 0.0) < 20.0);
+  CHECK(brightness(13.0, 5.0, 0.0) > 60.0);
+  CHECK(brightness(40.0, 29.5 - box.size_y, 11.0) > 60.0);
+  options.colour = ColourField::density;
+  CHECK_THROWS_WITH_AS(render_patch(patch, file.path(), options), doctest::Contains("seen from above"), UsageError);
+}
+
 TEST_CASE("a light page is white around views whose particles look the same") {
   const Patch patch = three();
   const test::TemporaryPng dark_file("dark"), light_file("light");
