@@ -1,6 +1,7 @@
 // keeler convert: snapshots and checkpoints for other programs, as CSV or for ParaView.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "signals.hpp"
 
 #include <keeler/io/describe.hpp>
 #include <keeler/io/particle_table.hpp>
@@ -78,6 +79,7 @@ void convert_run(const ConvertOptions& options) {
     require_new_file(result_of(snapshot).string(), options.force, "the result");
   std::vector<VtpInstant> instants;
   for (const fs::path& snapshot : snapshots) {
+    throw_if_interrupted();
     const fs::path result = result_of(snapshot);
     instants.push_back({convert_file(snapshot, result, options), result.filename().string()});
     if (options.format == "csv")
@@ -108,11 +110,13 @@ void add_convert(CLI::App& program, Action& action) {
   command.add_flag("--force", options->force, "replace files that exist");
   command.callback([options, &action] {
     action = [options] {
-      if (fs::is_directory(options->path))
-        convert_run(*options);
-      else
-        convert_one(*options);
-      return ExitCode::done;
+      return unless_stopped("stopped before all was written (on request); the files that are there are whole", [&] {
+        if (fs::is_directory(options->path))
+          convert_run(*options);
+        else
+          convert_one(*options);
+        return ExitCode::done;
+      });
     };
   });
 }

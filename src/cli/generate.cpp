@@ -7,7 +7,6 @@
 #include "signals.hpp"
 
 #include <keeler/cells/overlap.hpp>
-#include <keeler/core/interrupt.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/states/clumped.hpp>
@@ -30,17 +29,9 @@ struct GenerateOptions {
   ThreadOption threads;
 };
 
-// Signals are heeded at once: there is nothing that could be kept.
-template<class Make> auto unless_stopped(const Make& make) {
-  try {
-    const Interruptible by_signals(requests_from_signals().stop);
-    return make();
-  } catch (const Interrupted&) {
-    throw Error(ExitCode::run_time,
-                "stopped before the state was made (on request), so no state is written; start again, or "
-                "use \"keeler run\", which keeps checkpoints");
-  }
-}
+constexpr const char* stopped =
+    "stopped before the state was made (on request), so no state is written; start again, or "
+    "use \"keeler run\", which keeps checkpoints";
 
 Patch make_patch(const Scene& scene) {
   ProgressLine line;
@@ -88,7 +79,7 @@ void part(Patch& patch, const GenerateOptions& options, const ParticleTable& tab
                   counted(overlaps, "pair"), table.place_of(worst.id_i), table.place_of(worst.id_j), worst.depth);
   if (!options.relax)
     throw InvariantError(found + "; correct them, or move them apart by --relax");
-  const Relaxation moved = unless_stopped([&] { return relax(patch); });
+  const Relaxation moved = unless_stopped(stopped, [&] { return relax(patch); });
   fmt::print("{}; moved {} apart, by {} m at most\n", found, counted(moved.moved, "particle"),
              figures(moved.farthest, 3));
 }
@@ -123,12 +114,12 @@ ExitCode generate(const GenerateOptions& options, const std::vector<std::string>
   SnapshotMeta meta{scene.resolved, collect_provenance(arguments)};
   Patch patch;
   if (options.clumped) {
-    ClumpedState state = unless_stopped([&] { return evolve_until_clumped(scene, options.criterion); });
+    ClumpedState state = unless_stopped(stopped, [&] { return evolve_until_clumped(scene, options.criterion); });
     patch = std::move(state.patch);
     meta.clumping = clumping_numbers(state.clumping);
     print_clumping(state.clumping);
   } else {
-    patch = unless_stopped([&] { return make_patch(scene); });
+    patch = unless_stopped(stopped, [&] { return make_patch(scene); });
   }
   for (const std::string& notice : scene.notices)
     say(notice);

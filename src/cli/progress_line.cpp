@@ -67,10 +67,13 @@ void ProgressLine::print(std::optional<double> share, const Parts& parts) {
   open_ = true;
 }
 
+double ProgressLine::patience_s() const {
+  return terminal_ ? 0.5 : log_interval_s;
+}
+
 // Most starts are made before anybody looks.
 void ProgressLine::show(const StartProgress& p) {
-  const double patience_s = terminal_ ? 0.5 : log_interval_s;
-  if (p.elapsed_s >= patience_s && due(p.elapsed_s, p.share == 1.0))
+  if (p.elapsed_s >= patience_s() && due(p.elapsed_s, p.share == 1.0))
     print(p.share, {fmt::format("{:3.0f} % of the start", 100.0 * p.share), clock(p.remaining_s) + " left"});
   if (p.share == 1.0)
     next_s_ = 0.0; // what follows has a clock of its own
@@ -87,6 +90,11 @@ void ProgressLine::show(const RunProgress& p) {
 void ProgressLine::show(const Progress& p) {
   if (due(p.elapsed_s, p.share == 1.0))
     print(p.share, {fmt::format("{:3.0f} %", 100.0 * p.share), clock(p.remaining_s) + " left", p.what});
+}
+
+void ProgressLine::show_if_long(const Progress& p) {
+  if (p.elapsed_s >= patience_s())
+    show(p);
 }
 
 void ProgressLine::note(const std::string& text) {

@@ -23,11 +23,14 @@ public:
   void show(const RunProgress& progress);
   void show(const ClumpingProgress& progress);
   void show(const Progress& progress);
+  /// The same of work that is mostly over before anybody looks: nothing is shown then.
+  void show_if_long(const Progress& progress);
 
   /// A message, on a line of its own.
   void note(const std::string& text);
 
 private:
+  double patience_s() const;
   // Whether it is time for the next line.
   bool due(double elapsed_s, bool last);
   void print(std::optional<double> share, const Parts& parts);

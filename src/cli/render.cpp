@@ -1,6 +1,8 @@
 // keeler render: pictures of a snapshot, or of the last state of a run.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "progress_line.hpp"
+#include "signals.hpp"
 
 #include <keeler/diagnostics/autocorrelation.hpp>
 #include <keeler/diagnostics/surface.hpp>
@@ -65,9 +67,12 @@ ExitCode draw_movie(const RenderOptions& options) {
   PictureOptions look = look_of(options);
   if (const std::string title = load_newest_patch(snapshots.front()).title; !title.empty())
     look.title = title;
-  render_movie(
-      snapshots.size(), [&](std::size_t k) { return load_newest_patch(snapshots[k]).patches.back(); }, movie.string(),
-      look);
+  const auto patch = [&](std::size_t k) { return load_newest_patch(snapshots[k]).patches.back(); };
+  {
+    ProgressLine line;
+    render_movie(snapshots.size(), patch, movie.string(), look,
+                 [&line](const Progress& progress) { line.show_if_long(progress); });
+  }
   fmt::print("{}\n", movie.string());
   return ExitCode::done;
 }
@@ -113,7 +118,12 @@ void add_render(CLI::App& program, Action& action) {
       .add_flag("--movie", options->movie,
                 "draw all snapshots of a run at one scale: movie.mp4 by ffmpeg, or movie.png where that is missing")
       ->excludes(autocorrelation);
-  command.callback([options, &action] { action = [options] { return render(*options); }; });
+  command.callback([options, &action] {
+    action = [options] {
+      return unless_stopped("stopped before all was drawn (on request); no part of a picture or a movie is left",
+                            [&] { return render(*options); });
+    };
+  });
 }
 
 } // namespace keeler

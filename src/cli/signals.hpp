@@ -4,11 +4,25 @@
 // it on to its runs as well. USR2 asks for a snapshot.
 #pragma once
 
+#include <keeler/core/interrupt.hpp>
 #include <keeler/runs/run.hpp>
+
+#include <string>
 
 namespace keeler {
 
 /// The requests that the handlers set. Installs the handlers.
 RunRequests& requests_from_signals();
+
+/// What make() returns. The first signal is heeded at once, where nothing could be kept: then throws Error with this
+/// message.
+template<class Make> auto unless_stopped(const std::string& message, const Make& make) {
+  try {
+    const Interruptible by_signals(requests_from_signals().stop);
+    return make();
+  } catch (const Interrupted&) {
+    throw Error(ExitCode::run_time, message);
+  }
+}
 
 } // namespace keeler

@@ -67,12 +67,8 @@ void refuse_what_cannot_be_written(const TuneOptions& options) {
 Tuning measure(const Scene& scene, TuneSettings settings) {
   ProgressLine line;
   settings.progress = [&line](const Progress& progress) { line.show(progress); };
-  try {
-    const Interruptible by_signals(requests_from_signals().stop);
-    return tune(scene, settings);
-  } catch (const Interrupted&) {
-    throw Error(ExitCode::run_time, "stopped before all was measured (on request), so nothing is written");
-  }
+  return unless_stopped("stopped before all was measured (on request), so nothing is written",
+                        [&] { return tune(scene, settings); });
 }
 
 nlohmann::ordered_json as_json(const Tuning& t, const std::vector<KeyChange>& keys) {

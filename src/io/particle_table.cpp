@@ -3,6 +3,7 @@
 #include "hdf5.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/interrupt.hpp>
 #include <keeler/files/columns.hpp>
 #include <keeler/files/descriptor.hpp>
 #include <keeler/files/files.hpp>
@@ -158,6 +159,7 @@ void write_particle_table(const std::filesystem::path& file, const Patch& patch)
   Descriptor out(unfinished.temporary(), O_WRONLY | O_CREAT | O_TRUNC);
   fmt::memory_buffer text;
   const auto write_text_so_far = [&] {
+    throw_if_interrupted();
     out.write_all(std::as_bytes(std::span(text.data(), text.size())));
     text.clear();
   };

@@ -4,6 +4,8 @@
 #include "patch_page.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/interrupt.hpp>
+#include <keeler/core/phase_progress.hpp>
 
 #include <fmt/format.h>
 
@@ -16,10 +18,14 @@
 namespace keeler {
 namespace {
 
-PictureScale common_scale(std::size_t count, const std::function<Patch(std::size_t)>& patch, ColourField field) {
+PictureScale common_scale(std::size_t count, const std::function<Patch(std::size_t)>& patch, ColourField field,
+                          PhaseProgress& progress) {
+  progress.begin("the common scale", static_cast<double>(count));
   std::optional<PictureScale> scale;
   for (std::size_t k = 0; k < count; ++k) {
+    throw_if_interrupted();
     const Patch here = patch(k);
+    progress.add(1.0);
     if (here.size() == 0)
       continue; // drawing it says so
     const PictureScale own = picture_scale(here, field);
@@ -55,13 +61,16 @@ void require_movie_name(const std::string& path) {
 }
 
 void render_movie(std::size_t count, const std::function<Patch(std::size_t)>& patch, const std::string& path,
-                  const PictureOptions& options) {
+                  const PictureOptions& options, const std::function<void(const Progress&)>& report) {
   require_movie_name(path);
+  PhaseProgress progress(report);
   PictureOptions look = options;
-  look.scale = common_scale(count, patch, options.colour);
+  look.scale = common_scale(count, patch, options.colour, progress);
+  progress.begin("pictures", static_cast<double>(count));
   std::unique_ptr<MovieFile> movie;
   int width = 0, height = 0;
   for (std::size_t k = 0; k < count; ++k) {
+    throw_if_interrupted();
     const std::unique_ptr<Page> page = patch_page(patch(k), look);
     if (!movie) {
       width = page->width();
@@ -73,6 +82,7 @@ void render_movie(std::size_t count, const std::function<Patch(std::size_t)>& pa
                                    "themselves",
                                    path, k + 1));
     movie->add(*page);
+    progress.add(1.0);
   }
   if (movie)
     movie->finish();

@@ -70,7 +70,11 @@ Mp4::Mp4(const std::filesystem::path& file, int width, int height)
   posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, fileno(messages_.get()), STDERR_FILENO);
-  const int error = posix_spawnp(&process_, "ffmpeg", &actions, nullptr, pointers.data(), environ);
+  posix_spawnattr_t apart; // in a group of its own: Ctrl-C is for this program, which then ends it
+  posix_spawnattr_init(&apart);
+  posix_spawnattr_setflags(&apart, POSIX_SPAWN_SETPGROUP);
+  const int error = posix_spawnp(&process_, "ffmpeg", &actions, &apart, pointers.data(), environ);
+  posix_spawnattr_destroy(&apart);
   posix_spawn_file_actions_destroy(&actions);
   close(ends[0]);
   pipe_ = ends[1];

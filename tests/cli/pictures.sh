@@ -1,0 +1,86 @@
+#!/bin/bash
+# pictures.sh KEELER SOURCE_DIR: pictures and movies that cannot be made, or are stopped, end with one line and leave no
+# part of a file; a long movie shows its progress on a terminal.
+# shellcheck source=tests/cli/helpers.sh
+source "$(dirname "$0")/helpers.sh"
+small_scene
+runs 0 run "$work/scene.toml" -o "$work/run" --set time.end=0.02 --set output.snapshot_every=0.01
+mkdir "$work/empty" "$work/to" "$work/disk"
+
+# nothing_left NAME: no part of a result in $work/to, nor beside the run's files
+nothing_left() {
+  [ -z "$(ls -A "$work/to")" ] || fail "$1: left $(ls -A "$work/to")"
+  compgen -G "$work/run/*.tmp" && fail "$1: left a part of a file"
+}
+
+refuses_with 4 "a picture of an empty folder" "no snapshot in '$work/empty' (snap_NNNNNN.hdf is missing); name" render "$work/empty"
+refuses_with 4 "a movie of an empty folder" "no snapshot in '$work/empty' (snap_NNNNNN.hdf is missing); name" \
+  render "$work/empty" --movie
+refuses "a movie of a file" "name the folder of a run" render "$work/run/snap_000000.hdf" --movie
+refuses "another movie" "give it such an ending" render "$work/run" --movie -o "$work/to/a.gif"
+code=0
+PATH=$work "$keeler" render "$work/run" --movie -o "$work/to/a.mp4" >"$work/out" 2>"$work/err" || code=$?
+[ "$code" -eq 2 ] || fail "no ffmpeg: exit $code"
+one_line "no ffmpeg" "install the package ffmpeg, or name a .png"
+printf '#!/bin/sh\necho this one is broken >&2\nexit 1\n' >"$work/ffmpeg"
+chmod +x "$work/ffmpeg"
+code=0
+PATH=$work:$PATH "$keeler" render "$work/run" --movie -o "$work/to/a.mp4" >"$work/out" 2>"$work/err" || code=$?
+[ "$code" -eq 4 ] || fail "a broken ffmpeg: exit $code"
+one_line "a broken ffmpeg" "ffmpeg says: this one is broken; choose a folder that is writable and has room, or name a .png"
+nothing_left "refused"
+
+# limited NAME FILE OPTION...: rendering to the file meets a limit on the size of files
+limited() {
+  (
+    ulimit -f 8
+    exec "$keeler" render "$work/run" -o "$work/to/$2" "${@:3}" >"$work/out" 2>"$work/err"
+  )
+  code=$?
+  [ "$code" -eq 4 ] || fail "$1: exit $code: $(cat "$work/err")"
+  one_line "$1" "cannot write"
+  nothing_left "$1"
+}
+limited "no room for a picture" a.png
+limited "no room for an animated PNG" a.png --movie
+limited "no room for a movie" a.mp4 --movie
+
+# A long movie: many pictures of one instant.
+for number in $(seq 1000 1300); do ln "$work/run/snap_000000.hdf" "$work/run/snap_00$number.hdf"; done
+
+# Where mounting is permitted: a disk that fills in the middle.
+# shellcheck disable=SC2016 # that shell expands it
+on_small_disk='mount -t tmpfs -o size=60k none "$2/disk" || exit 99
+  "$1" render "$2/run" --movie --width 400 -o "$2/disk/$3" >"$2/out" 2>"$2/err"
+  code=$?
+  ls -A "$2/disk" >"$2/left" && exit $code'
+for options in "-m" "-rm"; do
+  unshare "$options" true 2>/dev/null || continue
+  for name in a.mp4 a.png; do
+    code=0
+    unshare "$options" bash -c "$on_small_disk" bash "$keeler" "$work" $name || code=$?
+    [ "$code" -eq 99 ] && echo "SKIPPED: a full disk (mounting is not permitted here)" && break
+    [ "$code" -eq 4 ] || fail "a disk that fills, $name: exit $code: $(cat "$work/err")"
+    one_line "a disk that fills, $name" "No space left on device"
+    [ -s "$work/left" ] && fail "a disk that fills, $name: left $(cat "$work/left")"
+  done
+  break
+done
+
+# Ctrl-C reaches all processes of a terminal.
+for name in a.mp4 a.png; do
+  setsid "$keeler" render "$work/run" --movie -o "$work/to/$name" >"$work/out" 2>"$work/err" &
+  process=$!
+  until [ -s "$work/to/$name.tmp" ] || ! kill -0 "$process" 2>/dev/null; do sleep 0.01; done
+  kill -INT -- "-$process"
+  code=0
+  wait "$process" || code=$?
+  [ "$code" -eq 1 ] || fail "an interrupted movie, $name: exit $code: $(cat "$work/err")"
+  one_line "an interrupted movie, $name" "stopped before all was drawn"
+  nothing_left "an interrupted movie, $name"
+done
+
+python3 "$source_dir/tests/cli/terminal.py" 40 "$keeler" render "$work/run" --movie --width 400 -o "$work/to/a.png" >"$work/drawn" 2>"$work/err" ||
+  fail "a movie on a terminal: $(cat "$work/err")"
+grep -q " left  pictures" "$work/drawn" || fail "no progress of a movie: $(cat "$work/drawn")"
+report
