@@ -76,6 +76,8 @@ for file in first/summary.json first/picture.png without/summary.json; do
   [ -s "$system/root/tutorial/$file" ] || { echo "FAILED: the tutorial left no $file"; exit 1; }
 done
 inside sh -c 'keeler check /usr/share/keeler/examples/a-ring-wakes/scene.toml'
+inside sh -c 'keeler report /root/tutorial/first'
+grep -q 'THREE.' "$system/root/tutorial/first/report.html" || { echo "FAILED: the report has no view"; exit 1; }
 
 echo "=== python3-keeler, libkeeler-dev"
 install_packages '/tmp/python3-keeler_*.deb /tmp/libkeeler-dev_*.deb' g++ make
