@@ -27,20 +27,21 @@ struct GenerateOptions {
   bool clumped = false, relax = false, force = false;
   SettleCriterion criterion;
   ThreadOption threads;
+  TalkOption talk;
 };
 
 constexpr const char* stopped =
     "stopped before the state was made (on request), so no state is written; start again, or "
     "use \"keeler run\", which keeps checkpoints";
 
-Patch make_patch(const Scene& scene) {
-  ProgressLine line;
+Patch make_patch(const Scene& scene, const TalkOption& talk) {
+  ProgressLine line(talk);
   return initial_patch(scene, [&line](const StartProgress& progress) { line.show(progress); });
 }
 
-ClumpedState evolve_until_clumped(const Scene& scene, const SettleCriterion& criterion) {
-  ProgressLine line;
-  return clumped_state(scene, criterion, [&line](const ClumpingProgress& progress) { line.show(progress); });
+ClumpedState evolve_until_clumped(const Scene& scene, const GenerateOptions& options) {
+  ProgressLine line(options.talk);
+  return clumped_state(scene, options.criterion, [&line](const ClumpingProgress& progress) { line.show(progress); });
 }
 
 void print_means(const char* name, const char* unit, const WindowMeans& means, const MeanBounds& bounds,
@@ -96,7 +97,7 @@ ExitCode generate_from_table(const GenerateOptions& options, const std::vector<s
   Patch patch = patch_from_table(table, of);
   part(patch, options, table);
   if (table.velocities.empty())
-    say("note: the table has no velocities: all orbits are circular");
+    options.talk.notice()("note: the table has no velocities: all orbits are circular");
   // No fresh start makes this state: the scene that goes with it starts from the file.
   const Scene scene = parse_scene(of.scene.resolved, options.scene.path, {}, options.output);
   print_doubts(scene, patch);
@@ -107,22 +108,24 @@ ExitCode generate_from_table(const GenerateOptions& options, const std::vector<s
 
 ExitCode generate(const GenerateOptions& options, const std::vector<std::string>& arguments) {
   options.threads.apply();
+  options.talk.say_program();
   if (!options.table.empty())
     return generate_from_table(options, arguments);
   const Scene scene = options.scene.load();
+  options.talk.say_scene(scene);
   require_new_file(options.output, options.force, "a state");
   SnapshotMeta meta{scene.resolved, collect_provenance(arguments)};
   Patch patch;
   if (options.clumped) {
-    ClumpedState state = unless_stopped(stopped, [&] { return evolve_until_clumped(scene, options.criterion); });
+    ClumpedState state = unless_stopped(stopped, [&] { return evolve_until_clumped(scene, options); });
     patch = std::move(state.patch);
     meta.clumping = clumping_numbers(state.clumping);
     print_clumping(state.clumping);
   } else {
-    patch = unless_stopped(stopped, [&] { return make_patch(scene); });
+    patch = unless_stopped(stopped, [&] { return make_patch(scene, options.talk); });
   }
   for (const std::string& notice : scene.notices)
-    say(notice);
+    options.talk.notice()(notice);
   print_doubts(scene, patch);
   write_snapshot(options.output, patch, meta);
   print_written(patch, options.output);
@@ -149,6 +152,7 @@ void add_generate(CLI::App& program, Action& action, const std::vector<std::stri
   command.add_flag("--relax", options->relax, "move particles of the table that overlap apart")->needs(&table);
   command.add_flag("--force", options->force, "replace the file if it exists");
   options->threads.add_to(command);
+  options->talk.add_to(command);
   command.callback(
       [options, arguments, &action] { action = [options, arguments] { return generate(*options, arguments); }; });
 }

@@ -38,7 +38,7 @@ std::string line_of(const ProgressLine::Parts& parts, std::size_t columns) {
 
 } // namespace
 
-ProgressLine::ProgressLine() : terminal_(isatty(STDERR_FILENO) == 1) {}
+ProgressLine::ProgressLine(const TalkOption& talk) : terminal_(isatty(STDERR_FILENO) == 1), talk_(talk) {}
 
 ProgressLine::~ProgressLine() {
   if (open_)
@@ -46,7 +46,7 @@ ProgressLine::~ProgressLine() {
 }
 
 bool ProgressLine::due(double elapsed_s, bool last) {
-  if (elapsed_s < next_s_ && !last)
+  if (talk_.quiet || (elapsed_s < next_s_ && !last))
     return false;
   next_s_ = elapsed_s + (terminal_ ? terminal_interval_s : log_interval_s);
   return true;
@@ -73,6 +73,7 @@ double ProgressLine::patience_s() const {
 
 // Most starts are made before anybody looks.
 void ProgressLine::show(const StartProgress& p) {
+  begin_phase("the start", 0.0);
   if (p.elapsed_s >= patience_s() && due(p.elapsed_s, p.share == 1.0))
     print(p.share, {fmt::format("{:3.0f} % of the start", 100.0 * p.share), clock(p.remaining_s) + " left"});
   if (p.share == 1.0)
@@ -80,6 +81,7 @@ void ProgressLine::show(const StartProgress& p) {
 }
 
 void ProgressLine::show(const RunProgress& p) {
+  begin_phase("the steps", p.elapsed_s);
   if (!due(p.elapsed_s, p.step == p.end_step))
     return;
   const double done = static_cast<double>(p.step) / static_cast<double>(p.end_step);
@@ -88,6 +90,7 @@ void ProgressLine::show(const RunProgress& p) {
 }
 
 void ProgressLine::show(const Progress& p) {
+  begin_phase(p.what, p.elapsed_s);
   if (due(p.elapsed_s, p.share == 1.0))
     print(p.share, {fmt::format("{:3.0f} %", 100.0 * p.share), clock(p.remaining_s) + " left", p.what});
 }
@@ -97,7 +100,15 @@ void ProgressLine::show_if_long(const Progress& p) {
     show(p);
 }
 
+void ProgressLine::begin_phase(const std::string& phase, double elapsed_s) {
+  if (talk_.verbose && phase != phase_)
+    note(fmt::format("after {:.1f} s: {}", elapsed_s, phase));
+  phase_ = phase;
+}
+
 void ProgressLine::note(const std::string& text) {
+  if (talk_.quiet)
+    return;
   if (open_)
     write_message("\n");
   open_ = false;

@@ -2,6 +2,8 @@
 // elsewhere.
 #pragma once
 
+#include "talk.hpp"
+
 #include <keeler/core/progress.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/states/clumped.hpp>
@@ -17,7 +19,7 @@ public:
   /// What a line says, the most important first.
   using Parts = std::vector<std::string>;
 
-  ProgressLine();
+  explicit ProgressLine(const TalkOption& talk = {});
   ~ProgressLine();
   void show(const StartProgress& progress);
   void show(const RunProgress& progress);
@@ -26,16 +28,19 @@ public:
   /// The same of work that is mostly over before anybody looks: nothing is shown then.
   void show_if_long(const Progress& progress);
 
-  /// A message, on a line of its own.
+  /// A note, on a line of its own.
   void note(const std::string& text);
 
 private:
   double patience_s() const;
+  void begin_phase(const std::string& phase, double elapsed_s);
   // Whether it is time for the next line.
   bool due(double elapsed_s, bool last);
   void print(std::optional<double> share, const Parts& parts);
 
   bool terminal_;
+  TalkOption talk_;
+  std::string phase_; // that was said to have begun
   double next_s_ = 0.0;
   bool open_ = false; // a line without its end is on the terminal
 };

@@ -25,6 +25,7 @@ struct JobOptions {
   double until = 0.0, wall_time = 0.0;
   bool force = false, json = false;
   ThreadOption threads;
+  TalkOption talk;
 };
 
 RunOptions run_options(const JobOptions& job, const std::vector<std::string>& arguments, ProgressLine& line) {
@@ -38,7 +39,7 @@ RunOptions run_options(const JobOptions& job, const std::vector<std::string>& ar
   options.arguments = arguments;
   options.start_progress = [&line](const StartProgress& progress) { line.show(progress); };
   options.progress = [&line](const RunProgress& progress) { line.show(progress); };
-  options.notice = say;
+  options.notice = job.talk.notice();
   return options;
 }
 
@@ -105,6 +106,7 @@ void add_common(CLI::App& command, JobOptions& job) {
       ->check(positive_number());
   command.add_flag("--json", job.json, "print the summary as JSON");
   job.threads.add_to(command);
+  job.talk.add_to(command);
 }
 
 } // namespace
@@ -120,10 +122,12 @@ void add_run(CLI::App& program, Action& action, const std::vector<std::string>& 
   command.callback([job, arguments, &action] {
     action = [job, arguments] {
       job->threads.apply();
+      job->talk.say_program();
       const Scene scene = job->scene.load(job->from);
+      job->talk.say_scene(scene);
       RunResult result;
       {
-        ProgressLine line;
+        ProgressLine line(job->talk);
         result = start_run(scene, run_options(*job, arguments, line), requests_from_signals());
       }
       return report(*job, result);
@@ -140,9 +144,10 @@ void add_resume(CLI::App& program, Action& action, const std::vector<std::string
   command.callback([job, arguments, &action] {
     action = [job, arguments] {
       job->threads.apply();
+      job->talk.say_program();
       RunResult result;
       {
-        ProgressLine line;
+        ProgressLine line(job->talk);
         result = resume_run(run_options(*job, arguments, line), requests_from_signals());
       }
       return report(*job, result);

@@ -19,10 +19,12 @@ namespace {
 
 // Carries out a study and prints what it wrote.
 template<class Settings, class Study>
-ExitCode carry_out(Settings& settings, const Study& study, const std::vector<const char*>& results) {
+ExitCode carry_out(Settings& settings, const TalkOption& talk, const Study& study,
+                   const std::vector<const char*>& results) {
+  talk.say_program();
   bool finished = false;
   {
-    ProgressLine line;
+    ProgressLine line(talk);
     settings.notice = [&](const std::string& text) { line.note(text); };
     settings.progress = [&](const Progress& progress) { line.show(progress); };
     try {
@@ -51,13 +53,15 @@ void add_finders(CLI::App& command, Action& action, const std::vector<std::strin
       "finders", "the collision finders: time, truth and the paper's claims, on four states; stopped (exit 75), the "
                  "same command goes on");
   add_folder(finders, *settings);
+  const auto talk = std::make_shared<TalkOption>();
+  talk->add_to(finders);
   finders.add_option("--count", settings->count, "particles of equal size (default: 10000, some 95 minutes)")
       ->check(positive_number());
   finders.add_flag("--quick", settings->quick, "3000 particles, three steps, two repeats: a few minutes");
-  finders.callback([settings, arguments, &action] {
+  finders.callback([settings, talk, arguments, &action] {
     settings->arguments = arguments;
-    action = [settings] {
-      return carry_out(*settings, study_finders,
+    action = [settings, talk] {
+      return carry_out(*settings, *talk, study_finders,
                        {"report.md", "report.html", "finders.csv", "finders.json", "figures"});
     };
   });
@@ -82,6 +86,8 @@ void add_gravity(CLI::App& command, Action& action, const std::vector<std::strin
       "gravity", "the gravity solvers: error against cost, and whether the physics of wakes depends on them or on the "
                  "kick interval; stopped (exit 75), the same command goes on");
   add_folder(gravity, *settings);
+  const auto talk = std::make_shared<TalkOption>();
+  talk->add_to(gravity);
   gravity.add_option("--count", settings->count, "particles of the state (default: 100000)")->check(positive_number());
   gravity.add_option("--repeats", settings->repeats, "times measured; medians are given (default: 5)")
       ->check(positive_number());
@@ -92,12 +98,12 @@ void add_gravity(CLI::App& command, Action& action, const std::vector<std::strin
   const auto quick = std::make_shared<bool>(false);
   gravity.add_flag("--quick", *quick,
                    "by default 5000 particles, two repeats, two seeds and half an orbit: two or three minutes");
-  gravity.callback([settings, quick, arguments, &gravity, &action] {
+  gravity.callback([settings, talk, quick, arguments, &gravity, &action] {
     settings->arguments = arguments;
     if (*quick)
       make_quick(*settings, gravity);
-    action = [settings] {
-      return carry_out(*settings, study_gravity,
+    action = [settings, talk] {
+      return carry_out(*settings, *talk, study_gravity,
                        {"report.md", "report.html", "gravity.csv", "gravity_runs.csv", "gravity.json", "figures"});
     };
   });

@@ -22,16 +22,18 @@ struct SceneStudyOptions {
   SceneArguments scene;
   SceneStudySettings settings;
   std::size_t jobs = 0; // 0: as many as there are threads for
+  TalkOption talk;
 };
 
 ExitCode carry_out(SceneStudyOptions& options) {
+  options.talk.say_program();
   SceneStudySettings& settings = options.settings;
   settings.scene = options.scene.path;
   settings.overrides = options.scene.overrides;
   settings.jobs = options.jobs > 0 ? options.jobs : static_cast<std::size_t>(std::max(1, threads()));
   SceneStudyResult result;
   {
-    ProgressLine line;
+    ProgressLine line(options.talk);
     settings.notice = [&](const std::string& text) { line.note(text); };
     settings.progress = [&](const Progress& progress) { line.show(progress); };
     result = study_scene(settings, requests_from_signals());
@@ -57,6 +59,7 @@ void add_one(CLI::App& study, Action& action, const std::vector<std::string>& ar
   options->scene.add_to(command)->required();
   command.add_option("-o,--output", settings.folder, "the folder for the results; a study in it is continued")
       ->required();
+  options->talk.add_to(command);
   command.add_option("--seeds", settings.seeds, "runs with each setting (default: 3)")
       ->check(number_between(1, most_seeds, "a number of seeds"));
   command

@@ -21,6 +21,7 @@ struct SweepOptions {
   SweepSettings settings;
   std::size_t jobs = 0; // 0: as many as there are processors for
   bool json = false;
+  TalkOption talk;
 };
 
 void print_json(const SweepResult& result) {
@@ -40,13 +41,14 @@ void print_text(const SweepResult& result, const std::filesystem::path& folder) 
 }
 
 ExitCode carry_out(SweepOptions& options) {
+  options.talk.say_program();
   SweepSettings& settings = options.settings;
   const auto processors = static_cast<std::size_t>(threads());
   const auto per_run = static_cast<std::size_t>(settings.threads_per_run);
   settings.jobs = options.jobs > 0 ? options.jobs : std::max<std::size_t>(1, processors / per_run);
   SweepResult result;
   {
-    ProgressLine line;
+    ProgressLine line(options.talk);
     settings.progress = [&](const Progress& progress) { line.show(progress); };
     settings.notice = [&](const std::string& text) { line.note(text); };
     result = sweep(settings, requests_from_signals());
@@ -87,6 +89,7 @@ void add_sweep(CLI::App& program, Action& action) {
       ->check(number_between(1, most_threads, "a number of threads"));
   command.add_flag("--tables", settings.tables_only,
                    "start nothing: make the tables and the figure of what is finished");
+  options->talk.add_to(command);
   command.add_flag("--json", options->json, "print the counts and the table of points as JSON");
   command.callback([options, &action] { action = [options] { return carry_out(*options); }; });
 }

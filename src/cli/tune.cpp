@@ -30,6 +30,7 @@ struct TuneOptions {
   std::optional<std::string> output;
   bool force = false, json = false;
   ThreadOption threads;
+  TalkOption talk;
 };
 
 TuneSettings tolerances(const TuneOptions& options) {
@@ -64,8 +65,8 @@ void refuse_what_cannot_be_written(const TuneOptions& options) {
   require_new_file(*options.output, options.force, "a scene");
 }
 
-Tuning measure(const Scene& scene, TuneSettings settings) {
-  ProgressLine line;
+Tuning measure(const Scene& scene, TuneSettings settings, const TalkOption& talk) {
+  ProgressLine line(talk);
   settings.progress = [&line](const Progress& progress) { line.show(progress); };
   return unless_stopped("stopped before all was measured (on request), so nothing is written",
                         [&] { return tune(scene, settings); });
@@ -162,6 +163,7 @@ void warn(const Tuning& t) {
 
 ExitCode tune_scene(const TuneOptions& options) {
   options.threads.apply();
+  options.talk.say_program();
   TuneSettings settings = tolerances(options);
   settings.most_threads = threads();
   const Scene scene = options.scene.load();
@@ -169,13 +171,14 @@ ExitCode tune_scene(const TuneOptions& options) {
   const std::string text = read_input(options.scene.path, options.scene.path);
   if (options.output)
     require_same_files(text, scene, *options.output);
-  const Tuning tuning = measure(scene, settings);
+  const Tuning tuning = measure(scene, settings, options.talk);
   const std::vector<KeyChange> keys = chosen_keys(tuning, settings, scene);
   if (options.json)
     fmt::print("{}\n", as_json(tuning, keys).dump(2));
   else
     print_text(tuning);
-  warn(tuning);
+  if (!options.talk.quiet)
+    warn(tuning);
   if (options.output) {
     write_text(*options.output, edit_scene(text, options.scene.path, keys));
     if (!options.json)
@@ -215,6 +218,7 @@ void add_tune(CLI::App& program, Action& action) {
   command.add_flag("--force", options->force, "replace the file if it exists");
   command.add_flag("--json", options->json, "print the numbers as JSON");
   options->threads.add_to(command);
+  options->talk.add_to(command);
   command.callback([options, &action] { action = [options] { return tune_scene(*options); }; });
 }
 

@@ -149,20 +149,30 @@ private:
     return static_cast<unsigned>(std::ceil(std::max(least_patience, 3.0 * passes_between_stops() * longest_pass_)));
   }
 
+  // A mean over the steps so far whose weights grow with the third power of the step: steps get dearer as wakes grow,
+  // and what is left will cost what the last ones did.
+  void take_pace(double now) {
+    const std::int64_t step = simulation_.state().step;
+    const auto new_steps = static_cast<double>(step - paced_step_), all = static_cast<double>(step - first_step_);
+    seconds_per_step_ += std::min(1.0, 4.0 * new_steps / all) * ((now - paced_s_) / new_steps - seconds_per_step_);
+    paced_step_ = step;
+    paced_s_ = now;
+  }
+
   void report() {
     const double now = watch_.elapsed();
+    take_pace(now);
     longest_pass_ = std::max(longest_pass_, now - last_time_);
     requests_.patience_s = patience();
     last_time_ = now;
     if (!options_.progress)
       return;
     const SimulationState& state = simulation_.state();
-    const double done = static_cast<double>(state.step - first_step_);
     RunProgress p;
     p.step = state.step, p.first_step = first_step_, p.end_step = scene_.time.end_step;
     p.orbits = simulation_.orbits(), p.end_orbits = end_orbits(scene_);
     p.elapsed_s = now;
-    p.remaining_s = (now - start_) / done * static_cast<double>(p.end_step - p.step);
+    p.remaining_s = seconds_per_step_ * static_cast<double>(p.end_step - p.step);
     p.collisions_per_second =
         static_cast<double>(state.collisions.fast + state.collisions.slow - first_collisions_) / (now - start_);
     options_.progress(p);
@@ -176,6 +186,8 @@ private:
   const Stopwatch& watch_; // since the command began, as a queue counts
   std::int64_t first_step_, last_checkpoint_;
   std::uint64_t first_collisions_;
+  std::int64_t paced_step_ = first_step_;
+  double seconds_per_step_ = 0.0, paced_s_ = watch_.elapsed();
   double start_ = watch_.elapsed(), last_time_ = start_, last_checkpoint_time_ = start_, longest_pass_ = 0.0;
 };
 

@@ -1,0 +1,41 @@
+#include "talk.hpp"
+
+#include "messages.hpp"
+
+#include <keeler/core/simd.hpp>
+#include <keeler/core/threads.hpp>
+#include <keeler/core/version.hpp>
+#include <keeler/core/words.hpp>
+#include <keeler/scene/derived.hpp>
+
+#include <fmt/format.h>
+
+namespace keeler {
+
+void TalkOption::add_to(CLI::App& command) {
+  CLI::Option* const no_notes = command.add_flag("-q,--quiet", quiet, "no progress and no notes; errors stay");
+  command.add_flag("-v,--verbose", verbose, "say which program works, how, and when its phases begin")
+      ->excludes(no_notes);
+}
+
+std::function<void(const std::string&)> TalkOption::notice() const {
+  if (quiet)
+    return [](const std::string&) {};
+  return say;
+}
+
+void TalkOption::say_program() const {
+  if (verbose)
+    say(fmt::format("version {}, commit {}, {}; {}, {}", program_version(), source_commit(), build_compiler(),
+                    counted(static_cast<std::uint64_t>(threads()), "thread"),
+                    instruction_set_name(choose_instruction_set())));
+}
+
+void TalkOption::say_scene(const Scene& scene) const {
+  if (verbose)
+    say(fmt::format("finder {}, {}", scene.collisions.finder,
+                    scene.gravity ? "gravity " + in_words(chosen_for(scene.particles.count, *scene.gravity))
+                                  : "no gravity"));
+}
+
+} // namespace keeler

@@ -1,0 +1,62 @@
+#!/bin/bash
+# terminals.sh KEELER SOURCE_DIR: every command of `keeler --help`, with its progress on terminals of 40 and 120 columns and
+# through a pipe: no line of progress is wider than the terminal, a pipe gets no control characters, exit codes are right;
+# and what -q and -v leave out and add.
+# shellcheck source=tests/cli/helpers.sh
+source "$(dirname "$0")/helpers.sh"
+small_scene
+sed -i 's/^end .*/end = 0.1/' "$work/scene.toml"
+printf 'scene = "%s/scene.toml"\nseeds = [1, 2]\n' "$work" >"$work/grid.toml"
+runs 0 run "$work/scene.toml" -o "$work/done"
+
+# words_for COMMAND: an array `words` that makes the command work; false when it is not known here
+words_for() {
+  case $1 in
+  check) words=("$work/scene.toml") ;;
+  generate) words=("$work/scene.toml" -o "$work/state.hdf" --force) ;;
+  tile) words=("$work/done/snap_000000.hdf" 2 1 -o "$work/tiled.hdf" --force) ;;
+  run) words=("$work/scene.toml" -o "$work/run" --force) ;;
+  convert) words=("$work/done" --to vtp --force) ;;
+  render) words=("$work/done" --movie --width 300) ;;
+  resume | info | watch | analyze | report) words=("$work/done") ;;
+  bench) words=(drift --count 200 --repeats 1) ;;
+  study) words=(kicks "$work/scene.toml" -o "$work/study" --quick --grow 0.02 --orbits 1.5) ;;
+  sweep) words=("$work/grid.toml" -o "$work/sweep") ;;
+  tune) words=("$work/scene.toml") ;;
+  *) return 1 ;;
+  esac
+}
+
+"$keeler" --help | sed '1,/^Subcommands:/d' | sed -nE 's/^  ([a-z]+) .*/\1/p' >"$work/commands"
+[ "$(wc -l <"$work/commands")" -ge 10 ] || fail "no commands in --help"
+while read -r command; do
+  words_for "$command" || { fail "$command is not exercised: give it a line in words_for"; continue; }
+  for columns in 40 120; do
+    rm -rf "$work/sweep" "$work/study"
+    # Results are tables for a wide terminal or a file; they go to one.
+    # shellcheck disable=SC2016 # that shell expands it
+    python3 "$source_dir/tests/cli/terminal.py" "$columns" /bin/sh -c '"$@" >"$0"' "$work/results" "$keeler" "$command" "${words[@]}" \
+      >"$work/drawn" 2>"$work/err" </dev/null || fail "$command, $columns columns: $(tail -n 3 "$work/err" "$work/drawn")"
+  done
+  rm -rf "$work/sweep" "$work/study"
+  "$keeler" "$command" "${words[@]}" </dev/null 2>&1 | cat >"$work/piped"
+  code=${PIPESTATUS[0]}
+  [ "$code" -eq 0 ] || fail "$command in a pipe: $(tail -n 3 "$work/piped")"
+  LC_ALL=C grep -q '[[:cntrl:]]' <(tr -d '\n' <"$work/piped") && fail "$command in a pipe: control characters"
+done <"$work/commands"
+
+for command in run generate tune; do
+  words_for $command
+  runs 0 $command "${words[@]}" --quiet
+  [ -s "$work/err" ] && fail "$command --quiet says $(cat "$work/err")"
+  runs 0 $command "${words[@]}" --verbose
+  grep -qE "^keeler: version [0-9.]+, commit [^ ]+, .*; [0-9]+ threads?, (portable|avx2|avx512)$" "$work/err" ||
+    fail "$command --verbose: no version: $(cat "$work/err")"
+done
+runs 0 run "$work/scene.toml" -o "$work/run" --force -v
+for words in "keeler: finder certified, gravity tree" "keeler: after 0.0 s: the start" "s: the steps"; do
+  grep -qF "$words" "$work/err" || fail "run -v: no '$words' in $(cat "$work/err")"
+done
+refuses "both" "excludes" run "$work/scene.toml" -o "$work/none" -q -v
+refuses "an error in quiet" "cannot be read" run "$work/absent.toml" -o "$work/none" --quiet
+report
