@@ -16,6 +16,7 @@
 #include <system_error>
 
 #include <fcntl.h>
+#include <hdf5.h>
 #include <unistd.h>
 
 using namespace keeler;
@@ -89,6 +90,12 @@ void let_threads_sleep(char** argv) {
   execv("/proc/self/exe", argv);
 }
 
+// After a damaged file HDF5 cannot close itself, and says so at length when the program ends. What it has open is in memory
+// alone and need not be closed.
+void let_hdf5_end_silently() {
+  H5dont_atexit();
+}
+
 // The next file that is opened would take the place of a closed standard stream, and messages would go into it. What
 // stands there instead refuses them.
 void fill_closed_streams() {
@@ -102,6 +109,7 @@ void fill_closed_streams() {
 int main(int argc, char** argv) {
   let_threads_sleep(argv);
   fill_closed_streams();
+  let_hdf5_end_silently();
   for (const int signal : {SIGXFSZ, SIGPIPE}) // a file-size limit and a closed pipe are then errors of the write
     std::signal(signal, SIG_IGN);
   try {

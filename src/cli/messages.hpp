@@ -2,6 +2,8 @@
 // nothing else happens: no run ends because nobody reads its progress.
 #pragma once
 
+#include <keeler/core/words.hpp>
+
 #include <cstdio>
 #include <string>
 
@@ -13,7 +15,7 @@ inline void write_message(const std::string& text) {
 
 /// One line that names the program.
 inline void say(const std::string& line) {
-  write_message("keeler: " + line + "\n");
+  write_message("keeler: " + printable_line(line) + "\n");
 }
 
 } // namespace keeler

@@ -2,10 +2,40 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <string_view>
 
 namespace keeler {
+namespace {
+
+bool continues(unsigned char byte) {
+  return (byte & 0xc0) == 0x80;
+}
+
+// How many bytes the character at the beginning has; 0 when there is none to print (RFC 3629).
+std::size_t character_at(std::string_view text) {
+  const auto byte = [&](std::size_t k) -> unsigned char {
+    return k < text.size() ? static_cast<unsigned char>(text[k]) : static_cast<unsigned char>(0);
+  };
+  const unsigned char first = byte(0);
+  if (first < 0x80)
+    return first < 0x20 || first == 0x7f ? 0 : 1;
+  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  if (first < 0xc2 || first > 0xf4)
+    return 0;
+  for (std::size_t k = 1; k < length; ++k)
+    if (!continues(byte(k)))
+      return 0;
+  const unsigned char second = byte(1);
+  const bool too_long = (first == 0xe0 && second < 0xa0) || (first == 0xf0 && second < 0x90);
+  const bool no_character = (first == 0xed && second > 0x9f) || (first == 0xf4 && second > 0x8f);
+  const bool control = first == 0xc2 && second < 0xa0;
+  return too_long || no_character || control ? 0 : length;
+}
+
+} // namespace
 
 std::string figures(double value, int digits) {
   std::string text = fmt::format("{:.{}g}", value, digits);
@@ -21,6 +51,24 @@ std::string figures(double value, int digits) {
 
 std::string counted(std::uint64_t count, const std::string& noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+std::string printable_line(const std::string& line) {
+  constexpr std::size_t longest = 2000, end = 500;
+  std::string text;
+  for (std::size_t at = 0; at < line.size();) {
+    const std::size_t length = character_at(std::string_view(line).substr(at, 4));
+    text += length > 0 ? line.substr(at, length) : "?";
+    at += std::max<std::size_t>(length, 1);
+  }
+  if (text.size() <= longest)
+    return text;
+  std::size_t head = longest - end, tail = text.size() - end;
+  while (continues(static_cast<unsigned char>(text[head])))
+    --head;
+  while (continues(static_cast<unsigned char>(text[tail])))
+    ++tail;
+  return text.substr(0, head) + " [...] " + text.substr(tail);
 }
 
 } // namespace keeler

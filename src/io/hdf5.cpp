@@ -50,6 +50,43 @@ std::string type_name(hid_t type) {
   }
 }
 
+// Opens an object as call(list of properties) does, but follows no link into another file: what stands in a file that
+// somebody gave us decides over no other file of ours.
+template<class Call> hid_t open_inside(hid_t kind, const std::string& what, const Call& call) {
+  bool outside = false;
+  const auto refuse = [](const char*, const char*, const char*, const char*, unsigned*, hid_t, void* told) -> herr_t {
+    *static_cast<bool*>(told) = true;
+    return -1;
+  };
+  const Handle list(checked("prepare an access", [&] { return H5Pcreate(kind); }), H5Pclose);
+  checked("prepare an access", [&] { return H5Pset_elink_cb(list.id(), refuse, &outside); });
+  try {
+    return checked(what, [&] { return call(list.id()); });
+  } catch (const IoError&) {
+    if (outside)
+      throw IoError(fmt::format("cannot {}: it is a link into another file, which is not followed", what));
+    throw;
+  }
+}
+
+// The values of a dataset stand in its own file, and there are no more of them than that file can hold: gzip makes
+// bytes at most 1032 times fewer (zlib's technical details), and values that were never written fill the rest.
+void require_own_values(const Handle& dataset, const std::string& name) {
+  constexpr std::uint64_t most_packed = 1100, most_unwritten = std::uint64_t{1} << 26; // bytes
+  const Handle list(checked("read a layout", [&] { return H5Dget_create_plist(dataset.id()); }), H5Pclose);
+  const bool elsewhere = checked("read a layout", [&] { return H5Pget_layout(list.id()); }) == H5D_VIRTUAL ||
+                         checked("read a layout", [&] { return H5Pget_external_count(list.id()); }) > 0;
+  if (elsewhere)
+    throw IoError(fmt::format("cannot open '{}': its values stand in another file, which is not read", name));
+  const Handle type(checked("read a type", [&] { return H5Dget_type(dataset.id()); }), H5Tclose);
+  const Layout layout = layout_of_dataset(dataset);
+  const Quiet quiet; // nothing stored, where that cannot be told
+  const double bytes = static_cast<double>(layout.count()) * static_cast<double>(H5Tget_size(type.id()));
+  const double stored = static_cast<double>(H5Dget_storage_size(dataset.id()));
+  if (bytes > most_packed * stored + most_unwritten)
+    throw IoError(fmt::format("cannot open '{}': it claims {:.3g} bytes and has {:.3g}", name, bytes, stored));
+}
+
 } // namespace
 
 Layout layout_of(const Handle& type, const Handle& space) {
@@ -105,7 +142,8 @@ void fail(const std::string& what) {
 std::size_t Layout::count() const {
   std::size_t product = 1;
   for (const hsize_t extent : shape)
-    product *= extent;
+    if (__builtin_mul_overflow(product, extent, &product))
+      throw IoError("cannot read a shape: it has more values than can be counted");
   return product;
 }
 
@@ -161,7 +199,8 @@ Handle create_group(const Handle& parent, const std::string& name) {
 }
 
 Handle open_group(const Handle& parent, const std::string& name) {
-  return {checked("open group '" + name + "'", [&] { return H5Gopen2(parent.id(), name.c_str(), H5P_DEFAULT); }),
+  return {open_inside(H5P_GROUP_ACCESS, "open group '" + name + "'",
+                      [&](hid_t list) { return H5Gopen2(parent.id(), name.c_str(), list); }),
           H5Gclose};
 }
 
@@ -204,7 +243,11 @@ Handle write_dataset(const Handle& parent, const std::string& name, hid_t type, 
 }
 
 Handle open_dataset(const Handle& parent, const std::string& name) {
-  return {checked("open '" + name + "'", [&] { return H5Dopen2(parent.id(), name.c_str(), H5P_DEFAULT); }), H5Dclose};
+  Handle dataset(open_inside(H5P_DATASET_ACCESS, "open '" + name + "'",
+                             [&](hid_t list) { return H5Dopen2(parent.id(), name.c_str(), list); }),
+                 H5Dclose);
+  require_own_values(dataset, name);
+  return dataset;
 }
 
 Layout layout_of_dataset(const Handle& dataset) {

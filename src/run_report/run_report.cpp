@@ -21,6 +21,7 @@
 #include <keeler/runs/run_view.hpp>
 #include <keeler/scene/derived.hpp>
 #include <keeler/scene/doubts.hpp>
+#include <keeler/states/possible.hpp>
 
 #include <fmt/format.h>
 
@@ -148,7 +149,7 @@ void RunPage::look_at_snapshots() {
     const fs::path& file = files_[viewed[k]];
     say(fmt::format("reading {}", file.filename().string()));
     Snapshot snapshot = read_snapshot(file);
-    require_sound(snapshot.patch);
+    require_possible(snapshot.patch, file.string());
     particles_.add(snapshot.patch, file.filename().string());
     meta_ = std::move(snapshot.meta);
     if (std::find(drawn.begin(), drawn.end(), k) != drawn.end())

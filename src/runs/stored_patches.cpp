@@ -3,6 +3,7 @@
 #include <keeler/core/error.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/scene/scene.hpp>
+#include <keeler/states/possible.hpp>
 
 #include <fmt/format.h>
 
@@ -22,7 +23,7 @@ constexpr double rounding = 1.0 + 1e-9; // of times in orbits
 
 Snapshot load(const fs::path& file) {
   Snapshot snapshot = read_snapshot(file);
-  require_sound(snapshot.patch);
+  require_possible(snapshot.patch, file.string());
   return snapshot;
 }
 

@@ -1,12 +1,12 @@
 #include <keeler/states/from_table.hpp>
 
-#include "particle_fault.hpp"
 #include "separation.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/core/words.hpp>
+#include <keeler/states/possible.hpp>
 
 #include <fmt/format.h>
 

@@ -1,7 +1,6 @@
 #include <keeler/states/initial.hpp>
 
 #include "aggregate.hpp"
-#include "particle_fault.hpp"
 #include "placing.hpp"
 
 #include <keeler/core/error.hpp>
@@ -12,6 +11,7 @@
 #include <keeler/io/snapshot.hpp>
 #include <keeler/scene/derived.hpp>
 #include <keeler/scene/keys.hpp>
+#include <keeler/states/possible.hpp>
 #include <keeler/states/uniform.hpp>
 
 #include <fmt/format.h>
@@ -33,26 +33,6 @@ void require_same_planet(const Patch& patch, const Scene& scene, const std::stri
                     "scene has {:.6g}, {:.6g}, {:.6g}); give the scene the same [planet]",
                     path, patch.orbital_frequency, patch.frequencies.kappa, patch.frequencies.nu,
                     planet.orbital_frequency, planet.frequencies.kappa, planet.frequencies.nu));
-}
-
-// A start file may hold what no scene may ask for: the ranges of the keys hold for it as well.
-void require_physical(const Patch& patch, const std::string& path) {
-  require_sound(patch);
-  const KeyRange& sizes = find_key("box.size")->range;
-  if (!sizes.contains(patch.box.size_x) || !sizes.contains(patch.box.size_y))
-    throw InvariantError(fmt::format("the box of '{}' is {} m x {} m (a patch has sizes {}); take another state", path,
-                                     figures(patch.box.size_x, 4), figures(patch.box.size_y, 4), sizes.words()));
-  const double longer = std::max(patch.box.size_x, patch.box.size_y),
-               shorter = std::min(patch.box.size_x, patch.box.size_y);
-  if (!(longer <= most_oblong * shorter))
-    throw InvariantError(
-        fmt::format("the box of '{}' is {} m x {} m, more than {:g} times as long as wide; take another "
-                    "state",
-                    path, figures(patch.box.size_x, 4), figures(patch.box.size_y, 4), most_oblong));
-  for (std::size_t k = 0; k < patch.size(); ++k)
-    if (const std::string fault = particle_fault(patch, k); !fault.empty())
-      throw InvariantError(
-          fmt::format("particle {} of '{}' has {}; correct it or take another state", patch.ids[k], path, fault));
 }
 
 // A particle is kept or not by its id alone: the same of any state that it is in, and fewer of the same at a lower
@@ -169,7 +149,7 @@ Patch patch_from_snapshot(const std::string& path, const Scene& scene) {
 
 Patch patch_from_snapshot(Patch patch, const std::string& path, const Scene& scene) {
   require_same_planet(patch, scene, path);
-  require_physical(patch, path);
+  require_possible(patch, path);
   // Velocities are stored in m/s; the scene's orbital frequency decides what they are in its own time.
   for (std::vector<Vec3>* const rates : {&patch.velocities, &patch.spins})
     for (Vec3& rate : *rates)

@@ -81,7 +81,7 @@ slow=(run "$work/scene.toml" --set particles.velocity_dispersion=900 --set parti
   --set 'box.size=[300,300]' --set time.step=0.03 --set time.end=3 --set output.snapshot_every=0
   --set output.checkpoint_every=0)
 
-# signalled_after SECONDS SIGNALS FOLDER: the slow run, with so many signals half a second apart; leaves $code and $took
+# signalled_after SECONDS SIGNALS FOLDER: the slow run, with so many signals 0.3 s apart; leaves $code and $took
 signalled_after() {
   "$keeler" "${slow[@]}" -o "$3" >"$work/out" 2>"$work/err" &
   local process=$! signals=$2
@@ -90,7 +90,7 @@ signalled_after() {
   SECONDS=0
   for ((; signals > 0; --signals)); do
     kill -INT "$process" 2>/dev/null
-    sleep 0.5
+    sleep 0.3
   done
   code=0
   wait "$process" || code=$?
@@ -111,10 +111,10 @@ gave_up "a second signal" 0 4
 one_line "a second signal" "before there was a checkpoint"
 
 # With a checkpoint: steps of a second, one checkpoint each, two signals at once. Again when these met no step.
-slow+=(--set particles.count=2000 --set 'box.size=[130,130]' --set time.step=0.01 --set output.checkpoint_every=0.01)
+slow+=(--set particles.count=3500 --set 'box.size=[172,172]' --set time.step=0.01 --set output.checkpoint_every=0.01)
 for ((try = 0; try < 10; ++try)); do
   rm -rf "$work/kept"
-  signalled_after 3 2 "$work/kept"
+  signalled_after 4 2 "$work/kept"
   [ $code -eq 75 ] || fail "a step given up after a checkpoint: exit $code: $(cat "$work/err")"
   grep -q "given up" "$work/err" && break
 done

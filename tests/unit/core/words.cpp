@@ -21,3 +21,21 @@ TEST_CASE("counts have their plural") {
   CHECK(counted(0, "check") == "0 checks");
   CHECK(counted(34, "particle") == "34 particles");
 }
+
+TEST_CASE("a line that repeats the words of others can be printed") {
+  CHECK(printable_line("Ω of 'a b' is 1e-4 ± 2 %, 10⁵ 𝛀") == "Ω of 'a b' is 1e-4 ± 2 %, 10⁵ 𝛀");
+  CHECK(printable_line("a\x1b[31m\n\r\tb\x7f") == "a?[31m???b?");
+  CHECK(printable_line("\xff\xfe \xce \xc0\xaf \xe0\x80\xaf \xed\xa0\x80 \xf4\x90\x80\x80 \xc2\x85") ==
+        "?? ? ?? ??? ??? ???? ??");
+  CHECK(printable_line(std::string("a\0b", 3)) == "a?b");
+  const std::string cut = printable_line("begin " + std::string(1'000'000, 'x') + " end");
+  CHECK(cut.size() < 2010);
+  CHECK(cut.starts_with("begin xxx"));
+  CHECK(cut.ends_with("xxx end"));
+  std::string many;
+  for (int k = 0; k < 3000; ++k)
+    many += "Ω";
+  const std::string whole = printable_line(many);
+  CHECK(whole.find('?') == std::string::npos);
+  CHECK(printable_line(whole) == whole); // cut between characters
+}

@@ -1,11 +1,14 @@
-#include "particle_fault.hpp"
+#include <keeler/states/possible.hpp>
 
+#include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/scene/keys.hpp>
+#include <keeler/scene/scene.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 namespace keeler {
@@ -39,6 +42,31 @@ std::string particle_fault(const Patch& patch, std::size_t k) {
     if (!q.range.contains(q.value))
       return fmt::format("{} of {} (possible is {})", q.what, figures(q.value, 3), q.range.words());
   return {};
+}
+
+void require_possible(const Patch& patch, const std::string& path) {
+  if (patch.size() == 0)
+    throw UsageError(fmt::format("'{}' holds no particles; choose another state", path));
+  require_sound(patch);
+  const KeyRange& frequencies = find_key("planet.orbital_frequency")->range;
+  if (!frequencies.contains(patch.orbital_frequency))
+    throw InvariantError(fmt::format("'{}' has an Omega of {} rad/s (possible is {}); take another state", path,
+                                     figures(patch.orbital_frequency, 4), frequencies.words()));
+  const KeyRange& sizes = find_key("box.size")->range;
+  if (!sizes.contains(patch.box.size_x) || !sizes.contains(patch.box.size_y))
+    throw InvariantError(fmt::format("the box of '{}' is {} m x {} m (a patch has sizes {}); take another state", path,
+                                     figures(patch.box.size_x, 4), figures(patch.box.size_y, 4), sizes.words()));
+  const double longer = std::max(patch.box.size_x, patch.box.size_y),
+               shorter = std::min(patch.box.size_x, patch.box.size_y);
+  if (!(longer <= most_oblong * shorter))
+    throw InvariantError(
+        fmt::format("the box of '{}' is {} m x {} m, more than {:g} times as long as wide; take another "
+                    "state",
+                    path, figures(patch.box.size_x, 4), figures(patch.box.size_y, 4), most_oblong));
+  for (std::size_t k = 0; k < patch.size(); ++k)
+    if (const std::string fault = particle_fault(patch, k); !fault.empty())
+      throw InvariantError(
+          fmt::format("particle {} of '{}' has {}; correct it or take another state", patch.ids[k], path, fault));
 }
 
 } // namespace keeler

@@ -1,0 +1,180 @@
+"""Snapshots that others changed: what no ring has, values that stand elsewhere or nowhere, and torn or flipped bytes are
+refused by one line, soon, and nothing of them is taken."""
+
+import os
+import random
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+KEELER = os.environ["KEELER_PROGRAM"]
+
+SCENE = """
+planet.preset = "saturn-a-ring"
+box.size = [30.0, 30.0]
+particles = { optical_depth = 0.3, density = 450.0, sizes = { law = "equal", radius = 1.0 } }
+collisions = { restitution = { law = "constant", value = 0.5 } }
+time = { step = 2e-3, end = 0.004 }
+"""
+
+
+def keeler(*arguments):
+    return subprocess.run([KEELER, *map(str, arguments)], capture_output=True, timeout=60)
+
+
+class ForeignFiles(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.temporary.name)
+        cls.scene, cls.whole, cls.file = (cls.folder / name for name in ("scene.toml", "whole.hdf", "changed.hdf"))
+        cls.scene.write_text(SCENE)
+        assert keeler("generate", cls.scene, "-o", cls.whole).returncode == 0
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def refused(self, code, words):
+        """By all that read snapshots of others."""
+        for command in (("analyze", self.file), ("render", self.file, "-o", self.folder / "picture.png"),
+                        ("run", self.scene, "--from", self.file, "-o", self.folder / "run")):
+            done = keeler(*command)
+            lines = [line for line in done.stderr.decode().splitlines() if "takes its place" not in line]
+            self.assertEqual((done.returncode, len(lines)), (code, 1), (command[0], lines[:3]))
+            self.assertIn(words, lines[0])
+        self.assertFalse((self.folder / "picture.png").exists())
+        self.assertFalse((self.folder / "run").exists())
+
+    def change(self, how):
+        shutil.copy(self.whole, self.file)
+        with h5py.File(self.file, "r+") as file:
+            how(file, file["PartType1"])
+
+    def replace(self, name, make):
+        """The dataset, and the second name that ParaView knows it by."""
+
+        def how(file, part):
+            count = part[name].shape[0]
+            del file["VTKHDF"]
+            del part[name]
+            make(part, count)
+
+        self.change(how)
+
+    def test_nothing_changed(self):
+        self.change(lambda file, part: None)
+        self.assertEqual(keeler("analyze", self.file).returncode, 0)
+
+    def test_what_no_ring_has(self):
+        def one(name, place, value):
+            def how(_, part):
+                part[name][place] = value
+
+            return how
+
+        def ring(name, value):
+            def how(file, _):
+                file["RingBox"].attrs[name] = value
+
+            return how
+
+        for how, words in (
+            (one("Coordinates", (3, 0), 1e9), "a coordinate (m) of 1e9"),
+            (one("Coordinates", (3, 2), 1e20), "a coordinate (m) of 1e20"),
+            (one("Velocities", (3, 0), 1e5), "a speed (m/s, beyond the shear) of 1e5"),
+            (one("Masses", 3, 1e18), "a density (kg/m^3, by its mass and radius) of 2.39e17"),
+            (one("Radius", 3, 1e9), "a radius (m) of 1e9"),
+            (one("Radius", 3, np.nan), "a radius that is not positive"),
+            (ring("L_x", 1e9), "the box of"),
+        ):
+            with self.subTest(words):
+                self.change(how)
+                self.refused(3, words.replace("1e5", "100000"))
+        self.change(ring("Omega", 1.0))  # a run says that it is of another planet
+        done = keeler("analyze", self.file)
+        self.assertEqual(done.returncode, 3)
+        self.assertIn(b"an Omega of 1 rad/s", done.stderr)
+
+    def test_no_particles(self):
+        def how(file, part):
+            del file["VTKHDF"]
+            for name in list(part):
+                shape, kind = (0,) + part[name].shape[1:], part[name].dtype
+                del part[name]
+                part.create_dataset(name, shape=shape, dtype=kind)
+
+        self.change(how)
+        self.refused(2, "holds no particles")
+
+    def test_values_that_stand_elsewhere(self):
+        other = self.folder / "other"
+        np.ones(1000).tofile(other)
+
+        def virtual(part, count):
+            layout = h5py.VirtualLayout(shape=(count,), dtype="f8")
+            layout[:] = h5py.VirtualSource(str(self.whole), "PartType1/Radius", shape=(count,))
+            part.create_virtual_dataset("Radius", layout)
+
+        def link(part, _):
+            part["Radius"] = h5py.ExternalLink(str(self.whole), "/PartType1/Radius")
+
+        def storage(part, count):
+            part.create_dataset("Radius", (count,), "f8", external=[(str(other), 0, 8 * count)])
+
+        for make, words in ((virtual, "its values stand in another file"), (storage, "its values stand in another file"),
+                            (link, "a link into another file")):
+            with self.subTest(make.__name__):
+                self.replace("Radius", make)
+                self.refused(4, words)
+
+    def test_more_than_the_file_can_hold(self):
+        def how(file, part):
+            del file["VTKHDF"]
+            for name in list(part):
+                shape, kind = (1 << 40,) + part[name].shape[1:], part[name].dtype
+                del part[name]
+                part.create_dataset(name, shape=shape, dtype=kind, chunks=(1024,) + shape[1:])
+
+        self.change(how)
+        self.refused(4, "it claims")
+
+    def test_torn_and_flipped_bytes(self):
+        """Without the seal, as another program leaves a file. What HDF5 does not notice may be taken where it is possible."""
+        draw = random.Random(20)
+        content = self.whole.read_bytes()[:-64]
+        refused = 0
+        for _ in range(200):
+            torn = bytearray(content)
+            for _ in range(draw.choice((1, 1, 2, 8))):
+                torn[draw.randrange(len(torn))] = draw.randrange(256)
+            if draw.random() < 0.2:
+                torn = torn[: draw.randrange(len(torn))]
+            self.file.write_bytes(torn)
+            done = keeler("analyze", self.file)
+            lines = done.stderr.decode().splitlines()
+            if done.returncode != 0:
+                refused += 1
+                self.assertIn(done.returncode, (2, 3, 4), lines)
+                self.assertEqual(len(lines), 1, lines[:3])
+        self.assertGreater(refused, 50)
+
+    def test_words_of_others_in_messages(self):
+        long = self.folder / "long.toml"
+        long.write_text(SCENE.replace('"constant"', '"' + "x" * 1_000_000 + '"'))
+        done = keeler("check", long)
+        self.assertEqual(done.returncode, 2)
+        self.assertLess(len(done.stderr), 2100)
+        done = subprocess.run([KEELER.encode(), b"check", str(self.scene).encode(), b"--set",
+                               b'particles.density="\xff\x1b[31m"'], capture_output=True, timeout=60)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(b'"??[31m"', done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
