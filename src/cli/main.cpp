@@ -90,8 +90,8 @@ void let_threads_sleep(char** argv) {
   execv("/proc/self/exe", argv);
 }
 
-// After a damaged file HDF5 cannot close itself, and says so at length when the program ends. What it has open is in memory
-// alone and need not be closed.
+// After a damaged file HDF5 cannot close itself, and says so at length when the program ends. What it has open is in
+// memory alone and need not be closed.
 void let_hdf5_end_silently() {
   H5dont_atexit();
 }

@@ -13,8 +13,8 @@ std::string figures(double value, int digits = 6);
 /// "1 thread", "2 threads".
 std::string counted(std::uint64_t count, const std::string& noun);
 
-/// A line that terminals and logs can take, whatever words of others it repeats: control characters and what is no UTF-8
-/// become '?', and of more than 2000 bytes the middle is left out.
+/// A line that terminals and logs can take, whatever words of others it repeats: control characters and what is no
+/// UTF-8 become '?', and of more than 2000 bytes the middle is left out.
 std::string printable_line(const std::string& line);
 
 } // namespace keeler

@@ -1,5 +1,5 @@
-// What no patch of a ring has, in a state that somebody else made or changed: the ranges of the scene's keys hold for it
-// too. Beyond them steps and searches may not end.
+// What no patch of a ring has, in a state that somebody else made or changed: the ranges of the scene's keys hold for
+// it too. Beyond them steps and searches may not end.
 #pragma once
 
 #include <keeler/particles/patch.hpp>
@@ -12,8 +12,8 @@ namespace keeler {
 /// orbital frequency.
 std::string particle_fault(const Patch& patch, std::size_t k);
 
-/// Throws InvariantError that names what is not possible in the patch of this file: the planet, the box or a particle. UsageError when
-/// it has none.
+/// Throws InvariantError that names what is not possible in the patch of this file: the planet, the box or a particle.
+/// UsageError when it has none.
 void require_possible(const Patch& patch, const std::string& path);
 
 } // namespace keeler
