@@ -154,6 +154,8 @@ void add_analyze(CLI::App& program, Action& action) {
       ->needs(profile);
   options->sights.add_to(command);
   options->threads.add_to(command);
+  examples_of(command, {"keeler analyze wakes", "keeler analyze wakes --since 2 --json",
+                        "keeler analyze wakes/snap_000030.hdf --elevation 5,30"});
   command.callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

@@ -133,6 +133,7 @@ void add_bench_drift(CLI::App& bench_command, Action& action) {
                  "hand every candidate of the grid to the finder, without rejecting any first");
   options->threads.add_to(drift);
   drift.add_flag("--json", options->json, "print the numbers as JSON");
+  examples_of(drift, {"keeler bench drift --count 10000"});
   drift.callback([options, &action] { action = [options] { return bench(*options); }; });
 }
 

@@ -84,6 +84,7 @@ void add_bench_gravity(CLI::App& bench_command, Action& action) {
   add_repeats(gravity, options->bench.repeats);
   options->threads.add_to(gravity);
   gravity.add_flag("--json", options->json, "print the numbers as JSON");
+  examples_of(gravity, {"keeler bench gravity --count 10000"});
   gravity.callback([options, &action] { action = [options] { return bench(*options); }; });
 }
 

@@ -111,6 +111,7 @@ void add_bench_step(CLI::App& bench_command, Action& action) {
   add_repeats(step, s.repeats);
   options->threads.add_to(step);
   step.add_flag("--json", options->json, "print the numbers as JSON");
+  examples_of(step, {"keeler bench step --count 10000"});
   step.callback([options, &action] { action = [options] { return bench(*options); }; });
 }
 

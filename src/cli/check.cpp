@@ -184,6 +184,8 @@ void add_check(CLI::App& program, Action& action) {
   CLI::Option* defaults =
       command.add_flag("--defaults", options->defaults, "print every key with its default, unit and meaning");
   command.add_flag("--markdown", options->markdown, "print the keys as the manual's table")->needs(defaults);
+  examples_of(command, {"keeler check scene.toml", "keeler check scene.toml --set particles.optical_depth=0.8",
+                        "keeler check --defaults"});
   command.callback([options, &action] { action = [options] { return check(*options); }; });
 }
 

@@ -14,12 +14,20 @@ namespace keeler {
 /// What the chosen subcommand does; the program ends with the code it returns.
 using Action = std::function<ExitCode()>;
 
+/// Ends the --help of a command with these lines, each a whole command: "keeler run scene.toml -o run". A test parses
+/// them all.
+void examples_of(CLI::App& command, const std::vector<std::string>& lines);
+
+/// Prints what --help prints.
+ExitCode print_help(const CLI::App& command);
+
 /// Each adds its subcommand to the program; when the command line names it, it sets the action. `arguments` is the
 /// whole command line, for the provenance of what is written.
 void add_check(CLI::App& program, Action& action);
 void add_generate(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
 void add_run(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
 void add_resume(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
+void add_help(CLI::App& program, Action& action);
 void add_info(CLI::App& program, Action& action);
 void add_convert(CLI::App& program, Action& action);
 void add_analyze(CLI::App& program, Action& action);

@@ -108,6 +108,8 @@ void add_convert(CLI::App& program, Action& action) {
                      "the file to write (default: the same name with the other ending), or for a run the folder "
                      "(default: csv or vtp in the run's)");
   command.add_flag("--force", options->force, "replace files that exist");
+  examples_of(command,
+              {"keeler convert wakes --to vtp", "keeler convert wakes/snap_000030.hdf --to csv -o particles.csv"});
   command.callback([options, &action] {
     action = [options] {
       return unless_stopped("stopped before all was written (on request); the files that are there are whole", [&] {

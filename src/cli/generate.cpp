@@ -153,6 +153,8 @@ void add_generate(CLI::App& program, Action& action, const std::vector<std::stri
   command.add_flag("--force", options->force, "replace the file if it exists");
   options->threads.add_to(command);
   options->talk.add_to(command);
+  examples_of(command,
+              {"keeler generate scene.toml -o start.hdf", "keeler generate scene.toml --clumped -o wakes.hdf"});
   command.callback(
       [options, arguments, &action] { action = [options, arguments] { return generate(*options, arguments); }; });
 }

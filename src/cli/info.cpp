@@ -93,6 +93,7 @@ void add_info(CLI::App& program, Action& action) {
       ->required()
       ->type_name("");
   command.add_flag("--json", options->json, "print it as JSON");
+  examples_of(command, {"keeler info wakes", "keeler info wakes/snap_000030.hdf --json"});
   command.callback([options, &action] {
     action = [options] {
       const bool folder = std::filesystem::is_directory(options->path);

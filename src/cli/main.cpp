@@ -1,6 +1,7 @@
 // The program: reads the command line, runs one subcommand, and turns every error into one line and an exit code.
 #include "command.hpp"
 #include "messages.hpp"
+#include "usage.hpp"
 
 #include <keeler/core/threads.hpp>
 #include <keeler/core/version.hpp>
@@ -35,47 +36,58 @@ int end_with(ExitCode code) {
   return static_cast<int>(code);
 }
 
-// The command of the arguments as far as it was understood: "keeler bench drift".
-std::string asked_command(const CLI::App& program) {
-  std::string name = "keeler";
-  for (const CLI::App* app = &program; !app->get_subcommands().empty();) {
-    app = app->get_subcommands().front();
-    name += " " + app->get_name();
-  }
-  return name;
+// Puts the commands that were added since the last call under a heading of --help.
+void group(CLI::App& program, const std::string& heading) {
+  const std::string none = CLI::App().get_group();
+  for (CLI::App* command : program.get_subcommands({}))
+    if (command->get_group() == none)
+      command->group(heading);
+}
+
+// In the order in which a user meets them.
+void add_commands(CLI::App& program, Action& action, const std::vector<std::string>& arguments) {
+  add_check(program, action);
+  add_tune(program, action);
+  add_generate(program, action, arguments);
+  add_tile(program, action, arguments);
+  group(program, "Start");
+  add_run(program, action, arguments);
+  add_watch(program, action);
+  add_resume(program, action, arguments);
+  add_sweep(program, action);
+  group(program, "Run");
+  add_info(program, action);
+  add_render(program, action);
+  add_report(program, action);
+  add_analyze(program, action);
+  add_convert(program, action);
+  group(program, "Look");
+  add_study(program, action, arguments);
+  add_bench(program, action);
+  group(program, "Study");
+  add_help(program, action);
+  group(program, "Help");
 }
 
 int run(int argc, char** argv) {
   CLI::App program("Keeler simulates a self-gravitating patch of a planetary ring.", "keeler");
   program.set_version_flag("--version", "keeler " + program_version());
-  program.require_subcommand(0, 1); // none is refused below, after words that are no command
+  program.require_subcommand(0, 1);
   Action action;
   const std::vector<std::string> arguments(argv, argv + argc);
-  add_check(program, action);
-  add_generate(program, action, arguments);
-  add_tile(program, action, arguments);
-  add_run(program, action, arguments);
-  add_resume(program, action, arguments);
-  add_info(program, action);
-  add_convert(program, action);
-  add_analyze(program, action);
-  add_render(program, action);
-  add_report(program, action);
-  add_bench(program, action);
-  add_study(program, action, arguments);
-  add_sweep(program, action);
-  add_tune(program, action);
-  add_watch(program, action);
+  add_commands(program, action, arguments);
+  examples_of(program,
+              {"keeler run examples/a-ring-wakes/scene.toml -o wakes", "keeler report wakes", "keeler help run"});
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& asked) { // --help and --version
     program.exit(asked);
     return end_with(ExitCode::done);
   } catch (const CLI::ParseError& error) {
-    throw UsageError(fmt::format("{}; \"{} --help\" lists what can be asked", error.what(), asked_command(program)));
+    throw UsageError(usage_fault(program, error));
   }
   if (!action)
-    throw UsageError("no command is given; \"keeler --help\" lists the commands");
+    return end_with(print_help(program));
   set_threads(threads()); // refuses what OMP_NUM_THREADS must not ask for
   return end_with(action());
 }

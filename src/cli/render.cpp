@@ -118,6 +118,8 @@ void add_render(CLI::App& program, Action& action) {
       .add_flag("--movie", options->movie,
                 "draw all snapshots of a run at one scale: movie.mp4 by ffmpeg, or movie.png where that is missing")
       ->excludes(autocorrelation);
+  examples_of(command, {"keeler render wakes --oblique --colour speed",
+                        "keeler render wakes --theme light --width 2000 -o figure.png", "keeler render wakes --movie"});
   command.callback([options, &action] {
     action = [options] {
       return unless_stopped("stopped before all was drawn (on request); no part of a picture or a movie is left",

@@ -119,6 +119,9 @@ void add_run(CLI::App& program, Action& action, const std::vector<std::string>& 
   command.add_option("--from", job->from, "start from the particles and the box of this snapshot");
   command.add_flag("--force", job->force, "replace the run that the folder holds");
   add_common(command, *job);
+  examples_of(command,
+              {"keeler run scene.toml -o wakes", "keeler run scene.toml --set time.end=10 --threads 4 -o longer",
+               "keeler run scene.toml --from start.hdf -o wakes"});
   command.callback([job, arguments, &action] {
     action = [job, arguments] {
       job->threads.apply();
@@ -141,6 +144,7 @@ void add_resume(CLI::App& program, Action& action, const std::vector<std::string
   command.add_option("DIR", job->folder, "the folder of the run")->required()->type_name("");
   command.add_option("--until", job->until, "another end, in orbits since the run began")->check(positive_number());
   add_common(command, *job);
+  examples_of(command, {"keeler resume wakes", "keeler resume wakes --until 20"});
   command.callback([job, arguments, &action] {
     action = [job, arguments] {
       job->threads.apply();

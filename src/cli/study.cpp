@@ -58,6 +58,7 @@ void add_finders(CLI::App& command, Action& action, const std::vector<std::strin
   finders.add_option("--count", settings->count, "particles of equal size (default: 10000, some 95 minutes)")
       ->check(positive_number());
   finders.add_flag("--quick", settings->quick, "3000 particles, three steps, two repeats: a few minutes");
+  examples_of(finders, {"keeler study finders -o finders"});
   finders.callback([settings, talk, arguments, &action] {
     settings->arguments = arguments;
     action = [settings, talk] {
@@ -98,6 +99,7 @@ void add_gravity(CLI::App& command, Action& action, const std::vector<std::strin
   const auto quick = std::make_shared<bool>(false);
   gravity.add_flag("--quick", *quick,
                    "by default 5000 particles, two repeats, two seeds and half an orbit: two or three minutes");
+  examples_of(gravity, {"keeler study gravity -o gravity"});
   gravity.callback([settings, talk, quick, arguments, &gravity, &action] {
     settings->arguments = arguments;
     if (*quick)

@@ -72,6 +72,7 @@ void add_one(CLI::App& study, Action& action, const std::vector<std::string>& ar
       ->check(number_between(1, most_threads, "a number of runs"));
   command.add_flag("--quick", settings.quick,
                    "few settings, and by default two seeds, an orbit to grow and two to compare: a first look");
+  examples_of(command, {"keeler study " + name + " scene.toml -o " + name});
   command.callback([options, arguments, &action] {
     options->settings.arguments = arguments;
     action = [options] { return carry_out(*options); };

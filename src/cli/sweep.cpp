@@ -91,6 +91,7 @@ void add_sweep(CLI::App& program, Action& action) {
                    "start nothing: make the tables and the figure of what is finished");
   options->talk.add_to(command);
   command.add_flag("--json", options->json, "print the counts and the table of points as JSON");
+  examples_of(command, {"keeler sweep grid.toml -o sweep"});
   command.callback([options, &action] { action = [options] { return carry_out(*options); }; });
 }
 

@@ -219,6 +219,7 @@ void add_tune(CLI::App& program, Action& action) {
   command.add_flag("--json", options->json, "print the numbers as JSON");
   options->threads.add_to(command);
   options->talk.add_to(command);
+  examples_of(command, {"keeler tune scene.toml -o tuned.toml"});
   command.callback([options, &action] { action = [options] { return tune_scene(*options); }; });
 }
 

@@ -132,6 +132,7 @@ void add_watch(CLI::App& program, Action& action) {
   const auto folder = std::make_shared<std::string>();
   CLI::App& command = *program.add_subcommand("watch", "look at a run from another terminal while it works");
   command.add_option("DIR", *folder, "the folder of the run")->required()->type_name("");
+  examples_of(command, {"keeler watch wakes"});
   command.callback([folder, &action] { action = [folder] { return watch(*folder); }; });
 }
 

@@ -2,6 +2,7 @@
 
 #include "suggest.hpp"
 
+#include <keeler/core/suggest.hpp>
 #include <keeler/scene/keys.hpp>
 
 #include <fmt/format.h>

@@ -63,8 +63,10 @@ fi
 refuses "bad override" "--set gravity.solver=quantum: gravity.solver" check "$good" --set gravity.solver=quantum
 refuses "override without a value" "not an override" check "$good" --set gravity
 refuses "no scene" "check needs a scene" check
-refuses "no command" "no command is given"
-refuses "unknown command" "" chekc
+refuses "unknown command" "did you mean 'check'?" chekc
 refuses "unknown option" "--wibble" check --wibble
+refuses "misspelt option" "did you mean '--defaults'?" check --defautls
+refuses "misspelt option, and a missing one" "did you mean '--output'?" run "$good" --ouput x
+refuses "misspelt part" "did you mean 'finders'?" study finderz
 
 report

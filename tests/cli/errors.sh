@@ -43,7 +43,6 @@ refuses "binary scene" "not TOML" run "$keeler" -o "$none"
 refuses "bad override" "particles.count" run "$work/scene.toml" -o "$none" --set particles.count=-1
 refuses "no output" "--output" run "$work/scene.toml"
 refuses "no such command" "foo" foo
-refuses "no command" "no command is given"
 refuses "no threads" "--threads" run "$work/scene.toml" -o "$none" --threads 0
 refuses "no wall time" "--wall-time" run "$work/scene.toml" -o "$none" --wall-time -1
 nothing_left "bad options"

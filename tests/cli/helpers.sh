@@ -159,3 +159,6 @@ interrupted() {
   done
   fail "SIG$signal: exit $signalled instead of $code: $(tail -n 3 "$work/err")"
 }
+
+# commands_in FILE: the commands that a --help lists, under one heading or several
+commands_in() { sed '/^Examples:/,$d; /^Options:/,/^$/d' "$1" | sed -nE 's/^  ([a-z]+) +[a-z].*/\1/p' | sort; }

@@ -7,7 +7,7 @@ small_scene
 manual=$source_dir/docs/manual/commands.md
 
 accepts "help" --help
-sed '1,/^Subcommands:/d' "$work/out" | sed -nE 's/^  ([a-z]+) .*/\1/p' | sort >"$work/commands"
+commands_in "$work/out" >"$work/commands"
 [ "$(wc -l <"$work/commands")" -ge 7 ] || fail "help: no commands in: $(cat "$work/out")"
 # shellcheck disable=SC2016 # backquotes of Markdown
 sed -nE 's/^\| `keeler ([a-z]+).*/\1/p' "$source_dir/README.md" | sort | diff "$work/commands" - ||
@@ -18,17 +18,30 @@ sed -nE 's/^## keeler ([a-z]+)$/\1/p' "$manual" | sort | diff "$work/commands" -
 # section COMMAND: what the manual says of it
 section() { sed -n "/^## keeler $1\$/,/^## /p" "$manual"; }
 
+# examples_are_understood NAME HELP: nothing of an example is refused but the option that is added to it
+examples_are_understood() {
+  local example words count=0
+  while read -r example; do
+    read -ra words <<<"${example#keeler }"
+    refuses "an example of $1: $example" "has no option '--absent'" "${words[@]}" --absent
+    count=$((count + 1))
+  done < <(sed -nE 's/^  (keeler .*)/\1/p' "$2")
+  [ "$count" -ge 1 ] || fail "$1 --help has no example"
+}
+
 while read -r command; do
   accepts "help of $command" "$command" --help
   prints "help of $command" "keeler $command"
   cp "$work/out" "$work/help"
-  sed '1,/^Subcommands:/d' "$work/help" | sed -nE 's/^  ([a-z]+) .*/\1/p' >"$work/parts"
+  commands_in "$work/help" >"$work/parts"
   while read -r part; do # keeler bench drift, ...
     accepts "help of $command $part" "$command" "$part" --help
     prints "help of $command $part" "keeler $command $part"
     section "$command" | grep -qF "keeler $command $part" || fail "the manual does not have $command $part"
     cat "$work/out" >>"$work/help"
   done <"$work/parts"
+  examples_are_understood "$command" "$work/help"
+  sed -i '/^  keeler /d' "$work/help"
   grep -oE -- '--[a-z][a-z-]*' "$work/help" | sort -u | grep -v -- '^--help$' >"$work/options"
   while read -r option; do
     section "$command" | grep -qE -- "$option\b" || fail "the manual does not have $command $option"

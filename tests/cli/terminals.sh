@@ -22,12 +22,14 @@ words_for() {
   bench) words=(drift --count 200 --repeats 1) ;;
   study) words=(kicks "$work/scene.toml" -o "$work/study" --quick --grow 0.02 --orbits 1.5) ;;
   sweep) words=("$work/grid.toml" -o "$work/sweep") ;;
+  help) words=(run) ;;
   tune) words=("$work/scene.toml") ;;
   *) return 1 ;;
   esac
 }
 
-"$keeler" --help | sed '1,/^Subcommands:/d' | sed -nE 's/^  ([a-z]+) .*/\1/p' >"$work/commands"
+runs 0 --help
+commands_in "$work/out" >"$work/commands"
 [ "$(wc -l <"$work/commands")" -ge 10 ] || fail "no commands in --help"
 while read -r command; do
   words_for "$command" || { fail "$command is not exercised: give it a line in words_for"; continue; }

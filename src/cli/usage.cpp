@@ -1,0 +1,64 @@
+#include "usage.hpp"
+
+#include <keeler/core/suggest.hpp>
+
+#include <fmt/format.h>
+
+namespace keeler {
+namespace {
+
+// The command that the arguments name, as far as they were understood.
+const CLI::App& asked_command(const CLI::App& program) {
+  const CLI::App* command = &program;
+  while (!command->get_subcommands().empty())
+    command = command->get_subcommands().front();
+  return *command;
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames())
+      names.push_back("--" + name);
+  return names;
+}
+
+std::string or_help(const CLI::App& command, const std::string& near) {
+  return near.empty() ? fmt::format("\"{} --help\" lists what can be asked", full_name(command))
+                      : fmt::format("did you mean '{}'?", near);
+}
+
+bool is_option(const std::string& word) {
+  return word.size() > 1 && word[0] == '-';
+}
+
+} // namespace
+
+std::string full_name(const CLI::App& command) {
+  return command.get_parent() ? full_name(*command.get_parent()) + " " + command.get_name() : command.get_name();
+}
+
+std::vector<const CLI::App*> listed_commands(const CLI::App& command) {
+  return command.get_subcommands([](const CLI::App* app) { return !app->get_group().empty(); });
+}
+
+std::string usage_fault(const CLI::App& program, const CLI::ParseError& error) {
+  const CLI::App& command = asked_command(program);
+  const std::vector<std::string> words = command.remaining();
+  // An option that is unknown explains why another word stands where nothing is expected, or a value is missing.
+  for (const std::string& word : words)
+    if (is_option(word)) {
+      const std::string name = word.substr(0, word.find('='));
+      return fmt::format("'{}' has no option '{}'; {}", full_name(command), name,
+                         or_help(command, closest(name, option_names(command))));
+    }
+  std::vector<std::string> names;
+  for (const CLI::App* below : listed_commands(command))
+    names.push_back(below->get_name());
+  if (!words.empty() && !names.empty())
+    return fmt::format("'{}' has no command '{}'; {}", full_name(command), words.front(),
+                       or_help(command, closest(words.front(), names)));
+  return fmt::format("{}; {}", error.what(), or_help(command, ""));
+}
+
+} // namespace keeler

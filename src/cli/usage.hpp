@@ -1,0 +1,21 @@
+// What the program says of a command line that it cannot take.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <vector>
+
+namespace keeler {
+
+/// "keeler bench drift".
+std::string full_name(const CLI::App& command);
+
+/// The commands below this one, without those that --help does not list.
+std::vector<const CLI::App*> listed_commands(const CLI::App& command);
+
+/// The line on what was wrong: a command or an option that does not exist, with the nearest one that does, or what
+/// CLI11 found.
+std::string usage_fault(const CLI::App& program, const CLI::ParseError& error);
+
+} // namespace keeler

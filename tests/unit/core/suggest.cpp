@@ -1,0 +1,21 @@
+#include <keeler/core/suggest.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace keeler;
+
+TEST_CASE("a misspelt word has the closest name") {
+  const std::vector<std::string> names = {"run", "render", "resume", "check"};
+  CHECK(closest("rnder", names) == "render");
+  CHECK(closest("redner", names) == "render"); // a swap is one edit
+  CHECK(closest("chekc", names) == "check");
+  CHECK(closest("ran", names) == "run");
+  CHECK(closest("run", names) == "run");
+}
+
+TEST_CASE("a word that is far from every name has none") {
+  CHECK(closest("foo", {"run", "render"}).empty());
+  CHECK(closest("", {"run"}).empty());
+  CHECK(closest("run", {}).empty());
+  CHECK(closest(std::string(101, 'r'), {std::string(100, 'r')}).empty());
+}
