@@ -46,6 +46,7 @@ void group(CLI::App& program, const std::string& heading) {
 
 // In the order in which a user meets them.
 void add_commands(CLI::App& program, Action& action, const std::vector<std::string>& arguments) {
+  add_new(program, action);
   add_check(program, action);
   add_tune(program, action);
   add_generate(program, action, arguments);
@@ -76,8 +77,7 @@ int run(int argc, char** argv) {
   Action action;
   const std::vector<std::string> arguments(argv, argv + argc);
   add_commands(program, action, arguments);
-  examples_of(program,
-              {"keeler run examples/a-ring-wakes/scene.toml -o wakes", "keeler report wakes", "keeler help run"});
+  examples_of(program, {"keeler run a-ring-wakes -o wakes", "keeler report wakes", "keeler help run"});
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& asked) { // --help and --version

@@ -6,7 +6,7 @@ CLI::Option* SceneArguments::add_to(CLI::App& command) {
   command.add_option("--set", overrides, "override a key of the scene, as often as needed: --set particles.count=500")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
-  return command.add_option("SCENE", path, "scene file (TOML)")->type_name("");
+  return command.add_option("SCENE", path, "scene file (TOML), or the name of an example")->type_name("");
 }
 
 } // namespace keeler

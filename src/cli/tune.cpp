@@ -9,7 +9,7 @@
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/files/files.hpp>
-#include <keeler/files/input.hpp>
+#include <keeler/scene/examples.hpp>
 #include <keeler/scene/quality.hpp>
 #include <keeler/tune/tune.hpp>
 
@@ -168,7 +168,7 @@ ExitCode tune_scene(const TuneOptions& options) {
   settings.most_threads = threads();
   const Scene scene = options.scene.load();
   refuse_what_cannot_be_written(options);
-  const std::string text = read_input(options.scene.path, options.scene.path);
+  const std::string text = read_scene_text(options.scene.path);
   if (options.output)
     require_same_files(text, scene, *options.output);
   const Tuning tuning = measure(scene, settings, options.talk);

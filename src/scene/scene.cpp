@@ -11,9 +11,9 @@
 
 #include <keeler/core/units.hpp>
 #include <keeler/core/words.hpp>
-#include <keeler/files/input.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/scene/derived.hpp>
+#include <keeler/scene/examples.hpp>
 
 #include <fmt/format.h>
 
@@ -210,7 +210,7 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::v
 }
 
 TableScene load_table_scene(const std::string& path, const std::vector<std::string>& overrides) {
-  return parse_table_scene(read_input(path, path), path, overrides);
+  return parse_table_scene(read_scene_text(path), path, overrides);
 }
 
 TableScene parse_table_scene(const std::string& text, const std::string& name,
@@ -227,7 +227,7 @@ TableScene parse_table_scene(const std::string& text, const std::string& name,
 }
 
 Scene load_varied_scene(const std::string& path, const std::vector<Override>& overrides) {
-  Document document = parse_document(read_input(path, path), path);
+  Document document = parse_document(read_scene_text(path), path);
   std::vector<std::string> notices;
   for (const Override& by : overrides)
     apply_override(document, by, notices);
@@ -240,7 +240,7 @@ Scene parse_stored_scene(const std::string& text, const std::string& name) {
 
 Scene load_scene(const std::string& path, const std::vector<std::string>& overrides,
                  const std::optional<std::string>& from) {
-  return parse_scene(read_input(path, path), path, overrides, from);
+  return parse_scene(read_scene_text(path), path, overrides, from);
 }
 
 } // namespace keeler

@@ -12,6 +12,7 @@ runs 0 run "$work/scene.toml" -o "$work/done"
 # words_for COMMAND: an array `words` that makes the command work; false when it is not known here
 words_for() {
   case $1 in
+  new) words=(moonlet -o "$work/new.toml" --force) ;;
   check) words=("$work/scene.toml") ;;
   generate) words=("$work/scene.toml" -o "$work/state.hdf" --force) ;;
   tile) words=("$work/done/snap_000000.hdf" 2 1 -o "$work/tiled.hdf" --force) ;;

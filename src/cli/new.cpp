@@ -1,0 +1,67 @@
+// keeler new: a shipped example as the beginning of one's own scene.
+#include "command.hpp"
+#include "common_options.hpp"
+
+#include <keeler/files/files.hpp>
+#include <keeler/scene/examples.hpp>
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+namespace keeler {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct NewOptions {
+  std::string name, output;
+  bool list = false, force = false;
+};
+
+ExitCode list_examples() {
+  for (const ExampleScene& example : example_scenes())
+    fmt::print("{:<20} {}\n", example.name, example.about());
+  return ExitCode::done;
+}
+
+// The scene and, beside it, its tables. Nothing is written when one of the names is taken.
+ExitCode write_example(const NewOptions& options) {
+  const ExampleScene& example = find_example(options.name);
+  const fs::path scene = options.output.empty() ? fs::path(options.name + ".toml") : fs::path(options.output);
+  require_new_file(scene.string(), options.force, "a scene");
+  for (const ExampleScene::Table& table : example.tables)
+    require_new_file((scene.parent_path() / table.file).string(), options.force, "a table");
+  write_text(scene, example.toml);
+  fmt::print("{}\n", scene.string());
+  for (const ExampleScene::Table& table : example.tables) {
+    const fs::path file = scene.parent_path() / table.file;
+    write_text(file, table.text);
+    fmt::print("{}\n", file.string());
+  }
+  return ExitCode::done;
+}
+
+ExitCode make_new(const NewOptions& options) {
+  if (options.list || options.name.empty())
+    return list_examples();
+  return write_example(options);
+}
+
+} // namespace
+
+void add_new(CLI::App& program, Action& action) {
+  const auto options = std::make_shared<NewOptions>();
+  CLI::App& command =
+      *program.add_subcommand("new", "write one of the shipped examples as a scene of your own, with comments");
+  CLI::Option* const name = command.add_option("NAME", options->name, "the example")->type_name("");
+  CLI::Option* const output =
+      command.add_option("-o,--output", options->output, "the scene to write (default: NAME.toml)");
+  command.add_flag("--list", options->list, "list the examples, as without NAME")->excludes(name)->excludes(output);
+  command.add_flag("--force", options->force, "replace files that exist");
+  examples_of(command, {"keeler new --list", "keeler new moonlet", "keeler new a-ring-wakes -o mine.toml"});
+  command.callback([options, &action] { action = [options] { return make_new(*options); }; });
+}
+
+} // namespace keeler
