@@ -31,7 +31,9 @@ while read -r name _; do
 done <"$work/list"
 
 accepts "the default name" new two-body
-[ -e two-body.toml ] && [ -e prograde.csv ] && [ -e retrograde.csv ] || fail "two-body: $(ls)"
+for file in two-body.toml prograde.csv retrograde.csv; do
+  [ -e "$file" ] || fail "two-body: no $file"
+done
 echo "mine" >prograde.csv
 rm two-body.toml
 refuses "a table that is there" "prograde.csv" new two-body
