@@ -76,6 +76,21 @@ void Descriptor::append_whole(std::span<const std::byte> content) {
   }
 }
 
+std::string Descriptor::read_all() const {
+  std::string content(size(), '\0');
+  for (std::size_t have = 0; have < content.size();) {
+    const std::size_t length = std::min(content.size() - have, largest_transfer);
+    const ssize_t got =
+        retried([&] { return ::pread(number_, content.data() + have, length, static_cast<off_t>(have)); });
+    if (got < 0)
+      fail("read", file_);
+    if (got == 0)
+      content.resize(have);
+    have += static_cast<std::size_t>(got);
+  }
+  return content;
+}
+
 std::size_t Descriptor::size() const {
   struct stat status = {};
   if (::fstat(number_, &status) != 0)

@@ -81,12 +81,21 @@ NewestCheckpoint newest_valid_checkpoint(const std::filesystem::path& folder) {
       fmt::format("no checkpoint in '{}' can be used: {}", folder.string(), fmt::join(newest.warnings, "; ")));
 }
 
-void prune_checkpoints(const std::filesystem::path& folder, std::size_t keep) {
-  const std::vector<std::filesystem::path> files = list_checkpoints(folder);
-  for (std::size_t k = keep; k < files.size(); ++k)
+void prune_checkpoints(const std::filesystem::path& newest, std::size_t keep) {
+  const std::vector<std::filesystem::path> files = list_checkpoints(newest.parent_path());
+  const auto at = static_cast<std::size_t>(std::find(files.begin(), files.end(), newest) - files.begin());
+  for (std::size_t k = at + keep; k < files.size(); ++k)
     remove_file(files[k]);
-  for (const std::filesystem::path& file : list(folder, ".h5.tmp"))
+  for (const std::filesystem::path& file : list(newest.parent_path(), ".h5.tmp"))
     remove_file(file);
+}
+
+void remove_later_checkpoints(const std::filesystem::path& newest) {
+  for (const std::filesystem::path& file : list_checkpoints(newest.parent_path())) {
+    if (file == newest)
+      return;
+    remove_file(file);
+  }
 }
 
 } // namespace keeler

@@ -26,16 +26,21 @@ std::int64_t step_of(const std::filesystem::path& file, std::string_view row) {
   return step;
 }
 
+struct Rows {
+  std::string_view text;            // with the header
+  std::optional<std::int64_t> last; // step; none: no row
+};
+
 // The part of the text that ends with the last whole row of a step up to last_step.
-std::string_view rows_up_to(const std::filesystem::path& file, std::string_view text, std::size_t header,
-                            std::int64_t last_step) {
-  std::size_t kept = header;
+Rows rows_up_to(const std::filesystem::path& file, std::string_view text, std::size_t header, std::int64_t last_step) {
+  Rows rows{text.substr(0, header), {}};
   for (std::size_t begin = header, end; (end = text.find('\n', begin)) != std::string_view::npos; begin = end + 1) {
-    if (step_of(file, text.substr(begin, end - begin)) > last_step)
+    const std::int64_t step = step_of(file, text.substr(begin, end - begin));
+    if (step > last_step)
       break;
-    kept = end + 1;
+    rows = {text.substr(0, end + 1), step};
   }
-  return text.substr(0, kept);
+  return rows;
 }
 
 std::vector<std::string_view> fields_of(std::string_view row) {
@@ -91,8 +96,8 @@ SeriesTable read_series(const std::filesystem::path& file) {
   return table;
 }
 
-Series::Series(const std::filesystem::path& file, std::size_t columns)
-    : file_(file, O_WRONLY | O_APPEND), columns_(columns) {}
+Series::Series(const std::filesystem::path& file, std::size_t columns, std::optional<std::int64_t> last_found)
+    : path_(file), file_(file, O_RDWR | O_APPEND), columns_(columns), size_(file_.size()), last_found_(last_found) {}
 
 Series Series::begin(const std::filesystem::path& file, const std::vector<std::string>& columns) {
   write_text(file, header_line(columns));
@@ -108,20 +113,38 @@ Series Series::resume(const std::filesystem::path& file, const std::vector<std::
   if (!text.starts_with(header))
     throw IoError(fmt::format("cannot continue '{}': its first line is not: {}", file.string(),
                               header.substr(0, header.size() - 1)));
-  const std::string_view kept = rows_up_to(file, text, header.size(), last_step);
-  if (kept.size() != text.size())
-    write_text(file, kept);
-  return {file, columns.size()};
+  const Rows kept = rows_up_to(file, text, header.size(), last_step);
+  if (kept.text.size() != text.size())
+    write_text(file, kept.text);
+  return {file, columns.size(), kept.last};
 }
 
 void Series::append(std::int64_t step, std::span<const double> values) {
   assert(values.size() == columns_);
   const std::string row = fmt::format("{},{}\n", step, fmt::join(values, ","));
+  require_rows();
   file_.append_whole(std::as_bytes(std::span(row)));
+  size_ += row.size();
 }
 
 void Series::sync() {
+  require_rows();
   file_.sync();
+}
+
+// What is open keeps its rows when its name is taken from it, but nobody would find them.
+void Series::require_rows() {
+  std::error_code gone;
+  if (std::filesystem::file_size(path_, gone) == size_ && !gone)
+    return;
+  const std::string rows = file_.read_all();
+  if (rows.size() != size_)
+    throw IoError(fmt::format("'{}' was changed by another program while the run wrote to it ({} bytes instead of {}), "
+                              "so rows may be lost; put the rows back that are missing, then resume the run",
+                              path_.string(), rows.size(), size_));
+  write_text(path_, rows);
+  file_ = Descriptor(path_, O_RDWR | O_APPEND);
+  restored_ = true;
 }
 
 } // namespace keeler

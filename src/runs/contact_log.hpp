@@ -56,6 +56,7 @@ public:
   const ContactCounters& counters() const { return counters_; }
   /// Rows that a resumed run did not find any more.
   std::int64_t lost() const { return lost_; }
+  Series& speeds() { return speeds_; }
 
   bool looks_on() const override { return false; }
   bool wants_records() const override { return true; }

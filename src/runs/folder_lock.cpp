@@ -9,12 +9,13 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace keeler {
 
 FolderLock::FolderLock(const std::filesystem::path& folder)
-    : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    : folder_(folder), descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   if (descriptor_ < 0)
     throw IoError(fmt::format("cannot open the folder '{}': {}", folder.string(), std::strerror(errno)));
   if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
@@ -27,6 +28,18 @@ FolderLock::FolderLock(const std::filesystem::path& folder)
 
 FolderLock::~FolderLock() {
   close(descriptor_);
+}
+
+void FolderLock::require_in_place() const {
+  struct stat held = {}, named = {};
+  if (fstat(descriptor_, &held) == 0 && stat(folder_.c_str(), &named) == 0 && held.st_dev == named.st_dev &&
+      held.st_ino == named.st_ino)
+    return;
+  throw IoError(
+      fmt::format("the folder '{}' was moved, replaced or removed while the run wrote to it, so the run stops "
+                  "(its files would end up in two places); go on with \"keeler resume\" where the folder is "
+                  "now",
+                  folder_.string()));
 }
 
 bool folder_is_held(const std::filesystem::path& folder) {

@@ -10,6 +10,8 @@
 #include <keeler/io/checkpoint_folder.hpp>
 #include <keeler/io/snapshot.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -35,9 +37,11 @@ void OutputCounters::list_fields(FieldTable& table, const Scene& scene) {
     contacts.list_fields(table);
 }
 
-Recorder::Recorder(const RunFolder& folder, const Scene& scene, const std::vector<std::string>& arguments,
-                   OutputCounters counters, std::optional<std::int64_t> resumed_at)
-    : folder_(folder), scene_(scene), provenance_(collect_provenance(arguments)), counters_(std::move(counters)),
+Recorder::Recorder(const RunFolder& folder, const FolderLock& lock, const Scene& scene,
+                   const std::vector<std::string>& arguments, OutputCounters counters,
+                   std::optional<std::int64_t> resumed_at, Notice notice)
+    : folder_(folder), lock_(lock), scene_(scene), provenance_(collect_provenance(arguments)),
+      counters_(std::move(counters)), resumed_at_(resumed_at), notice_(std::move(notice)),
       columns_(series_columns_of(scene)), series_(open_series(folder.series(), names_of(columns_), resumed_at)),
       moonlet_columns_(moonlet_columns_of(scene)) {
   if (!moonlet_columns_.empty()) {
@@ -57,6 +61,49 @@ Recorder::Recorder(const RunFolder& folder, const Scene& scene, const std::vecto
   contact_log_.emplace(folder_, scene_, provenance_, resume);
 }
 
+void Recorder::tell(const std::string& text) const {
+  if (notice_)
+    notice_(text);
+}
+
+void Recorder::tell_restored(Series& series, const std::filesystem::path& file) {
+  if (!series.take_restored())
+    return;
+  log("restored", {{"file", file.filename().string()}});
+  tell(fmt::format("'{}' was removed or replaced while the run wrote to it; it is written anew with all its rows",
+                   file.string()));
+}
+
+void Recorder::tell_restored() {
+  tell_restored(series_, folder_.series());
+  if (moonlets_)
+    tell_restored(*moonlets_, folder_.moonlets());
+  if (contact_log_)
+    tell_restored(contact_log_->speeds(), folder_.impact_speeds());
+}
+
+void Recorder::tell_lost_rows(const Series& series, const std::filesystem::path& file) {
+  const std::int64_t every = scene_.output.series_every, now = *resumed_at_;
+  const std::int64_t first = !series.last_found() ? 0 : every > 0 ? *series.last_found() + every : now + 1;
+  if (first > now)
+    return;
+  log("rows lost", {{"file", file.filename().string()}, {"from_step", first}, {"to_step", now}});
+  tell(fmt::format("the rows of '{}' from step {} to {} are missing; it goes on without them", file.string(), first,
+                   now));
+}
+
+void Recorder::tell_losses() {
+  tell_lost_rows(series_, folder_.series());
+  if (moonlets_)
+    tell_lost_rows(*moonlets_, folder_.moonlets());
+  if (!contact_log_)
+    return;
+  if (const std::int64_t lost = contact_log_->lost(); lost > 0) {
+    log("contacts lost", {{"rows", lost}});
+    tell(fmt::format("the last {} rows of the log of contacts are missing or damaged; it goes on without them", lost));
+  }
+}
+
 void Recorder::watch(Simulation& simulation) {
   if (contact_log_)
     contact_log_->watch(simulation);
@@ -66,19 +113,23 @@ void Recorder::contacts() {
   if (!contact_log_)
     return;
   const Stopwatch watch(costs_.contacts);
+  lock_.require_in_place();
   contact_log_->write_full_files();
 }
 
 void Recorder::snapshot(const Simulation& simulation) {
   const Stopwatch watch(costs_.snapshots);
+  lock_.require_in_place();
   write_snapshot(folder_.snapshot(counters_.snapshots), simulation.patch(), {scene_.resolved, provenance_});
   ++counters_.snapshots;
   if (contact_log_)
     contact_log_->end_interval(counters_.last_snapshot_step, simulation.state().step);
   counters_.last_snapshot_step = simulation.state().step;
+  tell_restored();
 }
 
 void Recorder::checkpoint(const Simulation& simulation) {
+  lock_.require_in_place();
   if (contact_log_) {
     const Stopwatch watch(costs_.contacts);
     contact_log_->write_all();
@@ -88,19 +139,23 @@ void Recorder::checkpoint(const Simulation& simulation) {
   series_.sync();
   if (moonlets_)
     moonlets_->sync();
+  tell_restored();
   SimulationState copy = simulation.state();
   OutputCounters counters = counters_;
   ++counters.checkpoints;
   FieldTable table = copy.fields();
   counters.list_fields(table, scene_);
-  write_checkpoint(checkpoint_path(folder_.path(), counters_.checkpoints), table, {scene_.resolved, provenance_});
+  const std::filesystem::path file = checkpoint_path(folder_.path(), counters_.checkpoints);
+  write_checkpoint(file, table, {scene_.resolved, provenance_});
   counters_ = counters;
-  prune_checkpoints(folder_.path());
+  remove_later_checkpoints(file);
+  prune_checkpoints(file);
 }
 
 void Recorder::sample(const Simulation& simulation) {
   const std::optional<GravityEnergy> gravity = measure_gravity(simulation);
   const Stopwatch watch(costs_.series);
+  lock_.require_in_place();
   series_.append(simulation.state().step, values_of(columns_, SeriesSample(scene_, simulation, gravity)));
   for (std::size_t k = 0; k < simulation.state().moonlets.size(); ++k) {
     std::vector<double> values;
@@ -108,6 +163,7 @@ void Recorder::sample(const Simulation& simulation) {
       values.push_back(column.value({scene_, simulation, k}));
     moonlets_->append(simulation.state().step, values);
   }
+  tell_restored();
 }
 
 // In the first row at or after each multiple of its interval: what is due follows from the step alone.
@@ -145,7 +201,13 @@ void Recorder::check_forces(const Simulation& simulation) {
   c.seconds += c.last_s;
 }
 
+void Recorder::summary(const nlohmann::ordered_json& summary) {
+  lock_.require_in_place();
+  write_text(folder_.summary(), summary.dump(2) + "\n");
+}
+
 void Recorder::log(const std::string& event, const nlohmann::ordered_json& details) {
+  lock_.require_in_place();
   nlohmann::ordered_json line;
   line["event"] = event;
   line.update(details);

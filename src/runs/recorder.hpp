@@ -1,4 +1,5 @@
-// Everything that a run writes. It works on copies and never touches the state.
+// Everything that a run writes. It works on copies and never touches the state. It writes into the folder that the run
+// holds and nowhere else: every call throws IoError once the folder's name stands for something else.
 #pragma once
 
 #include "contact_log.hpp"
@@ -8,12 +9,15 @@
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/io/provenance.hpp>
 #include <keeler/io/series.hpp>
+#include <keeler/runs/folder_lock.hpp>
 #include <keeler/runs/series_columns.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <nlohmann/json.hpp>
 
+#include <functional>
 #include <optional>
+#include <string>
 
 namespace keeler {
 
@@ -43,16 +47,22 @@ struct ForceChecks {
 
 class Recorder {
 public:
-  /// `resumed_at`: the series is continued from that step, else begun anew. The scene must outlive it.
-  Recorder(const RunFolder& folder, const Scene& scene, const std::vector<std::string>& arguments,
-           OutputCounters counters, std::optional<std::int64_t> resumed_at);
+  using Notice = std::function<void(const std::string&)>; ///< a line for the user; may be empty
+
+  /// `resumed_at`: the series is continued from that step, else begun anew. The scene and the lock must outlive it.
+  Recorder(const RunFolder& folder, const FolderLock& lock, const Scene& scene,
+           const std::vector<std::string>& arguments, OutputCounters counters, std::optional<std::int64_t> resumed_at,
+           Notice notice);
 
   /// From now on contacts are logged, where the scene asks for it. The simulation must outlive its last step only.
   void watch(Simulation& simulation);
+  /// Throws IoError when the folder's name stands for something else by now.
+  void require_folder() const { lock_.require_in_place(); }
+
   /// After each step.
   void contacts();
-  /// Of the log of contacts, rows that a resumed run did not find any more.
-  std::int64_t lost_contacts() const { return contact_log_ ? contact_log_->lost() : 0; }
+  /// Tells of the rows that a resumed run did not find any more.
+  void tell_losses();
 
   void snapshot(const Simulation& simulation);
   void checkpoint(const Simulation& simulation);
@@ -61,6 +71,7 @@ public:
   /// with a kick, or at the start.
   void check_forces(const Simulation& simulation);
   void log(const std::string& event, const nlohmann::ordered_json& details);
+  void summary(const nlohmann::ordered_json& summary);
   const OutputCounters& counters() const { return counters_; }
   const Provenance& provenance() const { return provenance_; }
   const ForceChecks& force_checks() const { return force_checks_; }
@@ -68,11 +79,18 @@ public:
 
 private:
   std::optional<GravityEnergy> measure_gravity(const Simulation& simulation);
+  void tell(const std::string& text) const;
+  void tell_restored(Series& series, const std::filesystem::path& file);
+  void tell_restored();
+  void tell_lost_rows(const Series& series, const std::filesystem::path& file);
 
   RunFolder folder_;
+  const FolderLock& lock_;
   const Scene& scene_;
   Provenance provenance_;
   OutputCounters counters_;
+  std::optional<std::int64_t> resumed_at_;
+  Notice notice_;
   std::vector<SeriesColumn> columns_;
   Series series_;
   std::vector<MoonletColumn> moonlet_columns_;

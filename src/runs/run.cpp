@@ -236,6 +236,9 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
     result = runner.run();
   } catch (const Interrupted&) {
     fail_given_up(options, runner.last_checkpoint(), recorder);
+  } catch (const IoError&) {
+    recorder.require_folder(); // a folder that was moved away in the middle of a write is the better reason
+    throw;
   }
   const RunCost cost{.first_step = first_step,
                      .first_orbit = first_orbit,
@@ -246,7 +249,7 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
                      .force_checks = recorder.force_checks()};
   const nlohmann::ordered_json summary = summarise(
       simulation, scene, transport_in(folder, simulation.patch(), scene, options), result, cost, recorder.provenance());
-  write_text(folder.summary(), summary.dump(2) + "\n");
+  recorder.summary(summary);
   recorder.log(result.finished ? "finished" : "stopped", {{"step", result.step}, {"state_hash", result.state_hash}});
   return result;
 }
@@ -319,7 +322,7 @@ RunResult begin(const Scene& scene, const RunOptions& options, RunRequests& requ
     for (const std::string& doubt : doubts(scene, begun.scale))
       options.notice("note: " + doubt);
   }
-  Recorder recorder(folder, scene, options.arguments, {}, std::nullopt);
+  Recorder recorder(folder, lock, scene, options.arguments, {}, std::nullopt, options.notice);
   recorder.log(
       "started",
       {{"particles", simulation.state().particles.size()}, {"end_orbits", end_orbits(scene)}, {"threads", threads()}});
@@ -349,14 +352,9 @@ RunResult go_on(const RunOptions& options, RunRequests& requests) {
   Simulation simulation(scene, std::move(loaded.run.state));
   folder.cut_snapshots(loaded.counters.snapshots);
   folder.remove_summary();
-  Recorder recorder(folder, scene, options.arguments, loaded.counters, step);
-  if (const std::int64_t lost = recorder.lost_contacts(); lost > 0) {
-    recorder.log("contacts lost", {{"rows", lost}});
-    if (options.notice)
-      options.notice(fmt::format("the last {} rows of the log of contacts are missing or damaged; it goes on without "
-                                 "them",
-                                 lost));
-  }
+  prune_checkpoints(newest.path);
+  Recorder recorder(folder, lock, scene, options.arguments, loaded.counters, step, options.notice);
+  recorder.tell_losses();
   recorder.log("resumed", {{"checkpoint", newest.path.filename().string()},
                            {"step", step},
                            {"orbits", simulation.orbits()},

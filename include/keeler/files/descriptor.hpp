@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 
 namespace keeler {
 
@@ -23,6 +24,8 @@ public:
   void write_all(std::span<const std::byte> content);
   /// Adds it to a file opened with O_APPEND; after a failure the file ends where it did before.
   void append_whole(std::span<const std::byte> content);
+  /// All of a file that is open for reading too, whatever has become of its name.
+  std::string read_all() const;
   std::size_t size() const;
   void truncate(std::size_t size);
   /// Forces the content to disk.

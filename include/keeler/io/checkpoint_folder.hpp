@@ -21,7 +21,11 @@ struct NewestCheckpoint {
 /// The newest checkpoint that is whole. Throws IoError when there is none.
 NewestCheckpoint newest_valid_checkpoint(const std::filesystem::path& folder);
 
-/// Removes all but the newest `keep` checkpoints, and what interrupted writes of checkpoints left.
-void prune_checkpoints(const std::filesystem::path& folder, std::size_t keep = 2);
+/// Removes the checkpoints before this one but the `keep` - 1 newest of them, and what interrupted writes of
+/// checkpoints left.
+void prune_checkpoints(const std::filesystem::path& newest, std::size_t keep = 2);
+
+/// Removes the checkpoints after this one, which a run has passed over: they are of a future that it makes anew.
+void remove_later_checkpoints(const std::filesystem::path& newest);
 
 } // namespace keeler

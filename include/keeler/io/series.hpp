@@ -1,13 +1,16 @@
 // Time series as CSV: one header line, then one row a sample, with the step first. A row is in the file when append()
-// returns, and is there whole or not at all.
+// returns, and is there whole or not at all. A file that somebody removes or replaces meanwhile is written anew with
+// all its rows.
 #pragma once
 
 #include <keeler/files/descriptor.hpp>
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace keeler {
@@ -35,21 +38,34 @@ public:
 
   /// Continues a file after a restart at `last_step`: rows of later steps, which the run will make again, and an
   /// incomplete last row are cut off first. A missing file is begun anew. Throws IoError, also when the columns differ.
+  /// last_found() tells how far its rows reach.
   static Series resume(const std::filesystem::path& file, const std::vector<std::string>& columns,
                        std::int64_t last_step);
 
   /// Adds a row of one number a column, written so that reading gives the same bits. Throws IoError, and then the file
-  /// ends with the row before.
+  /// ends with the row before; also when the rows before it are no more in the file.
   void append(std::int64_t step, std::span<const double> values);
 
   /// Forces the rows to disk. Do so before a checkpoint, so that the series reaches at least as far.
   void sync();
 
-private:
-  Series(const std::filesystem::path& file, std::size_t columns);
+  /// The step of the last row that resume() kept; none without any.
+  std::optional<std::int64_t> last_found() const { return last_found_; }
 
+  /// Whether the file had to be written anew since this was asked last.
+  bool take_restored() { return std::exchange(restored_, false); }
+
+private:
+  Series(const std::filesystem::path& file, std::size_t columns, std::optional<std::int64_t> last_found = {});
+
+  void require_rows();
+
+  std::filesystem::path path_;
   Descriptor file_;
   std::size_t columns_; // without the step
+  std::size_t size_;    // of the file, as the last row left it
+  bool restored_ = false;
+  std::optional<std::int64_t> last_found_;
 };
 
 } // namespace keeler

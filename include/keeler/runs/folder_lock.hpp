@@ -14,7 +14,12 @@ public:
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
+  /// Throws IoError when the name stands for another folder by now, or for none: what is written under it would not be
+  /// beside the rest.
+  void require_in_place() const;
+
 private:
+  std::filesystem::path folder_;
   int descriptor_;
 };
 

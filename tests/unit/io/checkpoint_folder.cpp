@@ -73,11 +73,25 @@ TEST_CASE("pruning keeps the newest and removes torn files") {
     write_step(folder, step);
   write_text(folder / "checkpoint_000050.h5.tmp", "torn");
   write_text(folder / "series.csv", "");
-  prune_checkpoints(folder.path());
+  prune_checkpoints(checkpoint_path(folder.path(), 40));
   const auto files = list_checkpoints(folder.path());
   REQUIRE(files.size() == 2);
   CHECK(files[1] == checkpoint_path(folder.path(), 30));
   CHECK(folder.file_count() == 3);
-  prune_checkpoints(folder.path(), 3);
+  prune_checkpoints(checkpoint_path(folder.path(), 40), 3);
   CHECK(folder.file_count() == 3);
+}
+
+TEST_CASE("pruning counts from the checkpoint that a run goes on from, and later ones are removed apart") {
+  const TemporaryFolder folder;
+  for (const int step : {10, 20, 30, 40, 50})
+    write_step(folder, step);
+  const auto newest = checkpoint_path(folder.path(), 30);
+  prune_checkpoints(newest);
+  CHECK(list_checkpoints(folder.path()).size() == 4);
+  remove_later_checkpoints(newest);
+  const auto files = list_checkpoints(folder.path());
+  REQUIRE(files.size() == 2);
+  CHECK(files[0] == newest);
+  CHECK(files[1] == checkpoint_path(folder.path(), 20));
 }

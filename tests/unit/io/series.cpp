@@ -71,6 +71,31 @@ TEST_CASE("a file that is not this series is an error and stays as it is") {
   }
 }
 
+TEST_CASE("a file that loses its name is written anew with all its rows; one that lost its rows is an error") {
+  const TemporaryFolder folder;
+  const auto file = folder / "series.csv";
+  Series series = Series::begin(file, columns);
+  append(series, 0);
+  append(series, 5);
+  const std::string before = read_text(file);
+  CHECK_FALSE(series.take_restored());
+  std::filesystem::remove(file);
+  append(series, 10);
+  CHECK(series.take_restored());
+  CHECK_FALSE(series.take_restored());
+  CHECK(read_text(file).starts_with(before + "10,"));
+  write_text(file, "of another hand");
+  series.sync();
+  CHECK(series.take_restored());
+  CHECK(read_text(file).starts_with(before + "10,"));
+  std::filesystem::resize_file(file, before.size());
+  CHECK_THROWS_WITH_AS(append(series, 15), doctest::Contains("changed by another program"), IoError);
+  CHECK_THROWS_AS(series.sync(), IoError);
+  CHECK(read_text(file) == before);
+  CHECK(Series::resume(file, columns, 7).last_found() == 5);
+  CHECK_FALSE(Series::resume(file, columns, -1).last_found());
+}
+
 TEST_CASE("a full disk is noticed at the row that does not fit, which leaves nothing behind") {
   const TemporaryFolder folder;
   const auto file = folder / "series.csv";

@@ -112,8 +112,9 @@ double held_by_recorder(const std::filesystem::path& folder, const Scene& scene)
   RunFolder run(folder);
   run.make();
   Simulation simulation(scene, initial_patch(scene));
-  std::optional<Recorder> recorder(std::in_place, run, scene, std::vector<std::string>{}, OutputCounters{},
-                                   std::nullopt);
+  const FolderLock lock(run.path());
+  std::optional<Recorder> recorder(std::in_place, run, lock, scene, std::vector<std::string>{}, OutputCounters{},
+                                   std::nullopt, Recorder::Notice{});
   recorder->sample(simulation);
   recorder->watch(simulation);
   for (int k = 0; k < 3; ++k) {
