@@ -140,7 +140,8 @@ void add_analyze(CLI::App& program, Action& action) {
   command.add_option("--since", options->window.since, "first orbit (default: from where on the run is steady)")
       ->type_name("ORBIT");
   command.add_option("--until", options->window.until, "last orbit (default: the newest)")->type_name("ORBIT");
-  command.add_option("--csv", options->csv, "write the numbers of each snapshot by itself to this file, a row each");
+  command.add_option("--csv", options->csv, "write the numbers of each snapshot by itself to this file, a row each")
+      ->type_name("FILE");
   command
       .add_option("--cluster-gap", options->settings.cluster_gap,
                   "largest gap between touching spheres, over the sum of their radii (default: 0.01)")
@@ -148,7 +149,8 @@ void add_analyze(CLI::App& program, Action& action) {
   command.add_option("--modes", options->settings.radial_modes, "radial modes to measure (default: 4)")
       ->check(number_between(1, 1000, "a number of modes"));
   CLI::Option* const profile =
-      command.add_option("--profile", options->profile, "write radial profiles of all snapshots to this CSV file");
+      command.add_option("--profile", options->profile, "write radial profiles of all snapshots to this CSV file")
+          ->type_name("FILE");
   command.add_option("--bins", options->profile_bins, "bins of the profiles along the radius (default: 100)")
       ->check(number_between(1, 1e6, "a number of bins"))
       ->needs(profile);

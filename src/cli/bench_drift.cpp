@@ -3,8 +3,8 @@
 #include "bench_counts.hpp"
 
 #include <keeler/bench/drift.hpp>
-#include <keeler/contacts/finders.hpp>
 #include <keeler/core/words.hpp>
+#include <keeler/scene/keys.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -31,13 +31,6 @@ double cost_per_orbit_us(const DriftBenchSettings& s, const DriftBench& b) {
 
 double collisions_per_orbit(const DriftBenchSettings& s, const DriftBench& b) {
   return 2.0 * b.timed.per_particle_step(b.timed.collisions) / s.step_orbits;
-}
-
-CLI::Validator finder_name() {
-  const auto refusal = [](const std::string& name) {
-    return make_finder(name) ? std::string() : "there is no finder '" + name + "' (docs/manual/scene.md lists them)";
-  };
-  return CLI::Validator(refusal, "");
 }
 
 void print_json(const DriftBenchSettings& s, const std::string& sizes, const DriftBench& b) {
@@ -121,13 +114,12 @@ void add_bench_drift(CLI::App& bench_command, Action& action) {
   drift.add_option("--step", s.step_orbits, "step in orbits (default: 0.001)")->check(positive_number());
   drift.add_option("--optical-depth", s.optical_depth, "optical depth, up to 10 (default: 0.5)")
       ->check(CLI::Range(1e-6, 10.0).description(""));
-  drift
-      .add_option("--sizes", options->sizes,
-                  "equal: all of 1 m; power: n(r) ~ r^-3 from 1 m to 100 m; moonlet: 1 m, and one of 100 m (default: "
-                  "equal)")
-      ->check(CLI::IsMember(sizes_by_name).description(""));
-  drift.add_option("--finder", s.finder, "collision finder, a name of the manual's scene keys (default: certified)")
-      ->check(finder_name());
+  one_of(drift.add_option("--sizes", options->sizes,
+                          "equal: all of 1 m; power: n(r) ~ r^-3 from 1 m to 100 m; moonlet: 1 m, and one of 100 m "
+                          "(default: equal)"),
+         {"equal", "power", "moonlet"});
+  one_of(drift.add_option("--finder", s.finder, "collision finder, as in a scene (default: certified)"),
+         find_key("collisions.finder")->choices);
   add_repeats(drift, s.repeats);
   drift.add_flag("--all-pairs", s.all_pairs,
                  "hand every candidate of the grid to the finder, without rejecting any first");

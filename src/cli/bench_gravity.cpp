@@ -73,14 +73,13 @@ void add_bench_gravity(CLI::App& bench_command, Action& action) {
   const auto options = std::make_shared<GravityOptions>();
   CLI::App& gravity = *bench_command.add_subcommand(
       "gravity", "the gravity solvers: cost and error of each setting, in a patch of Saturn's A ring");
-  gravity
-      .add_option("--solver", options->bench.solver, "one solver (default: all, direct for up to 10000 particles only)")
-      ->check(CLI::IsMember(gravity_solver_names()).description(""));
+  one_of(gravity.add_option("--solver", options->bench.solver,
+                            "one solver (default: all, direct for up to 10000 particles only)"),
+         gravity_solver_names());
   gravity.add_option("--count", options->bench.count, "particles (default: 100000)")->check(positive_number());
-  gravity
-      .add_option("--state", options->state,
-                  "clumped: self-gravity wakes stand; uniform: a fresh patch (default: clumped)")
-      ->check(CLI::IsMember(std::vector<std::string>{"clumped", "uniform"}).description(""));
+  one_of(gravity.add_option("--state", options->state,
+                            "clumped: self-gravity wakes stand; uniform: a fresh patch (default: clumped)"),
+         {"clumped", "uniform"});
   add_repeats(gravity, options->bench.repeats);
   options->threads.add_to(gravity);
   gravity.add_flag("--json", options->json, "print the numbers as JSON");

@@ -101,13 +101,15 @@ void add_bench_step(CLI::App& bench_command, Action& action) {
   CLI::Option* count =
       step.add_option("--count", s.count, "particles of the clumped patch (default: 100000)")->check(positive_number());
   step.add_option("--from", s.from, "time the state of this snapshot as it stands, with the scene that it holds")
+      ->type_name("FILE")
       ->excludes(count);
   step.add_option("--kick-every", s.kick_every,
                   "steps for each kick of gravity (default: 1; with --from as in the snapshot's scene)")
       ->check(positive_number());
-  step.add_option("--solver", s.solver,
-                  "gravity solver with its default settings (default: tree; with --from that of the snapshot's scene)")
-      ->check(CLI::IsMember(gravity_solver_names()).description(""));
+  one_of(step.add_option("--solver", s.solver,
+                         "gravity solver with its default settings (default: tree; with --from that of the snapshot's "
+                         "scene)"),
+         gravity_solver_names());
   add_repeats(step, s.repeats);
   options->threads.add_to(step);
   step.add_flag("--json", options->json, "print the numbers as JSON");

@@ -27,6 +27,7 @@ void add_check(CLI::App& program, Action& action);
 void add_generate(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
 void add_run(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
 void add_resume(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
+void add_complete(CLI::App& program, Action& action);
 void add_help(CLI::App& program, Action& action);
 void add_info(CLI::App& program, Action& action);
 void add_convert(CLI::App& program, Action& action);

@@ -2,16 +2,20 @@
 #pragma once
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/suggest.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/files/files.hpp>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace keeler {
 
@@ -48,6 +52,19 @@ inline CLI::Validator whole_number_between(long low, long high, const std::strin
                : fmt::format("'{}' is not {} from {} to {}", text, what, low, high);
   };
   return CLI::Validator(refusal, "");
+}
+
+/// Takes one of these words; --help shows them, and the shell completes them.
+inline CLI::Option& one_of(CLI::Option* option, const std::vector<std::string>& words) {
+  const auto refusal = [words](const std::string& word) {
+    if (std::find(words.begin(), words.end(), word) != words.end())
+      return std::string();
+    const std::string near = closest(word, words);
+    return fmt::format("'{}' is none of {}", word, fmt::join(words, ", ")) +
+           (near.empty() ? "" : "; did you mean '" + near + "'?");
+  };
+  option->type_name(fmt::format("{}", fmt::join(words, "|")))->check(CLI::Validator(refusal, ""));
+  return *option;
 }
 
 /// Refuses to make a file ("a state") where there is a folder, where there is one unless `force`, or where none can be

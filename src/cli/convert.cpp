@@ -100,13 +100,14 @@ void add_convert(CLI::App& program, Action& action) {
       .add_option("FILE|DIR", options->path, "a snapshot or a checkpoint, or the folder of a run: all its snapshots")
       ->required()
       ->type_name("");
-  command.add_option("--to", options->format, "csv: a row a particle; vtp: a point a particle, for ParaView")
-      ->required()
-      ->type_name("FORMAT")
-      ->check(CLI::IsMember({"csv", "vtp"}).description(""));
-  command.add_option("-o,--output", options->output,
-                     "the file to write (default: the same name with the other ending), or for a run the folder "
-                     "(default: csv or vtp in the run's)");
+  one_of(command.add_option("--to", options->format, "csv: a row a particle; vtp: a point a particle, for ParaView"),
+         {"csv", "vtp"})
+      .required();
+  command
+      .add_option("-o,--output", options->output,
+                  "the file to write (default: the same name with the other ending), or for a run the folder "
+                  "(default: csv or vtp in the run's)")
+      ->type_name("FILE|DIR");
   command.add_flag("--force", options->force, "replace files that exist");
   examples_of(command,
               {"keeler convert wakes --to vtp", "keeler convert wakes/snap_000030.hdf --to csv -o particles.csv"});

@@ -138,7 +138,9 @@ void add_generate(CLI::App& program, Action& action, const std::vector<std::stri
   const auto options = std::make_shared<GenerateOptions>();
   CLI::App& command = *program.add_subcommand("generate", "write the initial state of a scene as a snapshot");
   options->scene.add_to(command)->required();
-  command.add_option("-o,--output", options->output, "the snapshot to write; give it the ending .hdf")->required();
+  command.add_option("-o,--output", options->output, "the snapshot to write; give it the ending .hdf")
+      ->required()
+      ->type_name("FILE");
   CLI::Option& clumped = *command.add_flag("--clumped", options->clumped,
                                            "evolve the state under its own gravity until its wakes have settled");
   command
@@ -148,7 +150,7 @@ void add_generate(CLI::App& program, Action& action, const std::vector<std::stri
       ->needs(&clumped);
   CLI::Option& table = *command.add_option("--from-table", options->table,
                                            "the particles are those of this table (CSV or HDF5) in the scene's box");
-  table.excludes(&clumped);
+  table.excludes(&clumped)->type_name("FILE");
   command.add_flag("--relax", options->relax, "move particles of the table that overlap apart")->needs(&table);
   command.add_flag("--force", options->force, "replace the file if it exists");
   options->threads.add_to(command);

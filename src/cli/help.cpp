@@ -1,5 +1,6 @@
 // keeler help, and what --help ends with.
 #include "command.hpp"
+#include "man_page.hpp"
 #include "usage.hpp"
 
 #include <keeler/core/suggest.hpp>
@@ -48,12 +49,21 @@ ExitCode print_help(const CLI::App& command) {
 }
 
 void add_help(CLI::App& program, Action& action) {
-  const auto words = std::make_shared<std::vector<std::string>>();
+  struct HelpOptions {
+    std::vector<std::string> words;
+    bool man = false;
+  };
+  const auto options = std::make_shared<HelpOptions>();
   CLI::App& command = *program.add_subcommand("help", "list the commands, or say what a command does");
-  command.add_option("COMMAND", *words, "a command, and its part: bench drift")->type_name("");
-  examples_of(command, {"keeler help run", "keeler help bench drift"});
-  command.callback(
-      [words, &program, &action] { action = [words, &program] { return print_help(find_command(program, *words)); }; });
+  command.add_option("COMMAND", options->words, "a command, and its part: bench drift")->type_name("");
+  command.add_flag("--man", options->man, "print it as the source of a manual page, for man -l");
+  examples_of(command, {"keeler help run", "keeler help bench drift", "keeler help run --man"});
+  command.callback([options, &program, &action] {
+    action = [options, &program] {
+      const CLI::App& about = find_command(program, options->words);
+      return options->man ? print_man_page(about) : print_help(about);
+    };
+  });
 }
 
 } // namespace keeler

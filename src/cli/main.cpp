@@ -68,6 +68,7 @@ void add_commands(CLI::App& program, Action& action, const std::vector<std::stri
   group(program, "Study");
   add_help(program, action);
   group(program, "Help");
+  add_complete(program, action);
 }
 
 int run(int argc, char** argv) {

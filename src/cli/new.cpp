@@ -57,7 +57,7 @@ void add_new(CLI::App& program, Action& action) {
       *program.add_subcommand("new", "write one of the shipped examples as a scene of your own, with comments");
   CLI::Option* const name = command.add_option("NAME", options->name, "the example")->type_name("");
   CLI::Option* const output =
-      command.add_option("-o,--output", options->output, "the scene to write (default: NAME.toml)");
+      command.add_option("-o,--output", options->output, "the scene to write (default: NAME.toml)")->type_name("FILE");
   command.add_flag("--list", options->list, "list the examples, as without NAME")->excludes(name)->excludes(output);
   command.add_flag("--force", options->force, "replace files that exist");
   examples_of(command, {"keeler new --list", "keeler new moonlet", "keeler new a-ring-wakes -o mine.toml"});

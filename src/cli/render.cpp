@@ -13,6 +13,7 @@
 #include <keeler/runs/stored_patches.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <memory>
@@ -98,18 +99,19 @@ void add_render(CLI::App& program, Action& action) {
   const auto options = std::make_shared<RenderOptions>();
   CLI::App& command = *program.add_subcommand("render", "draw a snapshot, or the last state of a run");
   command.add_option("FILE|DIR", options->path, "a snapshot, or the folder of a run")->required()->type_name("");
-  command.add_option("-o,--output", options->output,
-                     "the file to write (default: picture.png in the folder, or beside the file)");
+  command
+      .add_option("-o,--output", options->output,
+                  "the file to write (default: picture.png in the folder, or beside the file)")
+      ->type_name("FILE");
   command.add_option("--width", options->width, "of the picture (default: 1600)")
       ->type_name("PIXELS")
       ->check(whole_number_between(least_picture_width, most_picture_width, "a number of pixels"));
-  command.add_option("--theme", options->theme, "the page: dark (the default), or light for print")
-      ->type_name("NAME")
-      ->check(CLI::IsMember({"dark", "light"}));
+  one_of(command.add_option("--theme", options->theme, "the page: dark (the default), or light for print"),
+         {"dark", "light"});
   command
       .add_option("--colour", options->colour,
-                  "what the colours say, with a bar: size, speed, spin, cluster, density (default: height, without)")
-      ->type_name("FIELD");
+                  "what the colours say, with a bar (default: height, shades without a bar)")
+      ->type_name(fmt::format("{}", fmt::join(colour_field_names(), "|")));
   command.add_flag("--oblique", options->oblique, "see the patch from 35 degrees above its plane, not from above");
   CLI::Option* const autocorrelation =
       command.add_flag("--autocorrelation", options->autocorrelation,

@@ -43,7 +43,8 @@ void add_report(CLI::App& program, Action& action) {
   CLI::App& command = *program.add_subcommand(
       "report", "write a page about a run: pictures, a view in 3-D, plots, numbers, scene, cost");
   command.add_option("DIR", options->folder, "the folder of the run")->required()->type_name("");
-  command.add_option("-o,--output", options->output, "the file to write (default: report.html in the folder)");
+  command.add_option("-o,--output", options->output, "the file to write (default: report.html in the folder)")
+      ->type_name("FILE");
   command
       .add_option("--snapshots", options->page.snapshots,
                   "how many snapshots the 3-D view has at most, evenly through the run (default: 8)")

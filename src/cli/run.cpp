@@ -115,8 +115,10 @@ void add_run(CLI::App& program, Action& action, const std::vector<std::string>& 
   const auto job = std::make_shared<JobOptions>();
   CLI::App& command = *program.add_subcommand("run", "evolve a scene into a folder of results");
   job->scene.add_to(command)->required();
-  command.add_option("-o,--output", job->folder, "the folder for the results; made if absent")->required();
-  command.add_option("--from", job->from, "start from the particles and the box of this snapshot");
+  command.add_option("-o,--output", job->folder, "the folder for the results; made if absent")
+      ->required()
+      ->type_name("DIR");
+  command.add_option("--from", job->from, "start from the particles and the box of this snapshot")->type_name("FILE");
   command.add_flag("--force", job->force, "replace the run that the folder holds");
   add_common(command, *job);
   examples_of(command,

@@ -44,7 +44,8 @@ ExitCode carry_out(Settings& settings, const TalkOption& talk, const Study& stud
 
 template<class Settings> void add_folder(CLI::App& command, Settings& settings) {
   command.add_option("-o,--output", settings.folder, "the folder for the results; a study in it is continued")
-      ->required();
+      ->required()
+      ->type_name("DIR");
 }
 
 void add_finders(CLI::App& command, Action& action, const std::vector<std::string>& arguments) {

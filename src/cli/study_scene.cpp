@@ -58,7 +58,8 @@ void add_one(CLI::App& study, Action& action, const std::vector<std::string>& ar
   CLI::App& command = *study.add_subcommand(name, about + "; stopped (exit 75) or killed, the same command goes on");
   options->scene.add_to(command)->required();
   command.add_option("-o,--output", settings.folder, "the folder for the results; a study in it is continued")
-      ->required();
+      ->required()
+      ->type_name("DIR");
   options->talk.add_to(command);
   command.add_option("--seeds", settings.seeds, "runs with each setting (default: 3)")
       ->check(number_between(1, most_seeds, "a number of seeds"));

@@ -82,7 +82,8 @@ void add_sweep(CLI::App& program, Action& action) {
       ->required()
       ->type_name("");
   command.add_option("-o,--output", settings.folder, "the folder for the results; several programs may share it")
-      ->required();
+      ->required()
+      ->type_name("DIR");
   command.add_option("--jobs", options->jobs, "runs at once (default: threads of the machine / threads of a run)")
       ->check(number_between(1, most_threads, "a number of runs"));
   command.add_option("--threads", settings.threads_per_run, "threads of each run (default: 1)")

@@ -54,7 +54,9 @@ void add_tile(CLI::App& program, Action& action, const std::vector<std::string>&
       ->required()
       ->type_name("")
       ->check(copies);
-  command.add_option("-o,--output", options->output, "the snapshot to write; give it the ending .hdf")->required();
+  command.add_option("-o,--output", options->output, "the snapshot to write; give it the ending .hdf")
+      ->required()
+      ->type_name("FILE");
   command.add_flag("--force", options->force, "replace the file if it exists");
   options->threads.add_to(command);
   examples_of(command, {"keeler tile wakes/snap_000030.hdf 3 3 -o large.hdf"});

@@ -200,8 +200,7 @@ void add_tune(CLI::App& program, Action& action) {
   std::vector<std::string> names;
   for (const Quality& quality : qualities)
     names.emplace_back(quality.name);
-  command.add_option("--quality", options->quality, "what is asked for: fast, balanced or strict (default: balanced)")
-      ->check(CLI::IsMember(names).description(""));
+  one_of(command.add_option("--quality", options->quality, "what is asked for (default: balanced)"), names);
   command
       .add_option("--force-error", options->force_error,
                   "rms error of gravity's forces that is allowed, in place of the quality's")
@@ -214,7 +213,8 @@ void add_tune(CLI::App& program, Action& action) {
       .add_option("--orbits", options->settings.orbits,
                   "age of the state that is probed (default: 4 with self-gravity, else 8; at most the run's end)")
       ->check(positive_number());
-  command.add_option("-o,--output", options->output, "write the scene with the keys that were found");
+  command.add_option("-o,--output", options->output, "write the scene with the keys that were found")
+      ->type_name("FILE");
   command.add_flag("--force", options->force, "replace the file if it exists");
   command.add_flag("--json", options->json, "print the numbers as JSON");
   options->threads.add_to(command);

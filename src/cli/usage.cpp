@@ -42,6 +42,12 @@ std::vector<const CLI::App*> listed_commands(const CLI::App& command) {
   return command.get_subcommands([](const CLI::App* app) { return !app->get_group().empty(); });
 }
 
+std::string placeholder_of(const CLI::Option& option) {
+  if (option.get_positional())
+    return option.get_name(true);
+  return option.get_items_expected_max() == 0 ? "" : option.get_type_name();
+}
+
 std::string usage_fault(const CLI::App& program, const CLI::ParseError& error) {
   const CLI::App& command = asked_command(program);
   const std::vector<std::string> words = command.remaining();

@@ -1,4 +1,4 @@
-// What the program says of a command line that it cannot take.
+// Commands and options as people name them, and what the program says of a command line that it cannot take.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -13,6 +13,9 @@ std::string full_name(const CLI::App& command);
 
 /// The commands below this one, without those that --help does not list.
 std::vector<const CLI::App*> listed_commands(const CLI::App& command);
+
+/// What stands for the value of an option, or for an argument, in --help: "FILE", "dark|light"; empty for a flag.
+std::string placeholder_of(const CLI::Option& option);
 
 /// The line on what was wrong: a command or an option that does not exist, with the nearest one that does, or what
 /// CLI11 found.

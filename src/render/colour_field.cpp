@@ -7,6 +7,7 @@
 #include <keeler/diagnostics/clusters.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -54,14 +55,19 @@ std::vector<double> cluster_sizes(const Patch& patch) {
 
 } // namespace
 
+std::vector<std::string> colour_field_names() {
+  std::vector<std::string> names;
+  for (const auto& field : fields)
+    names.emplace_back(field.first);
+  return names;
+}
+
 ColourField colour_field_named(const std::string& name) {
-  std::string names;
-  for (const auto& [known, field] : fields) {
+  for (const auto& [known, field] : fields)
     if (name == known)
       return field;
-    names += (names.empty() ? "" : ", ") + std::string(known);
-  }
-  throw UsageError(fmt::format("--colour: '{}' is no field of a picture; choose one of {}", name, names));
+  throw UsageError(fmt::format("--colour: '{}' is no field of a picture; choose one of {}", name,
+                               fmt::join(colour_field_names(), ", ")));
 }
 
 double ColourRange::share(double value) const {

@@ -20,6 +20,9 @@ enum class ColourField {
   density  ///< a map of the surface density instead of the view from above, kg/m²
 };
 
+/// As above, in this order.
+std::vector<std::string> colour_field_names();
+
 /// The field of a name as above. Throws UsageError that lists them.
 ColourField colour_field_named(const std::string& name);
 

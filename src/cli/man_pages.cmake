@@ -1,0 +1,10 @@
+# cmake -DPROGRAM=keeler -DFOLDER=man -P man_pages.cmake: a manual page of each command, and keeler.1 last.
+execute_process(COMMAND "${PROGRAM}" complete keeler "" OUTPUT_VARIABLE offered COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "\n[a-z]+\t" commands "${offered}")
+file(MAKE_DIRECTORY "${FOLDER}")
+foreach(line IN LISTS commands ITEMS "")
+  string(STRIP "${line}" command)
+  set(page keeler ${command})
+  list(JOIN page "-" page)
+  execute_process(COMMAND "${PROGRAM}" help ${command} --man OUTPUT_FILE "${FOLDER}/${page}.1" COMMAND_ERROR_IS_FATAL ANY)
+endforeach()
