@@ -136,7 +136,7 @@ StoredCheckpoint load(const hdf5::Handle& image) {
 }
 
 StoredCheckpoint load(const std::filesystem::path& file) {
-  const hdf5::Handle image = open_sealed(file, Seal::required);
+  const hdf5::Handle image = open_sealed(file);
   try {
     return load(image);
   } catch (const IoError& error) {

@@ -77,7 +77,7 @@ void write_contacts(const std::filesystem::path& file, std::span<const ContactRo
 }
 
 ContactFile read_contacts(const std::filesystem::path& file) {
-  const hdf5::Handle image = open_sealed(file, Seal::required);
+  const hdf5::Handle image = open_sealed(file);
   try {
     if (!hdf5::exists(image, "Code") || !hdf5::exists(image, group_name))
       throw IoError("it is not a file of contacts");

@@ -7,7 +7,25 @@
 
 #include <fmt/format.h>
 
+#include <concepts>
+
 namespace keeler {
+
+template<class Parcel, class T>
+requires std::same_as<std::remove_const_t<T>, FieldDescription>
+void pass(Parcel& parcel, T& field) {
+  parcel(field.name, field.type, field.shape, field.unit, field.about, field.value);
+}
+
+template<class Parcel, class T>
+requires std::same_as<std::remove_const_t<T>, FileDescription>
+void pass(Parcel& parcel, T& description) {
+  auto kind = static_cast<std::uint8_t>(description.kind);
+  parcel(kind, description.format_version, description.fields, description.attributes, description.scene);
+  if constexpr (!std::is_const_v<T>)
+    description.kind = kind == 0 ? FileKind::checkpoint : kind == 1 ? FileKind::snapshot : FileKind::contacts;
+}
+
 namespace {
 
 std::string joined(const std::vector<std::string>& values, bool scalar) {
@@ -96,10 +114,7 @@ FileDescription describe_table(const hdf5::Handle& image, FileKind kind, const c
   return description;
 }
 
-} // namespace
-
-FileDescription describe_file(const std::filesystem::path& file) {
-  const hdf5::Handle image = open_sealed(file, Seal::optional);
+FileDescription description_in(const hdf5::Handle& image, const std::filesystem::path& file) {
   try {
     if (has_format(image, checkpoint_format))
       return describe_checkpoint(image);
@@ -114,6 +129,13 @@ FileDescription describe_file(const std::filesystem::path& file) {
     throw IoError(fmt::format("cannot read '{}': {}", file.string(), error.what()));
   }
   throw IoError(fmt::format("'{}' is no snapshot, checkpoint or file of contacts of Keeler", file.string()));
+}
+
+} // namespace
+
+FileDescription describe_file(const std::filesystem::path& file) {
+  const auto read = [&](const hdf5::Handle& image) { return description_in(image, file); };
+  return read_content<FileDescription>(file, read);
 }
 
 } // namespace keeler

@@ -1,5 +1,6 @@
 #include <keeler/io/particle_table.hpp>
 
+#include "apart.hpp"
 #include "hdf5.hpp"
 
 #include <keeler/core/error.hpp>
@@ -12,11 +13,19 @@
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <iterator>
 
 #include <fcntl.h>
 
 namespace keeler {
+
+template<class Parcel, class T>
+requires std::same_as<std::remove_const_t<T>, ParticleTable>
+void pass(Parcel& parcel, T& table) {
+  parcel(table.file, table.places, table.velocities, table.radii, table.masses, table.lines, table.spins);
+}
+
 namespace {
 
 struct Column {
@@ -130,6 +139,15 @@ ParticleTable read_hdf5_table(std::span<const std::byte> bytes, const std::strin
   return table_of(file, sort_out(names, std::move(values), file), {});
 }
 
+// Of what a child process sent.
+void require_consistent(const ParticleTable& table) {
+  const std::size_t count = table.size();
+  const auto fits = [&](std::size_t size, bool may_miss) { return size == count || (may_miss && size == 0); };
+  if (!fits(table.places.size(), false) || !fits(table.velocities.size(), true) || !fits(table.masses.size(), true) ||
+      !fits(table.lines.size(), true) || !fits(table.spins.size(), true))
+    throw IoError(fmt::format("cannot read '{}': its columns have different lengths", table.file));
+}
+
 void append_vector(fmt::memory_buffer& row, const Vec3& v) {
   fmt::format_to(std::back_inserter(row), ",{},{},{}", v.x(), v.y(), v.z());
 }
@@ -146,11 +164,16 @@ ParticleTable read_particle_table(const std::filesystem::path& file) {
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   if (!text.starts_with(signature))
     return read_text_table(bytes, file.string());
-  try {
-    return read_hdf5_table(bytes, file.string());
-  } catch (const IoError& error) {
-    throw IoError(fmt::format("cannot read '{}' as HDF5: {}", file.string(), error.what()));
-  }
+  const std::string what = fmt::format("read '{}' as HDF5", file.string());
+  ParticleTable table = read_apart<ParticleTable>(what, limits_for(bytes.size()), [&] {
+    try {
+      return read_hdf5_table(bytes, file.string());
+    } catch (const IoError& error) {
+      throw IoError(fmt::format("cannot {}: {}", what, error.what()));
+    }
+  });
+  require_consistent(table);
+  return table;
 }
 
 void write_particle_table(const std::filesystem::path& file, const Patch& patch) {

@@ -14,12 +14,6 @@ namespace {
 constexpr std::string_view mark = "KEELER-SEAL";
 constexpr std::size_t seal_size = 64;
 
-std::string seal_of(std::span<const std::byte> content) {
-  Hash hash;
-  hash.add_bytes(content);
-  return fmt::format("{} {:016x} {}  \n", mark, content.size(), hash.hex()); // 11 + 1 + 16 + 1 + 32 + 3
-}
-
 std::string_view as_text(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
@@ -28,17 +22,13 @@ std::string_view as_text(std::span<const std::byte> bytes) {
   throw IoError(fmt::format("'{}' is damaged: {}", file.string(), reason));
 }
 
-// The HDF5 content of a sealed file; empty when it has no seal.
-std::span<const std::byte> sealed_content(const std::filesystem::path& file, std::span<const std::byte> bytes) {
-  if (bytes.size() < seal_size || !as_text(bytes.last(seal_size)).starts_with(mark))
-    return {};
-  const std::span<const std::byte> content = bytes.first(bytes.size() - seal_size);
-  if (as_text(bytes.last(seal_size)) != seal_of(content))
-    damaged(file, "its content does not match its checksum");
-  return content;
-}
-
 } // namespace
+
+std::string seal_of(std::span<const std::byte> content) {
+  Hash hash;
+  hash.add_bytes(content);
+  return fmt::format("{} {:016x} {}  \n", mark, content.size(), hash.hex()); // 11 + 1 + 16 + 1 + 32 + 3
+}
 
 void write_sealed(const std::filesystem::path& file, const hdf5::Handle& image) {
   std::vector<std::byte> bytes = hdf5::image_of(image);
@@ -48,17 +38,31 @@ void write_sealed(const std::filesystem::path& file, const hdf5::Handle& image) 
   write_file(file, bytes);
 }
 
-hdf5::Handle open_sealed(const std::filesystem::path& file, Seal seal) {
-  const std::vector<std::byte> bytes = read_file(file);
-  const std::span<const std::byte> content = sealed_content(file, bytes);
-  if (!content.empty())
-    return hdf5::open_image(content);
-  if (seal == Seal::required)
+FileContent load_content(const std::filesystem::path& file) {
+  FileContent content{read_file(file), false};
+  const std::size_t size = content.bytes.size();
+  if (size < seal_size || !as_text(std::span(content.bytes).last(seal_size)).starts_with(mark))
+    return content;
+  const std::string seal(as_text(std::span(content.bytes).last(seal_size)));
+  content.bytes.resize(size - seal_size);
+  if (seal != seal_of(content.bytes))
+    damaged(file, "its content does not match its checksum");
+  content.sealed = true;
+  return content;
+}
+
+hdf5::Handle open_sealed(const std::filesystem::path& file) {
+  const FileContent content = load_content(file);
+  if (!content.sealed)
     damaged(file, "its end is missing or it is not a Keeler file");
+  return hdf5::open_image(content.bytes);
+}
+
+hdf5::Handle open_unsealed(const std::filesystem::path& file, const std::vector<std::byte>& content) {
   try {
-    hdf5::Handle image = hdf5::open_image(bytes);
+    hdf5::Handle image = hdf5::open_image(content);
     // Tools that change a file in place end it where its content ends; anything more is a seal that lost its mark.
-    if (hdf5::used_size(image) != bytes.size())
+    if (hdf5::used_size(image) != content.size())
       damaged(file, "its end is not what was written");
     return image;
   } catch (const IoError& error) {

@@ -11,8 +11,20 @@
 
 #include <algorithm>
 #include <cassert>
+#include <concepts>
 
 namespace keeler {
+
+template<class Parcel, class T>
+requires std::same_as<std::remove_const_t<T>, Snapshot>
+void pass(Parcel& parcel, T& snapshot) {
+  auto& patch = snapshot.patch;
+  parcel(patch.positions, patch.velocities, patch.radii, patch.masses, patch.ids, patch.spins);
+  parcel(patch.box.size_x, patch.box.size_y, patch.box.shear, patch.box.first_offset, patch.offset);
+  parcel(patch.frequencies.kappa, patch.frequencies.nu, patch.orbital_frequency, patch.time_orbits);
+  parcel(snapshot.meta.scene, snapshot.meta.provenance, snapshot.meta.clumping);
+}
+
 namespace {
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double), "arrays of vectors are written as (N, 3) doubles");
@@ -134,8 +146,6 @@ void read_ring_box(const hdf5::Handle& image, Patch& patch) {
   patch.offset = number("shear_offset");
   patch.box.first_offset = number("shear_offset_at_start");
   patch.time_orbits = number("time_orbits");
-  if (!(patch.orbital_frequency > 0.0))
-    throw IoError("its Omega is not a positive number");
 }
 
 void check_format(const hdf5::Handle& code) {
@@ -192,9 +202,34 @@ void read_particles(const hdf5::Handle& image, Patch& patch) {
   for (std::vector<Vec3>* const rates : {&patch.velocities, &patch.spins})
     for (Vec3& rate : *rates)
       rate /= patch.orbital_frequency;
+}
+
+Snapshot snapshot_in(const hdf5::Handle& image) {
+  if (!hdf5::exists(image, "Code"))
+    throw IoError("it is not a Keeler snapshot");
+  const hdf5::Handle code = hdf5::open_group(image, "Code");
+  check_format(code);
+  Snapshot snapshot;
+  read_ring_box(image, snapshot.patch);
+  read_particles(image, snapshot.patch);
+  snapshot.meta.scene = hdf5::read_text_attribute(hdf5::open_group(image, "Parameters"), "scene");
+  snapshot.meta.provenance = read_provenance(code);
+  snapshot.meta.provenance.erase("format");
+  read_clumping(image, snapshot.meta);
+  return snapshot;
+}
+
+// Also of what a child process sent.
+void require_consistent(const Patch& patch) {
+  for (const std::size_t size : {patch.velocities.size(), patch.masses.size(), patch.ids.size(), patch.radii.size(),
+                                 patch.spins.empty() ? patch.size() : patch.spins.size()})
+    if (size != patch.size())
+      throw IoError("its arrays have different lengths");
   const auto not_increasing = [](std::uint64_t a, std::uint64_t b) { return a >= b; };
   if (std::adjacent_find(patch.ids.begin(), patch.ids.end(), not_increasing) != patch.ids.end())
     throw IoError("its ParticleIDs do not increase; sort the particles by them, each once");
+  if (!(patch.orbital_frequency > 0.0))
+    throw IoError("its Omega is not a positive number");
 }
 
 } // namespace
@@ -216,23 +251,17 @@ void write_snapshot(const std::filesystem::path& file, const Patch& patch, const
 }
 
 Snapshot read_snapshot(const std::filesystem::path& file) {
-  const hdf5::Handle image = open_sealed(file, Seal::optional);
-  try {
-    if (!hdf5::exists(image, "Code"))
-      throw IoError("it is not a Keeler snapshot");
-    const hdf5::Handle code = hdf5::open_group(image, "Code");
-    check_format(code);
-    Snapshot snapshot;
-    read_ring_box(image, snapshot.patch);
-    read_particles(image, snapshot.patch);
-    snapshot.meta.scene = hdf5::read_text_attribute(hdf5::open_group(image, "Parameters"), "scene");
-    snapshot.meta.provenance = read_provenance(code);
-    snapshot.meta.provenance.erase("format");
-    read_clumping(image, snapshot.meta);
-    return snapshot;
-  } catch (const IoError& error) {
-    throw IoError(fmt::format("cannot read snapshot '{}': {}", file.string(), error.what()));
-  }
+  const auto naming = [&](const auto& make) {
+    try {
+      return make();
+    } catch (const IoError& error) {
+      throw IoError(fmt::format("cannot read snapshot '{}': {}", file.string(), error.what()));
+    }
+  };
+  Snapshot snapshot = read_content<Snapshot>(
+      file, [&](const hdf5::Handle& image) { return naming([&] { return snapshot_in(image); }); });
+  naming([&] { require_consistent(snapshot.patch); });
+  return snapshot;
 }
 
 } // namespace keeler

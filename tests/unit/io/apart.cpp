@@ -1,0 +1,110 @@
+#include "apart.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/interrupt.hpp>
+
+#include <doctest/doctest.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <map>
+#include <vector>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+using namespace keeler;
+
+namespace {
+
+constexpr ApartLimits small = {.memory = std::size_t{1} << 28, .cpu_s = 1, .wall_s = 1};
+
+double apart(const std::function<double()>& read, const ApartLimits& limits = small) {
+  return read_apart<double>("read it", limits, read);
+}
+
+bool has_children() {
+  return waitpid(-1, nullptr, WNOHANG) >= 0 || errno != ECHILD;
+}
+
+volatile double sink = 0.0; // work that no compiler leaves out
+
+} // namespace
+
+TEST_CASE("values come back as they were") {
+  using Value = std::map<std::string, std::vector<double>>;
+  const Value value = {{"", {}}, {"few", {1.0, -0.0}}, {"many", std::vector<double>(300'000, 0.1)}};
+  CHECK(read_apart<Value>("read it", small, [&] { return value; }) == value);
+  const std::vector<Vec3> places = {Vec3(1, 2, 3), Vec3(4, 5, 6)};
+  CHECK(read_apart<std::vector<Vec3>>("read it", small, [&] { return places; }) == places);
+  const std::vector<std::string> texts = {"", "a\0b", std::string(100'000, 'x')};
+  CHECK(read_apart<std::vector<std::string>>("read it", small, [&] { return texts; }) == texts);
+  CHECK(!has_children());
+}
+
+TEST_CASE("an error is the same error here") {
+  CHECK_THROWS_WITH_AS(apart([]() -> double { throw UsageError("do this"); }), "do this", UsageError);
+  CHECK_THROWS_WITH_AS(apart([]() -> double { throw IoError("cannot do that"); }), "cannot do that", IoError);
+}
+
+TEST_CASE("what a child does to itself is one line here") {
+  CHECK_THROWS_WITH_AS(apart([]() -> double { std::abort(); }), doctest::Contains("cannot read it: the library breaks"),
+                       IoError);
+  CHECK_THROWS_WITH_AS(apart([]() -> double { _exit(0); }), doctest::Contains("breaks on it"), IoError);
+  CHECK_THROWS_WITH_AS(apart([]() -> double {
+                         std::raise(SIGSEGV);
+                         return 0.0;
+                       }),
+                       doctest::Contains("breaks on it"), IoError);
+  CHECK(!has_children());
+}
+
+TEST_CASE("a child that does not end is ended") {
+  SUBCASE("it computes") {
+    CHECK_THROWS_WITH_AS(apart(
+                             []() -> double {
+                               for (;;)
+                                 sink = sink + 1.0;
+                             },
+                             {.memory = small.memory, .cpu_s = 1, .wall_s = 60}),
+                         doctest::Contains("cannot read it: it does not come to an end"), IoError);
+  }
+  SUBCASE("it waits") {
+    CHECK_THROWS_WITH_AS(apart([]() -> double {
+                           for (;;)
+                             pause();
+                         }),
+                         doctest::Contains("cannot read it: it does not come to an end"), IoError);
+  }
+  CHECK(!has_children());
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST_CASE("a child gets no more memory than it may have") {
+  const auto eat = []() -> double {
+    std::vector<double> meal(small.memory, 1.0); // eight times as many bytes
+    sink = meal.back();
+    return sink;
+  };
+  CHECK_THROWS_WITH_AS(apart(eat), doctest::Contains("cannot read it: it takes more memory than there is"), IoError);
+}
+#endif
+
+TEST_CASE("more than a child may send is not taken") {
+  using Value = std::vector<double>;
+  const ApartLimits limits = {.memory = 8000, .cpu_s = 1, .wall_s = 2};
+  CHECK_THROWS_WITH_AS(run_apart(
+                           "read it", limits, [] { return [](Sender& sender) { sender(Value(1000)); }; },
+                           [](Receiver& receiver) {
+                             Value value;
+                             receiver(value);
+                           }),
+                       doctest::Contains("cannot read it: more comes of it"), IoError);
+}
+
+TEST_CASE("who waits for a child can be interrupted") {
+  const std::atomic<bool> stop = true;
+  const Interruptible work(stop);
+  CHECK_THROWS_AS(apart([] { return 1.0; }), Interrupted);
+  CHECK(!has_children());
+}
