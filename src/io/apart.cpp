@@ -111,10 +111,9 @@ public:
   std::string end() {
     const int status = wait();
     if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL))
-      return "it does not come to an end";
-    if (WIFSIGNALED(status))
-      return fmt::format("the library breaks on it ({})", strsignal(WTERMSIG(status)));
-    return "the library breaks on it";
+      return endless;
+    const std::string how = WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "it ends without an answer";
+    return fmt::format("the library breaks on it ({}), so it is damaged; use another copy", how);
   }
 
 private:

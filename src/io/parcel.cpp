@@ -59,7 +59,7 @@ void Receiver::take(void* data, std::size_t size) {
     pollfd ready = {.fd = descriptor_, .events = POLLIN, .revents = 0};
     const int count = poll(&ready, 1, static_cast<int>(std::clamp<milliseconds::rep>(left.count(), 0, 1000)));
     if (count == 0 && left.count() <= 0)
-      throw IoError("it does not come to an end");
+      throw IoError(endless);
     if (count < 0)
       require_only_interrupted();
     if (count <= 0)

@@ -61,6 +61,9 @@ private:
   std::vector<std::byte> buffer_;
 };
 
+/// Why a sender was given up.
+inline constexpr char endless[] = "reading it does not come to an end, so it is damaged; use another copy";
+
 /// The other end did not send all that it began.
 struct ParcelEnds : std::exception {
   const char* what() const noexcept override { return "the parcel ends too soon"; }

@@ -10,6 +10,7 @@ import unittest
 from pathlib import Path
 
 import h5py
+import keeler as ring
 import numpy as np
 
 KEELER = os.environ["KEELER_PROGRAM"]
@@ -163,6 +164,18 @@ class ForeignFiles(unittest.TestCase):
                 self.assertIn(done.returncode, (2, 3, 4), lines)
                 self.assertEqual(len(lines), 1, lines[:3])
         self.assertGreater(refused, 50)
+
+    def test_files_that_break_hdf5(self):
+        """Found by the fuzzer: the library crashes on them in a child process, and that is all."""
+        files = sorted((Path(os.environ["KEELER_SOURCE_DIR"]) / "tests/fuzz/corpus/foreign").glob("breaks-*"))
+        self.assertGreater(len(files), 3)
+        for file in files:
+            with self.subTest(file.name):
+                done = keeler("info", file)
+                self.assertEqual((done.returncode, done.stderr.count(b"\n")), (4, 1), done.stderr)
+                self.assertIn(b"the library breaks on it", done.stderr)
+                with self.assertRaises(ring.IoError):
+                    ring.read(file)
 
     def test_words_of_others_in_messages(self):
         long = self.folder / "long.toml"

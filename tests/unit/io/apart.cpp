@@ -37,7 +37,7 @@ TEST_CASE("values come back as they were") {
   CHECK(read_apart<Value>("read it", small, [&] { return value; }) == value);
   const std::vector<Vec3> places = {Vec3(1, 2, 3), Vec3(4, 5, 6)};
   CHECK(read_apart<std::vector<Vec3>>("read it", small, [&] { return places; }) == places);
-  const std::vector<std::string> texts = {"", "a\0b", std::string(100'000, 'x')};
+  const std::vector<std::string> texts = {"", std::string("a\0b", 3), std::string(100'000, 'x')};
   CHECK(read_apart<std::vector<std::string>>("read it", small, [&] { return texts; }) == texts);
   CHECK(!has_children());
 }
@@ -67,14 +67,14 @@ TEST_CASE("a child that does not end is ended") {
                                  sink = sink + 1.0;
                              },
                              {.memory = small.memory, .cpu_s = 1, .wall_s = 60}),
-                         doctest::Contains("cannot read it: it does not come to an end"), IoError);
+                         doctest::Contains("cannot read it: reading it does not come to an end"), IoError);
   }
   SUBCASE("it waits") {
     CHECK_THROWS_WITH_AS(apart([]() -> double {
                            for (;;)
                              pause();
                          }),
-                         doctest::Contains("cannot read it: it does not come to an end"), IoError);
+                         doctest::Contains("cannot read it: reading it does not come to an end"), IoError);
   }
   CHECK(!has_children());
 }
