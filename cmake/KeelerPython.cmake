@@ -8,6 +8,6 @@ find_package(Python 3.9 QUIET COMPONENTS Interpreter Development.Module NumPy)
 find_package(pybind11 2.10 QUIET CONFIG)
 if(Python_FOUND AND pybind11_FOUND)
   option(KEELER_PYTHON "build the Python package" ON)
-else()
-  option(KEELER_PYTHON "build the Python package" OFF)
+elseif(NOT DEFINED KEELER_PYTHON)
+  set(KEELER_PYTHON OFF) # not in the cache: what is installed later is found then
 endif()

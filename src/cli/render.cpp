@@ -10,7 +10,7 @@
 #include <keeler/render/autocorrelation_picture.hpp>
 #include <keeler/render/movie.hpp>
 #include <keeler/render/patch_picture.hpp>
-#include <keeler/runs/stored_patches.hpp>
+#include <keeler/runs/measured_part.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -22,8 +22,6 @@ namespace keeler {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double averaged_orbits = 1.0;
 
 struct RenderOptions {
   std::string path, output, colour = "height", theme = "dark";
@@ -39,12 +37,21 @@ fs::path picture_path(const RenderOptions& options) {
   return fs::is_directory(path) ? path / "picture.png" : fs::path(path).replace_extension(".png");
 }
 
+// "orbits 2 to 3": of the snapshots that are averaged.
+std::string orbits_of(const std::vector<Patch>& patches) {
+  const double first = patches.front().time_orbits, last = patches.back().time_orbits;
+  return patches.size() == 1 ? fmt::format("orbit {:.3g}", last) : fmt::format("orbits {:.3g} to {:.3g}", first, last);
+}
+
+// Of the same snapshots as `keeler analyze`, so that its pitch and spacing are those.
 void draw_autocorrelation(const RenderOptions& options, fs::path file, const std::string& title) {
-  const StoredPatches stored = load_patches(options.path, averaged_orbits);
+  const StoredPatches stored =
+      fs::is_directory(options.path) ? measured_part(options.path, {}).stored : load_newest_patch(options.path);
   file.replace_filename(file.stem().string() + "-autocorrelation.png");
   const double wavelength = critical_wavelength(stored.patches.back());
   const AutocorrelationMap map = mean_autocorrelation(stored.patches);
-  render_autocorrelation(map, find_wakes(map, wavelength), wavelength, file.string(), title);
+  render_autocorrelation(map, find_wakes(map, wavelength), wavelength, file.string(),
+                         fmt::format("{}, {}", title, orbits_of(stored.patches)));
   fmt::print("{}\n", file.string());
 }
 
@@ -113,9 +120,9 @@ void add_render(CLI::App& program, Action& action) {
                   "what the colours say, with a bar (default: height, shades without a bar)")
       ->type_name(fmt::format("{}", fmt::join(colour_field_names(), "|")));
   command.add_flag("--oblique", options->oblique, "see the patch from 35 degrees above its plane, not from above");
-  CLI::Option* const autocorrelation =
-      command.add_flag("--autocorrelation", options->autocorrelation,
-                       "draw the autocorrelation of the surface density too, averaged over a run's last orbit");
+  CLI::Option* const autocorrelation = command.add_flag(
+      "--autocorrelation", options->autocorrelation,
+      "draw the autocorrelation of the surface density too, averaged over the snapshots that analyze takes");
   command
       .add_flag("--movie", options->movie,
                 "draw all snapshots of a run at one scale: movie.mp4 by ffmpeg, or movie.png where that is missing")

@@ -45,6 +45,8 @@ class Tutorial(unittest.TestCase):
         for kind, block in blocks:
             if kind == "text":  # what the command before it prints: its words, whose numbers hang on the compiler
                 for line in block.splitlines():
+                    if line == "…":  # left out
+                        continue
                     self.assertIn(re.split(r"  +", line)[0], printed)
             else:
                 printed = self.follow(kind, block) or ""

@@ -30,11 +30,28 @@ docs/manual/python.md has more.
 
 import ctypes as _ctypes
 import os as _os
+import sys as _sys
+from importlib.util import find_spec as _find_spec
 
 # Threads that spin while they wait make a run ten times slower on a busy machine. OpenMP reads this when it is loaded.
 if "GOMP_SPINCOUNT" not in _os.environ and "OMP_WAIT_POLICY" not in _os.environ:
     _os.environ["OMP_WAIT_POLICY"] = "passive"
     _os.environ["GOMP_SPINCOUNT"] = "6000"
+
+if _find_spec("numpy") is None:
+    raise ImportError(
+        f"keeler needs numpy, and {_sys.executable} has none; install it there, or use a Python that has it "
+        "(Debian: python3-numpy, which is for /usr/bin/python3)"
+    )
+if _find_spec("._core", __name__) is None:
+    _folder = _os.path.dirname(__file__)
+    _others = [name for name in _os.listdir(_folder) if name.startswith("_core.")]
+    raise ImportError(
+        f"the compiled part of keeler in {_folder} is for another Python than {_sys.executable}: {', '.join(_others)}"
+        if _others
+        else f"the compiled part of keeler is not built in {_folder}; in the source tree run scripts/setup package, "
+        "cmake --preset default, and cmake --build build/default --target keeler_python"
+    )
 
 from . import _core, scenes
 from .errors import Error, InvariantError, IoError, RunError, UsageError
