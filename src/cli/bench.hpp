@@ -22,7 +22,10 @@ struct BenchThreadOption {
         ->check(positive_number());
   }
 
-  void apply() const { set_threads(count); }
+  void apply() const {
+    set_threads(count);
+    start_threads();
+  }
 };
 
 /// --repeats N.

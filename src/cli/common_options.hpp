@@ -2,6 +2,7 @@
 #pragma once
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/start_threads.hpp>
 #include <keeler/core/suggest.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/words.hpp>
@@ -91,6 +92,7 @@ struct ThreadOption {
   void apply() const {
     if (count > 0)
       set_threads(count);
+    start_threads();
   }
 };
 

@@ -14,6 +14,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <new>
 #include <system_error>
 
 #include <fcntl.h>
@@ -104,9 +105,13 @@ void let_threads_sleep(char** argv) {
 }
 
 // After a damaged file HDF5 cannot close itself, and says so at length when the program ends. What it has open is in
-// memory alone and need not be closed.
-void let_hdf5_end_silently() {
+// memory alone and need not be closed. It crashes where there is too little memory for its start, so that is tried
+// first.
+void start_hdf5() {
+  constexpr std::size_t enough = std::size_t{4} << 20;
   H5dont_atexit();
+  ::operator delete(::operator new(enough));
+  H5open();
 }
 
 // The next file that is opened would take the place of a closed standard stream, and messages would go into it. What
@@ -122,10 +127,10 @@ void fill_closed_streams() {
 int main(int argc, char** argv) {
   let_threads_sleep(argv);
   fill_closed_streams();
-  let_hdf5_end_silently();
   for (const int signal : {SIGXFSZ, SIGPIPE}) // a file-size limit and a closed pipe are then errors of the write
     std::signal(signal, SIG_IGN);
   try {
+    start_hdf5();
     return run(argc, argv);
   } catch (const Error& error) {
     return fail(error.code(), error.what());
@@ -133,6 +138,9 @@ int main(int argc, char** argv) {
     return std::ferror(stdout) != 0
                ? fail(ExitCode::input_output, "cannot write to standard output: " + error.code().message())
                : fail(ExitCode::run_time, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(ExitCode::run_time,
+                "there is not enough memory for this; take fewer particles, or a machine or a limit with more");
   } catch (const std::exception& error) {
     return fail(ExitCode::run_time, error.what());
   }

@@ -4,6 +4,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/files/descriptor.hpp>
+#include <keeler/files/naming_guard.hpp>
 
 #include <fmt/format.h>
 
@@ -40,6 +41,7 @@ NewFile::~NewFile() {
 
 void NewFile::keep() {
   Descriptor(temporary_, O_RDONLY).sync();
+  NamingGuard::ask();
   std::error_code error;
   std::filesystem::rename(temporary_, file_, error);
   if (error)

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <new>
 
 namespace keeler::hdf5 {
 namespace {
@@ -18,10 +19,18 @@ std::string fresh_name() {
   return fmt::format("keeler-image-{}", count++);
 }
 
+// HDF5 crashes in places where an allocation fails. So what it is about to take, and some for itself, is tried before:
+// throws std::bad_alloc.
+void require_memory(std::size_t bytes) {
+  constexpr std::size_t for_itself = std::size_t{16} << 20;
+  ::operator delete(::operator new(for_itself + bytes));
+}
+
 // Access to files in memory. The oldest format is kept: H5Fget_file_image of HDF5 1.10.8 clears a flag in newer
 // superblocks without renewing their checksum, and the image no longer opens.
 Handle image_access() {
   constexpr std::size_t growth = std::size_t{1} << 22;
+  require_memory(growth);
   Handle access(checked("prepare a file in memory", [] { return H5Pcreate(H5P_FILE_ACCESS); }), H5Pclose);
   checked("prepare a file in memory", [&] { return H5Pset_fapl_core(access.id(), growth, false); });
   return access;
@@ -237,8 +246,10 @@ Handle write_dataset(const Handle& parent, const std::string& name, hid_t type, 
                                              H5P_DEFAULT);
                          }),
                  H5Dclose);
-  if (!empty)
-    checked(what, [&] { return H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data); });
+  if (empty)
+    return dataset;
+  require_memory(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.id())) * H5Tget_size(type));
+  checked(what, [&] { return H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data); });
   return dataset;
 }
 

@@ -17,31 +17,66 @@ std::string header_line(const std::vector<std::string>& columns) {
   return fmt::format("step,{}\n", fmt::join(columns, ","));
 }
 
-// The step a row begins with; throws when it has none.
-std::int64_t step_of(const std::filesystem::path& file, std::string_view row) {
-  std::int64_t step = 0;
-  const auto [end, error] = std::from_chars(row.data(), row.data() + row.size(), step);
-  if (error != std::errc{} || end == row.data() + row.size() || *end != ',')
-    throw IoError(fmt::format("cannot continue '{}': this row has no step: {}", file.string(), row));
-  return step;
-}
+// Goes through the rows of a series that is to be continued.
+class RowReader {
+public:
+  RowReader(const std::filesystem::path& file, std::string_view text, std::size_t columns,
+            std::optional<std::int64_t> every)
+      : file_(file), text_(text), columns_(columns), every_(every) {}
 
-struct Rows {
-  std::string_view text;            // with the header
-  std::optional<std::int64_t> last; // step; none: no row
-};
-
-// The part of the text that ends with the last whole row of a step up to last_step.
-Rows rows_up_to(const std::filesystem::path& file, std::string_view text, std::size_t header, std::int64_t last_step) {
-  Rows rows{text.substr(0, header), {}};
-  for (std::size_t begin = header, end; (end = text.find('\n', begin)) != std::string_view::npos; begin = end + 1) {
-    const std::int64_t step = step_of(file, text.substr(begin, end - begin));
-    if (step > last_step)
-      break;
-    rows = {text.substr(0, end + 1), step};
+  /// The part of the text that ends with the last whole row of a step up to last_step.
+  std::string_view rows_up_to(std::int64_t last_step) {
+    std::size_t kept = text_.find('\n') + 1;
+    for (std::size_t begin = kept, end; (end = text_.find('\n', begin)) != text_.npos; begin = kept = end + 1) {
+      ++line_;
+      const std::int64_t step = step_of(text_.substr(begin, end - begin));
+      if (step > last_step)
+        break;
+      take(step);
+    }
+    if (every_ && next_ <= last_step)
+      gaps_.push_back({next_, last_step});
+    return text_.substr(0, kept);
   }
-  return rows;
-}
+
+  std::vector<SeriesGap> gaps() { return std::move(gaps_); }
+
+private:
+  std::int64_t step_of(std::string_view row) const {
+    std::int64_t step = 0;
+    const auto [end, error] = std::from_chars(row.data(), row.data() + row.size(), step);
+    if (error != std::errc{} || end == row.data() + row.size() || *end != ',')
+      fail(row, "has no step");
+    if (static_cast<std::size_t>(std::count(row.begin(), row.end(), ',')) != columns_)
+      fail(row, "has another number of values");
+    if (step < last_ || (every_ && step % *every_ != 0))
+      fail(row, "is not of its place");
+    return step;
+  }
+
+  void take(std::int64_t step) {
+    last_ = step;
+    if (!every_ || step == next_ - *every_) // of the same step as the one before: a row a moonlet
+      return;
+    if (step > next_)
+      gaps_.push_back({next_, step - 1});
+    next_ = step + *every_;
+  }
+
+  [[noreturn]] void fail(std::string_view row, const char* what) const {
+    throw IoError(
+        fmt::format("cannot continue '{}': line {} {} ({}); repair it, or remove the file to go on without its "
+                    "rows",
+                    file_.string(), line_, what, row.substr(0, 40)));
+  }
+
+  const std::filesystem::path& file_;
+  std::string_view text_;
+  std::size_t columns_, line_ = 1;
+  std::optional<std::int64_t> every_;
+  std::int64_t last_ = 0, next_ = 0;
+  std::vector<SeriesGap> gaps_;
+};
 
 std::vector<std::string_view> fields_of(std::string_view row) {
   std::vector<std::string_view> fields;
@@ -96,8 +131,8 @@ SeriesTable read_series(const std::filesystem::path& file) {
   return table;
 }
 
-Series::Series(const std::filesystem::path& file, std::size_t columns, std::optional<std::int64_t> last_found)
-    : path_(file), file_(file, O_RDWR | O_APPEND), columns_(columns), size_(file_.size()), last_found_(last_found) {}
+Series::Series(const std::filesystem::path& file, std::size_t columns)
+    : path_(file), file_(file, O_RDWR | O_APPEND), columns_(columns), size_(file_.size()) {}
 
 Series Series::begin(const std::filesystem::path& file, const std::vector<std::string>& columns) {
   write_text(file, header_line(columns));
@@ -105,18 +140,23 @@ Series Series::begin(const std::filesystem::path& file, const std::vector<std::s
 }
 
 Series Series::resume(const std::filesystem::path& file, const std::vector<std::string>& columns,
-                      std::int64_t last_step) {
+                      std::int64_t last_step, std::optional<std::int64_t> every) {
   std::error_code unknown;
   if (!std::filesystem::exists(file, unknown))
-    return begin(file, columns);
+    write_text(file, header_line(columns));
   const std::string text = read_text(file), header = header_line(columns);
   if (!text.starts_with(header))
-    throw IoError(fmt::format("cannot continue '{}': its first line is not: {}", file.string(),
-                              header.substr(0, header.size() - 1)));
-  const Rows kept = rows_up_to(file, text, header.size(), last_step);
-  if (kept.text.size() != text.size())
-    write_text(file, kept.text);
-  return {file, columns.size(), kept.last};
+    throw IoError(
+        fmt::format("cannot continue '{}': its first line is not the names of its columns ({}); repair it, or "
+                    "remove the file to go on without its rows",
+                    file.string(), header.substr(0, header.size() - 1)));
+  RowReader rows(file, text, columns.size(), every);
+  const std::string_view kept = rows.rows_up_to(last_step);
+  if (kept.size() != text.size())
+    write_text(file, kept);
+  Series series(file, columns.size());
+  series.gaps_ = rows.gaps();
+  return series;
 }
 
 void Series::append(std::int64_t step, std::span<const double> values) {

@@ -2,6 +2,7 @@
 
 #include <keeler/core/simd.hpp>
 #include <keeler/core/stopwatch.hpp>
+#include <keeler/core/words.hpp>
 #include <keeler/diagnostics/force_error.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/forces/self_gravity.hpp>
@@ -22,9 +23,12 @@ namespace {
 
 constexpr std::size_t checked_particles = 200;
 
-Series open_series(const std::filesystem::path& file, const std::vector<std::string>& columns,
+Series open_series(const std::filesystem::path& file, const std::vector<std::string>& columns, const Scene& scene,
                    std::optional<std::int64_t> resumed_at) {
-  return resumed_at ? Series::resume(file, columns, *resumed_at) : Series::begin(file, columns);
+  if (!resumed_at)
+    return Series::begin(file, columns);
+  const std::int64_t every = scene.output.series_every; // 0: one at the start
+  return Series::resume(file, columns, *resumed_at, every > 0 ? every : *resumed_at + 1);
 }
 
 } // namespace
@@ -41,14 +45,14 @@ Recorder::Recorder(const RunFolder& folder, const FolderLock& lock, const Scene&
                    const std::vector<std::string>& arguments, OutputCounters counters,
                    std::optional<std::int64_t> resumed_at, Notice notice)
     : folder_(folder), lock_(lock), scene_(scene), provenance_(collect_provenance(arguments)),
-      counters_(std::move(counters)), resumed_at_(resumed_at), notice_(std::move(notice)),
-      columns_(series_columns_of(scene)), series_(open_series(folder.series(), names_of(columns_), resumed_at)),
+      counters_(std::move(counters)), notice_(std::move(notice)), columns_(series_columns_of(scene)),
+      series_(open_series(folder.series(), names_of(columns_), scene, resumed_at)),
       moonlet_columns_(moonlet_columns_of(scene)) {
   if (!moonlet_columns_.empty()) {
     std::vector<std::string> names;
     for (const MoonletColumn& column : moonlet_columns_)
       names.emplace_back(column.name);
-    moonlets_.emplace(open_series(folder.moonlets(), names, resumed_at));
+    moonlets_.emplace(open_series(folder.moonlets(), names, scene, resumed_at));
   }
   write_text(folder_.scene(), scene_.resolved);
   if (measures_gravity(scene_))
@@ -83,13 +87,14 @@ void Recorder::tell_restored() {
 }
 
 void Recorder::tell_lost_rows(const Series& series, const std::filesystem::path& file) {
-  const std::int64_t every = scene_.output.series_every, now = *resumed_at_;
-  const std::int64_t first = !series.last_found() ? 0 : every > 0 ? *series.last_found() + every : now + 1;
-  if (first > now)
+  if (series.gaps().empty())
     return;
-  log("rows lost", {{"file", file.filename().string()}, {"from_step", first}, {"to_step", now}});
-  tell(fmt::format("the rows of '{}' from step {} to {} are missing; it goes on without them", file.string(), first,
-                   now));
+  const SeriesGap first = series.gaps().front();
+  const std::size_t others = series.gaps().size() - 1;
+  for (const SeriesGap& gap : series.gaps())
+    log("rows lost", {{"file", file.filename().string()}, {"from_step", gap.from}, {"to_step", gap.to}});
+  tell(fmt::format("the rows of '{}' from step {} to {}{} are missing; it goes on without them", file.string(),
+                   first.from, first.to, others > 0 ? fmt::format(", and {} more,", counted(others, "gap")) : ""));
 }
 
 void Recorder::tell_losses() {
@@ -113,13 +118,11 @@ void Recorder::contacts() {
   if (!contact_log_)
     return;
   const Stopwatch watch(costs_.contacts);
-  lock_.require_in_place();
   contact_log_->write_full_files();
 }
 
 void Recorder::snapshot(const Simulation& simulation) {
   const Stopwatch watch(costs_.snapshots);
-  lock_.require_in_place();
   write_snapshot(folder_.snapshot(counters_.snapshots), simulation.patch(), {scene_.resolved, provenance_});
   ++counters_.snapshots;
   if (contact_log_)
@@ -148,6 +151,7 @@ void Recorder::checkpoint(const Simulation& simulation) {
   const std::filesystem::path file = checkpoint_path(folder_.path(), counters_.checkpoints);
   write_checkpoint(file, table, {scene_.resolved, provenance_});
   counters_ = counters;
+  lock_.require_in_place();
   remove_later_checkpoints(file);
   prune_checkpoints(file);
 }
@@ -202,7 +206,6 @@ void Recorder::check_forces(const Simulation& simulation) {
 }
 
 void Recorder::summary(const nlohmann::ordered_json& summary) {
-  lock_.require_in_place();
   write_text(folder_.summary(), summary.dump(2) + "\n");
 }
 
@@ -214,6 +217,7 @@ void Recorder::log(const std::string& event, const nlohmann::ordered_json& detai
   line["time"] = utc_now();
   const std::string text = line.dump() + "\n";
   Descriptor file(folder_.log(), O_WRONLY | O_CREAT | O_APPEND);
+  lock_.require_in_place();
   file.append_whole(std::as_bytes(std::span(text)));
   file.close();
 }

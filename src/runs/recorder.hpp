@@ -6,6 +6,7 @@
 #include "moonlet_columns.hpp"
 #include "run_folder.hpp"
 
+#include <keeler/files/naming_guard.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/io/provenance.hpp>
 #include <keeler/io/series.hpp>
@@ -86,10 +87,10 @@ private:
 
   RunFolder folder_;
   const FolderLock& lock_;
+  NamingGuard guard_{[this] { lock_.require_in_place(); }};
   const Scene& scene_;
   Provenance provenance_;
   OutputCounters counters_;
-  std::optional<std::int64_t> resumed_at_;
   Notice notice_;
   std::vector<SeriesColumn> columns_;
   Series series_;

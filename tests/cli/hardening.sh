@@ -124,6 +124,29 @@ runs 0 info "$(newest_checkpoint "$work/kept")" --json
   fail "the checkpoint of step '$step' is of orbit $(text time_orbits "$work/out")"
 runs 0 resume "$work/kept" --until "$(awk -v s="$step" 'BEGIN { print 0.01 * (s + 1) }')"
 
+# Little memory: one line, wherever it runs out, HDF5's own start and OpenMP's threads included.
+limited() { # KIB ARGUMENT...: as runs, whatever the code is
+  (
+    ulimit -v "$1"
+    shift
+    exec "$keeler" "$@" >"$work/out" 2>"$work/err"
+  )
+}
+export OMP_WAIT_POLICY=passive
+least=20000
+until { limited $least --version; } 2>/dev/null; do least=$((least + 200)); done
+for ((more = 0; more <= 9600; more += 300)); do
+  code=0
+  OMP_NUM_THREADS=1 limited $((least + more)) run "$work/scene.toml" -o "$work/tight" --force -q --set time.end=0.02 || code=$?
+  [ $code -eq 0 ] && break
+  [ $code -eq 1 ] || [ $code -eq 4 ] || fail "$((least + more)) KiB of memory: exit $code: $(cat "$work/err")"
+  [ "$(wc -l <"$work/err")" -eq 1 ] || fail "$((least + more)) KiB of memory: not one line: $(cat "$work/err")"
+done
+code=0
+limited 400000 run "$work/scene.toml" -o "$work/tight" --force -q --threads 100 || code=$?
+[ $code -eq 1 ] || fail "no memory for threads: exit $code: $(cat "$work/err")"
+one_line "no memory for threads" "the system does not start 100 threads"
+
 # A start that is being made is given up at the first signal.
 "$keeler" generate "$work/scene.toml" -o "$work/large.hdf" --set 'box.size=[4000,4000]' --set particles.count=2500000 \
   >"$work/out" 2>"$work/err" &

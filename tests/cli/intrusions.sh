@@ -88,10 +88,24 @@ for change in "rm series.csv" "sed -i 4q series.csv"; do
   rm -rf "$work/run"
 done
 
+# What is no row of the table is refused.
+for change in "sed -i '5s/,/;/' series.csv" "sed -i '6s/^[0-9]*/3/' series.csv" "sed -i '1s/^/x/' series.csv"; do
+  cp -r "$work/whole" "$work/run"
+  (cd "$work/run" && eval "$change")
+  refuses_with 4 "resumed after $change" "series.csv'" resume "$work/run" --until 0.4
+  one_line "resumed after $change" "remove the file to go on without its rows"
+  rm -rf "$work/run"
+done
+cp -r "$work/whole" "$work/run"
+sed -i '3d;6d' "$work/run/series.csv"
+runs 0 resume "$work/run" --until 0.4
+one_line "rows in the middle" "from step 10 to 19, and 1 gap more, are missing"
+rm -rf "$work/run"
+
 # The folder is moved, replaced by another, or removed.
-for change in "mv run there" "mv run there; mkdir run" "rm -r run"; do
+for change in "mv run there" "mv run there; mkdir run" "until rm -r run; do :; done"; do
   begin "$work/run"
-  (cd "$work" && eval "$change")
+  (cd "$work" && eval "$change" 2>/dev/null)
   ends 4 "$change"
   one_line "$change" "was moved, replaced or removed while the run wrote to it"
   [ -e "$work/run" ] && [ -n "$(ls -A "$work/run")" ] && fail "$change: split: $(ls "$work/run")"

@@ -31,16 +31,21 @@ struct SeriesTable {
 /// something else.
 SeriesTable read_series(const std::filesystem::path& file);
 
+/// Steps without a row.
+struct SeriesGap {
+  std::int64_t from = 0, to = 0;
+};
+
 class Series {
 public:
   /// Begins a file anew; the first column, "step", is added to those named. Throws IoError.
   static Series begin(const std::filesystem::path& file, const std::vector<std::string>& columns);
 
   /// Continues a file after a restart at `last_step`: rows of later steps, which the run will make again, and an
-  /// incomplete last row are cut off first. A missing file is begun anew. Throws IoError, also when the columns differ.
-  /// last_found() tells how far its rows reach.
+  /// incomplete last row are cut off first. A missing file is begun anew. `every`: there was a row in each step that is
+  /// a multiple of it; gaps() tells what is missing. Throws IoError, also when the columns differ or a row is damaged.
   static Series resume(const std::filesystem::path& file, const std::vector<std::string>& columns,
-                       std::int64_t last_step);
+                       std::int64_t last_step, std::optional<std::int64_t> every = {});
 
   /// Adds a row of one number a column, written so that reading gives the same bits. Throws IoError, and then the file
   /// ends with the row before; also when the rows before it are no more in the file.
@@ -49,14 +54,14 @@ public:
   /// Forces the rows to disk. Do so before a checkpoint, so that the series reaches at least as far.
   void sync();
 
-  /// The step of the last row that resume() kept; none without any.
-  std::optional<std::int64_t> last_found() const { return last_found_; }
+  /// What resume() did not find up to its last step. Nothing where it does not know how often there was a row.
+  const std::vector<SeriesGap>& gaps() const { return gaps_; }
 
   /// Whether the file had to be written anew since this was asked last.
   bool take_restored() { return std::exchange(restored_, false); }
 
 private:
-  Series(const std::filesystem::path& file, std::size_t columns, std::optional<std::int64_t> last_found = {});
+  Series(const std::filesystem::path& file, std::size_t columns);
 
   void require_rows();
 
@@ -65,7 +70,7 @@ private:
   std::size_t columns_; // without the step
   std::size_t size_;    // of the file, as the last row left it
   bool restored_ = false;
-  std::optional<std::int64_t> last_found_;
+  std::vector<SeriesGap> gaps_;
 };
 
 } // namespace keeler

@@ -3,6 +3,7 @@
 #include "disk.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/files/naming_guard.hpp>
 
 #include <doctest/doctest.h>
 
@@ -27,6 +28,21 @@ TEST_CASE("what an interrupted write left is overwritten") {
   write_text(folder / "a.txt", "new");
   CHECK(read_text(folder / "a.txt") == "new");
   CHECK(folder.file_count() == 1);
+}
+
+TEST_CASE("a guard that refuses a new file its name leaves none, and the former one") {
+  const TemporaryFolder folder;
+  write_text(folder / "a.txt", "former");
+  {
+    const NamingGuard guard([] { throw IoError("not here"); });
+    CHECK_THROWS_WITH_AS(write_text(folder / "a.txt", "new"), "not here", IoError);
+    const NamingGuard inner([] {});
+    CHECK_NOTHROW(write_text(folder / "b.txt", "new"));
+  }
+  CHECK(read_text(folder / "a.txt") == "former");
+  CHECK(folder.file_count() == 2);
+  write_text(folder / "a.txt", "new");
+  CHECK(read_text(folder / "a.txt") == "new");
 }
 
 TEST_CASE("a full disk is an error and leaves the former file alone") {

@@ -92,8 +92,26 @@ TEST_CASE("a file that loses its name is written anew with all its rows; one tha
   CHECK_THROWS_WITH_AS(append(series, 15), doctest::Contains("changed by another program"), IoError);
   CHECK_THROWS_AS(series.sync(), IoError);
   CHECK(read_text(file) == before);
-  CHECK(Series::resume(file, columns, 7).last_found() == 5);
-  CHECK_FALSE(Series::resume(file, columns, -1).last_found());
+}
+
+TEST_CASE("a continued file tells which rows it misses; a damaged row is an error") {
+  const TemporaryFolder folder;
+  const auto file = folder / "series.csv";
+  const auto gaps_in = [&](const std::string& rows, std::int64_t last_step) {
+    write_text(file, "step,time_orbits,energy\n" + rows);
+    std::vector<std::int64_t> ends;
+    const Series series = Series::resume(file, columns, last_step, 5);
+    for (const SeriesGap& gap : series.gaps())
+      ends.insert(ends.end(), {gap.from, gap.to});
+    return ends;
+  };
+  using Ends = std::vector<std::int64_t>;
+  CHECK(gaps_in("0,0,1\n5,0,1\n10,0,1\n", 12) == Ends{});
+  CHECK(gaps_in("0,0,1\n0,0,1\n5,0,1\n5,0,1\n", 9) == Ends{}); // two bodies
+  CHECK(gaps_in("", 3) == Ends{0, 3});
+  CHECK(gaps_in("0,0,1\n15,0,1\n", 22) == Ends{5, 14, 20, 22});
+  for (const std::string row : {"5,1\n", "5,1,2,3\n", "6,1,2\n", "5,1,2\n0,1,2\n"})
+    CHECK_THROWS_WITH_AS(gaps_in("0,0,1\n" + row, 20), doctest::Contains("line "), IoError);
 }
 
 TEST_CASE("a full disk is noticed at the row that does not fit, which leaves nothing behind") {

@@ -1,0 +1,51 @@
+"""faults PROGRAM LIBRARY [--quick] [--only NAME] [--write FILE]: harms Keeler's runs and files from outside, prints a line a
+fault, and writes the page. Exit code 1 when anything was lost or wrong, crashed or hung."""
+
+import argparse
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+import damage
+import disks
+import folders
+import kills
+import page
+from program import Program
+from rows import measure
+from scenes import Scenes
+
+FAULTS = kills.FAULTS + disks.FAULTS + folders.FAULTS + damage.FAULTS
+
+
+def read_options():
+    parser = argparse.ArgumentParser(prog="faults", description=__doc__)
+    parser.add_argument("program")
+    parser.add_argument("library", help="of failing calls")
+    parser.add_argument("--quick", action="store_true", help="a few trials of each")
+    parser.add_argument("--only", metavar="NAME", choices=[fault.name for fault in FAULTS])
+    parser.add_argument("--write", metavar="FILE")
+    return parser.parse_args()
+
+
+def main():
+    options = read_options()
+    os.nice(5)
+    program = Program(os.path.abspath(options.program), os.path.abspath(options.library))
+    rows = []
+    with tempfile.TemporaryDirectory() as work:
+        scenes = Scenes(program, work)
+        for fault in FAULTS:
+            if options.only in (None, fault.name):
+                rows.append(measure(fault, scenes, Path(work) / fault.name, options.quick))
+    print(page.table(rows))
+    if options.write:
+        Path(options.write).write_text(page.written(rows))
+    failures = sum(row.failures() for row in rows)
+    print(f"{sum(row.tried for row in rows)} tried, {failures} failed")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

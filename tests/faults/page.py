@@ -1,0 +1,39 @@
+"""docs/reliability.md: the table, and what its words mean."""
+
+HEAD = """# Harmed on purpose
+
+What becomes of runs and their files when machines and people do their worst. Written by `scripts/test --faults`, which tries all
+of it again from outside the program; moments and places are drawn at random, with a fixed seed for all but the clock. A run that
+was harmed is brought to its end, by `keeler resume` or, where it had no checkpoint yet, by starting again, and then held against the same
+run without harm: state, series, snapshots and log of contacts must be equal bit for bit.
+
+"""
+
+TAIL = """
+| column | counts trials in which |
+|---|---|
+| lost | something that was on disk is gone, in silence, or a run that could go on does not |
+| wrong | a result differs in a bit, a damaged file is taken for a whole one, output is in two places, parts of files are left, the exit code is another than the manual's, or a failure is not one line of at most 2000 bytes |
+| crashes | a signal that nobody sent ends the program, or a library or the C++ runtime speaks in its place |
+| hangs | a command takes longer than 20 seconds; none of them needs one |
+
+Snapshots, checkpoints and files of contacts are [sealed](formats.md#the-seal): no damage of theirs may give other values. Texts and
+snapshots that other programs wrote have no seal. There a changed digit is a value like others, which nothing can tell;
+only the refusal of what is no value, and the manner of it, is tried.
+
+Disks that lie about what they have written, and the loss of power, are not tried: a checkpoint is forced to disk before the one
+before the last is removed, and what a disk says is believed.
+"""
+
+COLUMNS = ["fault", "how", "tried", "lost", "wrong", "crashes", "hangs"]
+
+
+def table(rows):
+    lines = [COLUMNS, ["---"] * len(COLUMNS)] + [row.cells() for row in rows]
+    sums = [str(sum(row.counts[verdict] for row in rows)) for verdict in COLUMNS[3:]]
+    lines.append(["all", "", f"{sum(row.tried for row in rows):,}", *sums])
+    return "".join("| " + " | ".join(cells) + " |\n" for cells in lines)
+
+
+def written(rows):
+    return HEAD + table(rows) + TAIL
