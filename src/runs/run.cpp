@@ -342,6 +342,7 @@ RunResult go_on(const RunOptions& options, RunRequests& requests) {
   Loaded loaded = load(newest.path);
   const std::int64_t step = start.checkpoint_step = loaded.run.state.step;
   const Scene scene = until(std::move(loaded.run.scene), options, step);
+  folder.cut_log();
   if (step >= scene.time.end_step && says_finished(folder.summary())) {
     if (options.notice)
       options.notice(fmt::format("the run in '{}' is finished, nothing was changed; --until with a later orbit than "

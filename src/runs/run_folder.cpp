@@ -92,6 +92,15 @@ void RunFolder::cut_contacts(std::int64_t from_number) const {
     fs::remove(contacts(number), ignored);
 }
 
+void RunFolder::cut_log() const {
+  std::error_code unknown;
+  if (!fs::exists(log(), unknown))
+    return;
+  const std::string text = read_text(log());
+  if (!text.empty() && text.back() != '\n')
+    write_text(log(), std::string_view(text).substr(0, text.rfind('\n') + 1));
+}
+
 void RunFolder::remove_summary() const {
   std::error_code error;
   fs::remove(summary(), error);

@@ -39,6 +39,10 @@ public:
   /// The same of files of contacts.
   void cut_contacts(std::int64_t from_number) const;
 
+  /// Removes the part of a line that a kill in the middle of its writing left at the end of the log: the next line
+  /// would continue it. Throws IoError.
+  void cut_log() const;
+
   /// Removes the summary of what the run was before: it is true no more. Throws IoError.
   void remove_summary() const;
 

@@ -47,6 +47,18 @@ interrupted KILL 137 "$work/killed"
 runs 0 resume "$work/killed"
 same "kill -9" "$work/killed"
 
+# Killed in the middle of a line of the log: its part goes, and every line can be read.
+runs 0 run "$work/scene.toml" -o "$work/torn" --set time.end=0.5
+truncate -s -20 "$work/torn/log.jsonl"
+runs 0 resume "$work/torn" --until 1
+same "a torn line in the log" "$work/torn"
+python3 -c 'import json, sys; print([json.loads(line)["event"] for line in open(sys.argv[1])])' "$work/torn/log.jsonl" \
+  >"$work/out" || fail "a torn line in the log: $(cat "$work/torn/log.jsonl")"
+prints "a torn line in the log" "'resumed'"
+truncate -s -20 "$work/torn/log.jsonl"
+runs 0 resume "$work/torn"
+tail -n 1 "$work/torn/log.jsonl" | grep -q '}$' || fail "a torn line in the log of a finished run"
+
 # Checkpoints by the clock alone, a thousandth of a minute apart.
 interrupted KILL 137 "$work/clock" --set output.checkpoint_every=0 --set output.checkpoint_every_minutes=0.001
 runs 0 resume "$work/clock"

@@ -1,5 +1,5 @@
 """faults PROGRAM LIBRARY [--quick] [--only NAME] [--write FILE]: harms Keeler's runs and files from outside, prints a line a
-fault, and writes the page. Exit code 1 when anything was lost or wrong, crashed or hung."""
+fault, and writes the page, where rows that were not measured stay. Exit code 1 when anything was lost or wrong, crashed or hung."""
 
 import argparse
 import os
@@ -39,9 +39,12 @@ def main():
         for fault in FAULTS:
             if options.only in (None, fault.name):
                 rows.append(measure(fault, scenes, Path(work) / fault.name, options.quick))
-    print(page.table(rows))
+    cells = [row.cells() for row in rows]
+    print(page.table(cells))
     if options.write:
-        Path(options.write).write_text(page.written(rows))
+        file = Path(options.write)
+        titles = [fault.title for fault in FAULTS]
+        file.write_text(page.written(titles, cells, file.read_text() if file.exists() else ""))
     failures = sum(row.failures() for row in rows)
     print(f"{sum(row.tried for row in rows)} tried, {failures} failed")
     return 1 if failures else 0

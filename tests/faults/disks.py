@@ -149,7 +149,7 @@ def _few_files(scenes, draw, folder, number):
 
 FAULTS = [
     Fault("calls", "a call on a file fails: killed before it, killed with half of it written, no space, input/output error",
-          "open, write, fsync, close, ftruncate, rename, remove and mkdir of a run and of a resume, one after the other", 1600,
+          "open, write, fsync, close, ftruncate, rename, remove and mkdir of a run and of a resume, one after the other", 1000,
           24, _failing_call, Calls),
     Fault("file-size", "limits on the size of files", "a run with every kind of file, 0 to 64 KB in steps of 256 bytes", 256,
           6, _file_size),

@@ -89,18 +89,21 @@ def _clock(scenes, draw, folder, number):
     name = list(SCENES)[number % len(SCENES)]
     run = folder / "run"
     env = {"LD_PRELOAD": scenes.program.library, "KEELER_FAULT_CLOCK": "1"}
-    first = scenes.words(name, run, "-q", "--set", "time.end=0.2", "--set", "output.checkpoint_every_minutes=0.001")
-    scenes.program.run(*first, env=env).must_be(0)
-    scenes.program.run("resume", run, "--until", "0.4", "-q", env=env).must_be(0)
+    words = scenes.words(name, run, "-q", "--set", "output.checkpoint_every_minutes=0.001")
+    process = scenes.program.start(*words, env=env)
+    time.sleep(draw.uniform(0.0, LONGEST_LIFE))
+    process.send_signal(signal.SIGKILL)
+    scenes.program.ended(process, words)
+    scenes.program.run(*next_words(scenes, name, run), env=env).must_be(0)
     must_equal(run, scenes.reference(name))
 
 
 FAULTS = [
     Fault("kill", "killed (SIGKILL) at random moments",
           f"{len(SCENES)} scenes: all gravity solvers, five finders, friction, moonlets, a satellite, logs of contacts, "
-          "automatic steps; each life of a run with other threads and instructions", 60, 3, _killed),
+          "automatic steps; each life of a run with other threads and instructions", 96, 3, _killed),
     Fault("signals", "INT, TERM, HUP and USR1 at random moments, half of them twice", "the same scenes", 60, 3, _signalled),
     Fault("two", "two commands in one folder", "run and resume beside run and resume, up to 0.1 s apart", 100, 4,
           _two_at_once),
-    Fault("clock", "the wall clock jumps by years at each look at it", "run, then resume", 24, 2, _clock),
+    Fault("clock", "the wall clock jumps by years at each look at it", "run, killed and resumed", 24, 2, _clock),
 ]

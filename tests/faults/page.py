@@ -28,12 +28,26 @@ before the last is removed, and what a disk says is believed.
 COLUMNS = ["fault", "how", "tried", "lost", "wrong", "crashes", "hangs"]
 
 
+def _line(cells):
+    return "| " + " | ".join(cells) + " |\n"
+
+
+def _rows_in(text):
+    """Cells of the rows of a page, by their titles."""
+    rows = [line.strip("| \n").split(" | ") for line in text.splitlines() if line.startswith("| ")]
+    return {cells[0]: cells for cells in rows if len(cells) == len(COLUMNS)}
+
+
+def _number(cell):
+    return int(cell.replace(",", "")) if cell[0].isdigit() else 0
+
+
 def table(rows):
-    lines = [COLUMNS, ["---"] * len(COLUMNS)] + [row.cells() for row in rows]
-    sums = [str(sum(row.counts[verdict] for row in rows)) for verdict in COLUMNS[3:]]
-    lines.append(["all", "", f"{sum(row.tried for row in rows):,}", *sums])
-    return "".join("| " + " | ".join(cells) + " |\n" for cells in lines)
+    sums = [f"{sum(_number(cells[column]) for cells in rows):,}" for column in range(2, len(COLUMNS))]
+    return "".join(map(_line, [COLUMNS, ["---"] * len(COLUMNS), *rows, ["all", "", *sums]]))
 
 
-def written(rows):
-    return HEAD + table(rows) + TAIL
+def written(titles, measured, before):
+    """The page. A row that was not measured stays as it was before."""
+    known = {**_rows_in(before), **{cells[0]: cells for cells in measured}}
+    return HEAD + table([known[title] for title in titles if title in known]) + TAIL
