@@ -1,5 +1,6 @@
-"""faults PROGRAM LIBRARY [--quick] [--only NAME] [--write FILE]: harms Keeler's runs and files from outside, prints a line a
-fault, and writes the page, where rows that were not measured stay. Exit code 1 when anything was lost or wrong, crashed or hung."""
+"""faults PROGRAM LIBRARY [--quick] [--only NAME] [--write FILE]: harms Keeler's runs and files from outside, prints a
+line a fault, and writes the page, where rows that were not measured stay. Exit code 1 when anything was lost or wrong,
+crashed or hung."""
 
 import argparse
 import os

@@ -114,7 +114,7 @@ def _other_outputs(scenes, draw, folder, number):
              ["analyze", whole, "--profile", f"{result}.csv"],
              ["analyze", whole, "--csv", f"{result}.csv"]][number % 10]
     ended = scenes.program.run(*words, limits=Limits(file_size=draw.randrange(60000))).must_be(0, 4)
-    left = [path.name for path in folder.rglob("*") if path.is_file() and (path.suffix == ".tmp" or path.stem == "result")]
+    left = [file.name for file in folder.rglob("*") if file.suffix == ".tmp" or file.stem == "result"]
     if left and ended.code == 4:
         raise Broken("wrong", f"left {left}: {ended.described()}")
 
@@ -133,7 +133,8 @@ def _little_memory(shared, draw, folder, number):
     scenes, least = shared
     run = folder / "run"
     limits = Limits(memory=least + (number << 18) + draw.randrange(1 << 18))
-    ended = scenes.program.run(*scenes.words(RICH, run, "-q"), limits=limits, env={"OMP_NUM_THREADS": str(1 + number % 2)})
+    threads = {"OMP_NUM_THREADS": str(1 + number % 2)}
+    ended = scenes.program.run(*scenes.words(RICH, run, "-q"), limits=limits, env=threads)
     ended.must_be(0, 1, 4)
     _goes_on(scenes, run, draw)
     scenes.program.run("convert", run, "--to", "csv", limits=limits).must_be(0, 1, 4)

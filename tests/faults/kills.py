@@ -1,4 +1,4 @@
-"""Runs that are killed, stopped by signals, or stand in each other's way; in the end nothing differs from a run without."""
+"""Runs that are killed, stopped by signals, or in each other's way; in the end nothing differs from a run without."""
 
 import signal
 import time
@@ -100,9 +100,10 @@ def _clock(scenes, draw, folder, number):
 
 FAULTS = [
     Fault("kill", "killed (SIGKILL) at random moments",
-          f"{len(SCENES)} scenes: all gravity solvers, five finders, friction, moonlets, a satellite, logs of contacts, "
+          f"{len(SCENES)} scenes: all gravity solvers, four finders, friction, moonlets, a satellite, logs of contacts, "
           "automatic steps; each life of a run with other threads and instructions", 96, 3, _killed),
-    Fault("signals", "INT, TERM, HUP and USR1 at random moments, half of them twice", "the same scenes", 60, 3, _signalled),
+    Fault("signals", "INT, TERM, HUP and USR1 at random moments, half of them twice", "the same scenes", 60, 3,
+          _signalled),
     Fault("two", "two commands in one folder", "run and resume beside run and resume, up to 0.1 s apart", 100, 4,
           _two_at_once),
     Fault("clock", "the wall clock jumps by years at each look at it", "run, killed and resumed", 24, 2, _clock),

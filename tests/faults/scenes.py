@@ -52,7 +52,8 @@ SCENES = {
 }
 RICH = "fft, moonlet, contacts"  # with every kind of file
 SHORT = "the same, short"         # with fewer of each
-OVERRIDES = {**SCENES, SHORT: SCENES[RICH] + ["time.end=0.08", "output.snapshot_every=0.04", "output.checkpoint_every=0.04"]}
+SHORTER = ["time.end=0.08", "output.snapshot_every=0.04", "output.checkpoint_every=0.04"]
+OVERRIDES = {**SCENES, SHORT: SCENES[RICH] + SHORTER}
 
 
 class Scenes:
