@@ -2,6 +2,7 @@
 #include "command.hpp"
 #include "common_options.hpp"
 #include "profile_file.hpp"
+#include "results.hpp"
 #include "sight_options.hpp"
 #include "structure_report.hpp"
 #include "transport_text.hpp"
@@ -94,7 +95,7 @@ void write_snapshots(const std::string& file, const StoredPatches& stored, const
           row[column_of_axis(name, "xyz"[axis])] = value[axis];
     rows.push_back(row);
   }
-  write_text(file, csv_of(rows));
+  write_table(file, csv_of(rows));
 }
 
 ExitCode run(const AnalyzeOptions& options) {

@@ -68,18 +68,6 @@ inline CLI::Option& one_of(CLI::Option* option, const std::vector<std::string>& 
   return *option;
 }
 
-/// Refuses to make a file ("a state") where there is a folder, where there is one unless `force`, or where none can be
-/// made. Throws UsageError, IoError.
-inline void require_new_file(const std::string& path, bool force, const std::string& what) {
-  namespace fs = std::filesystem;
-  if (fs::is_directory(path))
-    throw UsageError("'" + path + "' is a folder (" + what + " is one file); name a file in it");
-  if (fs::exists(path) && !force)
-    throw UsageError("'" + path + "' exists already (" + what +
-                     " is never overwritten unasked); name another file or add --force");
-  require_writable_folder(fs::absolute(path).parent_path(), path);
-}
-
 /// --threads N.
 struct ThreadOption {
   int count = 0; ///< 0: as many as the machine offers

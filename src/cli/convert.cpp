@@ -1,6 +1,7 @@
 // keeler convert: snapshots and checkpoints for other programs, as CSV or for ParaView.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "results.hpp"
 #include "signals.hpp"
 
 #include <keeler/io/describe.hpp>

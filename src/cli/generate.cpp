@@ -3,6 +3,7 @@
 #include "common_options.hpp"
 #include "messages.hpp"
 #include "progress_line.hpp"
+#include "results.hpp"
 #include "scene_arguments.hpp"
 #include "signals.hpp"
 

@@ -83,6 +83,8 @@ int run(int argc, char** argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& asked) { // --help and --version
+    if (program.get_subcommands().empty() && program.remaining_size() > 0)
+      throw UsageError(usage_fault(program, CLI::ExtrasError("keeler", program.remaining())));
     program.exit(asked);
     return end_with(ExitCode::done);
   } catch (const CLI::ParseError& error) {

@@ -1,6 +1,7 @@
 // keeler new: a shipped example as the beginning of one's own scene.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "results.hpp"
 
 #include <keeler/files/files.hpp>
 #include <keeler/scene/examples.hpp>

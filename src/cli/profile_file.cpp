@@ -1,8 +1,9 @@
 #include "profile_file.hpp"
 
+#include "results.hpp"
+
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/radial_profile.hpp>
-#include <keeler/files/files.hpp>
 #include <keeler/report/csv.hpp>
 
 namespace keeler {
@@ -25,7 +26,7 @@ void write_profiles(const std::filesystem::path& file, std::span<const Patch> pa
                       {"dispersion_y_m_s", motion(bin.dispersion, 1)},
                       {"dispersion_z_m_s", motion(bin.dispersion, 2)}});
     }
-  write_text(file, csv_of(rows));
+  write_table(file, csv_of(rows));
 }
 
 } // namespace keeler

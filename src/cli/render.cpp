@@ -2,6 +2,7 @@
 #include "command.hpp"
 #include "common_options.hpp"
 #include "progress_line.hpp"
+#include "results.hpp"
 #include "signals.hpp"
 
 #include <keeler/diagnostics/autocorrelation.hpp>
@@ -28,6 +29,8 @@ struct RenderOptions {
   int width = PictureOptions().width;
   bool oblique = false, autocorrelation = false, movie = false;
 };
+
+constexpr std::string_view png_signature = "\x89PNG";
 
 // picture.png in a run's folder, NAME.png beside a snapshot NAME.hdf.
 fs::path picture_path(const RenderOptions& options) {
@@ -70,7 +73,10 @@ ExitCode draw_movie(const RenderOptions& options) {
   const fs::path movie = !options.output.empty() ? fs::path(options.output)
                                                  : options.path / fs::path(has_ffmpeg() ? "movie.mp4" : "movie.png");
   require_movie_name(movie.string());
-  require_writable_folder(fs::absolute(movie).parent_path(), movie);
+  if (movie.extension() == ".mp4")
+    require_replaceable(movie, "a movie", "ftyp", 4);
+  else
+    require_replaceable(movie, "a picture", png_signature);
   const std::vector<fs::path> snapshots = snapshots_in(options.path);
   PictureOptions look = look_of(options);
   if (const std::string title = load_newest_patch(snapshots.front()).title; !title.empty())
@@ -91,6 +97,10 @@ ExitCode render(const RenderOptions& options) {
     return draw_movie(options);
   const StoredPatches stored = load_newest_patch(options.path);
   const fs::path picture = picture_path(options);
+  if (picture.extension() != ".png")
+    throw UsageError(
+        fmt::format("'{}' cannot be a picture: pictures are .png files; give it that ending", picture.string()));
+  require_replaceable(picture, "a picture", png_signature);
   if (!stored.title.empty())
     look.title = stored.title;
   render_patch(stored.patches.back(), picture.string(), look);

@@ -1,6 +1,7 @@
 // keeler report: a run as one page.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "results.hpp"
 #include "terminal.hpp"
 
 #include <keeler/files/files.hpp>
@@ -25,11 +26,9 @@ struct ReportOptions {
 ExitCode report(ReportOptions& options) {
   options.threads.apply();
   const fs::path file = options.output.empty() ? fs::path(options.folder) / "report.html" : fs::path(options.output);
-  if (fs::is_directory(file))
-    throw UsageError(fmt::format("'{}' is a folder (a report is one file); name a file in it", file.string()));
   if (!fs::is_directory(options.folder))
     throw UsageError(fmt::format("no report of '{}': it is no folder; name the folder of a run", options.folder));
-  require_writable_folder(fs::absolute(file).parent_path(), file);
+  require_replaceable(file, "a report", "<!DOCTYPE html>");
   const std::string page = run_report(options.folder, options.page);
   write_text(file, page);
   fmt::print("{}\n", file.string());

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -68,7 +69,11 @@ void print_summary(const std::string& folder, const nlohmann::json& s) {
              "collisions {}, rounding {:.1e}\n",
              figures(energy("now") - energy("start"), 4), joules("translational_shear_work"),
              joules("collisional_shear_work"), joules("kick_work"), joules("lost_in_collisions"), energy("residual"));
-  if (const nlohmann::json& b = s["energy_balance"]; !b.is_null() && b["ratio"].is_number())
+  const auto known = [](const nlohmann::json& b) { // better than by its own size
+    return !b.is_null() && b["ratio"].is_number() &&
+           (!b["error"].is_number() || b["error"].get<double>() < std::fabs(b["ratio"].get<double>()));
+  };
+  if (const nlohmann::json& b = s["energy_balance"]; known(b))
     fmt::print(
         "energy balance                      {:.3f}{}: energy lost over the work of the shear, orbits {} to {}{}\n",
         b["ratio"].get<double>(), b["error"].is_number() ? fmt::format(" +- {:.1g}", b["error"].get<double>()) : "",

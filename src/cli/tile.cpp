@@ -1,6 +1,7 @@
 // keeler tile: a snapshot repeated into a larger patch, as a snapshot.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "results.hpp"
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/words.hpp>

@@ -3,6 +3,7 @@
 #include <keeler/core/suggest.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace keeler {
 namespace {
@@ -51,6 +52,14 @@ std::string placeholder_of(const CLI::Option& option) {
 std::string usage_fault(const CLI::App& program, const CLI::ParseError& error) {
   const CLI::App& command = asked_command(program);
   const std::vector<std::string> words = command.remaining();
+  std::vector<std::string> names;
+  for (const CLI::App* below : listed_commands(command))
+    names.push_back(below->get_name());
+  if (!names.empty() && words.empty())
+    return fmt::format("'{}' wants a part: {}", full_name(command), fmt::join(names, ", "));
+  if (!names.empty() && !is_option(words.front()))
+    return fmt::format("'{}' has no command '{}'; {}", full_name(command), words.front(),
+                       or_help(command, closest(words.front(), names)));
   // An option that is unknown explains why another word stands where nothing is expected, or a value is missing.
   for (const std::string& word : words)
     if (is_option(word)) {
@@ -58,12 +67,6 @@ std::string usage_fault(const CLI::App& program, const CLI::ParseError& error) {
       return fmt::format("'{}' has no option '{}'; {}", full_name(command), name,
                          or_help(command, closest(name, option_names(command))));
     }
-  std::vector<std::string> names;
-  for (const CLI::App* below : listed_commands(command))
-    names.push_back(below->get_name());
-  if (!words.empty() && !names.empty())
-    return fmt::format("'{}' has no command '{}'; {}", full_name(command), words.front(),
-                       or_help(command, closest(words.front(), names)));
   return fmt::format("{}; {}", error.what(), or_help(command, ""));
 }
 

@@ -80,7 +80,8 @@ std::size_t steady_start(std::span<const double> values) {
   const std::vector<double> coarse = blocks_of(values, std::max<std::size_t>(length, 1));
   std::size_t best = 0;
   double most = 0.0;
-  for (std::size_t start = 0; start + 4 <= coarse.size(); ++start) {
+  // The correlations of a short rest are hardly known, and then seem small: a third at least must be left.
+  for (std::size_t start = 0; start + 4 <= coarse.size() && 3 * start <= 2 * coarse.size(); ++start) {
     const std::span<const double> rest(coarse.data() + start, coarse.size() - start);
     const double independent = static_cast<double>(rest.size()) / statistical_inefficiency(rest);
     if (independent > most) {
@@ -92,11 +93,19 @@ std::size_t steady_start(std::span<const double> values) {
 }
 
 bool is_steady(std::span<const double> values) {
-  if (values.size() < 8 || 3 * steady_start(values) > values.size())
+  if (values.size() < 8)
     return false;
-  const std::size_t half = values.size() / 2;
+  constexpr double sure = 3.0; // errors
+  const std::size_t half = values.size() / 2, start = steady_start(values);
   const Estimate first = block_mean(values.first(half)), last = block_mean(values.last(half));
-  return std::fabs(last.value - first.value) <= 3.0 * std::hypot(first.error, last.error);
+  if (!(std::fabs(last.value - first.value) <= sure * std::hypot(first.error, last.error)))
+    return false;
+  if (3 * start <= values.size())
+    return true;
+  // A late start may be luck. Then the values before it are like those after it, whose error says how far they scatter.
+  const double before = static_cast<double>(start), after = static_cast<double>(values.size() - start);
+  const Estimate rest = block_mean(values.subspan(start));
+  return std::fabs(mean_of(values.first(start)) - rest.value) <= sure * rest.error * std::sqrt(1.0 + after / before);
 }
 
 } // namespace keeler

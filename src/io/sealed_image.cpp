@@ -66,6 +66,10 @@ hdf5::Handle open_unsealed(const std::filesystem::path& file, const std::vector<
       damaged(file, "its end is not what was written");
     return image;
   } catch (const IoError& error) {
+    if (!as_text(content).starts_with("\x89HDF\r\n\x1a\n"))
+      throw IoError(fmt::format("'{}' is no snapshot: it does not begin as HDF5 files do; name a snapshot (.hdf), a "
+                                "checkpoint (.h5) or the folder of a run",
+                                file.string()));
     throw IoError(fmt::format("cannot read '{}' as HDF5: {}", file.string(), error.what()));
   }
 }

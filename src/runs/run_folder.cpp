@@ -41,6 +41,11 @@ fs::path RunFolder::contacts(std::int64_t number) const {
   return path_ / fmt::format("collisions_{:06}.h5", number);
 }
 
+std::string RunFolder::runs_inside() const {
+  const fs::path runs = path_ / "runs";
+  return fs::is_directory(runs) ? fmt::format("; its runs are in '{}'", runs.string()) : "";
+}
+
 void RunFolder::refuse_if_occupied() const {
   std::error_code unknown; // what cannot be looked at will be reported when it is made
   const fs::file_status status = fs::status(path_, unknown);

@@ -20,6 +20,10 @@ public:
   std::filesystem::path contacts(std::int64_t number) const;
   const std::filesystem::path& path() const { return path_; }
 
+  /// For messages, where nothing of a run is in the folder: "; its runs are in 'sweep/runs'" of a sweep or a study, or
+  /// nothing.
+  std::string runs_inside() const;
+
   /// Throws UsageError when the name is taken by a file, or by a folder that holds anything.
   void refuse_if_occupied() const;
 

@@ -98,7 +98,8 @@ std::optional<double> RunView::remaining_s(double now_s) const {
 RunView view_run(const fs::path& path) {
   const RunFolder folder(path);
   if (!fs::exists(folder.log()))
-    throw IoError(fmt::format("no run in '{}' (log.jsonl is missing); name the folder of a run", path.string()));
+    throw IoError(fmt::format("no run in '{}' (log.jsonl is missing); name the folder of a run{}", path.string(),
+                              folder.runs_inside()));
   RunView view;
   view.running = folder_is_held(path);
   read_log(view, folder.log());

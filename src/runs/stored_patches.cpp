@@ -1,5 +1,7 @@
 #include <keeler/runs/stored_patches.hpp>
 
+#include "run_folder.hpp"
+
 #include <keeler/core/error.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/scene/scene.hpp>
@@ -50,8 +52,8 @@ std::vector<fs::path> snapshots_in(const fs::path& folder) {
   }
   if (files.empty())
     throw IoError(
-        fmt::format("no snapshot in '{}' (snap_NNNNNN.hdf is missing); name a snapshot file or the folder of a run",
-                    folder.string()));
+        fmt::format("no snapshot in '{}' (snap_NNNNNN.hdf is missing); name a snapshot file or the folder of a run{}",
+                    folder.string(), RunFolder(folder).runs_inside()));
   std::sort(files.begin(), files.end(), earlier);
   return files;
 }

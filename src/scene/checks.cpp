@@ -23,6 +23,9 @@ std::string sample_of(const Key& key) {
 
 [[noreturn]] void fail_unknown(const Entry& entry) {
   const std::string near = suggest_path(entry.path);
+  if (entry.path == "scene")
+    fail_at(entry.key_place,
+            "unknown key scene (no scene has it, but the grid of a sweep has); is it \"keeler sweep\" that you want?");
   const std::string what = std::holds_alternative<Table>(entry.value) ? "table" : "key";
   fail_at(entry.key_place, fmt::format("unknown {} {} (no scene has it); {}", what, entry.path,
                                        near.empty() ? "\"keeler check --defaults\" lists every key"

@@ -55,7 +55,7 @@ void doubt_kicks(const Scene& scene, Lines& lines) {
 std::vector<std::string> doubts(const Scene& scene, const PatchScale& patch) {
   Lines lines;
   doubt_number(patch.particle_count, lines);
-  if (!scene.start_from && scene.particles.density < 50.0)
+  if (scene.particles.density > 0.0 && scene.particles.density < 50.0) // 0: the particles come from elsewhere
     lines.push_back("the density is in kg/m^3: water ice has 917");
   if (scene.gravity && scene.gravity->by_pairs())
     doubt_room_for_wakes(patch, lines);

@@ -51,7 +51,7 @@ refuses "an existing folder" "add --force" convert "$work/run" --to vtp
 runs 0 convert "$work/run" --to vtp --force
 refuses_with 4 "no folder to write into" "make it, or name another" convert "$work/run" --to vtp -o "$work/new/a"
 nothing_new "no folder to write into"
-refuses_with 4 "no snapshot" "cannot read" convert "$work/scene.toml" --to csv -o "$work/new.csv"
+refuses_with 4 "no snapshot" "is no snapshot" convert "$work/scene.toml" --to csv -o "$work/new.csv"
 nothing_new "no snapshot"
 mkdir "$work/empty"
 refuses_with 4 "a folder without snapshots" "no snapshot in" convert "$work/empty" --to vtp

@@ -97,7 +97,7 @@ refuses "an azimuth alone" "--elevation" analyze "$work/taken" --azimuth 10
 refuses "no rays" "'0' is not a number of rays" analyze "$work/taken" --elevation 10 --rays 0
 refuses "a footprint of 0" "--footprint" analyze "$work/taken" --elevation 10 --footprint 0
 refuses_with 4 "a profile below a file" "file/profile.csv" analyze "$work/taken" --profile "$work/file/profile.csv"
-refuses_with 4 "a profile over a folder" "taken" analyze "$work/taken" --profile "$work/taken"
+refuses "a profile over a folder" "is a folder" analyze "$work/taken" --profile "$work/taken"
 refuses "no bins" "'0' is not a number of bins" analyze "$work/taken" --profile "$work/profile.csv" --bins 0
 refuses "bins without a profile" "--profile" analyze "$work/taken" --bins 10
 [ -e "$work/profile.csv" ] && fail "a refused profile was written"

@@ -18,6 +18,34 @@ refuses_with 4 "a movie of an empty folder" "no snapshot in '$work/empty' (snap_
   render "$work/empty" --movie
 refuses "a movie of a file" "name the folder of a run" render "$work/run/snap_000000.hdf" --movie
 refuses "another movie" "give it such an ending" render "$work/run" --movie -o "$work/to/a.gif"
+refuses "another picture" "give it that ending" render "$work/run" -o "$work/to/a.jpg"
+
+# Nothing but a picture, a movie, a page or a table of the same columns is replaced.
+cp -r "$work/run" "$work/kept"
+# keeps FILE COMMAND...: the command does not write over this file
+keeps() {
+  local file=$1
+  shift
+  refuses "$* over $file" "exists already, and is not" "$@" "$work/run/$file"
+  cmp -s "$work/run/$file" "$work/kept/$file" || fail "$*: $file is another one"
+}
+cp "$work/run/series.csv" "$work/run/series.png"
+cp "$work/run/series.csv" "$work/run/series.mp4"
+cp "$work/run/series.png" "$work/run/series.mp4" "$work/kept"
+keeps series.png render "$work/run" -o
+keeps series.png render "$work/run" --movie -o
+keeps series.mp4 render "$work/run" --movie -o
+keeps snap_000000.hdf report "$work/run" -o
+keeps scene.toml analyze "$work/run/snap_000000.hdf" --profile
+keeps series.csv analyze "$work/run/snap_000000.hdf" --csv
+rm "$work/run/series.png" "$work/run/series.mp4"
+for again in 1 2; do
+  runs 0 render "$work/run" -o "$work/again.png"
+  runs 0 render "$work/run" --movie -o "$work/again.mp4"
+  runs 0 report "$work/run" -o "$work/again.html"
+  runs 0 analyze "$work/run/snap_000000.hdf" --csv "$work/again.csv"
+done
+
 code=0
 PATH=$work "$keeler" render "$work/run" --movie -o "$work/to/a.mp4" >"$work/out" 2>"$work/err" || code=$?
 [ "$code" -eq 2 ] || fail "no ffmpeg: exit $code"

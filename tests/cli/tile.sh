@@ -37,7 +37,7 @@ refuses "a number missing" "NY is required" tile "$small" 2 -o "$work/none.hdf"
 refuses "too oblong" "more than 1000 times as long as wide" tile "$small" 1 2000 -o "$work/none.hdf"
 refuses "too many" "particles (a run takes at most 1e9)" tile "$small" 5000 5000 -o "$work/none.hdf"
 refuses_with 4 "no file" "absent.hdf" tile "$work/absent.hdf" 2 2 -o "$work/none.hdf"
-refuses_with 4 "a scene" "cannot" tile "$work/scene.toml" 2 2 -o "$work/none.hdf"
+refuses_with 4 "a scene" "is no snapshot" tile "$work/scene.toml" 2 2 -o "$work/none.hdf"
 refuses_with 4 "a checkpoint" "cannot read snapshot" tile "$(newest_checkpoint "$work/run")" 2 2 -o "$work/none.hdf"
 [ -e "$work/none.hdf" ] && fail "a refused state was written"
 

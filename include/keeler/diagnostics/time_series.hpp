@@ -24,11 +24,13 @@ Estimate block_mean(std::span<const double> values);
 double statistical_inefficiency(std::span<const double> values);
 
 /// The place from which on the mean is best known: it leaves the largest number of independent values, (n − place)/g of
-/// the rest (Chodera 2016, J. Chem. Theory Comput. 12, 1799). Long series are looked at in 256 bins.
+/// the rest (Chodera 2016, J. Chem. Theory Comput. 12, 1799). At least a third is left: the g of a short rest is a
+/// guess, and the largest of many guesses wins by chance. Long series are looked at in 256 bins.
 std::size_t steady_start(std::span<const double> values);
 
-/// Whether the two halves have the same mean within three of their errors, and steady_start() is in the first third. At
-/// least eight values, or they are not called steady.
+/// Whether the two halves have the same mean within three of their errors, and what stands before steady_start(), where
+/// that is beyond the first third, the same as the rest within three errors of the rest's scatter. At least eight values,
+/// or they are not called steady.
 bool is_steady(std::span<const double> values);
 
 } // namespace keeler

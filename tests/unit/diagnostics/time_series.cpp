@@ -66,6 +66,18 @@ TEST_CASE("what begins with a transient is steady after it, and noise is from it
   CHECK(early >= 17);
 }
 
+TEST_CASE("noise that remembers long is called steady nearly always, and a drift of five widths never") {
+  int steady = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    std::vector<double> values = correlated(1500, 0.95, seed);
+    steady += is_steady(values) ? 1 : 0;
+    for (std::size_t k = 0; k < values.size(); ++k)
+      values[k] += 5.0 * static_cast<double>(k) / 1500.0;
+    CHECK_FALSE(is_steady(values));
+  }
+  CHECK(steady >= 39); // two halves three errors apart: 0.3 % of them, and errors are estimates
+}
+
 TEST_CASE("few values, or equal ones") {
   const double three[] = {1.0, 2.0, 3.0};
   CHECK(block_mean(three).value == 2.0);
