@@ -81,11 +81,12 @@ slow=(run "$work/scene.toml" --set particles.velocity_dispersion=900 --set parti
   --set 'box.size=[300,300]' --set time.step=0.03 --set time.end=3 --set output.snapshot_every=0
   --set output.checkpoint_every=0)
 
-# signalled_after SECONDS SIGNALS FOLDER: the slow run, with so many signals 0.3 s apart; leaves $code and $took
+# signalled_after SECONDS SIGNALS FOLDER FILES: the slow run, with so many signals 0.3 s apart from so many seconds after one of
+# these files is there; leaves $code and $took
 signalled_after() {
   "$keeler" "${slow[@]}" -o "$3" >"$work/out" 2>"$work/err" &
   local process=$! signals=$2
-  until [ -e "$3/snap_000000.hdf" ] || ! kill -0 "$process" 2>/dev/null; do sleep 0.05; done
+  until compgen -G "$3/$4" >"$work/there" || ! kill -0 "$process" 2>/dev/null; do sleep 0.05; done
   sleep "$1"
   SECONDS=0
   for ((; signals > 0; --signals)); do
@@ -103,10 +104,10 @@ gave_up() {
   [ "$took" -ge "$2" ] || fail "$1: after $took s already"
   [ "$took" -le "$3" ] || fail "$1: only after $took s"
 }
-signalled_after 1 1 "$work/slow"
+signalled_after 1 1 "$work/slow" snap_000000.hdf
 gave_up "a step without end" 4 20
 one_line "a step without end" "before there was a checkpoint"
-signalled_after 1 2 "$work/slower"
+signalled_after 1 2 "$work/slower" snap_000000.hdf
 gave_up "a second signal" 0 4
 one_line "a second signal" "before there was a checkpoint"
 
@@ -114,7 +115,7 @@ one_line "a second signal" "before there was a checkpoint"
 slow+=(--set particles.count=3500 --set 'box.size=[172,172]' --set time.step=0.01 --set output.checkpoint_every=0.01)
 for ((try = 0; try < 10; ++try)); do
   rm -rf "$work/kept"
-  signalled_after 4 2 "$work/kept"
+  signalled_after 1 2 "$work/kept" 'checkpoint_*.h5'
   [ $code -eq 75 ] || fail "a step given up after a checkpoint: exit $code: $(cat "$work/err")"
   grep -q "given up" "$work/err" && break
 done
