@@ -41,7 +41,7 @@ template<class Result, class Read> Result read_content(const std::filesystem::pa
   FileContent content = load_content(file);
   if (content.sealed) {
     const hdf5::Handle image = hdf5::open_image(content.bytes);
-    content.bytes = {}; // the library has a copy
+    content = FileContent(); // the library has a copy
     return read(image);
   }
   return read_apart<Result>("read '" + file.string() + "' as HDF5", limits_for(content.bytes.size()),

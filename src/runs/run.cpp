@@ -267,6 +267,8 @@ Loaded load(const std::filesystem::path& file) {
   FieldTable table = loaded.run.state.fields();
   loaded.counters.list_fields(table, loaded.run.scene);
   read_checkpoint(file, table);
+  if (const std::string fault = loaded.run.state.fault(loaded.run.scene); !fault.empty())
+    throw IoError(fmt::format("checkpoint '{}' does not fit: {}", file.string(), fault));
   return loaded;
 }
 

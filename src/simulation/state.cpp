@@ -1,5 +1,9 @@
 #include <keeler/simulation/state.hpp>
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 namespace keeler {
 
 SimulationState::SimulationState(const Scene& scene) : moonlets(scene.moonlets.size()) {
@@ -39,6 +43,31 @@ FieldTable SimulationState::fields() {
   if (particles.rough)
     table.scalar("spin_start", energy.spin, "kg m^2 rad^-2", "energy of the spins when the run began");
   return table;
+}
+
+std::string SimulationState::fault(const Scene& scene) const {
+  const std::size_t count = particles.size();
+  if (count == 0 || particles.ids.size() != count || (particles.rough && particles.spins.size() != count))
+    return "its particles are none, or their arrays have different lengths";
+  if (moonlets.size() != scene.moonlets.size() || moonlets.size() > count)
+    return fmt::format("it has {} moonlets, and its scene {}", moonlets.size(), scene.moonlets.size());
+  for (const ForceState& force : forces)
+    if ((!force.accelerations.empty() && force.accelerations.size() != count) ||
+        force.moonlet_gains.size() != moonlets.size())
+      return fmt::format("the arrays of {} have another length than its particles", force.name);
+  const bool whole = control.step >= 1 && control.step <= TimeSettings::longest && control.kick >= 0 &&
+                     control.kick <= TimeSettings::longest && step >= 0 && control.steps >= 0 && control.fits(step);
+  if (!whole)
+    return fmt::format("no step of {} ticks begins at tick {}", control.step, step);
+  const double length = static_cast<double>(control.step) * scene.step_length();
+  if (!(std::abs(step_length - length) <= 1e-9 * length))
+    return fmt::format("its step is {:g} rad long, and its scene's {:g}", step_length, length);
+  constexpr double longest_side = 1e9; // m
+  const auto side = [](double size) { return size > 0.0 && size < longest_side; };
+  if (!side(box.size_x) || !side(box.size_y) || !(std::abs(box.shear) < 10.0) || !(box.first_offset >= 0.0) ||
+      !(box.first_offset <= box.size_y))
+    return fmt::format("it has a box of {:g} m x {:g} m", box.size_x, box.size_y);
+  return {};
 }
 
 double SimulationState::kick_work() const {

@@ -75,7 +75,8 @@ void read_edited_checkpoint(std::string_view input, const fs::path& folder) {
   write_edited(file, pristine, input);
   reads([&] { describe_file(file); });
   StoredRun run = load_checkpoint(file);
-  Simulation(run.scene, std::move(run.state));
+  if (reads([&] { require_sound(Simulation(run.scene, run.state).patch()); }))
+    Simulation(run.scene, std::move(run.state)).means();
 }
 
 void read_foreign(std::string_view input, const fs::path& folder) {

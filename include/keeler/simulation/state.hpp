@@ -72,6 +72,10 @@ struct SimulationState {
   /// Every field that must be stored to continue exactly. A new piece of state is one more line here.
   FieldTable fields();
 
+  /// What in it no run of this scene has: "its step is 0 ticks long"; empty where nothing is. Of what was read from a
+  /// file: a step would read beyond arrays, or not end. The particles themselves are for the step to judge.
+  std::string fault(const Scene& scene) const;
+
   /// The id of the first moonlet; of none the number of particles.
   std::uint64_t first_moonlet() const { return particles.size() - moonlets.size(); }
 

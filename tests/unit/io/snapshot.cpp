@@ -196,7 +196,7 @@ TEST_CASE("damage gives an error or the very same patch") {
   const auto file = folder / "a.hdf";
   write_snapshot(file, sample(50), meta);
   const Patch whole = read_snapshot(file).patch;
-  for_each_damage(file, 101, [&](const std::string& damage) {
+  for_each_damage(file, 1009, [&](const std::string& damage) {
     CAPTURE(damage);
     try {
       const Patch read = read_snapshot(file).patch;
