@@ -39,9 +39,9 @@ time = { step = "auto", end = 1.0 }
       {"box", [](SimulationState& s) { s.box.first_offset = -1.0; }},
   };
   for (const auto& [words, make] : faults) {
-    CAPTURE(words);
     SimulationState state = run.state();
     make(state);
-    CHECK(state.fault(scene).find(words) != std::string::npos);
+    const std::string fault = state.fault(scene);
+    CHECK_MESSAGE(fault.find(words) != std::string::npos, fault);
   }
 }
