@@ -39,7 +39,7 @@ keeps snap_000000.hdf report "$work/run" -o
 keeps scene.toml analyze "$work/run/snap_000000.hdf" --profile
 keeps series.csv analyze "$work/run/snap_000000.hdf" --csv
 rm "$work/run/series.png" "$work/run/series.mp4"
-for again in 1 2; do
+for _ in 1 2; do
   runs 0 render "$work/run" -o "$work/again.png"
   runs 0 render "$work/run" --movie -o "$work/again.mp4"
   runs 0 report "$work/run" -o "$work/again.html"

@@ -29,8 +29,8 @@ double statistical_inefficiency(std::span<const double> values);
 std::size_t steady_start(std::span<const double> values);
 
 /// Whether the two halves have the same mean within three of their errors, and what stands before steady_start(), where
-/// that is beyond the first third, the same as the rest within three errors of the rest's scatter. At least eight values,
-/// or they are not called steady.
+/// that is beyond the first third, the same as the rest within three errors of the rest's scatter. At least eight
+/// values, or they are not called steady.
 bool is_steady(std::span<const double> values);
 
 } // namespace keeler
