@@ -8,9 +8,11 @@
 #include <keeler/diagnostics/autocorrelation.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/diagnostics/wakes.hpp>
+#include <keeler/files/files.hpp>
 #include <keeler/render/autocorrelation_picture.hpp>
 #include <keeler/render/movie.hpp>
 #include <keeler/render/patch_picture.hpp>
+#include <keeler/run_report/series_figure.hpp>
 #include <keeler/runs/measured_part.hpp>
 
 #include <fmt/format.h>
@@ -27,10 +29,10 @@ namespace fs = std::filesystem;
 struct RenderOptions {
   std::string path, output, colour = "height", theme = "dark";
   int width = PictureOptions().width;
-  bool oblique = false, autocorrelation = false, movie = false;
+  bool oblique = false, autocorrelation = false, movie = false, series = false;
 };
 
-constexpr std::string_view png_signature = "\x89PNG";
+constexpr std::string_view png_signature = "\x89PNG", svg_signature = "<svg ";
 
 // picture.png in a run's folder, NAME.png beside a snapshot NAME.hdf.
 fs::path picture_path(const RenderOptions& options) {
@@ -91,7 +93,22 @@ ExitCode draw_movie(const RenderOptions& options) {
   return ExitCode::done;
 }
 
+ExitCode draw_series(const RenderOptions& options) {
+  if (!fs::is_directory(options.path))
+    throw UsageError(fmt::format("no plots of '{}': it is no folder; name the folder of a run", options.path));
+  const fs::path figure = options.output.empty() ? fs::path(options.path) / "series.svg" : fs::path(options.output);
+  if (figure.extension() != ".svg")
+    throw UsageError(
+        fmt::format("'{}' cannot be the plots: they are an .svg file; give it that ending", figure.string()));
+  require_replaceable(figure, "the plots", svg_signature);
+  write_text(figure, run_series_svg(options.path, {options.width, options.theme == "light"}));
+  fmt::print("{}\n", figure.string());
+  return ExitCode::done;
+}
+
 ExitCode render(const RenderOptions& options) {
+  if (options.series)
+    return draw_series(options);
   PictureOptions look = look_of(options);
   if (options.movie)
     return draw_movie(options);
@@ -125,20 +142,31 @@ void add_render(CLI::App& program, Action& action) {
       ->check(whole_number_between(least_picture_width, most_picture_width, "a number of pixels"));
   one_of(command.add_option("--theme", options->theme, "the page: dark (the default), or light for print"),
          {"dark", "light"});
-  command
-      .add_option("--colour", options->colour,
-                  "what the colours say, with a bar (default: height, shades without a bar)")
-      ->type_name(fmt::format("{}", fmt::join(colour_field_names(), "|")));
-  command.add_flag("--oblique", options->oblique, "see the patch from 35 degrees above its plane, not from above");
+  CLI::Option* const colour =
+      command
+          .add_option("--colour", options->colour,
+                      "what the colours say, with a bar (default: height, shades without a bar)")
+          ->type_name(fmt::format("{}", fmt::join(colour_field_names(), "|")));
+  CLI::Option* const oblique =
+      command.add_flag("--oblique", options->oblique, "see the patch from 35 degrees above its plane, not from above");
   CLI::Option* const autocorrelation = command.add_flag(
       "--autocorrelation", options->autocorrelation,
       "draw the autocorrelation of the surface density too, averaged over the snapshots that analyze takes");
+  CLI::Option* const movie =
+      command
+          .add_flag("--movie", options->movie,
+                    "draw all snapshots of a run at one scale: movie.mp4 by ffmpeg, or movie.png where that is missing")
+          ->excludes(autocorrelation);
   command
-      .add_flag("--movie", options->movie,
-                "draw all snapshots of a run at one scale: movie.mp4 by ffmpeg, or movie.png where that is missing")
-      ->excludes(autocorrelation);
+      .add_flag("--series", options->series,
+                "draw the series of a run, not its particles: series.svg, a plot a quantity with its errors")
+      ->excludes(autocorrelation)
+      ->excludes(movie)
+      ->excludes(colour)
+      ->excludes(oblique);
   examples_of(command, {"keeler render wakes --oblique --colour speed",
-                        "keeler render wakes --theme light --width 2000 -o figure.png", "keeler render wakes --movie"});
+                        "keeler render wakes --theme light --width 2000 -o figure.png", "keeler render wakes --movie",
+                        "keeler render wakes --series --theme light -o series.svg"});
   command.callback([options, &action] {
     action = [options] {
       return unless_stopped("stopped before all was drawn (on request); no part of a picture or a movie is left",

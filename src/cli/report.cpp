@@ -1,8 +1,8 @@
 // keeler report: a run as one page.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "progress_line.hpp"
 #include "results.hpp"
-#include "terminal.hpp"
 
 #include <keeler/files/files.hpp>
 #include <keeler/run_report/run_report.hpp>
@@ -29,7 +29,12 @@ ExitCode report(ReportOptions& options) {
   if (!fs::is_directory(options.folder))
     throw UsageError(fmt::format("no report of '{}': it is no folder; name the folder of a run", options.folder));
   require_replaceable(file, "a report", "<!DOCTYPE html>");
-  const std::string page = run_report(options.folder, options.page);
+  std::string page;
+  {
+    ProgressLine line;
+    options.page.progress = [&line](const Progress& progress) { line.show_if_long(progress); };
+    page = run_report(options.folder, options.page);
+  }
   write_text(file, page);
   fmt::print("{}\n", file.string());
   return ExitCode::done;

@@ -7,6 +7,7 @@
 #include "series_plots.hpp"
 
 #include <keeler/cells/overlap.hpp>
+#include <keeler/core/phase_progress.hpp>
 #include <keeler/core/version.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/diagnostics/analysis.hpp>
@@ -28,6 +29,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace keeler {
@@ -110,21 +112,17 @@ std::string figure(const Patch& patch, const std::vector<std::byte>& png) {
 class RunPage {
 public:
   RunPage(const fs::path& folder, const RunReportOptions& options)
-      : folder_(folder), options_(options), run_(view_run(folder)), files_(snapshots_in(folder)) {}
+      : folder_(folder), most_snapshots_(options.snapshots), progress_(options.progress), run_(view_run(folder)),
+        files_(snapshots_in(folder)) {}
 
   std::string html();
 
 private:
-  void say(const std::string& text) const {
-    if (options_.progress)
-      options_.progress(text);
-  }
-
   void look_at_snapshots();
-  std::string pictures() const;
+  std::string pictures();
   std::string view() const;
   std::string plots(const TransportReport& transport) const;
-  std::string measured(const MeasuredPart& part) const;
+  std::string measured(MeasuredPart part);
   std::string accuracy() const;
   std::string scene_section() const;
   std::string provenance() const;
@@ -132,7 +130,8 @@ private:
   std::string facts() const;
 
   fs::path folder_;
-  const RunReportOptions& options_;
+  std::size_t most_snapshots_; // in the view
+  PhaseProgress progress_;
   RunView run_;
   std::vector<fs::path> files_;
   ParticleView particles_{most_particles_in_view};
@@ -143,23 +142,24 @@ private:
 };
 
 void RunPage::look_at_snapshots() {
-  const std::vector<std::size_t> viewed = evenly(files_.size(), options_.snapshots);
+  const std::vector<std::size_t> viewed = evenly(files_.size(), most_snapshots_);
   const std::vector<std::size_t> drawn = evenly(viewed.size(), most_pictures);
+  progress_.begin("snapshots", static_cast<double>(viewed.size()));
   for (std::size_t k = 0; k < viewed.size(); ++k) {
     const fs::path& file = files_[viewed[k]];
-    say(fmt::format("reading {}", file.filename().string()));
     Snapshot snapshot = read_snapshot(file);
     require_possible(snapshot.patch, file.string());
     particles_.add(snapshot.patch, file.filename().string());
     meta_ = std::move(snapshot.meta);
     if (std::find(drawn.begin(), drawn.end(), k) != drawn.end())
       pictured_.push_back(std::move(snapshot.patch));
+    progress_.add(1.0);
   }
   scene_ = parse_stored_scene(meta_.scene, files_.back().string());
 }
 
 // The newest one large, those before small, at one scale.
-std::string RunPage::pictures() const {
+std::string RunPage::pictures() {
   PictureOptions look;
   look.title = scene_->title.empty() ? "Ring patch" : scene_->title;
   for (const Patch& patch : pictured_) {
@@ -169,12 +169,16 @@ std::string RunPage::pictures() const {
     else
       look.scale = scale;
   }
+  progress_.begin("pictures", static_cast<double>(pictured_.size()));
   look.width = earlier_picture_width;
   std::string earlier;
-  for (std::size_t k = 0; k + 1 < pictured_.size(); ++k)
+  for (std::size_t k = 0; k + 1 < pictured_.size(); ++k) {
     earlier += figure(pictured_[k], picture_within(earlier_picture_bytes, pictured_[k], look));
+    progress_.add(1.0);
+  }
   look.width = picture_width;
   const std::string last = figure(pictured_.back(), picture_within(picture_bytes, pictured_.back(), look));
+  progress_.add(1.0);
   return section("pictures", "The patch", last + "<div class=\"earlier\">\n" + earlier + "</div>\n");
 }
 
@@ -192,15 +196,14 @@ std::string RunPage::plots(const TransportReport& report) const {
   if (!has_plots())
     return section("series", "Through time",
                    note("This program was built without the library dygraphs, so the series is not drawn here."));
-  std::optional<Transport> steady;
+  const std::optional<Transport> steady = steady_part(report);
   std::string words = "No part of the run is known to be steady, so no means are told.";
-  if (const auto& t = report.transport(); t && t->since_found) {
-    steady = *t;
-    words = fmt::format("Means are of orbits {} to {} (shaded), {}; errors by blocks, neighbouring rows being "
-                        "correlated.",
-                        figures(t->since_orbit, 3), figures(t->until_orbit, 4),
-                        t->steady ? "where the run is steady" : "the best there is, though the run is not steady yet");
-  }
+  if (steady)
+    words =
+        fmt::format("Means are of orbits {} to {} (shaded), {}; errors by blocks, neighbouring rows being "
+                    "correlated.",
+                    figures(steady->since_orbit, 3), figures(steady->until_orbit, 4),
+                    steady->steady ? "where the run is steady" : "the best there is, though the run is not steady yet");
   words +=
       " A curve is the mean of rows that follow each other, the band its standard error where a mean is of several "
       "rows. Drag along an axis to zoom, double-click to see all.";
@@ -209,11 +212,16 @@ std::string RunPage::plots(const TransportReport& report) const {
          data_element("series-data", series_plots(run_.series, scale, steady));
 }
 
-std::string RunPage::measured(const MeasuredPart& part) const {
+std::string RunPage::measured(MeasuredPart part) {
+  thin_out(part.stored.patches);
+  progress_.begin("measuring", 2.0 * static_cast<double>(part.stored.patches.size()));
   double overlap = 0.0;
-  for (const Patch& patch : part.stored.patches)
+  for (const Patch& patch : part.stored.patches) {
     overlap = std::max(overlap, largest_overlap(patch).depth);
+    progress_.add(1.0);
+  }
   Json numbers = numbers_of(analyze(part.stored.patches), overlap);
+  progress_.add(static_cast<double>(part.stored.patches.size()));
   part.transport.add_to(numbers, part.stored.patches.back());
   return section(
       "measured", "Measured",
@@ -295,13 +303,13 @@ std::string RunPage::html() {
   look_at_snapshots();
   if (const fs::path file = folder_ / "summary.json"; fs::exists(file))
     summary_ = Json::parse(read_text(file), nullptr, false);
-  say("measuring");
   MeasuredPart part = measured_part(folder_, {});
-  thin_out(part.stored.patches);
   const std::string title = scene_->title.empty() ? folder_.filename().string() : scene_->title;
-  return head() + "<body>\n<h1>" + html_text(title) + "</h1>\n" + facts() + pictures() + view() +
-         plots(part.transport) + measured(part) + accuracy() + scene_section() + provenance() + scripts() +
-         "</body></html>\n";
+  std::string page = head() + "<body>\n<h1>" + html_text(title) + "</h1>\n" + facts();
+  page += pictures();
+  page += view() + plots(part.transport);
+  page += measured(std::move(part));
+  return page + accuracy() + scene_section() + provenance() + scripts() + "</body></html>\n";
 }
 
 } // namespace

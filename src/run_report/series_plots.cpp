@@ -141,6 +141,11 @@ Json steady_mean(const Curve& curve, const Points& points, const Transport& stea
 
 } // namespace
 
+std::optional<Transport> steady_part(const TransportReport& report) {
+  const std::optional<Transport>& found = report.transport();
+  return found && found->since_found ? found : std::nullopt;
+}
+
 Json series_plots(const SeriesTable& series, const RingScale& scale, const std::optional<Transport>& steady) {
   Json all = {{"steady", nullptr}, {"plots", Json::array()}};
   if (steady)

@@ -3,13 +3,16 @@
 #pragma once
 
 #include <keeler/io/series.hpp>
-#include <keeler/runs/transport.hpp>
+#include <keeler/runs/transport_report.hpp>
 
 #include <nlohmann/json.hpp>
 
 #include <optional>
 
 namespace keeler {
+
+/// The part of a run whose means a plot tells: none where it was not found.
+std::optional<Transport> steady_part(const TransportReport& report);
 
 /// What plots.js draws: a plot for each quantity, none left out. `steady` is the part whose means are told, and has
 /// those of the viscosities; none: no means.

@@ -19,6 +19,13 @@ refuses_with 4 "a movie of an empty folder" "no snapshot in '$work/empty' (snap_
 refuses "a movie of a file" "name the folder of a run" render "$work/run/snap_000000.hdf" --movie
 refuses "another movie" "give it such an ending" render "$work/run" --movie -o "$work/to/a.gif"
 refuses "another picture" "give it that ending" render "$work/run" -o "$work/to/a.jpg"
+refuses "plots of a file" "name the folder of a run" render "$work/run/snap_000000.hdf" --series
+refuses "plots as a picture" "give it that ending" render "$work/run" --series -o "$work/to/a.png"
+refuses "plots and a movie" "excludes" render "$work/run" --series --movie
+refuses_with 4 "plots of an empty folder" "log.jsonl is missing" render "$work/empty" --series
+cp -r "$work/run" "$work/short"
+sed -i '3,$d' "$work/short/series.csv"
+refuses "plots of a row" "let it run longer" render "$work/short" --series
 
 # Nothing but a picture, a movie, a page or a table of the same columns is replaced.
 cp -r "$work/run" "$work/kept"
@@ -32,6 +39,10 @@ keeps() {
 cp "$work/run/series.csv" "$work/run/series.png"
 cp "$work/run/series.csv" "$work/run/series.mp4"
 cp "$work/run/series.png" "$work/run/series.mp4" "$work/kept"
+cp "$work/run/series.csv" "$work/run/series.svg"
+cp "$work/run/series.csv" "$work/kept/series.svg"
+keeps series.svg render "$work/run" --series -o
+rm "$work/run/series.svg"
 keeps series.png render "$work/run" -o
 keeps series.png render "$work/run" --movie -o
 keeps series.mp4 render "$work/run" --movie -o
@@ -42,6 +53,7 @@ rm "$work/run/series.png" "$work/run/series.mp4"
 for _ in 1 2; do
   runs 0 render "$work/run" -o "$work/again.png"
   runs 0 render "$work/run" --movie -o "$work/again.mp4"
+  runs 0 render "$work/run" --series -o "$work/again.svg"
   runs 0 report "$work/run" -o "$work/again.html"
   runs 0 analyze "$work/run/snap_000000.hdf" --csv "$work/again.csv"
 done
@@ -58,20 +70,22 @@ PATH=$work:$PATH "$keeler" render "$work/run" --movie -o "$work/to/a.mp4" >"$wor
 one_line "a broken ffmpeg" "ffmpeg says: this one is broken; choose a folder that is writable and has room, or name a .png"
 nothing_left "refused"
 
-# limited NAME FILE OPTION...: rendering to the file meets a limit on the size of files
+# limited NAME FILE COMMAND OPTION...: writing the file meets a limit on the size of files
 limited() {
   (
     ulimit -f 8
-    exec "$keeler" render "$work/run" -o "$work/to/$2" "${@:3}" >"$work/out" 2>"$work/err"
+    exec "$keeler" "$3" "$work/run" -o "$work/to/$2" "${@:4}" >"$work/out" 2>"$work/err"
   )
   code=$?
   [ "$code" -eq 4 ] || fail "$1: exit $code: $(cat "$work/err")"
   one_line "$1" "cannot write"
   nothing_left "$1"
 }
-limited "no room for a picture" a.png
-limited "no room for an animated PNG" a.png --movie
-limited "no room for a movie" a.mp4 --movie
+limited "no room for a picture" a.png render
+limited "no room for an animated PNG" a.png render --movie
+limited "no room for a movie" a.mp4 render --movie
+limited "no room for plots" a.svg render --series
+limited "no room for a page" a.html report
 
 # A long movie: many pictures of one instant.
 for number in $(seq 1000 1300); do ln "$work/run/snap_000000.hdf" "$work/run/snap_00$number.hdf"; done

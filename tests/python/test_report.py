@@ -7,8 +7,10 @@ import json
 import os
 import re
 import subprocess
+import struct
 import tempfile
 import unittest
+import xml.etree.ElementTree
 from pathlib import Path
 
 import h5py
@@ -109,6 +111,39 @@ class Report(unittest.TestCase):
         drawn = {name for name in rows[0]} - {"step", "time_orbits"}
         self.assertGreaterEqual(len(curves), len(drawn) - 2)  # two columns share nothing, the fluxes are viscosities
 
+    def test_series_figure(self):
+        """The curves of `keeler render --series` are those of the page, by the numbers on their axes."""
+        done = keeler("render", self.results, "--series", "--theme", "light")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout, f"{self.results / 'series.svg'}\n")
+        drawing = xml.etree.ElementTree.parse(self.results / "series.svg").getroot()
+        svg = "{http://www.w3.org/2000/svg}"
+        plots = self.data("series")["plots"]
+        frames = [box for box in drawing.iter(svg + "rect") if box.get("fill") == "none"]
+        self.assertEqual(len(frames), len(plots))
+        lines = [[tuple(map(float, pair.split(","))) for pair in line.get("points").split()]
+                 for line in drawing.iter(svg + "polyline")]
+        self.assertEqual(len(lines), sum(len(plot["curves"]) for plot in plots))
+        labels = [(float(text.get("x")), float(text.get("y")), text.get("text-anchor"), text.text)
+                  for text in drawing.iter(svg + "text") if text.text]
+        words = {label[3] for label in labels}
+        self.assertIn("A ring of </script> & spins", words)
+        for plot, frame in zip(plots, frames):
+            left, top, width, height = (float(frame.get(side)) for side in ("x", "y", "width", "height"))
+            self.assertIn(f"{plot['title']}, {plot['unit']}" if plot["unit"] else plot["title"], words)
+            values = [(y - 4.5, float(text)) for x, y, anchor, text in labels
+                      if anchor == "end" and abs(x - left + 9) < 0.2 and top < y < top + height + 9]
+            times = [(x, float(text)) for x, y, anchor, text in labels
+                     if anchor == "middle" and abs(y - top - height - 19) < 0.2 and left - 1 < x < left + width + 1]
+            self.assertGreaterEqual(min(len(values), len(times)), 3, plot["title"])
+            to_value, to_time = (np.polyfit(*zip(*ticks), 1) for ticks in (values, times))
+            for curve in plot["curves"]:
+                found, points = np.array(lines.pop(0)), np.array(curve["points"], dtype=float)
+                pixel = abs(to_value[0])  # that high is a tenth of ten; places have one digit after the point
+                np.testing.assert_allclose(np.polyval(to_value, found[:, 1]), points[:, 1], rtol=0, atol=0.2 * pixel)
+                np.testing.assert_allclose(np.polyval(to_time, found[:, 0]), points[:, 0], rtol=0,
+                                           atol=0.2 * abs(to_time[0]))
+
     def test_refusals(self):
         empty = Path(self.folder.name) / "empty"
         empty.mkdir(exist_ok=True)
@@ -142,6 +177,8 @@ class Report(unittest.TestCase):
             summary.write_text(kept)
 
     def test_browser(self):
+        for program in ("/usr/bin/chromium", "/usr/bin/chromedriver"):
+            self.assertTrue(Path(program).exists(), f"{program} is missing; scripts/setup test installs it")
         from selenium import webdriver
         from selenium.webdriver.chrome.service import Service
         from selenium.webdriver.common.by import By
@@ -201,6 +238,11 @@ class Report(unittest.TestCase):
         webdriver.ActionChains(browser).drag_and_drop_by_offset(
             browser.find_element(By.CSS_SELECTOR, "#stage canvas"), 120, 60).perform()
         changed("turned by dragging")
+        origin = webdriver.common.actions.wheel_input.ScrollOrigin.from_element(
+            browser.find_element(By.CSS_SELECTOR, "#stage canvas"))
+        webdriver.ActionChains(browser).scroll_from_origin(origin, 0, -600).perform()
+        changed("closer by the wheel")
+        shot("close")
 
         browser.execute_script("document.getElementById('series').scrollIntoView()")
         shot("series")
@@ -212,6 +254,38 @@ class Report(unittest.TestCase):
         browser.execute_script("document.getElementById('measured').scrollIntoView()")
         shot("measured")
         self.assertEqual([line for line in browser.get_log("browser") if line["level"] != "INFO"], [])
+
+
+class LargeReport(unittest.TestCase):
+    """More particles than the view shows: a part of them evenly by id, and a page that can be mailed."""
+
+    SCENE = """
+        planet.preset = "saturn-a-ring"
+        box.size = [900.0, 900.0]
+        particles = { count = 120000, density = 450.0, sizes = { law = "power", min = 0.6, max = 2.0, exponent = 3.0 } }
+        time = { step = 1e-3, end = 4e-3 }
+        output = { snapshot_every = 1e-3, series_every = 1e-3 }
+        """
+
+    def test_size(self):
+        with tempfile.TemporaryDirectory() as folder:
+            results, scene = Path(folder) / "run", Path(folder) / "scene.toml"
+            scene.write_text(self.SCENE)
+            for arguments in (("run", scene, "-o", results), ("report", results)):
+                done = keeler(*arguments)
+                self.assertEqual(done.returncode, 0, done.stderr)
+            page = (results / "report.html").read_bytes()
+            view = json.loads(re.search(b'id="view-data">(.*?)</script>', page, re.S).group(1))
+            self.assertEqual((view["count"], view["of"], len(view["snapshots"])), (100000, 120000, 5))
+            with h5py.File(results / "snap_000004.hdf") as file:
+                radii = file["PartType1/Radius"][:][np.arange(100000) * 120000 // 100000]
+            np.testing.assert_array_equal(numbers(view["radii"], "<f4"), radii.astype("f4"))
+        # What a page may weigh: 5 MB and 1.2 MB a snapshot.
+        self.assertLessEqual(len(page), 5e6 + 1.2e6 * len(view["snapshots"]))
+        pictures = re.findall(rb'<img alt="the patch[^>]*base64,([^"]*)"', page)
+        self.assertEqual(len(pictures), 4)
+        for picture in pictures:
+            self.assertLessEqual(struct.unpack(">I", base64.b64decode(picture[:64])[16:20])[0], 1200)
 
 
 if __name__ == "__main__":

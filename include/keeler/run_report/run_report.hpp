@@ -2,6 +2,8 @@
 // dimensions, plots of its series, numbers with errors, its scene, what it cost and where it comes from.
 #pragma once
 
+#include <keeler/core/progress.hpp>
+
 #include <cstddef>
 #include <filesystem>
 #include <functional>
@@ -12,8 +14,8 @@ namespace keeler {
 inline constexpr std::size_t most_particles_in_view = 100'000; ///< beyond that the view shows this many, evenly by id
 
 struct RunReportOptions {
-  std::size_t snapshots = 8;                        ///< at most so many in the view, evenly through the run
-  std::function<void(const std::string&)> progress; ///< what is being done now
+  std::size_t snapshots = 8; ///< at most so many in the view, evenly through the run
+  std::function<void(const Progress&)> progress;
 };
 
 /// The page of a run's folder; the run may still be working. Throws IoError when the folder holds no run or no
