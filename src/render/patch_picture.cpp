@@ -27,13 +27,22 @@ double round_length(double length) {
   return power;
 }
 
+// The least of 1, 2 and 5 times powers of ten that is at least `length`.
+double round_step(double length) {
+  const double power = std::pow(10.0, std::floor(std::log10(length)));
+  for (const double step : {1.0, 2.0, 5.0})
+    if (step * power >= length)
+      return step * power;
+  return 10.0 * power;
+}
+
 void draw_header(Page& page, const Patch& patch, const PictureOptions& options, const Theme& theme, double u) {
-  page.text({60 * u, 58 * u}, options.title, {32 * u, theme.ink, Align::left, true});
+  page.text({110 * u, 58 * u}, options.title, {32 * u, theme.ink, Align::left, true});
   const std::string facts = fmt::format(
       "t = {:.2f} orbits      N = {}      τ = {:.2f}      Σ = {:.0f} kg/m²      λ_{{cr}} = {:.1f} m      Q = {:.2f}",
       patch.time_orbits, patch.size(), optical_depth(patch), surface_density(patch), critical_wavelength(patch),
       toomre_q(patch));
-  page.text({60 * u, 98 * u}, facts, {21 * u, theme.faint_ink});
+  page.text({110 * u, 98 * u}, facts, {21 * u, theme.faint_ink});
 }
 
 // The first of several names, longest first, that is no wider than `room`; none when even the last is.
@@ -44,10 +53,29 @@ std::string fitting(Page& page, std::initializer_list<const char*> names, const 
   return {};
 }
 
+// Marks at round lengths (plus 0.0: no "-0") from the middle of a view, below it and left of it, with their metres.
+// `rise`: how many pixels up a metre of the upward axis is.
+void draw_axes(Page& page, const PixelFrame& f, double pixels_per_metre, double rise, const Theme& theme, double u) {
+  const TextStyle below{17 * u, theme.faint_ink, Align::centre}, beside{17 * u, theme.faint_ink, Align::right};
+  const Colour mark = mix(theme.page, theme.faint_ink, 0.5);
+  const double middle_x = f.left + 0.5 * f.width, middle_y = f.top + 0.5 * f.height, bottom = f.top + f.height;
+  const double step_x = round_step(110 * u / pixels_per_metre), step_y = round_step(60 * u / rise);
+  for (double k = -std::floor(0.5 * f.width / (step_x * pixels_per_metre)), last = -k; k <= last; ++k) {
+    const double x = middle_x + k * step_x * pixels_per_metre;
+    page.line({x, bottom + 1}, {x, bottom + 8 * u}, mark, 1.5 * u);
+    page.text({x, bottom + 26 * u}, fmt::format("{:g}", k * step_x + 0.0), below);
+  }
+  for (double k = -std::floor(0.5 * f.height / (step_y * rise)), last = -k; k <= last; ++k) {
+    const double y = middle_y - k * step_y * rise;
+    page.line({f.left - 8 * u, y}, {f.left - 1.0, y}, mark, 1.5 * u);
+    page.text({f.left - 13 * u, y + 6 * u}, fmt::format("{:g}", k * step_y + 0.0), beside);
+  }
+}
+
 // Below the top view: what is to the right, and how long a metre is.
 void draw_scale(Page& page, const Patch& patch, const PictureLayout& layout, const Colour& ink, double u) {
   const PixelFrame& f = layout.top_view;
-  const double y = f.top + f.height + 34 * u, right = f.left + f.width;
+  const double y = f.top + f.height + 62 * u, right = f.left + f.width;
   const double bar = round_length(0.25 * patch.box.size_x), pixels = bar * layout.pixels_per_metre;
   page.line({f.left + 0.5, y - 7 * u}, {f.left + pixels, y - 7 * u}, ink, 3 * u);
   for (const double x : {f.left + 1.5 * u, f.left + pixels - 1.5 * u})
@@ -55,7 +83,8 @@ void draw_scale(Page& page, const Patch& patch, const PictureLayout& layout, con
   const std::string length = fmt::format("{:g} m = {:.2f} λ_{{cr}}", bar, bar / critical_wavelength(patch));
   const double used = pixels + 18 * u + page.text({f.left + pixels + 18 * u, y}, length, {20 * u, ink});
   const TextStyle style{20 * u, ink, Align::right};
-  const std::string name = fitting(page, {"radial, away from the planet", "radial"}, style, f.width - used - 130 * u);
+  const std::string name =
+      fitting(page, {"radial, away from the planet, m", "radial, m", "radial"}, style, f.width - used - 130 * u);
   if (name.empty())
     return;
   page.arrow({right - 90 * u, y - 7 * u}, {right - 1.0, y - 7 * u}, ink, 2 * u);
@@ -65,7 +94,7 @@ void draw_scale(Page& page, const Patch& patch, const PictureLayout& layout, con
 // Left of a view: what is up, by the first name that fits.
 void draw_upward(Page& page, const PixelFrame& f, std::initializer_list<const char*> names, const Colour& ink,
                  double u) {
-  const double x = f.left - 24 * u, arrow = std::min(90 * u, 0.4 * f.height);
+  const double x = f.left - 72 * u, arrow = std::min(90 * u, 0.4 * f.height);
   const TextStyle style{20 * u, ink, Align::right};
   page.arrow({x - 7 * u, f.top + arrow}, {x - 7 * u, f.top + 1.0}, ink, 2 * u);
   page.text({x, f.top + arrow + 10 * u}, fitting(page, names, style, f.height - arrow - 10 * u), style, true);
@@ -74,7 +103,7 @@ void draw_upward(Page& page, const PixelFrame& f, std::initializer_list<const ch
 // Below the views: what the colours mean.
 void draw_colour_bar(Page& page, const PictureLayout& layout, ColourField field, const ColourRange& range,
                      const Theme& theme, double u) {
-  const int left = layout.edge_view.left, top = layout.foot + static_cast<int>(52 * u);
+  const int left = layout.edge_view.left, top = layout.foot + static_cast<int>(72 * u);
   Raster bar(static_cast<int>(420 * u), std::max(2, static_cast<int>(16 * u)), space_colour);
   for (int j = 0; j < bar.height(); ++j)
     for (int i = 0; i < bar.width(); ++i)
@@ -116,7 +145,7 @@ PictureLayout layout_of(const Patch& patch, const PictureOptions& options) {
   PictureLayout layout;
   layout.elevation = (options.oblique ? PictureOptions::oblique_elevation : 90.0) * std::numbers::pi / 180.0;
   const double tall = box.size_y * std::sin(layout.elevation); // of the upper view, m
-  layout.pixels_per_metre = std::min(1480.0 * u / box.size_x, 2200.0 * u / tall);
+  layout.pixels_per_metre = std::min(1430.0 * u / box.size_x, 2200.0 * u / tall);
   const auto pixels = [&](double metres) {
     return std::max(1, static_cast<int>(std::lround(metres * layout.pixels_per_metre)));
   };
@@ -128,13 +157,14 @@ PictureLayout layout_of(const Patch& patch, const PictureOptions& options) {
       std::clamp(half_height, std::min(45.0 * u / layout.pixels_per_metre, 0.5 * box.size_y), 0.5 * box.size_y);
 
   layout.width = options.width;
-  const int left = static_cast<int>(std::lround(60 * u)), gap = static_cast<int>(std::lround(64 * u));
+  const int left = static_cast<int>(std::lround(110 * u)), margin = static_cast<int>(std::lround(60 * u));
+  const int gap = static_cast<int>(std::lround(94 * u));
   layout.top_view = {left, static_cast<int>(std::lround(124 * u)), pixels(box.size_x), pixels(tall)};
-  layout.top_view.left += (options.width - 2 * left - layout.top_view.width) / 2; // a tall box stands in the middle
+  layout.top_view.left += (options.width - left - margin - layout.top_view.width) / 2; // a tall box: in the middle
   layout.edge_view = {layout.top_view.left, layout.top_view.top + layout.top_view.height + gap, layout.top_view.width,
                       pixels(2.0 * layout.half_height)};
   layout.foot = layout.edge_view.top + layout.edge_view.height;
-  layout.height = layout.foot + left;
+  layout.height = layout.foot + static_cast<int>(std::lround(80 * u));
   if (options.colour != ColourField::height)
     layout.height += static_cast<int>(std::lround(54 * u)); // the bar
   return layout;
@@ -159,12 +189,15 @@ std::unique_ptr<Page> patch_page(const Patch& patch, const PictureOptions& asked
     page->frame(f.left, f.top, f.width, f.height, mix(theme.page, theme.faint_ink, 0.5));
   draw_header(*page, patch, options, theme, u);
   draw_scale(*page, patch, layout, theme.ink, u);
+  draw_axes(*page, layout.top_view, layout.pixels_per_metre, layout.pixels_per_metre * std::sin(layout.elevation),
+            theme, u);
   const std::string oblique =
-      fmt::format("along the orbit, seen {:g}° above the plane", PictureOptions::oblique_elevation);
+      fmt::format("along the orbit, m, seen {:g}° above the plane", PictureOptions::oblique_elevation);
   draw_upward(*page, layout.top_view,
-              {options.oblique ? oblique.c_str() : "along the orbit", "along the orbit", "orbit"}, theme.ink, u);
-  draw_upward(*page, layout.edge_view, {"height", "z"}, theme.ink, u);
-  page->text({static_cast<double>(layout.edge_view.left), layout.foot + 36 * u},
+              {options.oblique ? oblique.c_str() : "along the orbit, m", "along the orbit", "orbit"}, theme.ink, u);
+  draw_axes(*page, layout.edge_view, layout.pixels_per_metre, layout.pixels_per_metre, theme, u);
+  draw_upward(*page, layout.edge_view, {"height, m", "height", "z"}, theme.ink, u);
+  page->text({static_cast<double>(layout.edge_view.left), layout.foot + 56 * u},
              "edge-on at the same scale, seen along the orbit; the far end of the box fades",
              {18 * u, theme.faint_ink});
   if (options.colour != ColourField::height)

@@ -111,7 +111,7 @@ TEST_CASE("colours show the field; the bar lies below the views") {
   };
   CHECK(warmth(patch.positions[0]) > 100.0); // the largest: yellow
   CHECK(warmth(patch.positions[2]) < -30.0); // the smallest: violet
-  const int bar = layout.foot + 30;          // 52/2 + half of 16/2
+  const int bar = layout.foot + 40;          // 72/2 + half of 16/2
   CHECK(picture.warmth(layout.edge_view.left + 3, bar) < -30.0);
   CHECK(picture.warmth(layout.edge_view.left + 206, bar) > 100.0);
 }

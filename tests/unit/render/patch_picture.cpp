@@ -4,6 +4,7 @@
 
 #include <keeler/core/error.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace keeler;
@@ -68,6 +69,37 @@ TEST_CASE("a picture shows the particles where they are, before a dark sky") {
   CHECK(shown(picture, layout.edge_view, layout, -20.0, 1.0) > 40.0);
   CHECK(shown(picture, layout.edge_view, layout, 30.0, -3.0) > 40.0);
   CHECK(shown(picture, layout.edge_view, layout, 0.0, 0.0) < dark);
+}
+
+TEST_CASE("axes have marks at round lengths from the middle") {
+  const TemporaryPng file("axes");
+  const Patch patch = spheres({{0.0, 0.0, 0.0}});
+  const PictureOptions options = named("Axes", 1600);
+  render_patch(patch, file.path(), options);
+  const Picture picture(file.path());
+  const PictureLayout layout = layout_of(patch, options);
+  const PixelFrame& f = layout.top_view;
+  // The brightest of three pixels: a mark is a pixel and a half wide, and stands where it stands.
+  const auto brightest = [&](double x, double y, int aside, int up) {
+    double most = 0.0;
+    for (const int k : {-1, 0, 1})
+      most = std::max(most, picture.brightness(static_cast<int>(x) + k * aside, static_cast<int>(y) + k * up));
+    return most;
+  };
+  const auto below = [&](double metres) {
+    return brightest(f.left + 0.5 * f.width + metres * layout.pixels_per_metre, f.top + f.height + 5, 1, 0);
+  };
+  const auto beside = [&](double metres) {
+    return brightest(f.left - 5, f.top + 0.5 * f.height - metres * layout.pixels_per_metre, 0, 1);
+  };
+  for (const double metres : {-40.0, -10.0, 0.0, 20.0, 40.0})
+    CHECK(below(metres) > 50.0);
+  for (const double metres : {-25.0, 0.0, 10.0, 25.0}) // 5 m apart
+    CHECK(beside(metres) > 50.0);
+  for (const double metres : {-35.0, 5.0, 12.0})
+    CHECK(below(metres) < 30.0);
+  for (const double metres : {-12.0, 2.5})
+    CHECK(beside(metres) < 30.0);
 }
 
 TEST_CASE("images fill the edges, across the shear as well") {
