@@ -17,11 +17,19 @@ namespace {
 
 constexpr int longest_bar = 30, shortest_bar = 10;
 constexpr double terminal_interval_s = 0.1, log_interval_s = 10.0;
+constexpr double settling_s = 1.0; // before it a time left would be a guess
 
 std::string clock(double seconds) {
   const long whole = std::lround(seconds);
   return whole >= 3600 ? fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60)
                        : fmt::format("{}:{:02}", whole / 60, whole % 60);
+}
+
+// How long the rest takes, when there is something to tell it by: a part of a line, or none.
+ProgressLine::Parts time_left(double share, double elapsed_s, double remaining_s) {
+  if (share < 1.0 && (share <= 0.0 || elapsed_s < settling_s))
+    return {};
+  return {clock(remaining_s) + " left"};
 }
 
 // The parts of a line side by side, the last ones left out where they do not fit.
@@ -85,14 +93,23 @@ void ProgressLine::show(const RunProgress& p) {
   if (!due(p.elapsed_s, p.step == p.end_step))
     return;
   const double done = static_cast<double>(p.step) / static_cast<double>(p.end_step);
-  print(done, {fmt::format("{:.3f}/{} orbits", p.orbits, figures(p.end_orbits)), fmt::format("{:3.0f} %", 100.0 * done),
-               clock(p.remaining_s) + " left", fmt::format("{:.0f} collisions/s", p.collisions_per_second)});
+  Parts parts = {fmt::format("{:.3f}/{} orbits", p.orbits, figures(p.end_orbits)),
+                 fmt::format("{:3.0f} %", 100.0 * done)};
+  for (const std::string& left : time_left(done, p.elapsed_s, p.remaining_s))
+    parts.push_back(left);
+  parts.push_back(fmt::format("{:.0f} collisions/s", p.collisions_per_second));
+  print(done, parts);
 }
 
 void ProgressLine::show(const Progress& p) {
   begin_phase(p.what, p.elapsed_s);
-  if (due(p.elapsed_s, p.share == 1.0))
-    print(p.share, {fmt::format("{:3.0f} %", 100.0 * p.share), clock(p.remaining_s) + " left", p.what});
+  if (!due(p.elapsed_s, p.share == 1.0))
+    return;
+  Parts parts = {fmt::format("{:3.0f} %", 100.0 * p.share)};
+  for (const std::string& left : time_left(p.share, p.elapsed_s, p.remaining_s))
+    parts.push_back(left);
+  parts.push_back(p.what);
+  print(p.share, parts);
 }
 
 void ProgressLine::show_if_long(const Progress& p) {

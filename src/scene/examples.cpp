@@ -48,10 +48,12 @@ const ExampleScene& find_example(const std::string& name) {
 
 std::string read_scene_text(const std::string& path) {
   std::error_code unknown;
-  if (!could_be_example(path) || std::filesystem::exists(path, unknown))
-    return read_input(path, path);
-  if (const ExampleScene* example = example_named(path))
+  const ExampleScene* const example = could_be_example(path) ? example_named(path) : nullptr;
+  const bool exists = std::filesystem::exists(path, unknown);
+  if (example && (!exists || std::filesystem::is_directory(path, unknown))) // runs often have their example's name
     return std::string(example->toml);
+  if (!could_be_example(path) || exists)
+    return read_input(path, path);
   const std::string near = nearest_example(path);
   throw UsageError(fmt::format("{}: there is no such file, and no example of this name; {}", path,
                                near.empty() ? "check the path, or see \"keeler new --list\""

@@ -41,7 +41,7 @@ prints() {
 
 # one_line NAME WORDS: the last command said exactly one thing, progress and doubts aside, and it holds the words
 one_line() {
-  grep -vE ' orbits .* left | % +[0-9:]+ left  |^[0-9.]+ orbits .* contrast |^keeler: note: ' "$work/err" >"$work/said"
+  grep -vE '^[0-9.]+/[0-9.]+ orbits | % +[0-9:]+ left  |^ *[0-9]+ %  |^[0-9.]+ orbits .* contrast |^keeler: note: ' "$work/err" >"$work/said"
   [ "$(wc -l <"$work/said")" -eq 1 ] || fail "$1: not one line: $(cat "$work/said")"
   grep -q "^keeler: " "$work/said" || fail "$1: does not name the program: $(cat "$work/said")"
   grep -qF -- "$2" "$work/said" || fail "$1: no '$2' in: $(cat "$work/said")"

@@ -51,6 +51,8 @@ runs 0 check equilibrium
 runs 0 run equilibrium "${short[@]}" -o by-name
 runs 0 run "$examples/equilibrium/scene.toml" "${short[@]}" -o by-path
 [ "$(state_hash by-name)" = "$(state_hash by-path)" ] || fail "the example by its name is another scene"
+mkdir maxwell-string # as a run of the example may be named
+runs 0 check maxwell-string
 refuses "a misspelt scene" "did you mean 'equilibrium'?" check equilibrum
 cp "$examples/quaoar/scene.toml" equilibrium
 runs 0 check equilibrium --json

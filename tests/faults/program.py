@@ -10,7 +10,7 @@ from dataclasses import dataclass
 DEADLINE = 20.0  # s: what takes longer hangs
 LONGEST = 2000   # bytes of a message
 NOISE = ("Sanitizer", "runtime error:", "terminate called", "Assertion", "HDF5-DIAG", "infinite loop", "Traceback")
-BESIDE = re.compile(rb"keeler: note: | orbits .* left | % +[0-9:]+ left ")  # notes and progress are no messages
+BESIDE = re.compile(rb"keeler: note: |^[0-9.]+/[0-9.]+ orbits | % +[0-9:]+ left |^ *[0-9]+ %  ")  # notes and progress are no messages
 
 
 class Broken(Exception):
