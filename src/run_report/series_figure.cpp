@@ -196,10 +196,12 @@ std::string series_svg(const Json& plots, const std::string& title, const Series
   if (const Json& steady = plots["steady"]; steady.is_array())
     svg += text_at(drawing_width - frame_right, 40, ink.faint, 14, "end",
                    fmt::format("means of orbits {} to {} (shaded)", figures(steady[0], 3), figures(steady[1], 4)));
-  for (std::size_t k = 0; k < panels.size(); ++k)
+  for (std::size_t k = 0; k < panels.size(); ++k) {
+    const std::size_t row = k / 2;
     svg += Panel(panels[k], plots["steady"], ink, k % 2 == 0 ? 0.0 : panel_width,
-                 head + panel_height * static_cast<double>(k / 2))
+                 head + panel_height * static_cast<double>(row))
                .svg();
+  }
   return svg + "</svg>\n";
 }
 
