@@ -65,10 +65,12 @@ void print_summary(const std::string& folder, const nlohmann::json& s) {
   const nlohmann::json& e = s["energy_j"];
   const auto energy = [&](const char* key) { return e[key].get<double>(); };
   const auto joules = [&](const char* key) { return figures(energy(key), 4); };
-  fmt::print("energy of random motion (J)         change {} = shear by transport {} + by contacts {} + kicks {} - "
+  fmt::print("energy of random motion (J)         change {} = shear by transport {} + by contacts {} + kicks {}{} - "
              "collisions {}, rounding {:.1e}\n",
              figures(energy("now") - energy("start"), 4), joules("translational_shear_work"),
-             joules("collisional_shear_work"), joules("kick_work"), joules("lost_in_collisions"), energy("residual"));
+             joules("collisional_shear_work"), joules("kick_work"),
+             energy("resting_work") == 0.0 ? "" : fmt::format(" + contacts at rest {}", joules("resting_work")),
+             joules("lost_in_collisions"), energy("residual"));
   const auto known = [](const nlohmann::json& b) { // better than by its own size
     return !b.is_null() && b["ratio"].is_number() &&
            (!b["error"].is_number() || b["error"].get<double>() < std::fabs(b["ratio"].get<double>()));

@@ -47,6 +47,7 @@ struct StepAtHand {
   double begin = 0.0;     ///< rad
   bool recorded = false;  ///< whether somebody wants to have each contact
   double kick_pull = 0.0; ///< G times the kick interval, m³ kg⁻¹ rad⁻¹
+  double rest_pull = 0.0; ///< the same for contacts that are to be noted: DriftPhase::slow_pairs
 };
 
 /// What has happened to the particles in the step so far, by place.
@@ -92,11 +93,13 @@ struct Contact {
   double time = 0.0;
   double normal_speed = 0.0; ///< of the approach, m rad⁻¹
   double energy_lost = 0.0;
-  double momentum_flux = 0.0;  ///< kg m² rad⁻¹
-  double azimuthal_gain = 0.0; ///< of Σ m c_y², kg m² rad⁻²
-  bool fast = false;           ///< faster than v_cut
-  bool unresolved = false;     ///< slower than what a kick of the pair's own gravity gives
-  bool again = false;          ///< the last contact of both particles was with each other, in this step
+  double momentum_flux = 0.0;      ///< kg m² rad⁻¹
+  double azimuthal_gain = 0.0;     ///< of Σ m c_y², kg m² rad⁻²
+  bool fast = false;               ///< faster than v_cut
+  bool unresolved = false;         ///< slower than what a kick of the pair's own gravity gives
+  bool again = false;              ///< the last contact of both particles was with each other, in this step
+  bool slow = false;               ///< so slow that the pair may come to rest
+  std::uint32_t low = 0, high = 0; ///< places of the particles, the lower id first
 };
 
 template<class Orbits> class ContactLoop {
@@ -209,6 +212,9 @@ private:
     const double distance = a.radius + b.radius;
     contact.fast = after.fast;
     contact.unresolved = speed * distance * distance < step_.kick_pull * (a.mass + b.mass);
+    contact.slow = speed * distance * distance < step_.rest_pull * (a.mass + b.mass);
+    contact.low = event.low;
+    contact.high = event.high;
     contact.again = orbits_.last_change(event.low) > step_.begin &&
                     orbits_.last_change(event.low) == orbits_.last_change(event.high);
     contact.energy_lost += 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);

@@ -30,8 +30,12 @@ DriftPhase::~DriftPhase() = default;
 DriftPhase::DriftPhase(DriftPhase&& other) noexcept = default;
 DriftPhase& DriftPhase::operator=(DriftPhase&& other) noexcept = default;
 
-void DriftPhase::set_pace(double step, double kick_pull) {
-  engine_->set_pace(step, kick_pull);
+void DriftPhase::set_pace(double step, double kick_pull, double rest_pull) {
+  engine_->set_pace(step, kick_pull, rest_pull);
+}
+
+std::span<const SlowPair> DriftPhase::slow_pairs() const {
+  return engine_->slow_pairs();
 }
 
 void DriftPhase::collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally,

@@ -38,8 +38,9 @@ DriftEngine::DriftEngine(const CollisionSettings& settings, const Frequencies& f
     throw UsageError(fmt::format("unknown collision finder '{}'", settings.finder));
 }
 
-void DriftEngine::set_pace(double step, double kick_pull) {
+void DriftEngine::set_pace(double step, double kick_pull, double rest_pull) {
   kick_pull_ = kick_pull;
+  rest_pull_ = rest_pull;
   if (step == step_)
     return;
   step_ = step;
@@ -140,8 +141,9 @@ void DriftEngine::collide(Particles& particles, const ShearingBox& box, double o
   touched_.clear();
   particles_ = &particles;
   step_at_hand_ = {&particles, &settings_,   frequencies_, orbital_frequency_, box,
-                   offset,     -0.5 * step_, false,        kick_pull_};
+                   offset,     -0.5 * step_, false,        kick_pull_,         rest_pull_};
   gave_up_ = 0;
+  slow_pairs_.clear();
   prepare(undisturbed);
   reject();
   std::vector<Event> first = solve();
@@ -167,6 +169,8 @@ void DriftEngine::count(const Contact& contact, CollisionTally& tally) {
   tally.add(contact);
   ++costs_.contacts;
   costs_.recontacts += contact.again;
+  if (contact.slow)
+    slow_pairs_.push_back({contact.low, contact.high});
 }
 
 // On several threads, when the result cannot tell and there are enough contacts for each.

@@ -25,7 +25,8 @@ public:
     return stand_in ? *stand_in : *finder_;
   }
   void release() { lists_.release(); }
-  void set_pace(double step, double kick_pull);
+  void set_pace(double step, double kick_pull, double rest_pull);
+  std::span<const SlowPair> slow_pairs() const { return slow_pairs_; }
   void observe(DriftObserver* observer) { observer_ = observer; }
 
 private:
@@ -48,7 +49,7 @@ private:
   CollisionSettings settings_;
   Frequencies frequencies_;
   double orbital_frequency_, step_;
-  double kick_pull_ = 0.0;
+  double kick_pull_ = 0.0, rest_pull_ = 0.0;
   std::unique_ptr<Finder> finder_;
   DriftObserver* observer_ = nullptr;
 
@@ -67,6 +68,7 @@ private:
   OptimisticLoop optimistic_;
   StepSoFar so_far_;
   std::vector<std::uint32_t> touched_; // who has been hit in the step, once each
+  std::vector<SlowPair> slow_pairs_;   // that have touched in the step
   std::uint64_t gave_up_ = 0;
   DriftCosts costs_;
 };

@@ -131,6 +131,14 @@ std::vector<Key> gravity_keys() {
        .unit = "steps",
        .meaning = "drifts per kick",
        .range = {.low = 1, .high = 1000}},
+      {.path = "resting_contacts",
+       .type = choice,
+       .fallback = "\"carried\"",
+       .meaning =
+           "contacts that a kick does not resolve: carried, by impulses that act with it, or bounced as all others",
+       .choices = {"carried", "bounced"},
+       .only_with = {"solver", {"direct", "tree", "fft", "mesh", "auto"}},
+       .hashed_at_fallback = false},
   };
 }
 
@@ -157,6 +165,8 @@ GravitySettings gravity_settings(const Parameters& p) {
     gravity.images.far = p.text("images") == "periodic";
   }
   gravity.kick_every = static_cast<int>(p.integer("kick_every"));
+  if (p.has("resting_contacts"))
+    gravity.resting_contacts = p.text("resting_contacts") == "carried";
   return gravity;
 }
 

@@ -39,6 +39,10 @@ bool has_spins(const Scene& scene) {
   return scene.collisions.friction.has_value();
 }
 
+bool carries(const Scene& scene) {
+  return scene.gravity && scene.gravity->carries();
+}
+
 constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 
 const SeriesColumn all_columns[] = {
@@ -58,6 +62,9 @@ const SeriesColumn all_columns[] = {
      [](Sample s) { return joule(s, state(s).collisions.energy_lost); }},
     {"kick_work_j", "J", "work of all forces' kicks on the motion beyond the shear since the run began",
      [](Sample s) { return joule(s, s.balance.kick_work); }},
+    {"resting_work_j", "J",
+     "work of the impulses of contacts at rest on the motion along their lines of centres since the run began",
+     [](Sample s) { return joule(s, s.balance.resting_work); }, carries},
     {"random_energy_j", "J", "Σ m (½c² + ½ν²z²), c the velocity beyond the shear, and the energy of spins",
      [](Sample s) { return joule(s, s.balance.energy); }},
     {"energy_residual_j", "J",

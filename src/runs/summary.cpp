@@ -29,6 +29,7 @@ nlohmann::ordered_json energies(const Simulation& simulation, const Scene& scene
           {"collisional_shear_work", shear * b.collisional_flux * joule},
           {"kick_work", b.kick_work * joule},
           {"kick_work_of", work_of_forces(state, joule)},
+          {"resting_work", b.resting_work * joule},
           {"lost_in_collisions", b.lost * joule},
           {"residual", b.residual * joule}};
 }
@@ -89,6 +90,7 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scen
   const std::uint64_t contacts = state.collisions.fast + state.collisions.slow;
   json["unresolved_contacts_share"] =
       static_cast<double>(state.collisions.unresolved) / static_cast<double>(std::max<std::uint64_t>(1, contacts));
+  json["resting_contacts"] = state.resting.pairs.size();
   json["finder_gave_up"] = state.collisions.gave_up;
   json["largest_overlap"] = largest_overlap(simulation.patch()).depth;
   json["force_error"] = force_error(cost.force_checks);
@@ -101,6 +103,7 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scen
   json["split"] = {{"start_s", cost.start_s},
                    {"drift_s", split.drift},
                    {"gravity_s", split.force("gravity")},
+                   {"resting_s", split.resting},
                    {"series_s", cost.output.series},
                    {"stresses_s", cost.output.stresses},
                    {"snapshots_s", cost.output.snapshots},

@@ -1,5 +1,6 @@
 #include <keeler/scene/doubts.hpp>
 
+#include <keeler/core/units.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/scene/derived.hpp>
 
@@ -48,6 +49,20 @@ void doubt_kicks(const Scene& scene, Lines& lines) {
   if (apart > resolved)
     lines.push_back(fmt::format("kicks are {} orbits apart: beyond {:g} self-gravity is hardly resolved in time",
                                 figures(apart, 3), resolved));
+  if (!scene.gravity->by_pairs() || !(scene.particles.density > 0.0))
+    return;
+  // Contacts at rest carry kicks that move a surface by up to an eighth of a radius sum. At the surface of a pile of
+  // 300 spheres gravity is eleven times that of a pair, which is G ρ π/3 times the radius sum.
+  constexpr double most = 0.125, surface = 11.0;
+  const double interval = two_pi * apart;
+  const double pull = newton_g(scene.planet.orbital_frequency) * scene.particles.density * pi / 3.0;
+  const double longest = std::sqrt(most / (surface * pull)) / two_pi;
+  const double r_h = hill_parameter(scene.particles.density, distance_from_saturn(scene.planet));
+  if (r_h > 1.1 && surface * pull * interval * interval > most)
+    lines.push_back(
+        fmt::format("kicks are {} orbits apart: aggregates last at r_h {} and cannot rest between kicks that far "
+                    "apart, so they heat and lose energy without end; let them be {} at most",
+                    figures(apart, 3), figures(r_h, 2), figures(longest, 2)));
 }
 
 } // namespace

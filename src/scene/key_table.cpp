@@ -188,6 +188,21 @@ std::vector<Key> collision_keys() {
   };
 }
 
+// Of every law.
+std::vector<Key> restitution_keys() {
+  return {
+      {.path = "collisions.restitution.largest",
+       .type = KeyType::number,
+       .fallback = "1.0",
+       .unit = "1",
+       .meaning =
+           "no bounce faster than elastic_below keeps more of the normal speed; below 1 for piles that are to come "
+           "to rest",
+       .range = {.low = 0, .high = 1},
+       .hashed_at_fallback = false},
+  };
+}
+
 std::vector<Key> friction_keys() {
   using enum KeyType;
   return {
@@ -324,6 +339,7 @@ std::vector<Key> make_keys() {
   add_laws(keys,
            {.type = KeyType::choice, .fallback = "\"bridges\"", .meaning = "how much normal speed a bounce keeps"},
            "collisions.restitution", restitution_laws());
+  add(restitution_keys());
   add(friction_keys());
   add_table(keys, "gravity", gravity_keys());
   for (const ForceEntry& force : external_forces())

@@ -50,6 +50,10 @@ CollisionSettings read_collisions(Settings& settings, const std::string& name) {
   collisions.finder = settings.text("collisions.finder");
   collisions.elastic_below = settings.number("collisions.elastic_below");
   collisions.restitution = make_law(restitution_laws(), "collisions.restitution", settings, name);
+  if (const double largest = settings.number("collisions.restitution.largest"); largest < 1.0)
+    collisions.restitution = [law = collisions.restitution, largest](const Impact& impact) {
+      return std::min(largest, law(impact));
+    };
   collisions.friction = read_friction(settings);
   return collisions;
 }

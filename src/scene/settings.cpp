@@ -159,7 +159,8 @@ std::string Settings::motion() const {
   for (const Key& key : scene_keys())
     for (const std::string& path : paths_of(key))
       if (key.effect == KeyEffect::motion && has(path))
-        out += fmt::format("{} = {}\n", path, toml_of(key, path));
+        if (const std::string value = toml_of(key, path); key.hashed_at_fallback || value != key.fallback)
+          out += fmt::format("{} = {}\n", path, value);
   return out;
 }
 

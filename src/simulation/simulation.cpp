@@ -18,6 +18,7 @@ namespace keeler {
 namespace {
 
 constexpr double sorting_interval = 0.1; // orbits
+constexpr double looked_at = 4.0; // contacts slower than so many times the strongest kick at rest may come to rest
 
 // What a kick of all particles did to the energy.
 struct KickSums {
@@ -100,9 +101,11 @@ void Simulation::advance() {
   for (std::size_t f = 0; f < forces_.size(); ++f)
     if (kick_due(f))
       half_kick(f);
+  carry_on_resting();
   {
     const Stopwatch watch(split_.drift);
     drift_.collide(state_.particles, state_.box, state_.epoch_offset(), state_.collisions, undisturbed_);
+    note_slow_pairs();
     move_on();
     undisturbed_ = true;
   }
@@ -111,7 +114,9 @@ void Simulation::advance() {
       accelerate(f);
       half_kick(f);
     }
+  const double interval = carries() ? kick_interval() : 0.0;
   decide_when_due();
+  carry_resting(interval);
 }
 
 // Where the kicks of all forces meet. Elements move to the middle of what the next step is now.
@@ -131,8 +136,46 @@ void Simulation::decide_when_due() {
 
 void Simulation::set_pace() {
   const bool pairs = scene_.gravity && scene_.gravity->by_pairs();
-  const double kick_interval = pairs ? static_cast<double>(ticks_between_kicks(0)) * state_.tick() : 0.0;
-  drift_.set_pace(state_.step_length, newton_g(scene_.planet.orbital_frequency) * kick_interval);
+  const double pull = pairs ? newton_g(scene_.planet.orbital_frequency) * kick_interval() : 0.0;
+  drift_.set_pace(state_.step_length, pull,
+                  carries() ? looked_at * std::max(1.0, state_.resting.looked_at) * pull : 0.0);
+}
+
+// Before any order in memory changes.
+void Simulation::note_slow_pairs() {
+  for (const SlowPair& pair : drift_.slow_pairs())
+    resting_.note(state_.particles, pair.low, pair.high);
+}
+
+// What contacts at rest are told of this boundary. `before` is the kick interval that ends here.
+template<class Carry> void Simulation::with_kicks(double before, const Carry& carry) {
+  const Stopwatch watch(split_.resting);
+  std::vector<KickPart> parts;
+  for (std::size_t f = 0; f < forces_.size(); ++f)
+    if (kick_due(f)) {
+      const double after = static_cast<double>(ticks_between_kicks(f)) * state_.tick();
+      parts.push_back({state_.forces[f].accelerations, 0.5 * (f == 0 ? before : after), 0.5 * after,
+                       &state_.forces[f].work, &state_.forces[f].azimuthal_gain});
+    }
+  carry(RestingStep{state_.particles, scene_.planet.frequencies, state_.box, state_.epoch_offset(),
+                    0.5 * state_.step_length, kick_interval(), newton_g(scene_.planet.orbital_frequency), parts});
+  undisturbed_ = false;
+}
+
+void Simulation::carry_resting(double before) {
+  if (!carries() || !kick_due(0) || resting_.idle(state_.resting))
+    return;
+  with_kicks(before, [&](const RestingStep& step) {
+    resting_.carry(state_.resting, step, scene_.collisions.friction, state_.collisions);
+  });
+  set_pace();
+}
+
+void Simulation::carry_on_resting() {
+  if (state_.resting.pairs.empty() || !kick_due(0))
+    return;
+  with_kicks(kick_interval(),
+             [&](const RestingStep& step) { resting_.carry_on(state_.resting, step, state_.collisions); });
 }
 
 // Memory order follows the places every tenth of an orbit. That depends on the tick alone: a restart goes on with the
@@ -153,6 +196,7 @@ void Simulation::sort_when_due() {
     reorder(state_.particles.spins, order);
   for (ForceState& force : state_.forces)
     reorder(force.accelerations, order);
+  resting_.reordered();
   find_moonlets();
 }
 
@@ -258,6 +302,9 @@ void Simulation::replace(Particles particles) {
   state_.energy.spin += now.spin.energy - before.spin.energy;
   drift_.release();
   undisturbed_ = false;
+  resting_ = RestingContacts();
+  state_.resting.pairs.clear();
+  state_.resting.loads.clear();
   forces_ = make_forces(scene_, state_);
   for (std::size_t f = 0; f < forces_.size(); ++f)
     accelerate(f);

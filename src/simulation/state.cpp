@@ -13,6 +13,7 @@ SimulationState::SimulationState(const Scene& scene) : moonlets(scene.moonlets.s
   for (const ForceSettings& force : scene.external_forces)
     forces.push_back({force.entry->table, {}, 0.0, 0.0, gains});
   particles.rough = scene.collisions.friction.has_value();
+  carries = scene.gravity && scene.gravity->carries();
 }
 
 FieldTable SimulationState::fields() {
@@ -38,6 +39,8 @@ FieldTable SimulationState::fields() {
   table.scalar("step_length", step_length, "rad", "length of the step to come");
   control.list_fields(table);
   collisions.list_fields(table);
+  if (carries)
+    resting.list_fields(table);
   table.scalar("energy_start", energy.epicyclic, "kg m^2 rad^-2", "epicyclic energy when the run began");
   table.scalar("azimuthal_start", energy.azimuthal, "kg m^2 rad^-2", "sum of m c_y^2 when the run began");
   if (particles.rough)
@@ -86,12 +89,14 @@ EnergyBalance SimulationState::balance(const ParticleMeans& means, const Frequen
     azimuthal_gain += force.azimuthal_gain;
     booked += force.work + part * force.azimuthal_gain;
   }
+  booked += resting.work;
   EnergyBalance b;
   b.energy = means.epicyclic_energy - part * means.azimuthal + means.spin.energy;
   b.start = energy.epicyclic - part * energy.azimuthal + energy.spin;
   b.translational_flux = (azimuthal_gain - (means.azimuthal - energy.azimuthal)) / (f.kappa * f.kappa);
   b.collisional_flux = collisions.momentum_flux;
   b.kick_work = kick_work();
+  b.resting_work = resting.work;
   b.lost = collisions.energy_lost;
   b.residual = means.epicyclic_energy - energy.epicyclic + (means.spin.energy - energy.spin) - booked;
   return b;

@@ -77,14 +77,24 @@ public:
   virtual void recorded(std::span<const CollisionRecord>) {}
 };
 
+/// Two particles that have touched slowly, by place, the lower id first.
+struct SlowPair {
+  std::uint32_t low, high;
+};
+
 class DriftPhase {
 public:
   /// `step` is the length h of a drift (rad). Throws UsageError for an unknown finder.
   DriftPhase(const CollisionSettings& settings, const Frequencies& frequencies, double orbital_frequency, double step);
 
   /// From the next step on: the length h of a drift (rad), and G times the kick interval (m³ kg⁻¹ rad⁻¹; 0 without
-  /// self-gravity), which tells what contacts kicks do not resolve.
-  void set_pace(double step, double kick_pull);
+  /// self-gravity), which tells what contacts kicks do not resolve. `rest_pull`, in the same way, tells which contacts
+  /// slow_pairs() lists.
+  void set_pace(double step, double kick_pull, double rest_pull = 0.0);
+
+  /// Pairs of the last step that touched more slowly than rest_pull (m_i + m_j) / (r_i + r_j)², in the order of events;
+  /// some may be there more than once.
+  std::span<const SlowPair> slow_pairs() const;
 
   ~DriftPhase();
   DriftPhase(DriftPhase&& other) noexcept;

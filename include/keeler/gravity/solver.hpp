@@ -59,9 +59,12 @@ struct GravitySettings {
   double mesh_cut = 0.0;            ///< fft: where neighbours end, in spacings; 0: by the force error
   double shortest_wavelength = 0.0; ///< axisymmetric: of the waves that pull, m
   int kick_every = 1;               ///< drifts per kick
+  bool resting_contacts = true;     ///< contacts at rest carry the kicks
 
   /// Whether particles attract each other one by one: not by the radial pull of all alone.
   bool by_pairs() const { return solver != Solver::axisymmetric; }
+  /// Whether contacts at rest carry the kicks (resting/resting_contacts.hpp).
+  bool carries() const { return by_pairs() && resting_contacts; }
 };
 
 /// What `automatic` stands for in a patch of so many particles: fft, which was cheaper than the tree at every error and

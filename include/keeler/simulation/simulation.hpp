@@ -3,6 +3,7 @@
 #pragma once
 
 #include <keeler/forces/force.hpp>
+#include <keeler/resting/resting_contacts.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/state.hpp>
 
@@ -18,6 +19,7 @@ struct TimeSplit {
   double drift = 0.0;
   double advance = 0.0;                 ///< of the drift: to the next epoch and back into the cell
   double kick = 0.0;                    ///< of the forces: their half kicks
+  double resting = 0.0;                 ///< impulses of contacts at rest
   std::map<std::string, double> forces; ///< by name, the half kicks included
 
   /// 0 for a force that the scene has not.
@@ -69,6 +71,9 @@ public:
 
   const TimeSplit& time_split() const { return split_; }
 
+  /// What contacts at rest took at the last kick.
+  const RestingCosts& resting_costs() const { return resting_.costs(); }
+
   /// To watch collisions, or to measure finders.
   DriftPhase& drift() { return drift_; }
 
@@ -84,6 +89,12 @@ private:
   void find_moonlets();
   void note_wrap(std::size_t k, const Image& image, double offset);
   void set_pace();
+  bool carries() const { return scene_.gravity && scene_.gravity->carries(); }
+  double kick_interval() const { return static_cast<double>(ticks_between_kicks(0)) * state_.tick(); }
+  void note_slow_pairs();
+  void carry_resting(double before);
+  void carry_on_resting();
+  template<class Carry> void with_kicks(double before, const Carry& carry);
   std::int64_t ticks_between_kicks(std::size_t f) const {
     return state_.control.kick > 0 ? state_.control.kick : forces_[f]->kick_every();
   }
@@ -94,7 +105,8 @@ private:
   DriftPhase drift_;
   bool undisturbed_ = false;                   // the particles, but for moving on, since the last drift
   std::vector<std::unique_ptr<Force>> forces_; // in the order of state_.forces
-  std::vector<std::size_t> moonlet_places_;    // in memory
+  RestingContacts resting_;
+  std::vector<std::size_t> moonlet_places_; // in memory
   TimeSplit split_;
 };
 

@@ -5,6 +5,7 @@
 #include <keeler/collision/drift.hpp>
 #include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/particles/patch.hpp>
+#include <keeler/resting/resting_contacts.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/step_control.hpp>
 
@@ -22,7 +23,7 @@ struct EnergyStart {
 };
 
 /// Where the energy of the random motions came from and went since the run began: with c the velocity beyond the shear,
-///   energy − start = S (translational_flux + collisional_flux) + kick_work − lost.
+///   energy − start = S (translational_flux + collisional_flux) + kick_work + resting_work − lost.
 /// The shear does its work by the three stresses; gravity's part comes in by the kicks, and the potential energy of the
 /// patch is its reservoir (diagnostics/gravity_stress.hpp). No term depends on the origin or on which image of a
 /// particle is inside the cell. Energies in kg m² rad⁻², fluxes in kg m² rad⁻¹.
@@ -30,8 +31,9 @@ struct EnergyBalance {
   double energy = 0.0; ///< now: Σ m (½c² + ½ν²z²), and the spins' Σ ½ I (ω − Ω)² of rough particles
   double start = 0.0;  ///< the same when the run began
   double translational_flux = 0.0; ///< ∫ Σ m c_x c_y dt
-  double collisional_flux = 0.0;   ///< Σ over collisions (x_j − x_i)(p_y gained by j)
+  double collisional_flux = 0.0;   ///< Σ over collisions and contacts at rest (x_j − x_i)(p_y gained by j)
   double kick_work = 0.0;          ///< Σ m (c·Δv + ½Δv²) over the kicks of all forces
+  double resting_work = 0.0;       ///< of the impulses of contacts at rest, on the motion along the line of centres
   double lost = 0.0;               ///< in collisions
   double residual =
       0.0; ///< what Σ m (½κ²e² + ½ν²i²), and the spins' energy, has changed beyond all that was booked: rounding
@@ -62,8 +64,10 @@ struct SimulationState {
   double step_length = 0.0; ///< h of the step to come, rad
   StepControl control;
   CollisionTally collisions;
+  RestingState resting;
   EnergyStart energy;
   std::vector<MoonletTrack> moonlets; ///< of the last ids, in their order
+  bool carries = false;               ///< whether contacts at rest may carry kicks in this scene
 
   SimulationState() = default;
   /// An empty state with a place for each force of the scene: what a checkpoint is read into.
