@@ -24,7 +24,7 @@ struct JobOptions {
   std::string folder;
   std::optional<std::string> from;
   double until = 0.0, wall_time = 0.0;
-  bool force = false, json = false;
+  bool force = false, check = false, json = false;
   ThreadOption threads;
   TalkOption talk;
 };
@@ -33,6 +33,7 @@ RunOptions run_options(const JobOptions& job, const std::vector<std::string>& ar
   RunOptions options;
   options.folder = job.folder;
   options.force = job.force;
+  options.check = job.check;
   if (job.wall_time > 0.0)
     options.wall_time_s = job.wall_time;
   if (job.until > 0.0)
@@ -109,6 +110,7 @@ ExitCode report(const JobOptions& job, const RunResult& result) {
 void add_common(CLI::App& command, JobOptions& job) {
   command.add_option("--wall-time", job.wall_time, "stop with a checkpoint before this many seconds have passed")
       ->check(positive_number());
+  command.add_flag("--check", job.check, "hold each step against all invariants; slower, and the results are the same");
   command.add_flag("--json", job.json, "print the summary as JSON");
   job.threads.add_to(command);
   job.talk.add_to(command);

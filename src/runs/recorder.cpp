@@ -1,5 +1,8 @@
 #include "recorder.hpp"
 
+#include "invariants.hpp"
+
+#include <keeler/core/error.hpp>
 #include <keeler/core/simd.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/words.hpp>
@@ -121,8 +124,21 @@ void Recorder::contacts() {
   contact_log_->write_full_files();
 }
 
+void Recorder::require_sound(const SimulationState& state, const ParticleMeans& means) {
+  if (const std::string fault = fault_of_books(state, means, scene_.planet.frequencies); !fault.empty())
+    throw InvariantError(fault);
+  sound_step_ = state.step;
+}
+
+// Once a step: the means of a row of the series serve what follows it.
+void Recorder::require_sound(const Simulation& simulation) {
+  if (simulation.state().step != sound_step_)
+    require_sound(simulation.state(), simulation.means());
+}
+
 void Recorder::snapshot(const Simulation& simulation) {
   const Stopwatch watch(costs_.snapshots);
+  require_sound(simulation);
   write_snapshot(folder_.snapshot(counters_.snapshots), simulation.patch(), {scene_.resolved, provenance_});
   ++counters_.snapshots;
   if (contact_log_)
@@ -133,6 +149,7 @@ void Recorder::snapshot(const Simulation& simulation) {
 
 void Recorder::checkpoint(const Simulation& simulation) {
   lock_.require_in_place();
+  require_sound(simulation);
   if (contact_log_) {
     const Stopwatch watch(costs_.contacts);
     contact_log_->write_all();
@@ -160,7 +177,9 @@ void Recorder::sample(const Simulation& simulation) {
   const std::optional<GravityEnergy> gravity = measure_gravity(simulation);
   const Stopwatch watch(costs_.series);
   lock_.require_in_place();
-  series_.append(simulation.state().step, values_of(columns_, SeriesSample(scene_, simulation, gravity)));
+  const SeriesSample row(scene_, simulation, gravity);
+  require_sound(simulation.state(), row.means);
+  series_.append(simulation.state().step, values_of(columns_, row));
   for (std::size_t k = 0; k < simulation.state().moonlets.size(); ++k) {
     std::vector<double> values;
     for (const MoonletColumn& column : moonlet_columns_)

@@ -27,8 +27,8 @@ bool is_own(std::string_view name) {
        {"scene.toml", "series.csv", "moonlets.csv", "impact_speeds.csv", "summary.json", "log.jsonl"})
     if (name == own)
       return true;
-  return is_numbered(name, "snap_", ".hdf") || is_numbered(name, "checkpoint_", ".h5") ||
-         is_numbered(name, "collisions_", ".h5");
+  return is_numbered(name, "snap_", ".hdf") || is_numbered(name, "broken_", ".hdf") ||
+         is_numbered(name, "checkpoint_", ".h5") || is_numbered(name, "collisions_", ".h5");
 }
 
 } // namespace
@@ -39,6 +39,10 @@ fs::path RunFolder::snapshot(std::int64_t number) const {
 
 fs::path RunFolder::contacts(std::int64_t number) const {
   return path_ / fmt::format("collisions_{:06}.h5", number);
+}
+
+fs::path RunFolder::broken(std::int64_t step) const {
+  return path_ / fmt::format("broken_{:06}.hdf", step);
 }
 
 std::string RunFolder::runs_inside() const {

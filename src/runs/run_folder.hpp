@@ -18,6 +18,7 @@ public:
   std::filesystem::path impact_speeds() const { return path_ / "impact_speeds.csv"; }
   std::filesystem::path snapshot(std::int64_t number) const;
   std::filesystem::path contacts(std::int64_t number) const;
+  std::filesystem::path broken(std::int64_t step) const;
   const std::filesystem::path& path() const { return path_; }
 
   /// For messages, where nothing of a run is in the folder: "; its runs are in 'sweep/runs'" of a sweep or a study, or
