@@ -10,6 +10,7 @@
 #include <keeler/files/files.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/gravity/direct.hpp>
+#include <keeler/gravity/near_image_count.hpp>
 #include <keeler/io/checkpoint.hpp>
 #include <keeler/io/checkpoint_folder.hpp>
 #include <keeler/io/snapshot.hpp>
@@ -24,7 +25,12 @@
 namespace keeler {
 namespace {
 
-constexpr std::size_t checked_particles = 200;
+// Whose forces are summed exactly: fewer in a long box, where each sum has thousands of images.
+constexpr ImageSettings exact_images{.rings = 2};
+std::size_t checked_particles(const ShearingBox& box, const ImageSettings& images) {
+  constexpr std::size_t most = 200, least = 8, of_square_box = 25;
+  return std::clamp(most * of_square_box / near_image_count(box, images), least, most);
+}
 
 Series open_series(const std::filesystem::path& file, const std::vector<std::string>& columns, const Scene& scene,
                    std::optional<std::int64_t> resumed_at) {
@@ -210,9 +216,9 @@ void Recorder::check_forces(const Simulation& simulation) {
     std::vector<double> masses;
     const GravityProblem problem =
         gravity_problem(simulation.boundary(), scene_.planet.orbital_frequency, positions, masses);
-    const ForceSample sample = draw_force_sample(problem, checked_particles, 0, 0.0);
+    const ForceSample sample = draw_force_sample(problem, checked_particles(problem.box, exact_images), 0, 0.0);
     const std::vector<Vec3> exact =
-        sampled_accelerations(problem, sample.targets, {.rings = 2}, choose_instruction_set());
+        sampled_accelerations(problem, sample.targets, exact_images, choose_instruction_set());
     const ForceErrors errors = force_errors(sample, exact, simulation.state().forces.front().accelerations);
     ++c.count;
     c.particles = sample.even;
