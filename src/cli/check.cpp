@@ -75,6 +75,7 @@ nlohmann::ordered_json as_json(const Scene& scene, const Derived& d, const std::
   json["estimate"] = cost ? as_json(*cost) : nlohmann::ordered_json();
   json["notices"] = scene.notices;
   json["doubts"] = doubts(scene);
+  json["costs"] = d.particles_known ? dear_choices(scene) : std::vector<std::string>();
   return json;
 }
 
@@ -153,6 +154,9 @@ void print_text(const Scene& scene, const Derived& d, const std::optional<RunEst
     fmt::print("note: {}\n", notice);
   for (const std::string& doubt : doubts(scene))
     fmt::print("note: {}\n", doubt);
+  if (d.particles_known)
+    for (const std::string& line : dear_choices(scene))
+      fmt::print("note: {}\n", line);
 }
 
 ExitCode check(const CheckOptions& options) {

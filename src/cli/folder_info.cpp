@@ -215,6 +215,7 @@ void print_run(const Json& json) {
   fmt::print("state       {}{}\n", state,
              state == "finished"  ? std::string()
              : state == "running" ? ", " + clock(json["remaining_s"]) + " left"
+             : state == "broken"  ? ": log.jsonl has the reason, broken_*.hdf the state"
                                   : "; \"keeler resume " + text("folder") + "\" goes on");
   fmt::print("orbits      {} of {}\n", figures(json["time_orbits"].get<double>(), 4),
              figures(json["end_orbits"].get<double>(), 4));

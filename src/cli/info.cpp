@@ -2,20 +2,27 @@
 #include "command.hpp"
 #include "folder_info.hpp"
 
+#include <keeler/core/error.hpp>
+#include <keeler/core/words.hpp>
 #include <keeler/io/contacts.hpp>
 #include <keeler/io/describe.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/runs/state_hash.hpp>
+#include <keeler/runs/verify.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 namespace keeler {
 namespace {
+
+namespace fs = std::filesystem;
 
 // What tells one file from another of its kind.
 nlohmann::ordered_json describe_state(const std::string& path, FileKind kind) {
@@ -78,12 +85,54 @@ void print_text(const nlohmann::ordered_json& json) {
     fmt::print("{:28} {}\n", name, value.get<std::string>());
 }
 
+nlohmann::ordered_json as_json(const std::string& path, const std::vector<VerifiedFile>& files) {
+  nlohmann::ordered_json json = {{"path", path}, {"damaged", 0}, {"files", nlohmann::ordered_json::array()}};
+  for (const VerifiedFile& file : files) {
+    json["files"].push_back({{"file", file.file}, {"kind", file.kind}, {"sealed", file.sealed}});
+    json["files"].back()["damage"] =
+        file.damage.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(file.damage);
+    if (!file.damage.empty())
+      json["damaged"] = json["damaged"].get<int>() + 1;
+  }
+  return json;
+}
+
+bool may_have_seal(const VerifiedFile& file) {
+  return file.kind == "snapshot" || file.kind == "checkpoint" || file.kind == "contacts";
+}
+
+void print_verified(const VerifiedFile& file) {
+  const std::string verdict = !file.damage.empty()                  ? "damaged: " + printable_line(file.damage)
+                              : file.sealed || !may_have_seal(file) ? "whole"
+                                                                    : "whole as far as can be told without a seal";
+  fmt::print("{:<11} {:<32} {}\n", file.kind, fs::path(file.file).filename().string(), verdict);
+}
+
+// A line a file; the first damage ends the program.
+ExitCode verify(const std::string& path, bool json) {
+  const std::vector<VerifiedFile> files =
+      fs::is_directory(path) ? verify_folder(path) : std::vector<VerifiedFile>{verify_file(path)};
+  if (json)
+    fmt::print("{}\n", as_json(path, files).dump(2));
+  else
+    for (const VerifiedFile& file : files)
+      print_verified(file);
+  const auto damaged = [](const VerifiedFile& file) { return !file.damage.empty(); };
+  const auto first = std::find_if(files.begin(), files.end(), damaged);
+  if (first == files.end())
+    return ExitCode::done;
+  throw IoError(files.size() == 1
+                    ? first->damage
+                    : fmt::format("{} of {} files are damaged, the first: {}",
+                                  std::count_if(files.begin(), files.end(), damaged), files.size(), first->damage));
+}
+
 } // namespace
 
 void add_info(CLI::App& program, Action& action) {
   struct Options {
     std::string path;
-    bool json = false;
+    bool json = false, verify = false;
   };
   const auto options = std::make_shared<Options>();
   CLI::App& command = *program.add_subcommand("info", "show what is in a file or a folder of results");
@@ -93,10 +142,15 @@ void add_info(CLI::App& program, Action& action) {
       ->required()
       ->type_name("");
   command.add_flag("--json", options->json, "print it as JSON");
-  examples_of(command, {"keeler info wakes", "keeler info wakes/snap_000030.hdf --json"});
+  command.add_flag("--verify", options->verify,
+                   "say of each file whether it is whole: seal, checksums, format, scene against state, ids, overlaps, "
+                   "finite numbers; exit code 4 where one is damaged");
+  examples_of(command, {"keeler info wakes", "keeler info wakes/snap_000030.hdf --json", "keeler info --verify wakes"});
   command.callback([options, &action] {
     action = [options] {
-      const bool folder = std::filesystem::is_directory(options->path);
+      if (options->verify)
+        return verify(options->path, options->json);
+      const bool folder = fs::is_directory(options->path);
       const nlohmann::ordered_json json = folder ? describe_folder(options->path) : describe(options->path);
       if (options->json)
         fmt::print("{}\n", json.dump(2));

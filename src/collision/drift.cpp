@@ -59,4 +59,12 @@ void DriftPhase::observe(DriftObserver* observer) {
   engine_->observe(observer);
 }
 
+void DriftPhase::audit(NeighbourAudit* audit) {
+  engine_->audit(audit);
+}
+
+double DriftPhase::reached() const {
+  return engine_->reached();
+}
+
 } // namespace keeler

@@ -146,6 +146,8 @@ void DriftEngine::collide(Particles& particles, const ShearingBox& box, double o
   slow_pairs_.clear();
   prepare(undisturbed);
   reject();
+  if (audit_)
+    audit_beginning();
   std::vector<Event> first = solve();
   const Stopwatch stopwatch(costs_.events);
   if (!in_domains(first, tally)) {
@@ -155,6 +157,8 @@ void DriftEngine::collide(Particles& particles, const ShearingBox& box, double o
     loop.run();
     costs_.widest_list = std::max(costs_.widest_list, loop.most_partners());
   }
+  if (audit_)
+    audit_end();
   if (!through_grid_)
     lists_.touched(touched_);
   tally.gave_up += gave_up_;

@@ -7,6 +7,7 @@
 #include "optimistic_loop.hpp"
 
 #include <keeler/collision/drift.hpp>
+#include <keeler/collision/neighbour_audit.hpp>
 
 namespace keeler {
 
@@ -28,6 +29,8 @@ public:
   void set_pace(double step, double kick_pull, double rest_pull);
   std::span<const SlowPair> slow_pairs() const { return slow_pairs_; }
   void observe(DriftObserver* observer) { observer_ = observer; }
+  void audit(NeighbourAudit* audit) { audit_ = audit; }
+  double reached() const;
 
 private:
   struct InPlace;
@@ -44,6 +47,8 @@ private:
   void reject();
   void put_in_order(std::vector<Candidate>& candidates) const;
   std::vector<Event> solve();
+  void audit_beginning();
+  void audit_end();
   std::size_t bytes() const;
 
   CollisionSettings settings_;
@@ -52,6 +57,7 @@ private:
   double kick_pull_ = 0.0, rest_pull_ = 0.0;
   std::unique_ptr<Finder> finder_;
   DriftObserver* observer_ = nullptr;
+  NeighbourAudit* audit_ = nullptr;
 
   // the step at hand
   DriftObserver* watch_ = nullptr;         // the observer, when it looks on

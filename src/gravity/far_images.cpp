@@ -4,6 +4,7 @@
 
 #include <keeler/core/units.hpp>
 #include <keeler/gravity/images.hpp>
+#include <keeler/gravity/near_image_count.hpp>
 
 #include <array>
 #include <cmath>
@@ -157,6 +158,10 @@ std::vector<Vec3> near_images(const ShearingBox& box, double offset, const Image
     return image_shifts(box, offset, images.rings, images.rings);
   const int rings = images.rings;
   return image_shifts(box, offset, rings_for(rings, box.size_y, box.size_x), rings_for(rings, box.size_x, box.size_y));
+}
+
+std::size_t near_image_count(const ShearingBox& box, const ImageSettings& images) {
+  return near_images(box, 0.0, images).size();
 }
 
 Vec3 far_pull(const Lattice& lattice, const std::vector<Vec3>& near, const Vec3& displacement) {

@@ -97,14 +97,8 @@ std::string content_checksum(const FieldTable& table, const std::string& scene) 
 void check_format(const hdf5::Handle& image) {
   if (!hdf5::has_attribute(image, "format") || hdf5::read_text_attribute(image, "format") != checkpoint_format)
     throw IoError("it is not a checkpoint");
-  const auto version = hdf5::read_attribute<std::int64_t>(image, "format_version");
-  if (version < checkpoint_version)
-    throw IoError(fmt::format("it has format version {}, this program reads {}; finish its run with the Keeler that "
-                              "began it, or begin a run from its newest snapshot",
-                              version, checkpoint_version));
-  if (version > checkpoint_version)
-    throw IoError(fmt::format("it has format version {}, this program reads up to {}; use a newer Keeler", version,
-                              checkpoint_version));
+  require_version(image, hdf5::open_group(image, "provenance"), {checkpoint_version, checkpoint_version},
+                  ", or begin a run from its newest snapshot");
 }
 
 StoredField load_field(const hdf5::Handle& group, const std::string& name) {

@@ -82,9 +82,7 @@ ContactFile read_contacts(const std::filesystem::path& file) {
     if (!hdf5::exists(image, "Code") || !hdf5::exists(image, group_name))
       throw IoError("it is not a file of contacts");
     const hdf5::Handle code = hdf5::open_group(image, "Code"), group = hdf5::open_group(image, group_name);
-    if (const auto version = hdf5::read_attribute<std::int64_t>(code, "format_version"); version > contacts_version)
-      throw IoError(fmt::format("it has format version {}, this program reads up to {}; use a newer Keeler", version,
-                                contacts_version));
+    require_version(code, code, {contacts_version, contacts_version}, "");
     ContactFile read;
     read.meta.first_row = hdf5::read_attribute<std::int64_t>(group, "first_row");
     read.meta.orbital_frequency = hdf5::read_attribute<double>(group, "Omega");

@@ -138,4 +138,8 @@ FileDescription describe_file(const std::filesystem::path& file) {
   return read_content<FileDescription>(file, read);
 }
 
+bool is_sealed(const std::filesystem::path& file) {
+  return load_content(file).sealed;
+}
+
 } // namespace keeler

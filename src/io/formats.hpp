@@ -2,9 +2,22 @@
 // group of a checkpoint and on /Code of a snapshot and of a file of contacts.
 #pragma once
 
+#include "hdf5.hpp"
+
 #include <cstdint>
+#include <string_view>
 
 namespace keeler {
+
+/// The versions that can be read.
+struct FormatVersions {
+  std::int64_t oldest = 0, newest = 0;
+};
+
+/// Throws IoError, which names the Keeler that reads the file, where `object`'s format version is none of those.
+/// `writer` has the provenance, `otherwise` says what else can be done with an older file.
+void require_version(const hdf5::Handle& object, const hdf5::Handle& writer, const FormatVersions& versions,
+                     std::string_view otherwise);
 
 inline constexpr char checkpoint_format[] = "keeler checkpoint";
 inline constexpr std::int64_t checkpoint_version = 4;

@@ -151,10 +151,7 @@ void read_ring_box(const hdf5::Handle& image, Patch& patch) {
 void check_format(const hdf5::Handle& code) {
   if (hdf5::read_text_attribute(code, "format") != snapshot_format)
     throw IoError("it is not a Keeler snapshot");
-  const auto version = hdf5::read_attribute<std::int64_t>(code, "format_version");
-  if (version > snapshot_version)
-    throw IoError(fmt::format("it has format version {}, this program reads up to {}; use a newer Keeler", version,
-                              snapshot_version));
+  require_version(code, code, {snapshot_version, snapshot_version}, "");
 }
 
 void write_clumping(const hdf5::Handle& image, const SnapshotMeta& meta) {

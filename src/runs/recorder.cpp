@@ -1,5 +1,8 @@
 #include "recorder.hpp"
 
+#include "invariants.hpp"
+
+#include <keeler/core/error.hpp>
 #include <keeler/core/simd.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/words.hpp>
@@ -7,6 +10,7 @@
 #include <keeler/files/files.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/gravity/direct.hpp>
+#include <keeler/gravity/near_image_count.hpp>
 #include <keeler/io/checkpoint.hpp>
 #include <keeler/io/checkpoint_folder.hpp>
 #include <keeler/io/snapshot.hpp>
@@ -21,7 +25,12 @@
 namespace keeler {
 namespace {
 
-constexpr std::size_t checked_particles = 200;
+// Whose forces are summed exactly: fewer in a long box, where each sum has thousands of images.
+constexpr ImageSettings exact_images{.rings = 2};
+std::size_t checked_particles(const ShearingBox& box, const ImageSettings& images) {
+  constexpr std::size_t most = 200, least = 8, of_square_box = 25;
+  return std::clamp(most * of_square_box / near_image_count(box, images), least, most);
+}
 
 Series open_series(const std::filesystem::path& file, const std::vector<std::string>& columns, const Scene& scene,
                    std::optional<std::int64_t> resumed_at) {
@@ -121,8 +130,21 @@ void Recorder::contacts() {
   contact_log_->write_full_files();
 }
 
+void Recorder::require_sound(const SimulationState& state, const ParticleMeans& means) {
+  if (const std::string fault = fault_of_books(state, means, scene_.planet.frequencies); !fault.empty())
+    throw InvariantError(fault);
+  sound_step_ = state.step;
+}
+
+// Once a step: the means of a row of the series serve what follows it.
+void Recorder::require_sound(const Simulation& simulation) {
+  if (simulation.state().step != sound_step_)
+    require_sound(simulation.state(), simulation.means());
+}
+
 void Recorder::snapshot(const Simulation& simulation) {
   const Stopwatch watch(costs_.snapshots);
+  require_sound(simulation);
   write_snapshot(folder_.snapshot(counters_.snapshots), simulation.patch(), {scene_.resolved, provenance_});
   ++counters_.snapshots;
   if (contact_log_)
@@ -133,6 +155,7 @@ void Recorder::snapshot(const Simulation& simulation) {
 
 void Recorder::checkpoint(const Simulation& simulation) {
   lock_.require_in_place();
+  require_sound(simulation);
   if (contact_log_) {
     const Stopwatch watch(costs_.contacts);
     contact_log_->write_all();
@@ -160,7 +183,9 @@ void Recorder::sample(const Simulation& simulation) {
   const std::optional<GravityEnergy> gravity = measure_gravity(simulation);
   const Stopwatch watch(costs_.series);
   lock_.require_in_place();
-  series_.append(simulation.state().step, values_of(columns_, SeriesSample(scene_, simulation, gravity)));
+  const SeriesSample row(scene_, simulation, gravity);
+  require_sound(simulation.state(), row.means);
+  series_.append(simulation.state().step, values_of(columns_, row));
   for (std::size_t k = 0; k < simulation.state().moonlets.size(); ++k) {
     std::vector<double> values;
     for (const MoonletColumn& column : moonlet_columns_)
@@ -191,9 +216,9 @@ void Recorder::check_forces(const Simulation& simulation) {
     std::vector<double> masses;
     const GravityProblem problem =
         gravity_problem(simulation.boundary(), scene_.planet.orbital_frequency, positions, masses);
-    const ForceSample sample = draw_force_sample(problem, checked_particles, 0, 0.0);
+    const ForceSample sample = draw_force_sample(problem, checked_particles(problem.box, exact_images), 0, 0.0);
     const std::vector<Vec3> exact =
-        sampled_accelerations(problem, sample.targets, {.rings = 2}, choose_instruction_set());
+        sampled_accelerations(problem, sample.targets, exact_images, choose_instruction_set());
     const ForceErrors errors = force_errors(sample, exact, simulation.state().forces.front().accelerations);
     ++c.count;
     c.particles = sample.even;

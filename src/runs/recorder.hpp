@@ -65,6 +65,7 @@ public:
   /// Tells of the rows that a resumed run did not find any more.
   void tell_losses();
 
+  /// These throw InvariantError, and write nothing, where a number is not finite or the energy budget does not close.
   void snapshot(const Simulation& simulation);
   void checkpoint(const Simulation& simulation);
   void sample(const Simulation& simulation);
@@ -80,6 +81,8 @@ public:
 
 private:
   std::optional<GravityEnergy> measure_gravity(const Simulation& simulation);
+  void require_sound(const SimulationState& state, const ParticleMeans& means);
+  void require_sound(const Simulation& simulation);
   void tell(const std::string& text) const;
   void tell_restored(Series& series, const std::filesystem::path& file);
   void tell_restored();
@@ -98,6 +101,7 @@ private:
   std::optional<Series> moonlets_; // only where the scene has some
   std::optional<ContactLog> contact_log_;
   std::optional<GravityMeter> gravity_meter_; // only where the series has it
+  std::int64_t sound_step_ = -1;              // whose state was sound
   ForceChecks force_checks_;
   OutputCosts costs_;
 };

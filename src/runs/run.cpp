@@ -1,6 +1,8 @@
 #include <keeler/runs/run.hpp>
 
+#include "broken_state.hpp"
 #include "recorder.hpp"
+#include "step_check.hpp"
 #include "summary.hpp"
 
 #include <keeler/core/error.hpp>
@@ -12,7 +14,6 @@
 #include <keeler/io/checkpoint_folder.hpp>
 #include <keeler/runs/folder_lock.hpp>
 #include <keeler/runs/state_hash.hpp>
-#include <keeler/runs/transport.hpp>
 #include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
@@ -61,6 +62,8 @@ public:
         watch_(watch), first_step_(simulation.state().step), last_checkpoint_(last_checkpoint),
         first_collisions_(simulation.state().collisions.fast + simulation.state().collisions.slow) {
     requests_.patience_s = patience();
+    if (options.check)
+      check_.emplace(scene, simulation);
   }
 
   RunResult run() {
@@ -90,7 +93,11 @@ public:
 private:
   void advance() {
     const Interruptible step(requests_.give_up);
+    if (check_)
+      check_->begin();
     simulation_.advance();
+    if (check_)
+      check_->end();
   }
 
   bool due(std::int64_t every) const { return every > 0 && simulation_.state().step % every == 0; }
@@ -184,6 +191,7 @@ private:
   Simulation& simulation_;
   Recorder& recorder_;
   const Stopwatch& watch_; // since the command began, as a queue counts
+  std::optional<StepCheck> check_;
   std::int64_t first_step_, last_checkpoint_;
   std::uint64_t first_collisions_;
   std::int64_t paced_step_ = first_step_;
@@ -211,20 +219,6 @@ struct Start {
                   last_checkpoint, resume_command(options)));
 }
 
-// None: the series has too few rows, or somebody has damaged it. That must not keep a run from ending well.
-std::optional<Transport> transport_in(const RunFolder& folder, const Patch& patch, const Scene& scene,
-                                      const RunOptions& options) {
-  try {
-    const SeriesTable series = read_series(folder.series());
-    if (enough_rows(series))
-      return transport(series, RingScale::of(patch, !scene.external_forces.empty()), {});
-  } catch (const Error& error) {
-    if (options.notice)
-      options.notice(fmt::format("no balance of energy: {}", error.what()));
-  }
-  return std::nullopt;
-}
-
 RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& requests, const RunFolder& folder,
                    Simulation& simulation, Recorder& recorder, const Start& start) {
   const std::int64_t first_step = simulation.state().control.steps;
@@ -236,6 +230,8 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
     result = runner.run();
   } catch (const Interrupted&) {
     fail_given_up(options, runner.last_checkpoint(), recorder);
+  } catch (const InvariantError& error) {
+    fail_broken(error, simulation, scene, folder, recorder);
   } catch (const IoError&) {
     recorder.require_folder(); // a folder that was moved away in the middle of a write is the better reason
     throw;
@@ -247,8 +243,9 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
                      .start_s = start.made_s,
                      .output = recorder.costs(),
                      .force_checks = recorder.force_checks()};
-  const nlohmann::ordered_json summary = summarise(
-      simulation, scene, transport_in(folder, simulation.patch(), scene, options), result, cost, recorder.provenance());
+  const nlohmann::ordered_json summary =
+      summarise(simulation, scene, transport_of_run(folder.series(), simulation.patch(), scene, options.notice), result,
+                cost, recorder.provenance());
   recorder.summary(summary);
   recorder.log(result.finished ? "finished" : "stopped", {{"step", result.step}, {"state_hash", result.state_hash}});
   return result;

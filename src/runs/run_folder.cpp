@@ -19,19 +19,18 @@ bool is_numbered(std::string_view name, std::string_view prefix, std::string_vie
   return name.find_first_not_of("0123456789") == name.npos;
 }
 
-// Files that a run writes, also those of an interrupted write.
-bool is_own(std::string_view name) {
+} // namespace
+
+bool RunFolder::is_own(std::string_view name) {
   if (name.ends_with(".tmp"))
     name.remove_suffix(4);
   for (const std::string_view own :
        {"scene.toml", "series.csv", "moonlets.csv", "impact_speeds.csv", "summary.json", "log.jsonl"})
     if (name == own)
       return true;
-  return is_numbered(name, "snap_", ".hdf") || is_numbered(name, "checkpoint_", ".h5") ||
-         is_numbered(name, "collisions_", ".h5");
+  return is_numbered(name, "snap_", ".hdf") || is_numbered(name, "broken_", ".hdf") ||
+         is_numbered(name, "checkpoint_", ".h5") || is_numbered(name, "collisions_", ".h5");
 }
-
-} // namespace
 
 fs::path RunFolder::snapshot(std::int64_t number) const {
   return path_ / fmt::format("snap_{:06}.hdf", number);
@@ -39,6 +38,10 @@ fs::path RunFolder::snapshot(std::int64_t number) const {
 
 fs::path RunFolder::contacts(std::int64_t number) const {
   return path_ / fmt::format("collisions_{:06}.h5", number);
+}
+
+fs::path RunFolder::broken(std::int64_t step) const {
+  return path_ / fmt::format("broken_{:06}.hdf", step);
 }
 
 std::string RunFolder::runs_inside() const {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 
 namespace keeler {
 
@@ -18,7 +19,11 @@ public:
   std::filesystem::path impact_speeds() const { return path_ / "impact_speeds.csv"; }
   std::filesystem::path snapshot(std::int64_t number) const;
   std::filesystem::path contacts(std::int64_t number) const;
+  std::filesystem::path broken(std::int64_t step) const;
   const std::filesystem::path& path() const { return path_; }
+
+  /// Whether a run gives a file such a name, an interrupted write included.
+  static bool is_own(std::string_view name);
 
   /// For messages, where nothing of a run is in the folder: "; its runs are in 'sweep/runs'" of a sweep or a study, or
   /// nothing.

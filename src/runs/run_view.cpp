@@ -38,7 +38,7 @@ void take_event(RunView& view, const nlohmann::json& line) {
     view.first_orbits = line.value("orbits", 0.0);
     view.began_s = seconds_of(line);
     view.particles = line.value("particles", view.particles);
-  } else if (event == "finished" || event == "stopped" || event == "given up") {
+  } else if (event == "finished" || event == "stopped" || event == "broken" || event == "given up") {
     view.unended = false;
     const std::optional<double> now = seconds_of(line);
     if (view.ended_s && view.began_s && now)
@@ -79,7 +79,8 @@ double RunView::share() const {
 std::string RunView::state() const {
   if (running)
     return "running";
-  return last_event == "finished" || last_event == "stopped" ? last_event : "not running";
+  const bool told = last_event == "finished" || last_event == "stopped" || last_event == "broken";
+  return told ? last_event : "not running";
 }
 
 std::optional<double> RunView::wall_s(double now_s) const {

@@ -1,9 +1,12 @@
 #include "summary.hpp"
 
 #include <keeler/cells/overlap.hpp>
+#include <keeler/core/error.hpp>
 #include <keeler/core/memory.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/files/files.hpp>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -58,6 +61,19 @@ nlohmann::ordered_json energy_balance(const std::optional<Transport>& t) {
 }
 
 } // namespace
+
+std::optional<Transport> transport_of_run(const std::filesystem::path& series, const Patch& patch, const Scene& scene,
+                                          const std::function<void(const std::string&)>& notice) {
+  try {
+    const SeriesTable table = read_series(series);
+    if (enough_rows(table)) // too few say nothing
+      return transport(table, RingScale::of(patch, !scene.external_forces.empty()), {});
+  } catch (const Error& error) {
+    if (notice)
+      notice(fmt::format("no balance of energy: {}", error.what()));
+  }
+  return std::nullopt;
+}
 
 bool says_finished(const std::filesystem::path& summary) {
   std::error_code unknown;

@@ -20,6 +20,10 @@ struct RunCost {
   ForceChecks force_checks;
 };
 
+/// By the series of the run. None, with a notice where it is damaged: that must not keep a run from ending well.
+std::optional<Transport> transport_of_run(const std::filesystem::path& series, const Patch& patch, const Scene& scene,
+                                          const std::function<void(const std::string&)>& notice);
+
 /// Counts and energies are those of the whole run, times those of this stretch.
 nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scene,
                                  const std::optional<Transport>& transport, const RunResult& result,

@@ -1,7 +1,11 @@
 #include <keeler/scene/estimate.hpp>
 
+#include <keeler/core/words.hpp>
 #include <keeler/gravity/fft.hpp>
+#include <keeler/gravity/near_image_count.hpp>
 #include <keeler/scene/derived.hpp>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +26,7 @@ constexpr double tree = 273.0, tree_opened = 44.5; // a particle and kick: the l
 constexpr double mesh = 100.0, mesh_height = 75.0; // a particle and kick: the latter for each spacing of the layer's H
 constexpr double mesh_cut = 52.0;                  // a particle and kick, for each spacing that the cut spans
 constexpr double radial_waves = 70.0;              // a particle and kick
+constexpr double tree_image = 0.1;                 // the share of the tree's time that nine images take
 constexpr double direct_pair = 0.25, far_images = 40.0; // a pair and image; a particle and kick
 constexpr double row = 12.0, row_itself = 2e4;          // a particle and row; a row
 constexpr double stress = 350.0;                        // a particle and measurement of gravity's energy
@@ -97,17 +102,32 @@ double mesh_ns(const GravitySettings& gravity, double height) {
   return cost::mesh + cost::mesh_height * height / gravity.mesh_spacing;
 }
 
+// Particles stand up to three times the layer's height from the plane; a box that is narrower than that has more rings.
+double near_images(const Scene& scene, ImageSettings images) {
+  constexpr double highest = 3.0, most_rings = 6.0;
+  const ParticleSettings& particles = scene.particles;
+  const double height = highest * layer_height(scene.optical_depth(), crowd_of(particles),
+                                               particles.velocity_dispersion, scene.planet.frequencies.nu);
+  const double halves = std::ceil(2.0 * height / std::min(scene.size_x, scene.size_y));
+  if (images.far)
+    images.rings = std::max({1, images.rings, static_cast<int>(std::min(halves, most_rings))});
+  ShearingBox box;
+  box.size_x = scene.size_x;
+  box.size_y = scene.size_y;
+  return static_cast<double>(near_image_count(box, images));
+}
+
 // Of a particle and kick.
 double gravity_ns(const Scene& scene) {
   const SizeLaw& sizes = scene.particles.sizes;
   const double count = static_cast<double>(scene.particles.count);
   const GravitySettings gravity = chosen_for(scene.particles.count, *scene.gravity);
-  const double side = 2.0 * gravity.images.rings + 1.0, height = relative_height(scene);
+  const double height = relative_height(scene), images = near_images(scene, gravity.images);
   switch (gravity.solver) {
   case GravitySettings::Solver::direct:
-    return cost::kick + cost::direct_pair * count * side * side + (gravity.images.far ? cost::far_images : 0.0);
+    return cost::kick + cost::direct_pair * count * images + (gravity.images.far ? cost::far_images : 0.0);
   case GravitySettings::Solver::tree:
-    return cost::kick + tree_ns(gravity, height);
+    return cost::kick + tree_ns(gravity, height) * (1.0 + cost::tree_image * (images / 9.0 - 1.0));
   case GravitySettings::Solver::mesh:
     return cost::kick + mesh_ns(gravity, height);
   case GravitySettings::Solver::axisymmetric:
@@ -127,7 +147,9 @@ double output_ns(const Scene& scene, double count) {
   const std::int64_t steps = scene.time.end_step;
   const double rows = files(scene.output.series_every, steps, 0.0);
   const bool pairs = scene.gravity && scene.gravity->by_pairs();
-  const double checks = pairs ? cost::force_check : 0.0;
+  // In a long box the fewest particles are checked, a 25th, each with thousands of images instead of 25.
+  const double images = pairs ? near_images(scene, {.rings = 2}) : 0.0;
+  const double checks = pairs ? cost::force_check * std::max(1.0, images / 625.0) : 0.0;
   const double stresses = pairs ? cost::stress * files(scene.output.stress_every, steps, 0.0) : 0.0;
   return rows * (cost::row * count + cost::row_itself) + count * stresses +
          count * (cost::snapshot * files(scene.output.snapshot_every, steps, 1.0) +
@@ -173,12 +195,13 @@ double wake_crowding(double optical_depth, double hill_parameter) {
 
 // Dilute layers collide 19 τ times an orbit. Particles that lose their speed stay together and collide again, the more
 // often the less they keep and the more crowded they are. Where sizes differ, small ones move too fast for slow
-// contacts.
+// contacts. Spheres that keep nothing hop at the least rebound (v_cut/1000), thousands of times an orbit.
 ContactRates contact_rates(double optical_depth, double restitution, double crowding, double spread) {
   const double dilute = 19.0 * optical_depth;
   const double fast = dilute * (1.0 + 4.5 * std::exp(-7.2 * restitution) * crowding);
   const double slow =
-      dilute * 34.0 * std::exp(-13.0 * restitution) * (1.0 / (spread * spread * spread) + crowding / 7.0);
+      dilute * (34.0 * std::exp(-13.0 * restitution) * (1.0 / (spread * spread * spread) + crowding / 7.0) +
+                0.12 / (restitution + 7e-5) * std::exp(-30.0 * restitution));
   return {saturating(fast, most_fast), saturating(slow, most_slow)};
 }
 
@@ -203,6 +226,32 @@ const char* RunEstimate::dominating() const {
   const auto all = parts();
   return std::max_element(all.begin(), all.end(), [](const Part& a, const Part& b) { return a.seconds < b.seconds; })
       ->name;
+}
+
+std::vector<std::string> dear_choices(const Scene& scene) {
+  constexpr double much = 5.0;
+  const RunEstimate here = estimate_run(scene);
+  std::vector<std::string> lines;
+  const bool tree =
+      scene.gravity && chosen_for(scene.particles.count, *scene.gravity).solver == GravitySettings::Solver::tree;
+  if (tree) {
+    Scene square = scene;
+    square.size_x = square.size_y = std::sqrt(scene.size_x * scene.size_y);
+    const auto [shorter, longer] = std::minmax(scene.size_x, scene.size_y);
+    if (const double times = here.gravity / estimate_run(square).gravity; times >= much)
+      lines.push_back(
+          fmt::format("a box of 1 : {} makes self-gravity about {} times as dear as a square one: a kick sums "
+                      "{:g} images of it one by one; gravity.solver = \"fft\" does not",
+                      figures(longer / shorter, 3), figures(times, 1), near_images(scene, scene.gravity->images)));
+  }
+  Scene bouncing = scene;
+  bouncing.collisions.restitution = constant_restitution(0.5);
+  if (const double times = here.drift / estimate_run(bouncing).drift; times >= much)
+    lines.push_back(
+        fmt::format("a restitution of {} makes the drift about {} times as dear as one of 0.5: particles that lose "
+                    "their speed stay together and meet again and again",
+                    figures(typical_restitution(scene), 2), figures(times, 1)));
+  return lines;
 }
 
 RunEstimate estimate_run(const Scene& scene, double pair_ns) {

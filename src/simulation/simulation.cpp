@@ -104,7 +104,9 @@ void Simulation::advance() {
   carry_on_resting();
   {
     const Stopwatch watch(split_.drift);
+    drifting_ = true;
     drift_.collide(state_.particles, state_.box, state_.epoch_offset(), state_.collisions, undisturbed_);
+    drifting_ = false;
     note_slow_pairs();
     move_on();
     undisturbed_ = true;
@@ -324,16 +326,28 @@ void Simulation::wrap_changed(const Particles& before) {
   }
 }
 
-Patch Simulation::patch_of(const Particles& particles) const {
-  Patch patch =
-      make_patch(particles, state_.box, state_.boundary_offset(), scene_.planet.frequencies, -0.5 * state_.step_length);
+// At `after` the epoch, with the box's shear offset of then.
+Patch Simulation::patch_of(const Particles& particles, double offset, double after) const {
+  Patch patch = make_patch(particles, state_.box, offset, scene_.planet.frequencies, after);
   patch.orbital_frequency = scene_.planet.orbital_frequency;
-  patch.time_orbits = orbits();
+  patch.time_orbits = orbits() + (after + 0.5 * state_.step_length) / two_pi;
   return patch;
+}
+
+Patch Simulation::patch_of(const Particles& particles) const {
+  return patch_of(particles, state_.boundary_offset(), -0.5 * state_.step_length);
 }
 
 Patch Simulation::patch() const {
   return patch_of(state_.particles);
+}
+
+Patch Simulation::patch_at_break() const {
+  if (!drifting_)
+    return patch();
+  const double after = drift_.reached(), size = state_.box.size_y;
+  const double offset = state_.epoch_offset() + state_.box.shear * state_.box.size_x * after;
+  return patch_of(state_.particles, offset - std::floor(offset / size) * size, after);
 }
 
 ParticleMeans Simulation::means() const {

@@ -19,7 +19,7 @@ for scene in "$source_dir"/examples/*/scene.toml; do
   prints "$scene" "steps"
   accepts "$scene as JSON" check "$scene" --json
   for key in particle_count optical_depth surface_density lambda_cr_m toomre_q hill_parameter midplane_filling box_m \
-    steps step_orbits kick_interval_orbits memory_mb estimated_s estimate start_s drift_s gravity_s output_s notices doubts; do
+    steps step_orbits kick_interval_orbits memory_mb estimated_s estimate start_s drift_s gravity_s output_s notices doubts costs; do
     prints "$scene as JSON" "\"$key\":"
   done
 done
@@ -33,6 +33,12 @@ accepts "a box of 4 lambda_cr" check "$good"
 prints "a box of 4 lambda_cr" "note: the box spans 4 lambda_cr: in wakes, 4 x 4 show 12 % less velocity dispersion"
 accepts "a quality" check "$good" --set quality=strict
 prints "a quality" "gravity            tree, opening angle 0.6; a kick each 0.002 orbits"
+accepts "a long box" check "$good" --set 'box.size=[10,10000]' --set gravity.solver=tree
+prints "a long box" 'note: a box of 1 : 1000 makes self-gravity about'
+accepts "a long box, by fft" check "$good" --set 'box.size=[10,10000]' --set gravity.solver=fft
+grep -q "as dear as" "$work/out" && fail "a long box, by fft: $(cat "$work/out")"
+accepts "no rebound" check "$source_dir/examples/equilibrium/scene.toml" --set 'collisions.restitution={law="constant",value=0}' --json
+prints "no rebound" '"a restitution of 0 makes the drift about'
 accepts "34 particles" check --set particles.count=34 --set 'box.size=[100, 100]' "$good" --json
 prints "34 particles" "34 particles are few: one measurement of their velocity dispersion scatters by 12 %"
 accepts "defaults" check --defaults

@@ -32,6 +32,9 @@ has particle_count 400
 runs 0 run "$work/scene.toml" -o "$work/text"
 prints "run" "$(state_hash "$work/run")"
 prints "run" "error of gravity"
+runs 0 run "$work/scene.toml" -o "$work/mean-field" --set gravity.solver=mesh --set particles.count=30 --set time.end=0.02
+prints "a mean field" "left out of gravity                 9"
+grep -q "error of gravity" "$work/out" && fail "a mean field: an error is said: $(cat "$work/out")"
 for name in scene.toml series.csv summary.json log.jsonl snap_000000.hdf snap_000001.hdf snap_000002.hdf \
   checkpoint_000001.h5 checkpoint_000002.h5; do
   [ -s "$work/run/$name" ] || fail "no $name in the folder of a run"

@@ -20,6 +20,12 @@ runs 0 run "$work/scene.toml" -o "$work/whole" --threads 1
 runs 0 run "$work/scene.toml" -o "$work/two" --threads 2
 same "two threads" "$work/two"
 
+for set in portable avx2 avx512; do
+  [ $set = portable ] || grep -qw "${set/512/512f}" /proc/cpuinfo || continue
+  KEELER_SIMD=$set runs 0 run "$work/scene.toml" -o "$work/$set"
+  same "instructions: $set" "$work/$set"
+done
+
 runs 0 run "$work/scene.toml" -o "$work/half" --set time.end=0.5
 runs 0 resume "$work/half" --until 1
 same "half and half" "$work/half"

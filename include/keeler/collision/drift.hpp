@@ -19,6 +19,7 @@ namespace keeler {
 
 struct Contact;
 class DriftEngine;
+struct NeighbourAudit;
 
 /// What collisions did, summed in the order of the events. Energies in kg m² rad⁻².
 struct CollisionTally {
@@ -116,6 +117,13 @@ public:
 
   /// From now on; null: nobody looks on.
   void observe(DriftObserver* observer);
+
+  /// From now on neighbours are held against the plain search; null: no more.
+  void audit(NeighbourAudit* audit);
+
+  /// When collide() has thrown: the time, from the epoch on, of the last contact that it had carried out (rad). Until
+  /// then all particles have gone the way of their present elements.
+  double reached() const;
 
 private:
   std::unique_ptr<DriftEngine> engine_;

@@ -31,4 +31,7 @@ struct FileDescription {
 /// Describes a snapshot, a checkpoint or a file of contacts. Throws IoError for damage and for any other kind of file.
 FileDescription describe_file(const std::filesystem::path& file);
 
+/// Whether a seal vouches for the bytes of a file. Throws IoError where it does not match, or the file cannot be read.
+bool is_sealed(const std::filesystem::path& file);
+
 } // namespace keeler

@@ -41,6 +41,7 @@ struct RunProgress {
 struct RunOptions {
   std::filesystem::path folder;
   bool force = false;                 ///< replace the run that the folder holds
+  bool check = false;                 ///< all invariants at each step
   std::optional<double> until_orbits; ///< another end than the scene's
   std::optional<double> wall_time_s;  ///< stop with a checkpoint before this much wall time has passed
   std::vector<std::string> arguments; ///< the command line, for provenance
@@ -56,9 +57,10 @@ struct RunResult {
   std::string resume_command; ///< goes on from here: for messages
 };
 
-/// Starts a run. Throws UsageError when the folder holds a run already and force is not given, IoError, InvariantError;
-/// DiskFullError says how to go on. Error (stopped, or run_time when there is no checkpoint) when it was asked to give
-/// up a step, or to stop before the start was made: then nothing is written.
+/// Starts a run. Throws UsageError when the folder holds a run already and force is not given, IoError; InvariantError,
+/// after the first step with the state in broken_NNNNNN.hdf, which it names; DiskFullError says how to go on. Error
+/// (stopped, or run_time when there is no checkpoint) when it was asked to give up a step, or to stop before the start
+/// was made: then nothing is written.
 RunResult start_run(const Scene& scene, const RunOptions& options, RunRequests& requests);
 
 /// Continues the run of a folder from its newest whole checkpoint. A run that has reached its end is left as it is,

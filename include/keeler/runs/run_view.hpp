@@ -24,7 +24,8 @@ struct RunView {
   std::string snapshot, checkpoint, picture; ///< names of the newest ones, empty where there are none
 
   double share() const;      ///< of the whole run, 0 … 1
-  std::string state() const; ///< "running", "finished", "stopped", or "not running" where it was killed or failed
+  std::string state() const; ///< "running", "finished", "stopped", "broken" (an invariant), or "not running" where it
+                             ///< was killed or failed
   /// Wall time left (s) at the speed since it began or resumed; none where nobody can know.
   std::optional<double> remaining_s(double now_s) const;
   /// Wall time of all commands on the run; none where nobody can know.

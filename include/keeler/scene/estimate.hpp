@@ -5,6 +5,8 @@
 #include <keeler/scene/scene.hpp>
 
 #include <array>
+#include <string>
+#include <vector>
 
 namespace keeler {
 
@@ -54,5 +56,9 @@ inline constexpr double reference_pair_ns = 6.55;
 
 /// For a scene whose particles are known (no start file), on a machine whose pair yardstick gives `pair_ns`.
 RunEstimate estimate_run(const Scene& scene, double pair_ns = reference_pair_ns);
+
+/// What makes a scene several times as dear as its like, which differs in that alone: a line each, with what to do;
+/// none where nothing does. For a scene whose particles are known.
+std::vector<std::string> dear_choices(const Scene& scene);
 
 } // namespace keeler

@@ -58,6 +58,10 @@ public:
   /// A Cartesian copy of the present state.
   Patch patch() const;
 
+  /// The same when advance() has thrown: of the last boundary, or, in the middle of a drift, of the time of the last
+  /// contact that was carried out.
+  Patch patch_at_break() const;
+
   /// The particles at this boundary between steps, as forces see them; not to be kept beyond the next step.
   Boundary boundary() const;
 
@@ -74,11 +78,17 @@ public:
   /// What contacts at rest took at the last kick.
   const RestingCosts& resting_costs() const { return resting_.costs(); }
 
+  /// Ticks from kick to kick of state().forces[f], where the present step begins.
+  std::int64_t ticks_between_kicks(std::size_t f) const {
+    return state_.control.kick > 0 ? state_.control.kick : forces_[f]->kick_every();
+  }
+
   /// To watch collisions, or to measure finders.
   DriftPhase& drift() { return drift_; }
 
 private:
   Patch patch_of(const Particles& particles) const;
+  Patch patch_of(const Particles& particles, double offset, double after) const;
   void wrap_changed(const Particles& before);
   void accelerate(std::size_t f);
   void half_kick(std::size_t f);
@@ -95,14 +105,12 @@ private:
   void carry_resting(double before);
   void carry_on_resting();
   template<class Carry> void with_kicks(double before, const Carry& carry);
-  std::int64_t ticks_between_kicks(std::size_t f) const {
-    return state_.control.kick > 0 ? state_.control.kick : forces_[f]->kick_every();
-  }
   bool kick_due(std::size_t f) const { return state_.step % ticks_between_kicks(f) == 0; }
 
   Scene scene_;
   SimulationState state_;
   DriftPhase drift_;
+  bool drifting_ = false;                      // until collisions are carried out
   bool undisturbed_ = false;                   // the particles, but for moving on, since the last drift
   std::vector<std::unique_ptr<Force>> forces_; // in the order of state_.forces
   RestingContacts resting_;

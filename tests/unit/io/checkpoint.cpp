@@ -72,7 +72,9 @@ void write_by_hand(const std::filesystem::path& file, std::int64_t version, cons
   hdf5::write_attribute(image, "format_version", version);
   hdf5::write_attribute(image, "checksum", checksum);
   hdf5::write_text_dataset(image, "scene", "");
-  hdf5::create_group(image, "provenance");
+  const hdf5::Handle provenance = hdf5::create_group(image, "provenance");
+  hdf5::write_attribute(provenance, "version", std::string_view("0.7"));
+  hdf5::write_attribute(provenance, "commit", std::string_view("abc"));
   hdf5::create_group(image, "fields");
   write_sealed(file, image);
 }
@@ -182,10 +184,13 @@ TEST_CASE("another version and other contents are refused with the reason") {
   write_by_hand(file, 4, std::string(32, '0'));
   CHECK_THROWS_WITH_AS(read_checkpoint(file, none), doctest::Contains("do not match their checksum"), IoError);
   write_by_hand(file, 5, right);
-  CHECK_THROWS_WITH_AS(read_checkpoint(file, none), doctest::Contains("use a newer Keeler"), IoError);
+  CHECK_THROWS_WITH_AS(read_checkpoint(file, none),
+                       doctest::Contains("use the newer Keeler 0.7 (commit abc), which wrote it"), IoError);
   write_by_hand(file, 1, right);
-  CHECK_THROWS_WITH_AS(read_checkpoint(file, none), doctest::Contains("finish its run with the Keeler that began it"),
-                       IoError);
+  CHECK_THROWS_WITH_AS(
+      read_checkpoint(file, none),
+      doctest::Contains("use the older Keeler 0.7 (commit abc), which wrote it, or begin a run from its newest"),
+      IoError);
   write_sealed(file, hdf5::create_image());
   CHECK_THROWS_WITH_AS(read_checkpoint(file, none), doctest::Contains("not a checkpoint"), IoError);
 }

@@ -1,0 +1,261 @@
+#include "invariants.hpp"
+
+#include <keeler/cells/overlap.hpp>
+#include <keeler/core/random.hpp>
+#include <keeler/core/words.hpp>
+#include <keeler/forces/self_gravity.hpp>
+#include <keeler/gravity/direct.hpp>
+#include <keeler/particles/order.hpp>
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace keeler {
+namespace {
+
+bool is_finite(const Elements& el) {
+  return std::isfinite(el.guiding_x) && std::isfinite(el.guiding_y) && std::isfinite(el.e_cos) &&
+         std::isfinite(el.e_sin) && std::isfinite(el.i_sin) && std::isfinite(el.i_cos);
+}
+
+std::array<double, 6> components(const Elements& el) {
+  return {el.guiding_x, el.guiding_y, el.e_cos, el.e_sin, el.i_sin, el.i_cos};
+}
+
+// What the step that ends with `now` has done to a particle beyond kicks, the way along its orbit and wraps: at the
+// first epoch after it.
+class Undone {
+public:
+  Undone(const BeforeStep& before, const SimulationState& now, const Frequencies& f)
+      : before_(before), now_(now), frequencies_(f), boundary_(f, -0.5 * before.state.step_length),
+        step_(f, before.state.step_length), back_(f, -0.5 * (now.step_length - before.state.step_length)),
+        offset_(before.state.box.offset(2 * now.step + before.state.control.step, 0.5 * before.state.tick())) {}
+
+  Elements operator()(std::size_t place_before, std::size_t place_now) const {
+    Elements expected = before_.state.particles.bodies[place_before].elements;
+    half_kicks(before_.state, place_before, 1.0, expected);
+    step_(expected);
+    Elements found = now_.particles.bodies[place_now].elements;
+    if (now_.step_length != before_.state.step_length)
+      back_(found);
+    half_kicks(now_, place_now, -1.0, found);
+    const ShearingBox& box = before_.state.box;
+    Elements change = found - expected;
+    change = box.image_of(change, {-nearest(change.guiding_x / box.size_x), 0}, offset_);
+    return box.image_of(change, {0, -nearest(change.guiding_y / box.size_y)}, offset_);
+  }
+
+private:
+  static std::int32_t nearest(double boxes) {
+    return std::fabs(boxes) < 1e9 ? static_cast<std::int32_t>(std::lrint(boxes)) : 0;
+  }
+
+  // Of all forces whose kicks stand at this boundary.
+  void half_kicks(const SimulationState& state, std::size_t place, double sign, Elements& el) const {
+    for (std::size_t f = 0; f < state.forces.size(); ++f) {
+      const std::int64_t ticks = before_.kick_ticks[f];
+      if (state.step % ticks == 0)
+        kick(el, sign * 0.5 * before_.state.tick() * static_cast<double>(ticks) * state.forces[f].accelerations[place],
+             frequencies_, boundary_);
+    }
+  }
+
+  const BeforeStep& before_;
+  const SimulationState& now_;
+  Frequencies frequencies_;
+  Rotation boundary_;
+  Rebase step_, back_;
+  double offset_;
+};
+
+} // namespace
+
+double energy_scale(const SimulationState& state, const ParticleMeans& means, const Frequencies& f) {
+  const double part = f.shear() / (f.kappa * f.kappa);
+  const CollisionTally& tally = state.collisions;
+  double scale = means.epicyclic_energy + std::fabs(means.spin.energy) + state.energy.epicyclic +
+                 std::fabs(state.energy.spin) + std::fabs(tally.energy_lost) +
+                 f.shear() * std::fabs(tally.momentum_flux) + part * std::fabs(tally.azimuthal_gain) +
+                 std::fabs(state.resting.work);
+  for (const ForceState& force : state.forces)
+    scale += std::fabs(force.work) + part * std::fabs(force.azimuthal_gain);
+  return scale;
+}
+
+std::string fault_of_books(const SimulationState& state, const ParticleMeans& means, const Frequencies& f) {
+  const double residual = state.balance(means, f).residual;
+  if (!std::isfinite(residual)) {
+    const std::string numbers = fault_of_numbers(state);
+    return numbers.empty() ? "the energy budget is not finite" : numbers;
+  }
+  const double scale = energy_scale(state, means, f);
+  if (std::fabs(residual) <= allowed_residual * scale)
+    return {};
+  return fmt::format("the energy budget leaves {} of its sums open since the run began ({:g} is allowed)",
+                     figures(std::fabs(residual) / scale, 2), allowed_residual);
+}
+
+std::string fault_of_numbers(const SimulationState& state) {
+  const Particles& particles = state.particles;
+  for (std::size_t k = 0; k < particles.size(); ++k) {
+    if (!is_finite(particles.bodies[k].elements))
+      return fmt::format("particle {} has elements that are not finite", particles.ids[k]);
+    if (particles.rough && !particles.spins[k].allFinite())
+      return fmt::format("particle {} has a spin that is not finite", particles.ids[k]);
+    for (const ForceState& force : state.forces)
+      if (!force.accelerations.empty() && !force.accelerations[k].allFinite())
+        return fmt::format("particle {} has an acceleration by {} that is not finite", particles.ids[k], force.name);
+  }
+  return {};
+}
+
+std::string fault_of_overlap(const Patch& patch) {
+  const Overlap overlap = largest_overlap(patch);
+  if (overlap.depth <= allowed_overlap)
+    return {};
+  return fmt::format("particles {} and {} overlap by {} of their radius sum ({:g} is allowed)", overlap.id_i,
+                     overlap.id_j, figures(overlap.depth, 2), allowed_overlap);
+}
+
+std::string fault_of_neighbours(const NeighbourAudit& audit) {
+  if (!audit.missed)
+    return {};
+  const MissedNeighbour& missed = *audit.missed;
+  return fmt::format("particle {} may touch particle {} (image {}, {}), {} radius sums from it in the middle of the "
+                     "step, and {}",
+                     missed.id, missed.other_id, missed.image.nx, missed.image.ny, figures(missed.distance, 3),
+                     missed.after_hit ? "was not searched against it after a collision"
+                                      : "is not among its neighbours when the step begins");
+}
+
+BeforeStep before_step(const Simulation& simulation) {
+  BeforeStep before{simulation.state(), {}, simulation.balance().residual};
+  for (std::size_t f = 0; f < before.state.forces.size(); ++f)
+    before.kick_ticks.push_back(simulation.ticks_between_kicks(f));
+  return before;
+}
+
+std::string fault_of_particles(const SimulationState& before, const SimulationState& now) {
+  if (before.particles.size() != now.particles.size())
+    return fmt::format("there are {} particles, and were {}", now.particles.size(), before.particles.size());
+  const std::vector<std::uint32_t> order = order_by_id(now.particles.ids), then = order_by_id(before.particles.ids);
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const std::uint64_t id = before.particles.ids[then[k]];
+    if (now.particles.ids[order[k]] != id)
+      return fmt::format("particle {} is gone", id);
+    const Body &body = now.particles.bodies[order[k]], &was = before.particles.bodies[then[k]];
+    if (body.radius != was.radius || body.mass != was.mass)
+      return fmt::format("particle {} has another radius or mass than before", id);
+  }
+  return {};
+}
+
+std::string fault_of_energy(const BeforeStep& before, const SimulationState& now, const ParticleMeans& means,
+                            const Frequencies& f) {
+  const double change = std::fabs(now.balance(means, f).residual - before.residual),
+               scale = energy_scale(now, means, f);
+  if (change <= allowed_residual_of_step * scale)
+    return {};
+  return fmt::format("the step leaves {} of the energy budget's sums open ({:g} is allowed)",
+                     figures(change / scale, 2), allowed_residual_of_step);
+}
+
+std::string fault_of_sums(const BeforeStep& before, const SimulationState& now, const Frequencies& f) {
+  constexpr std::array<const char*, 6> names = {"m X", "m Y", "m e cos", "m e sin", "m i sin", "m i cos"};
+  constexpr double share = 1e-10; // of what collisions did to single particles
+  constexpr double epsilon = std::numeric_limits<double>::epsilon(), roundings = 64.0;
+  const Undone undone(before, now, f);
+  const ShearingBox& box = now.box;
+  const std::vector<std::uint32_t> order = order_by_id(now.particles.ids),
+                                   then = order_by_id(before.state.particles.ids);
+  std::array<double, 6> sums{}, sizes{}, rounding{};
+  bool thrown_far = false; // so that the box does not tell a wrap from what collisions did
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const Body& body = now.particles.bodies[order[k]];
+    const std::array<double, 6> change = components(undone(then[k], order[k])), values = components(body.elements);
+    const double thrown = std::hypot(change[2], change[3]); // X goes no farther, and Y as its velocity and X say
+    thrown_far |= thrown > 0.25 * box.size_x ||
+                  (2.0 / f.kappa + f.shear() * before.state.step_length) * thrown > 0.25 * box.size_y;
+    for (std::size_t c = 0; c < change.size(); ++c) {
+      const double place = c == 0 ? box.size_x : c == 1 ? box.size_x + box.size_y : 0.0;
+      sums[c] += body.mass * change[c];
+      sizes[c] += body.mass * std::fabs(change[c]);
+      rounding[c] += roundings * epsilon * body.mass * (std::fabs(values[c]) + place);
+    }
+  }
+  const double vectors = rounding[2] + rounding[3] + rounding[4] + rounding[5]; // a turn mixes them
+  for (std::size_t c = thrown_far ? 2 : 0; c < sums.size(); ++c) {
+    const double allowed = share * sizes[c] + (c < 2 ? rounding[c] + vectors : vectors);
+    if (!(std::fabs(sums[c]) <= allowed))
+      return fmt::format("collisions changed the sum of {} by {} kg m ({} is allowed)", names[c], figures(sums[c], 2),
+                         figures(allowed, 2));
+  }
+  return {};
+}
+
+double force_tolerance(const GravitySettings& settings) {
+  using Solver = GravitySettings::Solver;
+  switch (settings.solver) {
+  case Solver::direct:
+    return 1e-4; // one ring of images and the far ones: docs/theory/gravity.md
+  case Solver::tree: {
+    const double relative = settings.opening_angle / 0.6; // docs/dev/gravity.md
+    return 1e-3 * relative * relative * relative * relative + 1e-4;
+  }
+  case Solver::fft:
+  case Solver::automatic:
+    return settings.force_error;
+  default:
+    return 0.0;
+  }
+}
+
+std::string fault_of_forces(const Scene& scene, const Boundary& boundary, const SimulationState& state) {
+  constexpr std::size_t sampled = 32;
+  const double tolerance = scene.gravity ? force_tolerance(*scene.gravity) : 0.0;
+  const std::size_t count = state.particles.size();
+  if (tolerance == 0.0 || count == 0)
+    return {};
+  std::vector<Vec3> positions;
+  std::vector<double> masses;
+  const GravityProblem problem = gravity_problem(boundary, scene.planet.orbital_frequency, positions, masses);
+  RandomStream random(static_cast<std::uint64_t>(state.step), RandomPurpose::sample, 1);
+  std::vector<std::size_t> sample;
+  for (std::size_t k = 0; k < std::min(sampled, count); ++k)
+    sample.push_back(count <= sampled ? k : static_cast<std::size_t>(random.uniform() * static_cast<double>(count)));
+  ImageSettings images = {.rings = 2};
+  if (const bool pairs = scene.gravity->solver == GravitySettings::Solver::direct ||
+                         scene.gravity->solver == GravitySettings::Solver::tree;
+      pairs && !scene.gravity->images.far)
+    images = scene.gravity->images;
+  const std::vector<Vec3> exact = sampled_accelerations(problem, sample, images, choose_instruction_set());
+  double errors = 0.0, squares = 0.0, worst = 0.0, mass = 0.0;
+  std::size_t worst_at = sample.front();
+  for (std::size_t k = 0; k < sample.size(); ++k) {
+    const double error = (state.forces.front().accelerations[sample[k]] - exact[k]).squaredNorm();
+    errors += error;
+    squares += exact[k].squaredNorm();
+    if (!(error <= worst)) {
+      worst = error;
+      worst_at = sample[k];
+    }
+  }
+  for (const double m : masses)
+    mass += m;
+  // where particles are few and far between, forces nearly cancel: then against that of the sheet
+  const double sheet = problem.newton_g * mass / boundary.box.area();
+  const double size = std::max(std::sqrt(squares / static_cast<double>(sample.size())), sheet);
+  const double error = std::sqrt(errors / static_cast<double>(sample.size())) / size;
+  if (error <= forces_factor * tolerance)
+    return {};
+  return fmt::format(
+      "the forces of {} err by {} of their size, the most on particle {} ({} is allowed: {:g} times what "
+      "the solver is good for)",
+      counted(sample.size(), "particle"), figures(error, 2), state.particles.ids[worst_at],
+      figures(forces_factor * tolerance, 2), forces_factor);
+}
+
+} // namespace keeler

@@ -1,0 +1,261 @@
+#include <keeler/runs/verify.hpp>
+
+#include "run_folder.hpp"
+
+#include <keeler/cells/overlap.hpp>
+#include <keeler/core/error.hpp>
+#include <keeler/files/files.hpp>
+#include <keeler/io/contacts.hpp>
+#include <keeler/io/describe.hpp>
+#include <keeler/io/series.hpp>
+#include <keeler/io/snapshot.hpp>
+#include <keeler/runs/run.hpp>
+#include <keeler/runs/state_hash.hpp>
+#include <keeler/states/possible.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace keeler {
+namespace fs = std::filesystem;
+namespace {
+
+// What a file says that others of its run say too; empty where it does not.
+struct Found {
+  std::string motion;     // Scene::motion
+  std::string state_hash; // of the end of a run
+};
+
+bool near(double a, double b) {
+  constexpr double rounding = 1e-12; // texts of scenes have all digits
+  return std::abs(a - b) <= rounding * std::abs(b);
+}
+
+// The other finders miss contacts, so that particles may stand inside each other.
+bool misses_nothing(const Scene& scene) {
+  return scene.collisions.finder == "certified";
+}
+
+void require_fit(const Patch& patch, const Scene& scene, const std::string& file) {
+  require_possible(patch, file);
+  if (std::adjacent_find(patch.ids.begin(), patch.ids.end()) != patch.ids.end())
+    throw IoError(fmt::format("'{}' has two particles of one id", file));
+  if (!near(patch.orbital_frequency, scene.planet.orbital_frequency) ||
+      !near(patch.frequencies.kappa, scene.planet.frequencies.kappa) ||
+      !near(patch.frequencies.nu, scene.planet.frequencies.nu) ||
+      !near(patch.box.shear, scene.planet.frequencies.shear()))
+    throw IoError(fmt::format("'{}' has other frequencies than the scene in it", file));
+  if (patch.size() < scene.moonlets.size())
+    throw IoError(fmt::format("'{}' has fewer particles than the scene in it has moonlets", file));
+  if (patch.spins.empty() == scene.collisions.friction.has_value())
+    throw IoError(fmt::format("'{}' and the scene in it do not agree whether particles have spins", file));
+  if (misses_nothing(scene))
+    require_apart(patch, "'" + file + "'");
+}
+
+// A checkpoint's elements at the boundary where it was written.
+Patch patch_of(const StoredRun& run) {
+  const SimulationState& state = run.state;
+  Patch patch = make_patch(state.particles, state.box, state.boundary_offset(), run.scene.planet.frequencies,
+                           -0.5 * state.step_length);
+  patch.orbital_frequency = run.scene.planet.orbital_frequency;
+  patch.time_orbits = static_cast<double>(state.step) * run.scene.time.step;
+  return patch;
+}
+
+void require_finite(SimulationState& state, const std::string& file) {
+  const FieldTable table = state.fields();
+  for (const Field& field : table.fields()) {
+    if (field.type != FieldType::float64)
+      continue;
+    const auto* const values = static_cast<const double*>(field.data());
+    const std::size_t count = field.rows() * field.components;
+    if (!std::all_of(values, values + count, [](double value) { return std::isfinite(value); }))
+      throw IoError(fmt::format("the field '{}' of '{}' has a number that is not finite", field.name, file));
+  }
+}
+
+Found check_checkpoint(const std::string& file) {
+  StoredRun run = load_checkpoint(file);
+  require_finite(run.state, file);
+  require_fit(patch_of(run), run.scene, file);
+  return {run.scene.motion, state_hash(run.state, run.scene)};
+}
+
+Found check_snapshot(const std::string& file) {
+  const Snapshot snapshot = read_snapshot(file);
+  const Scene scene = parse_stored_scene(snapshot.meta.scene, file);
+  require_fit(snapshot.patch, scene, file);
+  return {scene.motion, {}};
+}
+
+Found check_contacts(const std::string& file) {
+  const ContactFile contacts = read_contacts(file);
+  std::int64_t last = 0;
+  for (const ContactRow& row : contacts.rows) {
+    const bool finite = std::isfinite(row.time_orbits) && row.place.allFinite() && std::isfinite(row.normal_speed) &&
+                        std::isfinite(row.tangential_speed);
+    if (!finite || row.step < last || row.low_id >= row.high_id)
+      throw IoError(fmt::format("row {} of '{}' is no contact, or not of its place",
+                                contacts.meta.first_row + (&row - contacts.rows.data()), file));
+    last = row.step;
+  }
+  return {parse_stored_scene(contacts.meta.scene, file).motion, {}};
+}
+
+// A row has the steps of the one before at least; of series.csv more.
+Found check_series(const std::string& file) {
+  const SeriesTable table = read_series(file);
+  const std::vector<double>& steps = table.columns.front();
+  const bool one_a_step = fs::path(file).filename() == "series.csv";
+  for (std::size_t k = 1; k < steps.size(); ++k)
+    if (steps[k] < steps[k - 1] || (one_a_step && steps[k] == steps[k - 1]))
+      throw IoError(fmt::format("line {} of '{}' is not of its place", k + 2, file));
+  return {};
+}
+
+Found check_scene(const std::string& file) {
+  return {parse_stored_scene(read_text(file), file).motion, {}};
+}
+
+Found check_summary(const std::string& file) {
+  const auto json = nlohmann::json::parse(read_text(file), nullptr, false);
+  if (!json.is_object() || !json.contains("state_hash") || !json["state_hash"].is_string())
+    throw IoError(fmt::format("'{}' is not the summary of a run", file));
+  return {{}, json["state_hash"].get<std::string>()};
+}
+
+// The last line may be one that the run is writing, or was when it was killed.
+Found check_log(const std::string& file) {
+  const std::string text = read_text(file);
+  std::size_t line = 0;
+  for (std::size_t begin = 0, end; (end = text.find('\n', begin)) != text.npos; begin = end + 1) {
+    ++line;
+    if (!nlohmann::json::parse(text.substr(begin, end - begin), nullptr, false).is_object())
+      throw IoError(fmt::format("line {} of '{}' is not one of a log", line, file));
+  }
+  return {};
+}
+
+struct Kind {
+  const char* name;
+  Found (*check)(const std::string& file);
+};
+
+constexpr Kind checkpoint = {"checkpoint", check_checkpoint}, snapshot = {"snapshot", check_snapshot},
+               contacts = {"contacts", check_contacts}, series = {"series", check_series};
+
+// By the name that a run gives it, and else by what the file says it is.
+Kind kind_of(const fs::path& file) {
+  static const std::map<std::string, Kind> texts = {{"scene.toml", {"scene", check_scene}},
+                                                    {"summary.json", {"summary", check_summary}},
+                                                    {"log.jsonl", {"log", check_log}},
+                                                    {"series.csv", series},
+                                                    {"moonlets.csv", series},
+                                                    {"impact_speeds.csv", series}};
+  const std::string name = file.filename().string();
+  if (const auto text = texts.find(name); text != texts.end())
+    return text->second;
+  if (RunFolder::is_own(name))
+    return name.starts_with("snap") ? snapshot : name.starts_with("checkpoint") ? checkpoint : contacts;
+  switch (describe_file(file).kind) {
+  case FileKind::checkpoint:
+    return checkpoint;
+  case FileKind::snapshot:
+    return snapshot;
+  case FileKind::contacts:
+    break;
+  }
+  return contacts;
+}
+
+struct Verified {
+  VerifiedFile file;
+  Found found;
+};
+
+Verified verify(const fs::path& path) {
+  Verified verified{{path.string(), "file", {}, false}, {}};
+  try {
+    const Kind kind = kind_of(path);
+    verified.file.kind = kind.name;
+    verified.file.sealed = is_sealed(path);
+    verified.found = kind.check(path.string());
+  } catch (const Error& error) {
+    verified.file.damage = error.what();
+  }
+  return verified;
+}
+
+// Files that say something else than the scene and the newest checkpoint of their folder are of another run.
+void compare(std::vector<Verified>& files) {
+  std::string motion, hash;
+  for (const Verified& verified : files) {
+    if (verified.file.kind == "scene")
+      motion = verified.found.motion;
+    if (verified.file.kind == "checkpoint")
+      hash = verified.found.state_hash; // the last one is the newest; empty where it is damaged
+  }
+  for (auto& [file, found] : files) {
+    if (!file.damage.empty())
+      continue;
+    if (!motion.empty() && !found.motion.empty() && found.motion != motion)
+      file.damage = fmt::format("the scene in '{}' has other physics than scene.toml beside it", file.file);
+    if (!hash.empty() && file.kind == "summary" && found.state_hash != hash)
+      file.damage = fmt::format("the state_hash in '{}' is not that of the newest checkpoint", file.file);
+  }
+}
+
+std::vector<fs::path> sorted_entries(const fs::path& folder) {
+  std::vector<fs::path> entries;
+  std::error_code gone;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, gone))
+    entries.push_back(entry.path());
+  std::sort(entries.begin(), entries.end());
+  return entries;
+}
+
+// A run at work removes old checkpoints: what has gone meanwhile is not damaged.
+std::vector<VerifiedFile> verify_run(const fs::path& folder) {
+  std::vector<Verified> files;
+  for (const fs::path& path : sorted_entries(folder)) {
+    const std::string name = path.filename().string();
+    if (!RunFolder::is_own(name) || name.ends_with(".tmp"))
+      continue;
+    Verified verified = verify(path);
+    if (fs::exists(path))
+      files.push_back(std::move(verified));
+  }
+  compare(files);
+  std::vector<VerifiedFile> result;
+  for (Verified& verified : files)
+    result.push_back(std::move(verified.file));
+  return result;
+}
+
+} // namespace
+
+VerifiedFile verify_file(const fs::path& file) {
+  return verify(file).file;
+}
+
+std::vector<VerifiedFile> verify_folder(const fs::path& folder) {
+  std::vector<VerifiedFile> files;
+  if (fs::exists(folder / "log.jsonl"))
+    files = verify_run(folder);
+  else
+    for (const fs::path& run : sorted_entries(folder / "runs")) {
+      std::vector<VerifiedFile> more = verify_run(run);
+      files.insert(files.end(), more.begin(), more.end());
+    }
+  if (files.empty())
+    throw IoError(
+        fmt::format("'{}' holds no run, and no sweep or study with runs; name the folder of one", folder.string()));
+  return files;
+}
+
+} // namespace keeler

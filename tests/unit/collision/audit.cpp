@@ -1,0 +1,73 @@
+// The audit of neighbours: nothing is missed by lists, by the grid or after hits; and what is missed is told.
+#include "unit/collision/ring.hpp"
+#include "unit/collision/same_bits.hpp"
+
+#include <keeler/collision/neighbour_audit.hpp>
+#include <keeler/core/threads.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace keeler;
+using namespace keeler::test;
+
+TEST_CASE("no neighbour is missed: lists or grid, kept or made anew, on one thread or several; no bit changes") {
+  const int before = threads();
+  std::uint64_t pairs = 0, contacts = 0;
+  for (const Scenario& s : {Scenario{}, Scenario{.count = 6, .step = 0.1}, Scenario{.count = 300, .smallest = 0.2},
+                            Scenario{.count = 300, .optical_depth = 1.5, .kappa = 0.8, .nu = 3.0}})
+    for (const int several : {1, 3})
+      for (const bool keeps : {false, true}) {
+        set_threads(several);
+        Ring ring(make_patch(s, 2), settings_of(s), s.step), plain(make_patch(s, 2), settings_of(s), s.step);
+        ring.keeps_neighbours = plain.keeps_neighbours = keeps;
+        NeighbourAudit audit;
+        ring.drift.audit(&audit);
+        for (int step = 0; step < 40; ++step) {
+          ring.advance();
+          plain.advance();
+          if (step % 7 == 6) {
+            ring.kick_all(0.1);
+            plain.kick_all(0.1);
+          }
+        }
+        CHECK(audit.steps == 40);
+        CHECK_FALSE(audit.missed.has_value());
+        CHECK(same_bits(ring.particles, plain.particles));
+        pairs += audit.pairs;
+        contacts += ring.tally.fast;
+      }
+  set_threads(before);
+  MESSAGE(pairs << " pairs that must not be missed, " << contacts << " contacts");
+  CHECK(pairs > 2000);
+  CHECK(contacts > 500);
+}
+
+// Within a window of several steps lists trust that nobody but who was hit has changed its path.
+TEST_CASE("lists that were kept although particles have moved elsewhere: the audit tells who is missed") {
+  const Scenario s{.count = 300, .step = two_pi * 1e-4};
+  int told = 0;
+  for (int steps = 1; steps < 12; ++steps) {
+    Ring ring(make_patch(s, 1), settings_of(s), s.step);
+    ring.keeps_neighbours = true;
+    NeighbourAudit audit;
+    audit.particles = 300;
+    ring.drift.audit(&audit);
+    for (int step = 0; step < steps; ++step)
+      ring.advance();
+    REQUIRE_FALSE(audit.missed.has_value());
+    for (std::size_t k = 0; k + 1 < s.count; k += 2) { // each second one close to the next, and nobody is told
+      const Body& other = ring.particles.bodies[k + 1];
+      Body& moved = ring.particles.bodies[k];
+      moved.elements = other.elements;
+      moved.elements.guiding_y += moved.radius + other.radius;
+    }
+    REQUIRE(ring.undisturbed);
+    ring.advance();
+    if (!audit.missed)
+      continue; // a window began
+    ++told;
+    CHECK(audit.missed->id != audit.missed->other_id);
+    CHECK(audit.missed->distance < 2.0);
+  }
+  CHECK(told > 3);
+}
