@@ -98,7 +98,7 @@ struct Contact {
   bool fast = false;               ///< faster than v_cut
   bool unresolved = false;         ///< slower than what a kick of the pair's own gravity gives
   bool again = false;              ///< the last contact of both particles was with each other, in this step
-  bool slow = false;               ///< so slow that the pair may come to rest
+  float slow = 0.0F;               ///< of one that may come to rest: its speed in kicks of the pair's own gravity
   std::uint32_t low = 0, high = 0; ///< places of the particles, the lower id first
 };
 
@@ -212,7 +212,8 @@ private:
     const double distance = a.radius + b.radius;
     contact.fast = after.fast;
     contact.unresolved = speed * distance * distance < step_.kick_pull * (a.mass + b.mass);
-    contact.slow = speed * distance * distance < step_.rest_pull * (a.mass + b.mass);
+    if (speed * distance * distance < step_.rest_pull * (a.mass + b.mass))
+      contact.slow = static_cast<float>(speed * distance * distance / (step_.kick_pull * (a.mass + b.mass)));
     contact.low = event.low;
     contact.high = event.high;
     contact.again = orbits_.last_change(event.low) > step_.begin &&

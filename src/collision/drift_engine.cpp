@@ -173,8 +173,8 @@ void DriftEngine::count(const Contact& contact, CollisionTally& tally) {
   tally.add(contact);
   ++costs_.contacts;
   costs_.recontacts += contact.again;
-  if (contact.slow)
-    slow_pairs_.push_back({contact.low, contact.high});
+  if (contact.slow > 0.0F)
+    slow_pairs_.push_back({contact.low, contact.high, contact.slow});
 }
 
 // On several threads, when the result cannot tell and there are enough contacts for each.

@@ -20,7 +20,7 @@ void require_version(const hdf5::Handle& object, const hdf5::Handle& writer, con
                      std::string_view otherwise);
 
 inline constexpr char checkpoint_format[] = "keeler checkpoint";
-inline constexpr std::int64_t checkpoint_version = 4;
+inline constexpr std::int64_t checkpoint_version = 5;
 
 inline constexpr char snapshot_format[] = "keeler snapshot";
 inline constexpr std::int64_t snapshot_version = 1;

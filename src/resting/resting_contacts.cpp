@@ -48,7 +48,7 @@ struct PairAtRest {
 void RestingState::list_fields(FieldTable& table) {
   table.rows<std::uint64_t>("resting_pairs", pairs, "1", "ids of pairs that rest on each other");
   table.rows<double>("resting_loads", loads, "m, kg m rad^-1", "separation of each; impulse of the last kick");
-  table.scalar("resting_looked_at", looked_at, "1", "contacts looked at for rest, in kicks of the pair's own gravity");
+  table.scalar("resting_strongest", strongest, "1", "of the impulses, in kicks of the pair's own gravity");
   table.scalar("resting_work", work, "kg m^2 rad^-2", "work of the impulses at rest on relative motions");
 }
 
@@ -63,7 +63,7 @@ struct RestingContacts::Work {
   void find_members(const RestingState& state, const std::vector<Noted>& noted, const Particles& particles,
                     bool places_known);
   void read_kicks(const RestingStep& step);
-  void list_pairs(const RestingState& state, const std::vector<Noted>& noted);
+  void list_pairs(const RestingState& state, std::vector<Noted>& noted);
   void look(const RestingStep& step);
   void rub(const RestingStep& step, const Friction& friction, CollisionTally& tally);
   void judge(const RestingStep& step);
@@ -76,11 +76,17 @@ struct RestingContacts::Work {
   const Body& body(const RestingStep& step, std::uint32_t member) const {
     return step.particles.bodies[members[member].place];
   }
+  std::vector<Member>::const_iterator find(std::uint64_t id) const {
+    return std::lower_bound(members.begin(), members.end(), id,
+                            [](const Member& m, std::uint64_t wanted) { return m.id < wanted; });
+  }
+  bool rests(std::uint64_t id) const {
+    const auto found = find(id);
+    return found != members.end() && found->id == id;
+  }
   std::uint32_t member(std::uint64_t id) const {
-    const auto found = std::lower_bound(members.begin(), members.end(), id,
-                                        [](const Member& m, std::uint64_t wanted) { return m.id < wanted; });
-    assert(found != members.end() && found->id == id);
-    return static_cast<std::uint32_t>(found - members.begin());
+    assert(rests(id));
+    return static_cast<std::uint32_t>(find(id) - members.begin());
   }
   // Along the line of centres, how fast the members part by `changes` of their velocities.
   static double parting(const PairAtRest& p, const std::vector<Vec3>& changes) {
@@ -98,6 +104,12 @@ RestingContacts::RestingContacts() = default;
 RestingContacts::~RestingContacts() = default;
 RestingContacts::RestingContacts(RestingContacts&& other) noexcept = default;
 RestingContacts& RestingContacts::operator=(RestingContacts&& other) noexcept = default;
+
+void RestingContacts::note(const Particles& particles, const SlowPair& pair) {
+  const std::uint64_t low = particles.ids[pair.low], high = particles.ids[pair.high];
+  if (pair.kicks < RestingState::slow || (work_ && (work_->rests(low) || work_->rests(high))))
+    noted_.push_back({{low, high}, pair.low, pair.high});
+}
 
 const RestingCosts& RestingContacts::costs() const {
   static const RestingCosts none;
@@ -147,27 +159,26 @@ void RestingContacts::Work::read_kicks(const RestingStep& step) {
 }
 
 // Those at rest and those noted, each once, in the order of the ids.
-void RestingContacts::Work::list_pairs(const RestingState& state, const std::vector<Noted>& noted) {
+void RestingContacts::Work::list_pairs(const RestingState& state, std::vector<Noted>& noted) {
+  std::sort(noted.begin(), noted.end(), [](const Noted& a, const Noted& b) { return a.ids < b.ids; });
   pairs.clear();
-  for (std::size_t k = 0; k < state.pairs.size(); ++k) {
+  const auto add = [&](const RestingPair& ids, double impulse, bool is_new) {
     PairAtRest p;
-    p.ids = state.pairs[k];
-    p.impulse = state.loads[k].impulse;
+    p.ids = ids;
+    p.low = member(ids.low);
+    p.high = member(ids.high);
+    p.impulse = impulse;
+    p.is_new = is_new;
     pairs.push_back(p);
-  }
-  for (const Noted& n : noted) {
-    PairAtRest p;
-    p.ids = n.ids;
-    p.is_new = true;
-    pairs.push_back(p);
-  }
-  std::stable_sort(pairs.begin(), pairs.end(), [](const PairAtRest& a, const PairAtRest& b) { return a.ids < b.ids; });
-  pairs.erase(
-      std::unique(pairs.begin(), pairs.end(), [](const PairAtRest& a, const PairAtRest& b) { return a.ids == b.ids; }),
-      pairs.end());
-  for (PairAtRest& p : pairs) {
-    p.low = member(p.ids.low);
-    p.high = member(p.ids.high);
+  };
+  std::size_t next = 0;
+  for (std::size_t k = 0; k <= state.pairs.size(); ++k) {
+    const bool last = k == state.pairs.size();
+    for (; next < noted.size() && (last || noted[next].ids < state.pairs[k]); ++next)
+      if (pairs.empty() || pairs.back().ids != noted[next].ids)
+        add(noted[next].ids, 0.0, true);
+    if (!last)
+      add(state.pairs[k], state.loads[k].impulse, false);
   }
 }
 
@@ -349,12 +360,12 @@ void RestingContacts::carry(RestingState& state, const RestingStep& step, const 
   w.solve(step);
   state.pairs.clear();
   state.loads.clear();
-  state.looked_at = 0.0;
+  state.strongest = 0.0;
   for (const PairAtRest& p : w.pairs) {
     state.pairs.push_back(p.ids);
     state.loads.push_back({p.separation, p.impulse});
-    state.looked_at =
-        std::max(state.looked_at, p.impulse * (w.inverse_masses[p.low] + w.inverse_masses[p.high]) / p.pull);
+    state.strongest =
+        std::max(state.strongest, p.impulse * (w.inverse_masses[p.low] + w.inverse_masses[p.high]) / p.pull);
   }
   w.give(state, step, w.kicks_before, false, tally);
   w.forget_others();

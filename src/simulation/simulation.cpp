@@ -18,7 +18,6 @@ namespace keeler {
 namespace {
 
 constexpr double sorting_interval = 0.1; // orbits
-constexpr double looked_at = 4.0; // contacts slower than so many times the strongest kick at rest may come to rest
 
 // What a kick of all particles did to the energy.
 struct KickSums {
@@ -139,14 +138,13 @@ void Simulation::decide_when_due() {
 void Simulation::set_pace() {
   const bool pairs = scene_.gravity && scene_.gravity->by_pairs();
   const double pull = pairs ? newton_g(scene_.planet.orbital_frequency) * kick_interval() : 0.0;
-  drift_.set_pace(state_.step_length, pull,
-                  carries() ? looked_at * std::max(1.0, state_.resting.looked_at) * pull : 0.0);
+  drift_.set_pace(state_.step_length, pull, carries() ? state_.resting.looked_at() * pull : 0.0);
 }
 
 // Before any order in memory changes.
 void Simulation::note_slow_pairs() {
   for (const SlowPair& pair : drift_.slow_pairs())
-    resting_.note(state_.particles, pair.low, pair.high);
+    resting_.note(state_.particles, pair);
 }
 
 // What contacts at rest are told of this boundary. `before` is the kick interval that ends here.

@@ -81,6 +81,7 @@ public:
 /// Two particles that have touched slowly, by place, the lower id first.
 struct SlowPair {
   std::uint32_t low, high;
+  float kicks; ///< how fast, in what a kick of the pair's own gravity gives
 };
 
 class DriftPhase {

@@ -14,6 +14,7 @@
 #include <keeler/core/field_table.hpp>
 #include <keeler/particles/store.hpp>
 
+#include <algorithm>
 #include <compare>
 #include <cstdint>
 #include <memory>
@@ -39,9 +40,13 @@ struct RestingLoad {
 struct RestingState {
   std::vector<RestingPair> pairs;
   std::vector<RestingLoad> loads; ///< one for each
-  /// Contacts slower than so many times what a kick of the pair's own gravity gives are looked at for rest.
-  double looked_at = 0.0;
+  double strongest = 0.0;         ///< of the impulses, in kicks of the pair's own gravity
   double work = 0.0; ///< of the impulses on the motion of the pairs relative to each other, kg m² rad⁻²
+
+  /// Contacts of anybody slower than so many kicks of the pair's own gravity may come to rest.
+  static constexpr double slow = 4.0;
+  /// The same for those who touch a particle at rest, which may press as hard as others do.
+  double looked_at() const { return slow * std::max(1.0, strongest); }
 
   void list_fields(FieldTable& table);
 };
@@ -78,10 +83,8 @@ public:
   RestingContacts(RestingContacts&& other) noexcept;
   RestingContacts& operator=(RestingContacts&& other) noexcept;
 
-  /// Two particles, by place, that have touched slowly in the kick interval at hand; `low` has the lower id.
-  void note(const Particles& particles, std::uint32_t low, std::uint32_t high) {
-    noted_.push_back({{particles.ids[low], particles.ids[high]}, low, high});
-  }
+  /// A pair that has touched slowly in the kick interval at hand.
+  void note(const Particles& particles, const SlowPair& pair);
 
   /// Whether there is nothing to do: nothing rests, and nothing was noted.
   bool idle(const RestingState& state) const { return state.pairs.empty() && noted_.empty(); }
