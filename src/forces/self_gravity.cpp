@@ -133,12 +133,14 @@ std::vector<Key> gravity_keys() {
        .range = {.low = 1, .high = 1000}},
       {.path = "resting_contacts",
        .type = choice,
-       .fallback = "\"carried\"",
+       .fallback = "\"auto\"",
        .meaning =
-           "contacts that a kick does not resolve: carried, by impulses that act with it, or bounced as all others",
-       .choices = {"carried", "bounced"},
+           "contacts that a kick does not resolve: carried, by impulses that act with it, or bounced as all others; "
+           "auto: carried where aggregates last (r_h of 1 or more, aggregates or moonlets placed, a start from a "
+           "file)",
+       .choices = {"auto", "carried", "bounced"},
        .only_with = {"solver", {"direct", "tree", "fft", "mesh", "auto"}},
-       .hashed_at_fallback = false},
+       .unhashed = "\"bounced\""},
   };
 }
 
@@ -166,7 +168,7 @@ GravitySettings gravity_settings(const Parameters& p) {
   }
   gravity.kick_every = static_cast<int>(p.integer("kick_every"));
   if (p.has("resting_contacts"))
-    gravity.resting_contacts = p.text("resting_contacts") == "carried";
+    gravity.resting_contacts = p.text("resting_contacts") != "bounced";
   return gravity;
 }
 

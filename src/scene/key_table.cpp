@@ -199,7 +199,7 @@ std::vector<Key> restitution_keys() {
            "no bounce faster than elastic_below keeps more of the normal speed; below 1 for piles that are to come "
            "to rest",
        .range = {.low = 0, .high = 1},
-       .hashed_at_fallback = false},
+       .unhashed = "1.0"},
   };
 }
 

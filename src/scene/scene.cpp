@@ -71,6 +71,17 @@ std::optional<GravitySettings> read_gravity(Settings& settings, const std::strin
   return gravity;
 }
 
+// Where nothing holds together for long, contacts are no more at rest than others, and cost nothing.
+void choose_resting_contacts(Scene& scene, Settings& settings) {
+  const char* const key = "gravity.resting_contacts";
+  if (!scene.gravity || !settings.has(key) || settings.text(key) != "auto")
+    return;
+  const double density = scene.particles.density; // 0: the particles come from elsewhere
+  scene.gravity->resting_contacts = density == 0.0 || !scene.moonlets.empty() || !scene.particles.aggregates.empty() ||
+                                    hill_parameter(density, distance_from_saturn(scene.planet)) >= 1.0;
+  settings.resolve(key, std::string(scene.gravity->resting_contacts ? "carried" : "bounced"));
+}
+
 // `size_x`: as above.
 std::vector<ForceSettings> read_external_forces(Settings& settings, const std::string& name, double size_x) {
   std::vector<ForceSettings> forces;
@@ -166,6 +177,7 @@ Scene read_scene(Document document, const std::string& name, Purpose purpose, st
     check_placed_bodies(scene, settings);
   scene.collisions = read_collisions(settings, name);
   scene.gravity = read_gravity(settings, name, scene.size_x);
+  choose_resting_contacts(scene, settings);
   scene.external_forces = read_external_forces(settings, name, scene.size_x);
   resolve_times_of_quality(scene, settings);
   read_times(scene, settings);

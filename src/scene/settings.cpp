@@ -159,7 +159,7 @@ std::string Settings::motion() const {
   for (const Key& key : scene_keys())
     for (const std::string& path : paths_of(key))
       if (key.effect == KeyEffect::motion && has(path))
-        if (const std::string value = toml_of(key, path); key.hashed_at_fallback || value != key.fallback)
+        if (const std::string value = toml_of(key, path); key.unhashed.empty() || value != key.unhashed)
           out += fmt::format("{} = {}\n", path, value);
   return out;
 }

@@ -56,8 +56,7 @@ struct Key {
   KeyCondition only_with{};
   std::vector<std::string> columns{}; ///< of rows: what each holds, with its unit
   KeyEffect effect = KeyEffect::motion;
-  bool hashed_at_fallback =
-      true; ///< false: the state hash of a scene with the default is that of scenes before the key
+  std::string unhashed{}; ///< TOML: with this value a scene has the state hash that it had before there was the key
 
   std::string section() const { return path.substr(0, path.rfind('.') == std::string::npos ? 0 : path.rfind('.')); }
   std::string name() const { return path.substr(path.rfind('.') == std::string::npos ? 0 : path.rfind('.') + 1); }
