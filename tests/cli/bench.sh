@@ -28,7 +28,7 @@ grep -qF '"sizes": "moonlet"' "$work/out" || fail "bench: no moonlet in: $(cat "
 refuses "too few for a moonlet" "raise --count" bench drift --count 500 --sizes moonlet
 refuses "unknown sizes" "--sizes" bench drift --sizes huge
 refuses "an unknown finder" "'guess'" bench drift --finder guess
-refuses "bench without a kernel" "keeler bench --help" bench
+refuses "bench without a kernel" "wants a part: drift, gravity, step" bench
 refuses "no particles" "--count" bench drift --count 0
 
 runs 0 bench gravity --count 100 --state uniform --repeats 1 --json
@@ -74,7 +74,7 @@ done
 grep -qF "\"from\": \"$work/run/snap_000001.hdf\"" "$work/out" || fail "bench step: no file in: $(cat "$work/out")"
 refuses "a number of particles for a snapshot" "--count" bench step --count 100 --from "$work/run/snap_000001.hdf"
 refuses_with 4 "no such snapshot" "absent.hdf" bench step --from "$work/absent.hdf"
-refuses_with 4 "no snapshot" "cannot read '$work/scene.toml' as HDF5" bench step --from "$work/scene.toml"
+refuses_with 4 "no snapshot" "'$work/scene.toml' is no snapshot: it does not begin as HDF5 files do" bench step --from "$work/scene.toml"
 refuses_with 4 "a checkpoint" "is not a Keeler snapshot" bench step --from "$(newest_checkpoint "$work/run")"
 sed -i '/^\[gravity\]/,/^solver/d' "$work/scene.toml"
 runs 0 generate "$work/scene.toml" -o "$work/free.hdf"

@@ -99,7 +99,8 @@ same_bytes() {
   for file in 1 2; do
     h5dump -d "$4" -b LE -o "$work/dump.$file" "${@:$((file + 1)):1}" >/dev/null || fail "$1: h5dump $4"
   done
-  [ -s "$work/dump.1" ] || fail "$1: $4 is empty"
+  # no pair may be at rest
+  [ -s "$work/dump.1" ] || [[ $4 == /fields/resting_* ]] || fail "$1: $4 is empty"
   cmp -s "$work/dump.1" "$work/dump.2" || fail "$1: $4 differs"
 }
 

@@ -257,6 +257,7 @@ density = 900.0
 sizes = {{ law = "power", exponent = 3.0, min = 0.3, max = 1.0 }}
 [gravity]
 solver = "direct"
+resting_contacts = "bounced"
 kick_every = {}
 [time]
 step = 2e-3

@@ -27,6 +27,7 @@ sizes = {{ law = "equal", radius = 1.0 }}
 restitution = {{ law = "constant", value = {} }}
 [gravity]
 solver = "direct"
+resting_contacts = "bounced"
 kick_every = {}
 [time]
 step = {}

@@ -24,7 +24,7 @@ TEST_CASE("a checkpoint is described field by field") {
 
   const FileDescription description = describe_file(folder / "a.h5");
   CHECK(description.kind == FileKind::checkpoint);
-  CHECK(description.format_version == 4);
+  CHECK(description.format_version == 5);
   CHECK(description.scene == "title = \"A\"\n");
   CHECK(description.attributes.at("provenance/version") == "1.2.3");
   REQUIRE(description.fields.size() == 3);

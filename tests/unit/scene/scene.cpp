@@ -352,6 +352,7 @@ elastic_below = 0.01
 [collisions.restitution]
 law = "bridges"
 scale = 0.34
+largest = 1.0
 
 [time]
 step = 0.001
