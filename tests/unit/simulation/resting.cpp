@@ -91,7 +91,8 @@ Scene pile_scene(const std::string& more) {
 
 bool same_bits(const SimulationState& a, const SimulationState& b) {
   const auto same = [](const auto& left, const auto& right) {
-    return left.size() == right.size() && std::memcmp(left.data(), right.data(), left.size() * sizeof(left[0])) == 0;
+    return left.size() == right.size() &&
+           (left.empty() || std::memcmp(left.data(), right.data(), left.size() * sizeof(left[0])) == 0);
   };
   return same(a.particles.bodies, b.particles.bodies) && same(a.particles.ids, b.particles.ids) &&
          same(a.particles.spins, b.particles.spins) && same(a.resting.pairs, b.resting.pairs) &&
