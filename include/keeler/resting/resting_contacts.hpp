@@ -15,7 +15,6 @@
 #include <keeler/particles/store.hpp>
 
 #include <algorithm>
-#include <compare>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -27,7 +26,10 @@ namespace keeler {
 /// Two particles by id, the lower one first.
 struct RestingPair {
   std::uint64_t low = 0, high = 0;
-  friend auto operator<=>(const RestingPair&, const RestingPair&) = default;
+  friend bool operator==(const RestingPair&, const RestingPair&) = default;
+  friend bool operator<(const RestingPair& a, const RestingPair& b) {
+    return a.low != b.low ? a.low < b.low : a.high < b.high;
+  }
 };
 
 /// What a pair carries at this boundary between two steps.
