@@ -23,8 +23,11 @@ BoundedImpulses::BoundedImpulses(std::span<const Joint> joints, std::span<const 
   }
   double largest = 1.0; // bound on the eigenvalues, by the inequality of Cauchy and Schwarz at each body
   for (const Joint& j : joints_) {
-    const double both = inverse_masses_[j.low] + inverse_masses_[j.high];
-    scales_.push_back(1.0 / std::sqrt(both));
+    assert(j.low != j.high);
+    const double both = inverse_masses_[j.low] + inverse_masses_[j.high], scale = 1.0 / std::sqrt(both);
+    scales_.push_back(scale);
+    rows_.push_back({j.low, j.high, scale * std::sqrt(inverse_masses_[j.low]),
+                     scale * std::sqrt(inverse_masses_[j.high]), j.normal});
     largest = std::max(largest, (weight[j.low] + weight[j.high]) / both);
   }
   length_ = 1.9 / largest;
@@ -39,33 +42,36 @@ void BoundedImpulses::push(std::span<const double> impulses, std::span<Vec3> cha
   }
 }
 
-// Velocity changes by scaled impulses.
+// Velocity changes by impulses x.
 void BoundedImpulses::push_along(const std::vector<double>& x) {
   std::fill(changes_.begin(), changes_.end(), Vec3::Zero());
-  for (std::size_t c = 0; c < joints_.size(); ++c) {
-    if (x[c] == 0.0)
-      continue;
-    const Joint& j = joints_[c];
-    const Vec3 impulse = (scales_[c] * x[c]) * j.normal;
-    changes_[j.low] -= inverse_masses_[j.low] * impulse;
-    changes_[j.high] += inverse_masses_[j.high] * impulse;
+  for (std::size_t c = 0; c < rows_.size();) {
+    const std::uint32_t low = rows_[c].low; // of several joints in a row, which do not wait for each other's stores
+    Vec3 change = changes_[low];
+    for (; c < rows_.size() && rows_[c].low == low; ++c) {
+      const Row& row = rows_[c];
+      change -= (row.at_low * x[c]) * row.normal;
+      changes_[row.high] += (row.at_high * x[c]) * row.normal;
+    }
+    changes_[low] = change;
   }
 }
 
-// By these changes, scaled.
-double BoundedImpulses::opening(std::size_t joint) const {
-  const Joint& j = joints_[joint];
-  return scales_[joint] * j.normal.dot(changes_[j.high] - changes_[j.low]);
+// By these changes.
+double BoundedImpulses::opening(const Row& row) const {
+  return row.normal.dot(row.at_high * changes_[row.high] - row.at_low * changes_[row.low]);
 }
 
-void BoundedImpulses::start(std::span<const double> required, std::span<const double> impulses) {
+void BoundedImpulses::start(std::span<const double> required, std::span<const double> tolerances,
+                            std::span<const double> impulses) {
   const std::size_t count = joints_.size();
-  assert(required.size() == count && impulses.size() == count);
-  for (std::vector<double>* array : {&x_, &required_, &gradient_, &direction_, &applied_})
+  assert(required.size() == count && tolerances.size() == count && impulses.size() == count);
+  for (std::vector<double>* array : {&x_, &required_, &tolerances_, &gradient_, &direction_, &applied_})
     array->resize(count);
   for (std::size_t c = 0; c < count; ++c) {
     x_[c] = std::max(0.0, impulses[c] / scales_[c]);
     required_[c] = scales_[c] * required[c];
+    tolerances_[c] = scales_[c] * tolerances[c];
   }
   renew_gradient();
 }
@@ -74,39 +80,51 @@ void BoundedImpulses::start(std::span<const double> required, std::span<const do
 void BoundedImpulses::renew_gradient() {
   push_along(x_);
   for (std::size_t c = 0; c < x_.size(); ++c) {
-    gradient_[c] = opening(c) - required_[c];
+    gradient_[c] = opening(rows_[c]) - required_[c];
     direction_[c] = x_[c] > 0.0 ? gradient_[c] : 0.0;
   }
 }
 
-BoundedImpulses::Rest BoundedImpulses::rest(std::span<const double> tolerances) const {
+BoundedImpulses::Rest BoundedImpulses::rest() const {
+  const double per_length = 1.0 / length_;
   Rest rest;
   for (std::size_t c = 0; c < x_.size(); ++c) {
-    const double slope = gradient_[c], tolerance = scales_[c] * tolerances[c];
-    if (x_[c] > 0.0) {
-      rest.pushing += std::min(x_[c] / length_, slope) * slope;
-      rest.settled &= std::abs(slope) <= tolerance;
-    } else if (slope < 0.0) {
-      rest.closing += slope * slope;
-      rest.settled &= -slope <= tolerance;
-    }
+    const double slope = gradient_[c];
+    const bool pushes = x_[c] > 0.0;
+    const double closing = std::min(0.0, slope);
+    rest.pushing += pushes ? std::min(x_[c] * per_length, slope) * slope : 0.0;
+    rest.closing += pushes ? 0.0 : closing * closing;
+    rest.settled &= std::abs(pushes ? slope : closing) <= tolerances_[c];
   }
   return rest;
 }
 
 BoundedImpulses::Along BoundedImpulses::look_along() {
   push_along(direction_);
-  Along along{0.0, 0.0, std::numeric_limits<double>::infinity()};
-  double fall = 0.0;
+  double curvature = 0.0, fall = 0.0;
   for (std::size_t c = 0; c < x_.size(); ++c) {
-    applied_[c] = opening(c);
-    along.curvature += direction_[c] * applied_[c];
+    applied_[c] = opening(rows_[c]);
+    curvature += direction_[c] * applied_[c];
     fall += direction_[c] * gradient_[c];
-    if (direction_[c] > 0.0)
-      along.feasible = std::min(along.feasible, x_[c] / direction_[c]);
   }
-  along.best = fall / along.curvature;
-  return along;
+  return {curvature, fall / curvature};
+}
+
+// Whether all impulses still push so far along the direction; not if it leads on for ever.
+bool BoundedImpulses::keeps_pushing(double length) const {
+  bool keeps = std::isfinite(length);
+  for (std::size_t c = 0; c < x_.size(); ++c)
+    keeps &= length * direction_[c] <= x_[c];
+  return keeps;
+}
+
+// How far along the direction all impulses push.
+double BoundedImpulses::feasible() const {
+  double length = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < x_.size(); ++c)
+    if (direction_[c] > 0.0)
+      length = std::min(length, x_[c] / direction_[c]);
+  return length;
 }
 
 // All the way, and on in the next conjugate direction.
@@ -115,19 +133,18 @@ void BoundedImpulses::conjugate(const Along& along) {
   for (std::size_t c = 0; c < x_.size(); ++c) {
     x_[c] = x_[c] > 0.0 ? std::max(0.0, x_[c] - along.best * direction_[c]) : 0.0;
     gradient_[c] -= along.best * applied_[c];
-    if (x_[c] > 0.0)
-      overlap += gradient_[c] * applied_[c];
+    overlap += x_[c] > 0.0 ? gradient_[c] * applied_[c] : 0.0;
   }
   const double turn = overlap / along.curvature;
   for (std::size_t c = 0; c < x_.size(); ++c)
     direction_[c] = x_[c] > 0.0 ? gradient_[c] - turn * direction_[c] : 0.0;
 }
 
-// As far along the direction as all impulses push, then a projected gradient step: joints may stop pushing.
-void BoundedImpulses::expand(const Along& along) {
+// So far along the direction, then a projected gradient step: joints may stop pushing.
+void BoundedImpulses::expand(double length) {
   for (std::size_t c = 0; c < x_.size(); ++c) {
-    const double there = std::max(0.0, x_[c] - along.feasible * direction_[c]);
-    const double slope = gradient_[c] - along.feasible * applied_[c];
+    const double there = std::max(0.0, x_[c] - length * direction_[c]);
+    const double slope = gradient_[c] - length * applied_[c];
     x_[c] = there > 0.0 ? std::max(0.0, there - length_ * slope) : 0.0;
   }
   renew_gradient();
@@ -147,9 +164,9 @@ void BoundedImpulses::proportion() {
 
 bool BoundedImpulses::solve(std::span<const double> required, std::span<const double> tolerances,
                             std::span<double> impulses) {
-  start(required, impulses);
+  start(required, tolerances, impulses);
   for (std::size_t k = 0;; ++k) {
-    const Rest rest = this->rest(tolerances);
+    const Rest rest = this->rest();
     if (rest.settled)
       break;
     if (k == most_iterations)
@@ -161,12 +178,14 @@ bool BoundedImpulses::solve(std::span<const double> required, std::span<const do
       continue;
     }
     const Along along = look_along();
-    if (along.best <= along.feasible)
+    if (keeps_pushing(along.best)) {
       conjugate(along);
-    else if (std::isfinite(along.feasible))
-      expand(along);
-    else
+      continue;
+    }
+    const double length = feasible();
+    if (!std::isfinite(length))
       return false; // jammed: no impulses open it
+    expand(length);
   }
   for (std::size_t c = 0; c < x_.size(); ++c)
     impulses[c] = scales_[c] * x_[c];

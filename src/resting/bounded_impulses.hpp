@@ -35,35 +35,44 @@ public:
   std::size_t iterations() const { return iterations_; }
 
 private:
+  /// A joint in units in which A has a unit diagonal: of impulses, 1 / √(1/m + 1/m'); of a body's velocity, 1 / √m.
+  struct Row {
+    std::uint32_t low = 0, high = 0;
+    double at_low = 0.0, at_high = 0.0; // what a unit impulse does to each
+    Vec3 normal = Vec3::Zero();
+  };
   /// Of the gradient: what is left on joints that do not push, and on those that do; whether nothing more is to be
   /// done.
   struct Rest {
     double closing = 0.0, pushing = 0.0;
     bool settled = true;
   };
-  /// Along the direction: A times it, its curvature, the best length, and the length up to which all impulses push.
+  /// Along the direction: its curvature, and the best length.
   struct Along {
-    double curvature = 0.0, best = 0.0, feasible = 0.0;
+    double curvature = 0.0, best = 0.0;
   };
 
   void push_along(const std::vector<double>& x);
-  double opening(std::size_t joint) const;
-  void start(std::span<const double> required, std::span<const double> impulses);
+  double opening(const Row& row) const;
+  void start(std::span<const double> required, std::span<const double> tolerances, std::span<const double> impulses);
   void renew_gradient();
-  Rest rest(std::span<const double> tolerances) const;
+  Rest rest() const;
   Along look_along();
+  bool keeps_pushing(double length) const;
+  double feasible() const;
   void conjugate(const Along& along);
-  void expand(const Along& along);
+  void expand(double length);
   void proportion();
 
   std::span<const Joint> joints_;
   std::span<const double> inverse_masses_;
-  std::vector<double> scales_; // of each joint: impulses in units of these have a unit diagonal in A
+  std::vector<Row> rows_;
+  std::vector<double> scales_; // units of the impulses
   double length_ = 0.0;        // of a projected step, below 2 over the largest eigenvalue
   std::size_t iterations_ = 0;
 
-  // the problem at hand, scaled
-  std::vector<double> x_, required_, gradient_, direction_, applied_; // applied: A times the direction
+  // the problem at hand, in these units
+  std::vector<double> x_, required_, tolerances_, gradient_, direction_, applied_; // applied: A times the direction
   std::vector<Vec3> changes_;
 };
 
