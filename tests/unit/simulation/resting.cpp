@@ -119,6 +119,22 @@ TEST_CASE("two rough spheres roll on each other as one body") {
   CHECK(fine < 0.35 * coarse); // they roll a step behind: first order, a quarter
 }
 
+// On the radial line through both, tides pull by 3 Ω² d and gravity by 2 G m / d²: equal where r_h = 1.
+TEST_CASE("tides part two spheres that touch where r_h is below 1, and not above") {
+  for (const double r_h : {0.9, 0.98, 1.02, 1.1}) {
+    const double density = 9.0 * r_h * r_h * r_h / (pi * newton_g(omega));
+    const Scene scene = scene_of_two(density, 2e-3, "collisions.restitution = { law = \"constant\", value = 0.3 }\n");
+    Simulation simulation(scene, two(scene, Vec3(2.0 * (1.0 + 1e-12), 0.0, 0.0), Vec3::Zero()));
+    run_until(simulation, 1.0);
+    const Patch now = simulation.patch();
+    const double gap = (now.positions[1] - now.positions[0]).norm() - 2.0;
+    CAPTURE(r_h);
+    CAPTURE(gap);
+    CHECK((r_h < 1.0 ? gap > 1.0 : gap < 1e-3));
+    CHECK(simulation.state().resting.pairs.empty() == (r_h < 1.0));
+  }
+}
+
 // Along the vertical through a heavy sphere motion is one-dimensional: z'' = −GM/z² − z. The sphere that is dropped on
 // it bounces at restitution 0.5 until a kick undoes its rebound, and lies still from then on.
 TEST_CASE("a dropped sphere bounces as it should, and then rests") {
