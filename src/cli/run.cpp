@@ -45,6 +45,20 @@ RunOptions run_options(const JobOptions& job, const std::vector<std::string>& ar
   return options;
 }
 
+// Of a run with self-gravity: what rests, or bounces where it should rest. The limit is where rings of
+// docs/hard-spheres.md begin to lose by it more than their balance of energy can be known.
+void print_contacts_at_rest(const nlohmann::json& s) {
+  constexpr double too_many = 0.15;
+  const double unresolved = s["unresolved_contacts_share"].get<double>();
+  if (const nlohmann::json& resting = s["resting_contacts"]; !resting.is_null())
+    fmt::print("contacts at rest                    {} carry the kicks of gravity now\n",
+               counted(resting.get<std::uint64_t>(), "pair"));
+  else if (unresolved > too_many)
+    fmt::print("contacts at rest                    {} % of the contacts are slower than one kick of the pair's own "
+               "gravity, and lose what it gives: set gravity.resting_contacts to \"carried\", or kick more often\n",
+               figures(100.0 * unresolved, 2));
+}
+
 void print_summary(const std::string& folder, const nlohmann::json& s) {
   const auto number = [&](const char* key) { return s[key].get<double>(); };
   const auto count = [&](const char* key, const char* noun) { return counted(s[key].get<std::uint64_t>(), noun); };
@@ -53,6 +67,7 @@ void print_summary(const std::string& folder, const nlohmann::json& s) {
   fmt::print("collisions per particle and orbit   {} faster than v_cut, {} slow contacts\n",
              figures(number("collisions_per_particle_orbit"), 3),
              figures(number("slow_contacts_per_particle_orbit"), 3));
+  print_contacts_at_rest(s);
   fmt::print("largest overlap                     {} of a radius sum\n", figures(number("largest_overlap"), 2));
   if (s["finder_gave_up"].get<long>() > 0 || number("largest_overlap") > 1e-8)
     fmt::print("the collision finder                gave up on {}, and may have missed contacts\n",

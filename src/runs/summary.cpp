@@ -106,7 +106,9 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scen
   const std::uint64_t contacts = state.collisions.fast + state.collisions.slow;
   json["unresolved_contacts_share"] =
       static_cast<double>(state.collisions.unresolved) / static_cast<double>(std::max<std::uint64_t>(1, contacts));
-  json["resting_contacts"] = state.resting.pairs.size();
+  json["resting_contacts"] = nullptr;
+  if (scene.gravity && scene.gravity->carries())
+    json["resting_contacts"] = state.resting.pairs.size();
   json["finder_gave_up"] = state.collisions.gave_up;
   json["largest_overlap"] = largest_overlap(simulation.patch()).depth;
   json["force_error"] = force_error(cost.force_checks);
