@@ -35,8 +35,8 @@ namespace keeler {
 
 class OptimisticLoop {
 public:
-  /// How many domains a round may have.
-  static constexpr std::size_t most_domains = 250;
+  /// How many domains a round may have: those of three rounds are numbered in a byte, beside their changes.
+  static constexpr std::size_t most_domains = 127;
 
   /// Carries out everything that follows from the first contacts of a step, for an exact finder, in so many domains.
   /// Returns false when that should be done in sequence, with everything as it was.
@@ -58,6 +58,7 @@ public:
 private:
   static constexpr std::size_t rounds = 3;
   static constexpr std::uint32_t most_changes = 1u << 24; // of a domain
+  static_assert((2 * most_domains + 1) * std::uint64_t{most_changes} < std::uint64_t{1} << 32);
 
   /// The end of a particle's path, and what it takes to roll it back. Each contact makes two that follow each other.
   struct Change {
