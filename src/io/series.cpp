@@ -87,6 +87,14 @@ std::vector<std::string_view> fields_of(std::string_view row) {
   return fields;
 }
 
+// What has just been written; once more, when the file has been removed since.
+Descriptor open_with(const std::filesystem::path& file, std::string_view rows) {
+  Descriptor opened(file, O_RDWR | O_APPEND | O_CREAT);
+  if (opened.size() == 0)
+    opened.append_whole(std::as_bytes(std::span(rows)));
+  return opened;
+}
+
 } // namespace
 
 const std::vector<double>* SeriesTable::find(const std::string& name) const {
@@ -131,12 +139,13 @@ SeriesTable read_series(const std::filesystem::path& file) {
   return table;
 }
 
-Series::Series(const std::filesystem::path& file, std::size_t columns)
-    : path_(file), file_(file, O_RDWR | O_APPEND), columns_(columns), size_(file_.size()) {}
+Series::Series(const std::filesystem::path& file, std::size_t columns, std::string_view rows)
+    : path_(file), file_(open_with(file, rows)), columns_(columns), size_(rows.size()) {}
 
 Series Series::begin(const std::filesystem::path& file, const std::vector<std::string>& columns) {
-  write_text(file, header_line(columns));
-  return {file, columns.size()};
+  const std::string header = header_line(columns);
+  write_text(file, header);
+  return {file, columns.size(), header};
 }
 
 Series Series::resume(const std::filesystem::path& file, const std::vector<std::string>& columns,
@@ -154,7 +163,7 @@ Series Series::resume(const std::filesystem::path& file, const std::vector<std::
   const std::string_view kept = rows.rows_up_to(last_step);
   if (kept.size() != text.size())
     write_text(file, kept);
-  Series series(file, columns.size());
+  Series series(file, columns.size(), kept);
   series.gaps_ = rows.gaps();
   return series;
 }
@@ -183,7 +192,7 @@ void Series::require_rows() {
                               "so rows may be lost; put the rows back that are missing, then resume the run",
                               path_.string(), rows.size(), size_));
   write_text(path_, rows);
-  file_ = Descriptor(path_, O_RDWR | O_APPEND);
+  file_ = open_with(path_, rows);
   restored_ = true;
 }
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -61,7 +62,7 @@ public:
   bool take_restored() { return std::exchange(restored_, false); }
 
 private:
-  Series(const std::filesystem::path& file, std::size_t columns);
+  Series(const std::filesystem::path& file, std::size_t columns, std::string_view rows);
 
   void require_rows();
 
