@@ -45,8 +45,8 @@ RunOptions run_options(const JobOptions& job, const std::vector<std::string>& ar
   return options;
 }
 
-// Of a run with self-gravity: what rests, or bounces where it should rest. With so many unresolved contacts the rings of
-// docs/hard-spheres.md lose 3 % more than the shear gives them.
+// Of a run with self-gravity: what rests, or bounces where it should rest. With so many unresolved contacts the rings
+// of docs/hard-spheres.md lose 3 % more than the shear gives them.
 void print_contacts_at_rest(const nlohmann::json& s) {
   constexpr double too_many = 0.1;
   const double unresolved = s["unresolved_contacts_share"].get<double>();

@@ -1,6 +1,7 @@
 // What particles do one by one: how they spin, and whether they stay together.
 #include "rows.hpp"
 
+#include <keeler/cells/overlap.hpp>
 #include <keeler/diagnostics/clusters.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 
@@ -70,12 +71,52 @@ std::vector<Row> aggregates() {
   return {share_row("r_h 1.25", ring(1151.6), 0.3, 1.0, source), share_row("r_h 0.65", ring(161.9), 0.0, 0.05, source)};
 }
 
+// A pile of 18 J that has settled by then.
+Row rest_of_pile(const std::string& law) {
+  const Ran ran = run_example("hard-spheres/one-pile.toml", {"collisions.restitution=" + law});
+  const std::vector<double>&orbits = ran.series.of("time_orbits"), &lost = ran.series.of("energy_lost_j");
+  std::size_t since = orbits.size() - 1;
+  while (since > 0 && orbits[since] > orbits.back() - 0.1 + 1e-9)
+    --since;
+  return {.what = "lost by a bound pile at rest, J an orbit, restitution " + law,
+          .measured = (lost.back() - lost[since]) / (orbits.back() - orbits[since]),
+          .expected = 0.0,
+          .tolerance = 0.18,
+          .tolerance_is = "1 % of its binding energy, 18 J",
+          .source = "what rests loses nothing",
+          .command = ran.command};
+}
+
+std::vector<Row> contacts_at_rest() {
+  const Ran ring = run_example("hard-spheres/ring.toml", {});
+  const Transport t = transport_since(ring, 1.5);
+  std::vector<Row> rows{{.what = "loss over work of the shear, optical depth 1, r_h 1.1",
+                         .measured = t.balance->value,
+                         .error = t.balance->error,
+                         .expected = 1.0,
+                         .tolerance = 0.03,
+                         .tolerance_is = "3 %",
+                         .source = "energy is conserved in a steady state",
+                         .command = ring.command},
+                        {.what = "largest overlap in it, of a radius sum",
+                         .measured = largest_overlap(ring.snapshots.back()).depth,
+                         .expected = 0.0,
+                         .tolerance = 1e-11,
+                         .tolerance_is = "rounding",
+                         .source = "hard spheres",
+                         .command = ring.command}};
+  for (const char* const law : {R"({law="constant",value=0.5})", R"({law="bridges",scale=0.34})"})
+    rows.push_back(rest_of_pile(law));
+  return rows;
+}
+
 } // namespace
 
 std::vector<Subject> particle_subjects() {
   return {{"spins", "Spins", false, spins},
           {"quaoar", "Aggregates", false, quaoar},
-          {"aggregates", "Aggregates", false, aggregates}};
+          {"aggregates", "Aggregates", false, aggregates},
+          {"resting", "Contacts at rest", false, contacts_at_rest}};
 }
 
 } // namespace keeler::validation
