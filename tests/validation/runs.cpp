@@ -11,7 +11,7 @@ namespace keeler::validation {
 
 Ran run_example(const std::string& example, const std::vector<std::string>& overrides) {
   const test::TemporaryFolder work;
-  const std::string file = fmt::format(example.ends_with(".toml") ? "examples/{}" : "examples/{}/scene.toml", example);
+  const std::string file = fmt::format("examples/{}{}", example, example.ends_with(".toml") ? "" : "/scene.toml");
   RunRequests requests;
   RunOptions options;
   options.folder = work / "run";
