@@ -45,8 +45,8 @@ RunOptions run_options(const JobOptions& job, const std::vector<std::string>& ar
   return options;
 }
 
-// Of a run with self-gravity: what rests, or bounces where it should rest. With so many unresolved contacts the rings
-// of docs/hard-spheres.md lose 3 % more than the shear gives them.
+// Of a run with self-gravity: what rests, or bounces where it may have to rest. How much a share of unresolved contacts
+// loses depends on the kick interval too (docs/hard-spheres.md), so the balance of energy decides.
 void print_contacts_at_rest(const nlohmann::json& s) {
   constexpr double too_many = 0.1;
   const double unresolved = s["unresolved_contacts_share"].get<double>();
@@ -54,9 +54,11 @@ void print_contacts_at_rest(const nlohmann::json& s) {
     fmt::print("contacts at rest                    {} carry the kicks of gravity now\n",
                counted(resting.get<std::uint64_t>(), "pair"));
   else if (unresolved > too_many)
-    fmt::print("contacts at rest                    {} % of the contacts are slower than one kick of the pair's own "
-               "gravity, and lose what it gives: set gravity.resting_contacts to \"carried\", or kick more often\n",
-               figures(100.0 * unresolved, 2));
+    fmt::print(
+        "contacts at rest                    {} % of the contacts are slower than one kick of the pair's own "
+        "gravity: where the energy balance is above 1, set gravity.resting_contacts to \"carried\", or kick more "
+        "often\n",
+        figures(100.0 * unresolved, 2));
 }
 
 void print_summary(const std::string& folder, const nlohmann::json& s) {

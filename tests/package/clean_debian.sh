@@ -65,19 +65,19 @@ echo "=== keeler: the tutorial's first page"
 fresh_system
 cp "$packages"/*.deb "$system/tmp/"
 install_packages '/tmp/keeler_*.deb'
-mkdir "$system/root/tutorial"
+mkdir "$system/srv/tutorial"
 awk '/^## Your first patch/ { page = 1 } /^## A figure of your own/ { page = 0 }
      page && /^```toml/ { kind = "toml"; getline; print "cat >" $2 " <<\"END\"" }
      page && /^```sh/ { kind = "sh"; next }
      /^```$/ { if (kind == "toml") print "END"; kind = ""; next }
-     kind { print }' "$system/usr/share/doc/keeler/docs/tutorial.md" >"$system/root/tutorial/page"
-inside sh -c 'cd /root/tutorial && sh -ex page'
+     kind { print }' "$system/usr/share/doc/keeler/docs/tutorial.md" >"$system/srv/tutorial/page"
+inside sh -c 'cd /srv/tutorial && sh -ex page'
 for file in first/summary.json first/picture.png without/summary.json; do
-  [ -s "$system/root/tutorial/$file" ] || { echo "FAILED: the tutorial left no $file"; exit 1; }
+  [ -s "$system/srv/tutorial/$file" ] || { echo "FAILED: the tutorial left no $file"; exit 1; }
 done
 inside sh -c 'keeler check /usr/share/keeler/examples/a-ring-wakes/scene.toml'
-inside sh -c 'keeler report /root/tutorial/first'
-grep -q 'THREE.' "$system/root/tutorial/first/report.html" || { echo "FAILED: the report has no view"; exit 1; }
+inside sh -c 'keeler report /srv/tutorial/first'
+grep -q 'THREE.' "$system/srv/tutorial/first/report.html" || { echo "FAILED: the report has no view"; exit 1; }
 
 echo "=== python3-keeler, libkeeler-dev"
 install_packages '/tmp/python3-keeler_*.deb /tmp/libkeeler-dev_*.deb' g++ make
