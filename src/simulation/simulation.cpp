@@ -3,6 +3,7 @@
 #include <keeler/cells/order.hpp>
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/exact_sum.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
@@ -21,7 +22,7 @@ constexpr double sorting_interval = 0.1; // orbits
 
 // What a kick of all particles did to the energy.
 struct KickSums {
-  double work = 0.0, azimuthal_gain = 0.0;
+  ExactSum work, azimuthal_gain;
 
   KickSums& operator+=(const KickSums& more) {
     work += more.work;
@@ -274,7 +275,7 @@ void Simulation::half_kick(std::size_t f) {
   const Rotation rotation = boundary().rotation();
   const double half = 0.5 * state_.tick() * static_cast<double>(ticks_between_kicks(f));
   undisturbed_ = false;
-  const KickSums sums = ordered_total<KickSums>(state_.particles.size(), [&](KickSums& total, std::size_t k) {
+  const KickSums sums = exact_total<KickSums>(state_.particles.size(), [&](KickSums& total, std::size_t k) {
     state_.particles.prefetch_after(k);
     Body& body = state_.particles.bodies[k];
     const Vec3 dv = half * force.accelerations[k];
@@ -282,8 +283,8 @@ void Simulation::half_kick(std::size_t f) {
     total.azimuthal_gain += azimuthal_gain(body, dv, frequencies, rotation);
     kick(body.elements, dv, frequencies, rotation);
   });
-  force.work += sums.work;
-  force.azimuthal_gain += sums.azimuthal_gain;
+  force.work += sums.work.value();
+  force.azimuthal_gain += sums.azimuthal_gain.value();
   for (std::size_t k = 0; k < moonlet_places_.size(); ++k)
     force.moonlet_gains[k] += moonlet(k).mass * half * force.accelerations[moonlet_places_[k]].y();
 }
