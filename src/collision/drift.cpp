@@ -14,14 +14,6 @@ void CollisionTally::list_fields(FieldTable& table) {
   table.scalar("collision_azimuthal_gain", azimuthal_gain, "kg m^2 rad^-2", "sum of m c_y^2 gained by collisions");
 }
 
-void CollisionTally::add(const Contact& contact) {
-  ++(contact.fast ? fast : slow);
-  unresolved += contact.unresolved;
-  energy_lost += contact.energy_lost;
-  momentum_flux += contact.momentum_flux;
-  azimuthal_gain += contact.azimuthal_gain;
-}
-
 DriftPhase::DriftPhase(const CollisionSettings& settings, const Frequencies& frequencies, double orbital_frequency,
                        double step)
     : engine_(std::make_unique<DriftEngine>(settings, frequencies, orbital_frequency, step)) {}

@@ -143,6 +143,7 @@ void DriftEngine::collide(Particles& particles, const ShearingBox& box, double o
   step_at_hand_ = {&particles, &settings_,   frequencies_, orbital_frequency_, box,
                    offset,     -0.5 * step_, false,        kick_pull_,         rest_pull_};
   gave_up_ = 0;
+  sums_ = {};
   slow_pairs_.clear();
   prepare(undisturbed);
   reject();
@@ -162,6 +163,7 @@ void DriftEngine::collide(Particles& particles, const ShearingBox& box, double o
   if (!through_grid_)
     lists_.touched(touched_);
   tally.gave_up += gave_up_;
+  add_sums(tally);
   if (takes_records_)
     takes_records_->recorded(records_);
   if (particles.size())
@@ -170,11 +172,21 @@ void DriftEngine::collide(Particles& particles, const ShearingBox& box, double o
 }
 
 void DriftEngine::count(const Contact& contact, CollisionTally& tally) {
-  tally.add(contact);
+  ++(contact.fast ? tally.fast : tally.slow);
+  tally.unresolved += contact.unresolved;
+  sums_.energy_lost += contact.energy_lost;
+  sums_.momentum_flux += contact.momentum_flux;
+  sums_.azimuthal_gain += contact.azimuthal_gain;
   ++costs_.contacts;
   costs_.recontacts += contact.again;
   if (contact.slow > 0.0F)
     slow_pairs_.push_back({contact.low, contact.high, contact.slow});
+}
+
+void DriftEngine::add_sums(CollisionTally& tally) const {
+  tally.energy_lost += sums_.energy_lost.value();
+  tally.momentum_flux += sums_.momentum_flux.value();
+  tally.azimuthal_gain += sums_.azimuthal_gain.value();
 }
 
 // On several threads, when the result cannot tell and there are enough contacts for each.

@@ -8,6 +8,7 @@
 
 #include <keeler/collision/drift.hpp>
 #include <keeler/collision/neighbour_audit.hpp>
+#include <keeler/core/exact_sum.hpp>
 
 namespace keeler {
 
@@ -34,6 +35,10 @@ public:
 
 private:
   struct InPlace;
+  /// Over the contacts of the step.
+  struct Sums {
+    ExactSum energy_lost, momentum_flux, azimuthal_gain;
+  };
   /// A pair that may touch in the step: the lower id first, the image that of the higher.
   struct Candidate {
     std::uint32_t low, high;
@@ -43,6 +48,7 @@ private:
   void prepare(bool undisturbed);
   bool in_domains(const std::vector<Event>& first, CollisionTally& tally);
   void count(const Contact& contact, CollisionTally& tally);
+  void add_sums(CollisionTally& tally) const;
   template<class Body> void for_each_block(const Body& body) const;
   void reject();
   void put_in_order(std::vector<Candidate>& candidates) const;
@@ -76,6 +82,7 @@ private:
   std::vector<std::uint32_t> touched_; // who has been hit in the step, once each
   std::vector<SlowPair> slow_pairs_;   // that have touched in the step
   std::uint64_t gave_up_ = 0;
+  Sums sums_;
   DriftCosts costs_;
 };
 

@@ -9,14 +9,13 @@
 #include "wave_kernel.hpp"
 
 #include <keeler/core/error.hpp>
-#include <keeler/core/threads.hpp>
+#include <keeler/core/exact_sum.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/gravity/images.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 #include <vector>
 
 namespace keeler {
@@ -73,14 +72,9 @@ Tiling tiling_for(const MeshShape& shape, std::size_t count) {
 } // namespace
 
 double mass_spread(std::span<const double> masses) {
-  std::vector<double> sorted(masses.begin(), masses.end());
-  std::sort(sorted.begin(), sorted.end());
-  double sum = 0.0, squares = 0.0;
-  for (const double m : sorted) {
-    sum += m;
-    squares += m * m;
-  }
-  return sum > 0.0 ? std::sqrt(squares * static_cast<double>(sorted.size())) / sum : 1.0;
+  const double sum = exact_sum(masses.size(), [&](std::size_t k) { return masses[k]; });
+  const double squares = exact_sum(masses.size(), [&](std::size_t k) { return masses[k] * masses[k]; });
+  return sum > 0.0 ? std::sqrt(squares * static_cast<double>(masses.size())) / sum : 1.0;
 }
 
 // The errors of equal spheres, a little more than measured in fresh and clumped patches (docs/dev/gravity-fft.md); what
@@ -189,21 +183,33 @@ double FftSolver::Parts::mesh_potential(const GravityProblem& problem, double of
       }
     sums[m] = m == 0 ? 0.5 * sum : sum; // waves −m count as much
   });
-  double squares = 0.0;
   const ParticleRange all = places.range(0, places.count());
-  for (std::size_t k = 0; k < all.count; ++k)
-    squares += static_cast<double>(all.mass[k]) * static_cast<double>(all.mass[k]);
-  return std::accumulate(sums.begin(), sums.end(), 0.0) - 0.5 * squares * split.potential()[0] / radius;
+  const double squares =
+      exact_sum(all.count, [&](std::size_t k) { return static_cast<double>(all.mass[k]) * all.mass[k]; });
+  return exact_sum(sums.size(), [&](std::size_t m) { return sums[m]; }) - 0.5 * squares * split.potential()[0] / radius;
 }
 
 // Of the mesh that mesh_potential() had.
 NearForces::Energy FftSolver::Parts::near_energy(const GravityProblem& problem, double offset) {
   places.sort(problem, offset, tiling_for(mesh.shape(), problem.positions.size()));
-  return ordered_total<NearForces::Energy>(places.tiling().count(), [&](NearForces::Energy& total, std::size_t tile) {
-    for (std::size_t begin = places.first(tile); begin < places.first(tile + 1); begin += NearTargets::capacity)
-      total += near.energy(places, problem.box, offset, radius, begin,
-                           std::min(NearTargets::capacity, places.first(tile + 1) - begin));
+  struct Sums {
+    ExactSum potential, stress;
+
+    Sums& operator+=(const Sums& more) {
+      potential += more.potential;
+      stress += more.stress;
+      return *this;
+    }
+  };
+  const Sums sums = exact_total<Sums>(places.tiling().count(), [&](Sums& total, std::size_t tile) {
+    for (std::size_t begin = places.first(tile); begin < places.first(tile + 1); begin += NearTargets::capacity) {
+      const NearForces::Energy energy = near.energy(places, problem.box, offset, radius, begin,
+                                                    std::min(NearTargets::capacity, places.first(tile + 1) - begin));
+      total.potential += energy.potential;
+      total.stress += energy.stress;
+    }
   });
+  return {sums.potential.value(), sums.stress.value()};
 }
 
 FftSolver::FftSolver(const FftSettings& settings, InstructionSet set)
@@ -227,9 +233,8 @@ void FftSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accele
       [&](std::size_t tile) { sums[tile] = parts_->accelerate_tile(problem, offset, tile, accelerations); }, 4);
 
   // the gradient of the mesh's energy leaves a net force of the order of its error; attraction has none
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& sum : sums)
-    mean += sum / static_cast<double>(count); // masses are in units of their mean
+  const auto total = exact_total<ExactVec3>(sums.size(), [&](ExactVec3& all, std::size_t tile) { all += sums[tile]; });
+  const Vec3 mean = total.value() / static_cast<double>(count); // masses are in units of their mean
   parallel_for(count, [&](std::size_t k) { accelerations[k] -= mean; });
 }
 

@@ -105,9 +105,10 @@ NearForces::Energy NearForces::energy(const Places& places, const ShearingBox& b
   visit(places, box, offset, radius, begin, count, targets,
         [&](NearSources& sources) { kernels_.energy(targets, count, sources, inside_.data(), potential_.data()); });
   Energy sum;
-  for (std::size_t i = 0; i < count; ++i)
-    sum += {static_cast<double>(own.mass[i]) * static_cast<double>(targets.ax[i]),
-            static_cast<double>(own.mass[i]) * static_cast<double>(targets.ay[i])};
+  for (std::size_t i = 0; i < count; ++i) {
+    sum.potential += static_cast<double>(own.mass[i]) * static_cast<double>(targets.ax[i]);
+    sum.stress += static_cast<double>(own.mass[i]) * static_cast<double>(targets.ay[i]);
+  }
   return sum;
 }
 

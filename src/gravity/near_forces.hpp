@@ -27,12 +27,6 @@ public:
   struct Energy {
     double potential = 0.0; ///< Σ m_i m_j (1/u − cloud's potential), in mass_unit()² a cut-off radius
     double stress = 0.0;    ///< Σ m_i m_j u_x u_y (attraction over u), the same
-
-    Energy& operator+=(const Energy& more) {
-      potential += more.potential;
-      stress += more.stress;
-      return *this;
-    }
   };
   Energy energy(const Places& places, const ShearingBox& box, double offset, double radius, std::size_t begin,
                 std::size_t count) const;

@@ -1,6 +1,7 @@
 #include "places.hpp"
 
 #include <keeler/core/counting_sort.hpp>
+#include <keeler/core/exact_sum.hpp>
 #include <keeler/gravity/images.hpp>
 
 #include <algorithm>
@@ -45,7 +46,7 @@ void Places::sort(const GravityProblem& problem, double offset, const Tiling& ti
         });
       },
       16);
-  const double mass = ordered_sum(count, [&](std::size_t k) { return problem.masses[sorted_[k].index]; });
+  const double mass = exact_sum(count, [&](std::size_t k) { return problem.masses[k]; });
   mass_unit_ = mass > 0.0 ? mass / static_cast<double>(count) : 1.0;
   parallel_for(count, [&](std::size_t k) {
     const Place& p = sorted_[k];

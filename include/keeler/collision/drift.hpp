@@ -21,7 +21,7 @@ struct Contact;
 class DriftEngine;
 struct NeighbourAudit;
 
-/// What collisions did, summed in the order of the events. Energies in kg m² rad⁻².
+/// What collisions did; each step's sums are exact and rounded once. Energies in kg m² rad⁻².
 struct CollisionTally {
   std::uint64_t fast = 0;       ///< collisions faster than v_cut
   std::uint64_t slow = 0;       ///< contacts slower than v_cut, bounced elastically
@@ -31,7 +31,6 @@ struct CollisionTally {
   double momentum_flux = 0.0;   ///< Σ (x_j − x_i)(p_y gained by j), kg m² rad⁻¹: the collisional viscosity
   double azimuthal_gain = 0.0;  ///< what Σ m c_y² gained: the translational viscosity (docs/dev/diagnostics.md)
 
-  void add(const Contact& contact);
   void list_fields(FieldTable& table);
 };
 
