@@ -235,7 +235,8 @@ std::size_t OptimisticLoop::bytes() const {
   for (const Domain& d : domains_)
     total += (d.given.capacity() + d.aside.capacity() + d.deferred.capacity()) * sizeof(Event) + d.events.bytes() +
              d.barred.capacity() * sizeof(Barred) + d.changes.capacity() * sizeof(Change) +
-             d.spins.capacity() * sizeof(Vec3) + d.contacts.capacity() * sizeof(Contact) + d.is_rolled_back.capacity() +
+             d.spins.capacity() * sizeof(Vec3) + d.contacts.capacity() * sizeof(Contact) +
+             d.records.capacity() * sizeof(CollisionRecord) + d.is_rolled_back.capacity() +
              d.touched.capacity() * sizeof(std::uint32_t);
   return total;
 }

@@ -3,6 +3,7 @@
 #include <keeler/core/random.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/particles/order.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -56,8 +57,8 @@ ForceSample draw_force_sample(const GravityProblem& problem, std::size_t even, s
                               double edge_width) {
   ForceSample sample;
   RandomStream random(1, RandomPurpose::sample, 0);
-  std::vector<std::size_t> all(problem.positions.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
+  const std::vector<std::uint32_t> order = order_by_id(problem.ids);
+  std::vector<std::size_t> all(order.begin(), order.end());
   std::array<std::vector<std::size_t>, 4> beside;
   const double offset = folded_offset(problem.box, problem.offset);
   for (const std::size_t k : all) {

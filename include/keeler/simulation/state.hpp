@@ -25,7 +25,7 @@ struct EnergyStart {
 /// Where the energy of the random motions came from and went since the run began: with c the velocity beyond the shear,
 ///   energy − start = S (translational_flux + collisional_flux) + kick_work + resting_work − lost.
 /// The shear does its work by the three stresses; gravity's part comes in by the kicks, and the potential energy of the
-/// patch is its reservoir (diagnostics/gravity_stress.hpp). No term depends on the origin or on which image of a
+/// patch is its reservoir (gravity/solver.hpp). No term depends on the origin or on which image of a
 /// particle is inside the cell. Energies in kg m² rad⁻², fluxes in kg m² rad⁻¹.
 struct EnergyBalance {
   double energy = 0.0; ///< now: Σ m (½c² + ½ν²z²), and the spins' Σ ½ I (ω − Ω)² of rough particles

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <numeric>
 #include <set>
 
@@ -50,6 +51,19 @@ TEST_CASE("a sample of forces holds different particles, and those near each edg
     CHECK(depth[edge] > -rounding);
   }
   CHECK(draw_force_sample(problem, 1000, 50, 3.0).targets == sample.targets);
+}
+
+TEST_CASE("a sample has the same particles in any order of memory") {
+  const Patch patch = scattered(700);
+  Patch reversed = patch;
+  std::reverse(reversed.positions.begin(), reversed.positions.end());
+  std::reverse(reversed.masses.begin(), reversed.masses.end());
+  std::reverse(reversed.ids.begin(), reversed.ids.end());
+  const ForceSample sample = draw_force_sample(gravity_problem(patch), 100, 20, 3.0);
+  const ForceSample other = draw_force_sample(gravity_problem(reversed), 100, 20, 3.0);
+  REQUIRE(other.targets.size() == sample.targets.size());
+  for (std::size_t k = 0; k < sample.targets.size(); ++k)
+    CHECK(reversed.ids[other.targets[k]] == patch.ids[sample.targets[k]]);
 }
 
 TEST_CASE("a sample of more than there are is all of them") {
