@@ -10,12 +10,14 @@
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/io/snapshot.hpp>
+#include <keeler/states/broken.hpp>
 #include <keeler/states/clumped.hpp>
 #include <keeler/states/from_table.hpp>
 #include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 
 namespace keeler {
@@ -40,9 +42,18 @@ Patch make_patch(const Scene& scene, const TalkOption& talk) {
   return initial_patch(scene, [&line](const StartProgress& progress) { line.show(progress); });
 }
 
-ClumpedState evolve_until_clumped(const Scene& scene, const GenerateOptions& options) {
+// Beside the state that it would have become.
+std::filesystem::path broken_name(const std::filesystem::path& output, std::int64_t step) {
+  return output.parent_path() / fmt::format("{}_broken_{:06}.hdf", output.stem().string(), step);
+}
+
+ClumpedState evolve_until_clumped(const Scene& scene, const GenerateOptions& options, const SnapshotMeta& meta) {
   ProgressLine line(options.talk);
-  return clumped_state(scene, options.criterion, [&line](const ClumpingProgress& progress) { line.show(progress); });
+  try {
+    return clumped_state(scene, options.criterion, [&line](const ClumpingProgress& progress) { line.show(progress); });
+  } catch (const BrokenState& broken) {
+    throw InvariantError(save_broken(broken, broken_name(options.output, broken.step), meta));
+  }
 }
 
 void print_means(const char* name, const char* unit, const WindowMeans& means, const MeanBounds& bounds,
@@ -118,7 +129,7 @@ ExitCode generate(const GenerateOptions& options, const std::vector<std::string>
   SnapshotMeta meta{scene.resolved, collect_provenance(arguments)};
   Patch patch;
   if (options.clumped) {
-    ClumpedState state = unless_stopped(stopped, [&] { return evolve_until_clumped(scene, options); });
+    ClumpedState state = unless_stopped(stopped, [&] { return evolve_until_clumped(scene, options, meta); });
     patch = std::move(state.patch);
     meta.clumping = clumping_numbers(state.clumping);
     print_clumping(state.clumping);

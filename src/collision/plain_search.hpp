@@ -6,6 +6,8 @@
 #include <keeler/contacts/straight_line.hpp>
 #include <keeler/particles/store.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace keeler {
@@ -15,6 +17,15 @@ struct PlainPartner {
   Image image;
   friend bool operator==(const PlainPartner&, const PlainPartner&) = default;
 };
+
+/// No image of the other comes near, since its guiding centre is too far out or in. Nearly all are ruled out by this
+/// before anything that costs more.
+inline bool too_far_out(const Body& body, const Body& other, double allowance, double size_x) {
+  const auto bound = [](const Elements& el) { return std::fabs(el.e_cos) + std::fabs(el.e_sin); }; // of e
+  const double x = std::fabs(other.elements.guiding_x - body.elements.guiding_x);
+  return x < size_x && std::min(x, size_x - x) >
+                           body.radius + other.radius + allowance + bound(body.elements) + bound(other.elements);
+}
 
 /// The partners of the particle at that place, by the straight lines of the step. `start` gives the time (rad after the
 /// epoch) from which on a place has its present orbit; `offset` is the box's at the epoch.
@@ -28,6 +39,8 @@ std::vector<PlainPartner> plain_search(const Particles& particles, const Shearin
     if (j == place)
       continue;
     const Body& other = particles.bodies[j];
+    if (too_far_out(body, other, test.allowance, box.size_x))
+      continue;
     // x − X is never more than e, y − Y + S X t never more than 2e/κ
     const double e = body.elements.eccentricity() + other.elements.eccentricity();
     const double contact = body.radius + other.radius + test.allowance;

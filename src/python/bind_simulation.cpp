@@ -9,6 +9,7 @@
 #include <keeler/core/threads.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/runs/state_hash.hpp>
+#include <keeler/states/broken.hpp>
 #include <keeler/states/initial.hpp>
 
 #include <pybind11/stl.h>
@@ -70,8 +71,8 @@ std::pair<py::array, py::array> motion(const Held& held) {
   py::array_t<double> positions({static_cast<py::ssize_t>(count), py::ssize_t{3}});
   py::array_t<double> velocities({static_cast<py::ssize_t>(count), py::ssize_t{3}});
   double *const x = positions.mutable_data(), *const v = velocities.mutable_data();
-  const Rotation rotation = held.simulation().boundary().rotation();
   const Frequencies& frequencies = held.scene().planet.frequencies;
+  const Rotation rotation(frequencies, held.simulation().time_at_break());
   const double omega = held.scene().planet.orbital_frequency;
   require_own_threads();
   parallel_for(count, [&](std::size_t k) {
@@ -87,16 +88,25 @@ py::object spins(const Held& held) {
   const SimulationState& state = held.state();
   if (!state.particles.rough)
     return py::none();
-  const SpinTurn turn(-0.5 * state.step_length);
+  const SpinTurn turn(held.simulation().time_at_break());
   std::vector<Vec3> now(state.particles.size());
   for (std::size_t k = 0; k < now.size(); ++k)
     now[k] = turn.from_epoch(state.particles.spins[k]);
   return scaled_copy(now, held.scene().planet.orbital_frequency);
 }
 
+double orbits(const Held& held) {
+  const Simulation& simulation = held.simulation();
+  return simulation.orbits() + (simulation.time_at_break() + 0.5 * simulation.state().step_length) / two_pi;
+}
+
+// What a file may have of it.
 PythonSnapshot snapshot(const Held& held) {
   require_own_threads();
-  return {held.simulation().patch(), held.scene().resolved};
+  Patch patch = held.simulation().patch_at_break();
+  if (held.broken())
+    keep_possible(patch);
+  return {std::move(patch), held.scene().resolved};
 }
 
 // --- changes
@@ -122,7 +132,7 @@ void change_spins(Particles& particles, const Doubles& spins, const py::object& 
 // other and back, a bit or two is lost.
 void replace(Held& held, const Doubles& positions, const Doubles& velocities, const Doubles& radii,
              const Doubles& masses, const std::optional<Doubles>& changed_spins) {
-  const SimulationState& state = held.state();
+  const SimulationState& state = held.whole_state();
   const std::size_t count = state.particles.size();
   const double omega = held.scene().planet.orbital_frequency;
   const auto [old_positions, old_velocities] = motion(held);
@@ -151,8 +161,7 @@ py::array contacts(Held& held) {
 }
 
 void save(const Held& held, const std::filesystem::path& file) {
-  const SimulationState& state = held.state();
-  store_checkpoint(file, state, held.scene());
+  store_checkpoint(file, held.whole_state(), held.scene());
 }
 
 py::dict counts(const Held& held) {
@@ -177,10 +186,10 @@ void bind_simulation(py::module_& module) {
                   [](const std::filesystem::path& folder) { return from_stored(load_newest_checkpoint(folder)); })
       .def("__len__", [](const Held& held) { return held.state().particles.size(); })
       .def_property_readonly("scene", &Held::scene, py::return_value_policy::reference_internal)
-      .def_property_readonly("orbits", [](const Held& held) { return held.simulation().orbits(); })
+      .def_property_readonly("orbits", &orbits)
       .def_property_readonly(
           "box", [](const Held& held) { return std::pair(held.state().box.size_x, held.state().box.size_y); })
-      .def_property_readonly("shear_offset", [](const Held& held) { return held.state().boundary_offset(); })
+      .def_property_readonly("shear_offset", [](const Held& held) { return held.simulation().offset_at_break(); })
       .def_property_readonly("tick", [](const Held& held) { return held.state().step; })
       .def_property_readonly(
           "epoch",
@@ -188,7 +197,7 @@ void bind_simulation(py::module_& module) {
       .def_property_readonly("state_hash",
                              [](const Held& held) {
                                require_own_threads();
-                               return state_hash(held.state(), held.scene());
+                               return state_hash(held.whole_state(), held.scene());
                              })
       .def("advance", &Held::advance, py::arg("until_tick"))
       .def("elements", &elements)

@@ -5,6 +5,8 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/stopwatch.hpp>
 
+#include <fmt/format.h>
+
 namespace keeler::python {
 namespace {
 
@@ -42,9 +44,19 @@ const Simulation& HeldSimulation::simulation() const {
     refuse_at_work();
   if (given_up_)
     throw Error(ExitCode::run_time,
-                "a step of this simulation was given up on request, and its state with it; load the "
-                "last one that was saved, or begin again");
+                "a step of this simulation was given up, and its state with it; load the last one that was saved, or "
+                "begin again");
   return *simulation_;
+}
+
+const SimulationState& HeldSimulation::whole_state() const {
+  const SimulationState& state = simulation().state();
+  if (broken())
+    throw Error(ExitCode::run_time,
+                fmt::format("this simulation cannot go on (an invariant broke: {}); look at its "
+                            "state with snapshot(), load the last one that was saved, or begin again",
+                            broken_));
+  return state;
 }
 
 void HeldSimulation::make_way_for_views() {
@@ -74,14 +86,17 @@ void HeldSimulation::step_until(std::int64_t until_tick) {
 }
 
 void HeldSimulation::advance(std::int64_t until_tick) {
-  simulation(); // fit to go on
+  whole_state();
   const AtWork here(at_work_);
   require_own_threads();
   make_way_for_views();
   while (simulation_->state().step < until_tick) {
     try {
       step_until(until_tick);
-    } catch (...) { // an unfinished step: interrupted, an invariant broke, or there is no memory
+    } catch (const InvariantError& error) {
+      broken_ = error.what();
+      throw;
+    } catch (...) { // an unfinished step: interrupted, or there is no memory
       given_up_ = true;
       raise_interrupts();
       throw;
@@ -91,7 +106,7 @@ void HeldSimulation::advance(std::int64_t until_tick) {
 }
 
 void HeldSimulation::replace(Particles particles) {
-  simulation();
+  whole_state();
   const AtWork here(at_work_);
   require_own_threads();
   make_way_for_views();
@@ -103,7 +118,7 @@ void HeldSimulation::record_contacts(std::optional<double> minimum_speed) {
   if (at_work_)
     refuse_at_work();
   if (minimum_speed)
-    simulation(); // fit to go on; recording ends in any state
+    whole_state(); // recording ends in any state
   simulation_->drift().observe(nullptr);
   recorder_.reset();
   if (!minimum_speed)

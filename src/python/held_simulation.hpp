@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 
 namespace keeler::python {
 
@@ -31,9 +32,15 @@ public:
 
   const Scene& scene() const { return scene_; }
 
-  /// Throws Error (run_time) when it is at work in another thread, or had to give up a step.
+  /// To be looked at. Throws Error (run_time) when it is at work in another thread, or a step was given up.
   const Simulation& simulation() const;
   const SimulationState& state() const { return simulation().state(); }
+
+  /// Of a simulation that can go on. Throws Error (run_time) where none can: see simulation(), or an invariant broke.
+  const SimulationState& whole_state() const;
+
+  /// An invariant broke in a step: the state stands at Simulation::time_at_break(), and can be looked at.
+  bool broken() const { return !broken_.empty(); }
 
   /// Steps until that tick, a multiple of the scene's kick interval. Interrupts are raised at the next such multiple;
   /// a second one gives up the step at hand, and then nothing more can be asked.
@@ -60,6 +67,7 @@ private:
   std::unique_ptr<ContactRecorder> recorder_;
   std::atomic<bool> at_work_ = false;
   bool given_up_ = false;
+  std::string broken_; // why
 };
 
 } // namespace keeler::python

@@ -1,66 +1,21 @@
 #include "broken_state.hpp"
 
-#include <keeler/core/words.hpp>
-#include <keeler/io/snapshot.hpp>
-#include <keeler/states/possible.hpp>
+#include <keeler/states/broken.hpp>
 
 #include <fmt/format.h>
 
 namespace keeler {
-namespace {
-
-// Returns how many are left out.
-std::size_t keep_possible(Patch& patch) {
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < patch.size(); ++k) {
-    if (!particle_fault(patch, k).empty())
-      continue;
-    patch.positions[kept] = patch.positions[k];
-    patch.velocities[kept] = patch.velocities[k];
-    patch.radii[kept] = patch.radii[k];
-    patch.masses[kept] = patch.masses[k];
-    patch.ids[kept] = patch.ids[k];
-    if (!patch.spins.empty())
-      patch.spins[kept] = patch.spins[k];
-    ++kept;
-  }
-  const std::size_t left_out = patch.size() - kept;
-  patch.positions.resize(kept);
-  patch.velocities.resize(kept);
-  patch.radii.resize(kept);
-  patch.masses.resize(kept);
-  patch.ids.resize(kept);
-  patch.spins.resize(patch.spins.empty() ? 0 : kept);
-  return left_out;
-}
-
-// "the state is in …", or why it is not.
-std::string save(Patch patch, const std::filesystem::path& file, const Scene& scene, Recorder& recorder) {
-  const std::size_t left_out = keep_possible(patch);
-  if (patch.size() == 0)
-    return "no particle of the state can be saved";
-  write_snapshot(file, patch, {scene.resolved, recorder.provenance()});
-  return fmt::format("the state is in '{}'{}; look at it with keeler info, render or analyze", file.string(),
-                     left_out > 0 ? fmt::format(", without {} that no snapshot may have", counted(left_out, "particle"))
-                                  : "");
-}
-
-} // namespace
 
 void fail_broken(const InvariantError& error, const Simulation& simulation, const Scene& scene, const RunFolder& folder,
                  Recorder& recorder) {
-  const std::int64_t step = simulation.state().step;
-  const Patch patch = simulation.patch_at_break();
-  const std::filesystem::path file = folder.broken(step);
-  std::string saved;
+  const BrokenState broken(error, simulation);
+  std::string told = save_broken(broken, folder.broken(broken.step), {scene.resolved, recorder.provenance()});
   try {
-    saved = save(patch, file, scene, recorder);
-    recorder.log("broken", {{"step", step}, {"orbits", patch.time_orbits}, {"reason", error.what()}});
-  } catch (const IoError& not_saved) {
-    saved = fmt::format("the state could not be saved: {}", not_saved.what());
+    recorder.log("broken", {{"step", broken.step}, {"orbits", broken.patch.time_orbits}, {"reason", error.what()}});
+  } catch (const IoError& not_logged) {
+    told += fmt::format("; the log does not tell: {}", not_logged.what());
   }
-  throw InvariantError(
-      fmt::format("{}; this was at step {}, orbit {}, and {}", error.what(), step, figures(patch.time_orbits), saved));
+  throw InvariantError(told);
 }
 
 } // namespace keeler

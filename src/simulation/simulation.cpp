@@ -341,11 +341,14 @@ Patch Simulation::patch() const {
 }
 
 Patch Simulation::patch_at_break() const {
+  return patch_of(state_.particles, offset_at_break(), time_at_break());
+}
+
+double Simulation::offset_at_break() const {
   if (!drifting_)
-    return patch();
-  const double after = drift_.reached(), size = state_.box.size_y;
-  const double offset = state_.epoch_offset() + state_.box.shear * state_.box.size_x * after;
-  return patch_of(state_.particles, offset - std::floor(offset / size) * size, after);
+    return state_.boundary_offset();
+  const double offset = state_.epoch_offset() + state_.box.shear * state_.box.size_x * time_at_break();
+  return offset - std::floor(offset / state_.box.size_y) * state_.box.size_y;
 }
 
 ParticleMeans Simulation::means() const {

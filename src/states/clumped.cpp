@@ -6,6 +6,7 @@
 #include <keeler/diagnostics/viscosity.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/simulation/simulation.hpp>
+#include <keeler/states/broken.hpp>
 #include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
@@ -63,6 +64,14 @@ private:
   GravityMeter meter_;
 };
 
+void advance(Simulation& simulation) {
+  try {
+    simulation.advance();
+  } catch (const InvariantError& error) {
+    throw BrokenState(error, simulation);
+  }
+}
+
 std::string difference(const char* name, const WindowMeans& means, const MeanBounds& bounds) {
   return fmt::format("{} by {:.0f} % with errors of {:.0f} % (settled is {:.0f} %, with errors of {:g} %)", name,
                      100.0 * means.change(), 100.0 * means.error(), 100.0 * means.tolerance, 100.0 * bounds.error);
@@ -108,7 +117,7 @@ ClumpedState clumped_state(const Scene& scene, const SettleCriterion& criterion,
   ClumpingProgress p;
   p.criterion = criterion;
   for (;;) {
-    simulation.advance();
+    advance(simulation);
     p.orbits = clumping.orbits = simulation.orbits();
     const bool sample = simulation.state().step % every == 0;
     if (sample) {

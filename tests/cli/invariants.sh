@@ -59,5 +59,50 @@ runs 0 generate "$work/row.toml" --from-table "$work/row.csv" -o "$work/row.hdf"
 runs 3 run "$work/row.toml" --set particles.count=3 --from "$work/row.hdf" -o "$work/storm" --threads 2
 grep -q 'an event storm' "$work/err" || fail "no storm: $(tail -n 1 "$work/err")"
 looked_at "an event storm" "$work/storm"
+[ -f "$work/storm/broken_000000.hdf" ] || fail "not in the first step: $(cd "$work/storm" && echo broken_*)"
 refuses_with 4 "no checkpoint of a storm" "no checkpoint" resume "$work/storm"
+
+# A resumed run, and what is always on: the energy budget, before each row. In a checkpoint whose books were changed, and
+# that was sealed again, nothing else is wrong.
+runs 0 run "$work/scene.toml" --set time.end=0.1 -o "$work/books"
+/usr/bin/python3 -B "$source_dir/tests/cli/change_checkpoint.py" "$(newest_checkpoint "$work/books")" collision_energy_lost 1.001 ||
+  fail "the checkpoint could not be changed"
+cp -r "$work/books" "$work/full"
+runs 3 resume "$work/books" --until 0.2
+grep -q 'the energy budget leaves .* of its sums open' "$work/err" || fail "changed books: $(tail -n 1 "$work/err")"
+looked_at "changed books" "$work/books"
+
+# No room for the broken state: one line tells both, and no half file is left. A limit on file size stands for the disk.
+(
+  ulimit -f 20
+  exec "$keeler" resume "$work/full" --until 0.2 >"$work/out" 2>"$work/err"
+)
+code=$?
+[ "$code" -eq 3 ] || fail "no room for a broken state: exit $code: $(cat "$work/err")"
+one_line "no room for a broken state" "the energy budget leaves"
+one_line "no room for a broken state" "and the state could not be saved: cannot write"
+compgen -G "$work/full/broken_*" && fail "no room for a broken state: a file was left"
+compgen -G "$work/full/*.tmp" && fail "no room for a broken state: a part of a file was left"
+
+# A state that is made by evolving it: the broken one is left beside the name that it was to have.
+clump=(generate "$work/scene.toml" --clumped -o "$work/wakes.hdf" --set time.step=0.1 --set particles.density=110
+  --set 'box.size=[20,20]' --set particles.count=70 --set particles.velocity_dispersion=1000)
+runs 3 "${clump[@]}"
+sed -i '$!d' "$work/err"
+one_line "a broken start" "cross the box"
+one_line "a broken start" "the state is in '$work/wakes_broken_000000.hdf'"
+[ -e "$work/wakes.hdf" ] && fail "a broken start was written as a start"
+runs 0 info "$work/wakes_broken_000000.hdf"
+runs 0 render "$work/wakes_broken_000000.hdf" -o "$work/broken.png"
+runs 0 analyze "$work/wakes_broken_000000.hdf"
+rm "$work/wakes_broken_000000.hdf"
+(
+  ulimit -f 4
+  exec "$keeler" "${clump[@]}" >"$work/out" 2>"$work/err"
+)
+code=$?
+[ "$code" -eq 3 ] || fail "no room for a broken start: exit $code: $(cat "$work/err")"
+sed -i '$!d' "$work/err"
+one_line "no room for a broken start" "and the state could not be saved: cannot write"
+compgen -G "$work/wakes*" && fail "no room for a broken start: a file was left"
 report

@@ -61,6 +61,9 @@ public:
   /// The same when advance() has thrown: of the last boundary, or, in the middle of a drift, of the time of the last
   /// contact that was carried out.
   Patch patch_at_break() const;
+  /// That time, in rad from the epoch of the elements, and the box's shear offset then.
+  double time_at_break() const { return drifting_ ? drift_.reached() : -0.5 * state_.step_length; }
+  double offset_at_break() const;
 
   /// The particles at this boundary between steps, as forces see them; not to be kept beyond the next step.
   Boundary boundary() const;

@@ -41,8 +41,8 @@ struct ClumpingProgress {
 /// Evolves the scene's initial state, by the scene's step and gravity, until its wakes have settled; the scene's end
 /// time and schedules do not matter. Same scene and criterion, same state, for any number of threads. Throws UsageError
 /// for a scene without gravity or whose wakes could not be seen, and for a limit of orbits below which nothing settles;
-/// Error (run_time) when they have not settled by then; Interrupted (interrupt.hpp), and what initial_patch() and
-/// Simulation throw.
+/// Error (run_time) when they have not settled by then; BrokenState (broken.hpp) when a step comes to what cannot be;
+/// Interrupted (interrupt.hpp), and what initial_patch() and Simulation throw.
 ClumpedState clumped_state(const Scene& scene, const SettleCriterion& criterion = {},
                            const std::function<void(const ClumpingProgress&)>& progress = {});
 

@@ -155,7 +155,8 @@ class Simulation:
         return array[np.argsort(self.ids)]
 
     def snapshot(self):
-        """The state as a Snapshot: a copy in SI, in the order of the ids."""
+        """The state as a Snapshot: a copy in SI, in the order of the ids. After an InvariantError without the particles that
+        no snapshot may have, of numbers that are not finite."""
         return Snapshot(self._core.snapshot(), f"the simulation at orbit {self.orbits:g}")
 
     def analyze(self):
@@ -176,7 +177,9 @@ class Simulation:
         to whole kick intervals, where kicks and drifts meet. ``progress`` shows a line on standard error.
 
         Ctrl-C is heeded at the next such time, with KeyboardInterrupt, and the run can go on; a second one gives up the
-        step at hand, and then the simulation is lost. Raises InvariantError when a step comes to what cannot be.
+        step at hand, and then the simulation is lost. Raises InvariantError when a step comes to what cannot be. The
+        simulation then does not go on, but its arrays and snapshot() can be looked at: they are of the last contact
+        in the step, or of the step's end.
         """
         core, scene = self._core, self._core.scene
         interval = scene.kick_interval

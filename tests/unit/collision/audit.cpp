@@ -1,8 +1,10 @@
 // The audit of neighbours: nothing is missed by lists, by the grid or after hits; and what is missed is told.
+#include "plain_search.hpp"
 #include "unit/collision/ring.hpp"
 #include "unit/collision/same_bits.hpp"
 
 #include <keeler/collision/neighbour_audit.hpp>
+#include <keeler/core/random.hpp>
 #include <keeler/core/threads.hpp>
 
 #include <doctest/doctest.h>
@@ -70,4 +72,34 @@ TEST_CASE("lists that were kept although particles have moved elsewhere: the aud
     CHECK(audit.missed->distance < 2.0);
   }
   CHECK(told > 3);
+}
+
+TEST_CASE("the plain search rules nobody out by the guiding centre of whom an image comes near") {
+  constexpr double size_x = 50.0, allowance = 0.1;
+  RandomStream random(3, RandomPurpose::sample, 0);
+  const auto draw = [&](double low, double high) { return low + (high - low) * random.uniform(); };
+  const auto body = [&] {
+    Body b;
+    b.elements.guiding_x = draw(-60.0, 60.0); // hits may carry it out of the cell
+    b.elements.e_cos = draw(-4.0, 4.0);
+    b.elements.e_sin = draw(-4.0, 4.0);
+    b.radius = draw(0.1, 3.0);
+    return b;
+  };
+  int ruled_out = 0, near = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const Body a = body(), b = body();
+    const double x = b.elements.guiding_x - a.elements.guiding_x,
+                 reach = a.radius + b.radius + allowance + a.elements.eccentricity() + b.elements.eccentricity();
+    bool comes_near = false;
+    for (int nx = -4; nx <= 4; ++nx)
+      comes_near |= std::fabs(x + nx * size_x) <= reach;
+    near += comes_near ? 1 : 0;
+    if (!too_far_out(a, b, allowance, size_x))
+      continue;
+    ++ruled_out;
+    CHECK_FALSE(comes_near);
+  }
+  CHECK(near > 5000);
+  CHECK(ruled_out > 3000);
 }
