@@ -19,7 +19,8 @@ RUNS = SOURCE / "runs" / "hard-spheres"
 PAGE = SOURCE / "docs" / "hard-spheres.md"
 FIGURE = SOURCE / "docs" / "figures" / "hard-spheres.svg"
 PROGRAM = SOURCE / "build" / "default" / "keeler"
-HILL = {159.0: 0.60, 376.0: 0.80, 591.0: 0.93, 978.0: 1.10, 1270.0: 1.20}  # r_h of each density, in this planet's A ring
+# r_h of each density, in this planet's A ring
+HILL = {159.0: 0.60, 202.0: 0.65, 376.0: 0.80, 591.0: 0.93, 978.0: 1.10, 1270.0: 1.20}
 
 
 def sweep(grid, more):
@@ -77,6 +78,25 @@ def states():
     ordered = sorted(rows("states"), key=lambda r: (float(r["particles.optical_depth"]), density(r), r["carried"]))
     return table(["τ", "r_h"] + STATE_HEAD,
                  [[number(r["particles.optical_depth"]), f"{HILL[density(r)]:.2f}"] + state_cells(r) for r in ordered])
+
+
+def over_seeds(found, column, digits=4):
+    """The mean of the seeds ± how far one of them scatters."""
+    values = numpy.array([float(r[column]) for r in found if r[column] not in ("", None)])
+    if len(values) < 2:
+        return number(values[0], digits) if len(values) else "–"
+    return f"{number(values.mean(), digits)} ± {number(values.std(ddof=1), 2)}"
+
+
+def wakes():
+    alike = {}
+    for row in rows("wakes"):
+        alike.setdefault((density(row), row["carried"]), []).append(row)
+    columns = (("energy_balance", 4), ("dispersion_x_r_omega", 3), ("total_viscosity_r2_omega", 3),
+               ("collisions_per_particle_orbit", 3), ("resting", 2), ("cost", 3))
+    return table(["r_h", "contacts at rest", "seeds"] + STATE_HEAD[1:-2] + STATE_HEAD[-1:],
+                 [[f"{HILL[key[0]]:.2f}", "carried" if key[1] else "bounced", str(len(found))]
+                  + [over_seeds(found, column, digits) for column, digits in columns] for key, found in sorted(alike.items())])
 
 
 def kicks():
@@ -157,10 +177,10 @@ def main():
     more = sys.argv[1:]
     if more not in ([], ["--tables"]):
         sys.exit("usage: scripts/hard-spheres [--tables]")
-    for grid in ("states", "kicks", "cuts", "pile"):
+    for grid in ("states", "wakes", "kicks", "cuts", "pile"):
         sweep(grid, more)
     text = PAGE.read_text()
-    for name, made in (("states", states), ("kicks", kicks), ("cuts", cuts), ("pile", pile)):
+    for name, made in (("states", states), ("wakes", wakes), ("kicks", kicks), ("cuts", cuts), ("pile", pile)):
         text, count = re.subn(rf"(<!-- {name} -->\n).*?(<!-- end -->)", lambda m: m[1] + made() + m[2], text, flags=re.S)
         if count != 1:
             sys.exit(f"{PAGE}: the marks of the table '{name}' are not there once")

@@ -10,6 +10,7 @@
 #include <keeler/scene/derived.hpp>
 #include <keeler/scene/doubts.hpp>
 #include <keeler/scene/estimate.hpp>
+#include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -18,6 +19,8 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace keeler {
 namespace {
@@ -32,6 +35,15 @@ struct CheckOptions {
 // Of a scene with self-gravity and a fixed step.
 double kick_interval_orbits(const Scene& scene) {
   return scene.time.step * static_cast<double>(scene.gravity->kick_every);
+}
+
+using Lines = std::vector<std::string>;
+
+// Of a start file: how large its patch is, and of what density, is known to it alone.
+std::optional<PatchScale> scale_of_start(const Scene& scene) {
+  if (!scene.start_from)
+    return std::nullopt;
+  return scale_of(initial_patch(scene));
 }
 
 // None when only a start file knows the particles.
@@ -51,7 +63,8 @@ nlohmann::ordered_json as_json(const RunEstimate& estimate) {
 }
 
 // Numbers that only the start file knows are null.
-nlohmann::ordered_json as_json(const Scene& scene, const Derived& d, const std::optional<RunEstimate>& cost) {
+nlohmann::ordered_json as_json(const Scene& scene, const Derived& d, const std::optional<RunEstimate>& cost,
+                               const Lines& said) {
   const auto known = [&](double value) -> nlohmann::ordered_json {
     return d.particles_known ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
   };
@@ -74,7 +87,7 @@ nlohmann::ordered_json as_json(const Scene& scene, const Derived& d, const std::
   json["estimated_s"] = cost ? nlohmann::ordered_json(cost->total()) : nlohmann::ordered_json();
   json["estimate"] = cost ? as_json(*cost) : nlohmann::ordered_json();
   json["notices"] = scene.notices;
-  json["doubts"] = doubts(scene);
+  json["doubts"] = said;
   json["costs"] = d.particles_known ? dear_choices(scene) : std::vector<std::string>();
   return json;
 }
@@ -137,13 +150,23 @@ void print_bodies(const Scene& scene) {
   }
 }
 
-void print_text(const Scene& scene, const Derived& d, const std::optional<RunEstimate>& cost) {
+// Before the file is read a scene has to say whether contacts carry.
+void print_start(const Scene& scene, const PatchScale& start) {
+  fmt::print("box and particles  from {}\n", *scene.start_from);
+  fmt::print("Hill parameter r_h {:.3g} of its particles\n",
+             hill_parameter(start.density, distance_from_saturn(scene.planet)));
+  if (scene.gravity && scene.gravity->carries())
+    fmt::print("contacts at rest   carried (as is the default of any start from a file, whatever its r_h)\n");
+}
+
+void print_text(const Scene& scene, const Derived& d, const std::optional<RunEstimate>& cost,
+                const std::optional<PatchScale>& start, const Lines& said) {
   if (!scene.title.empty())
     fmt::print("{}\n", scene.title);
-  if (d.particles_known)
-    print_particles(scene, d);
+  if (start)
+    print_start(scene, *start);
   else
-    fmt::print("box and particles  from {}\n", *scene.start_from);
+    print_particles(scene, d);
   print_bodies(scene);
   print_steps(scene, d);
   if (d.particles_known)
@@ -152,7 +175,7 @@ void print_text(const Scene& scene, const Derived& d, const std::optional<RunEst
     print_estimate(*cost);
   for (const std::string& notice : scene.notices)
     fmt::print("note: {}\n", notice);
-  for (const std::string& doubt : doubts(scene))
+  for (const std::string& doubt : said)
     fmt::print("note: {}\n", doubt);
   if (d.particles_known)
     for (const std::string& line : dear_choices(scene))
@@ -169,12 +192,14 @@ ExitCode check(const CheckOptions& options) {
   const Scene scene = options.scene.load();
   if (scene.start_from && !std::filesystem::exists(*scene.start_from))
     throw IoError(fmt::format("start.from names '{}', which does not exist", *scene.start_from));
+  const std::optional<PatchScale> start = scale_of_start(scene);
+  const Lines said = start ? doubts(scene, *start) : doubts(scene);
   const Derived derived = derive(scene);
   const std::optional<RunEstimate> cost = estimate(scene, derived);
   if (options.json)
-    fmt::print("{}\n", as_json(scene, derived, cost).dump(2));
+    fmt::print("{}\n", as_json(scene, derived, cost, said).dump(2));
   else
-    print_text(scene, derived, cost);
+    print_text(scene, derived, cost, start, said);
   return ExitCode::done;
 }
 

@@ -6,6 +6,7 @@
 #include <keeler/orbit/toomre.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace keeler {
 
@@ -16,6 +17,11 @@ double optical_depth(const Patch& patch) {
 
 double surface_density(const Patch& patch) {
   return total_mass(patch) / patch.box.area();
+}
+
+double material_density(const Patch& patch) {
+  const double cubes = ordered_sum(patch.size(), [&](std::size_t k) { return std::pow(patch.radii[k], 3); });
+  return total_mass(patch) / (4.0 / 3.0 * pi * cubes);
 }
 
 double midplane_filling(const Patch& patch) {

@@ -252,8 +252,8 @@ std::string RunPage::scene_section() const {
   std::string words;
   for (const std::string& notice : scene_->notices)
     words += note("Note: " + notice);
-  for (const std::string& doubt :
-       doubts(*scene_, {last.size(), last.box.size_x, last.box.size_y, critical_wavelength(last)}))
+  for (const std::string& doubt : doubts(
+           *scene_, {last.size(), last.box.size_x, last.box.size_y, critical_wavelength(last), material_density(last)}))
     words += note("Note: " + doubt);
   return section("scene", "The scene",
                  derived_table(*scene_, last) + words +

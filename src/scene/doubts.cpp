@@ -43,21 +43,22 @@ void doubt_room_for_wakes(const PatchScale& patch, Lines& lines) {
                     figures(spans, 2), enough, enough));
 }
 
-void doubt_kicks(const Scene& scene, Lines& lines) {
+// `density`: of the particles, 0 where only a start file knows it.
+void doubt_kicks(const Scene& scene, double density, Lines& lines) {
   constexpr double resolved = 0.02; // orbits
   const double apart = scene.time.step * static_cast<double>(scene.kick_interval());
   if (apart > resolved)
     lines.push_back(fmt::format("kicks are {} orbits apart: beyond {:g} self-gravity is hardly resolved in time",
                                 figures(apart, 3), resolved));
-  if (!scene.gravity->by_pairs() || !(scene.particles.density > 0.0))
+  if (!scene.gravity->by_pairs() || !(density > 0.0))
     return;
   // Contacts at rest carry kicks that move a surface by up to an eighth of a radius sum. At the surface of a pile of
   // 300 spheres gravity is eleven times that of a pair, which is G ρ π/3 times the radius sum.
   constexpr double most = 0.125, surface = 11.0;
   const double interval = two_pi * apart;
-  const double pull = newton_g(scene.planet.orbital_frequency) * scene.particles.density * pi / 3.0;
+  const double pull = newton_g(scene.planet.orbital_frequency) * density * pi / 3.0;
   const double longest = std::sqrt(most / (surface * pull)) / two_pi;
-  const double r_h = hill_parameter(scene.particles.density, distance_from_saturn(scene.planet));
+  const double r_h = hill_parameter(density, distance_from_saturn(scene.planet));
   if (r_h > 1.1 && surface * pull * interval * interval > most)
     lines.push_back(
         fmt::format("kicks are {} orbits apart: aggregates last at r_h {} and cannot rest between kicks that far "
@@ -75,7 +76,7 @@ std::vector<std::string> doubts(const Scene& scene, const PatchScale& patch) {
   if (scene.gravity && scene.gravity->by_pairs())
     doubt_room_for_wakes(patch, lines);
   if (scene.gravity)
-    doubt_kicks(scene, lines);
+    doubt_kicks(scene, scene.start_from ? patch.density : scene.particles.density, lines);
   return lines;
 }
 
@@ -85,7 +86,7 @@ std::vector<std::string> doubts(const Scene& scene) {
                           critical_wavelength(scene.surface_density(), scene.planet)});
   Lines lines;
   if (scene.gravity)
-    doubt_kicks(scene, lines);
+    doubt_kicks(scene, 0.0, lines);
   return lines;
 }
 

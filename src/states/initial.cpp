@@ -163,7 +163,7 @@ Patch patch_from_snapshot(Patch patch, const std::string& path, const Scene& sce
 }
 
 PatchScale scale_of(const Patch& patch) {
-  return {patch.size(), patch.box.size_x, patch.box.size_y, critical_wavelength(patch)};
+  return {patch.size(), patch.box.size_x, patch.box.size_y, critical_wavelength(patch), material_density(patch)};
 }
 
 Patch initial_patch(const Scene& scene, const std::function<void(const StartProgress&)>& progress) {

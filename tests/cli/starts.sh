@@ -55,6 +55,11 @@ aggregate() { echo "particles.aggregate=[{ count = $1, filling = $2, place = [10
 accepts "an aggregate" generate "$work/scene.toml" --set "$(aggregate 200 0.5)" -o "$work/pile.hdf"
 runs 0 analyze "$work/pile.hdf"
 prints "an aggregate overlaps nothing" "largest overlap      0 of"
+runs 0 generate "$work/scene.toml" --set particles.density=3000 --set "$(aggregate 200 0.5)" -o "$work/heavy.hdf"
+runs 0 check "$work/scene.toml" --set "start.from='$work/heavy.hdf'" --set 'gravity={solver="direct",kick_every=20}'
+prints "check of a start from a file" "Hill parameter r_h 1.22 of its particles"
+prints "check of a start from a file" "contacts at rest   carried (as is the default of any start from a file"
+prints "check of a start from a file" "note: kicks are 0.02 orbits apart: aggregates last at r_h 1.2 and cannot rest"
 runs 0 check "$work/scene.toml" --set "$(aggregate 200 0.5)"
 prints "check" "aggregate 1        ids "
 refuses "too full an aggregate" "particles.aggregate[1]: 12 particles cannot be packed at random to a filling of 0.64" \

@@ -11,6 +11,9 @@ double optical_depth(const Patch& patch);
 /// Σ = Σ m / area, kg m^-2.
 double surface_density(const Patch& patch);
 
+/// Of the particles themselves, kg m^-3: their mass over their volume.
+double material_density(const Patch& patch);
+
 /// Fraction of the plane z = 0 that spheres cut: Σ π (r² − z²) over those that reach it, / area.
 double midplane_filling(const Patch& patch);
 

@@ -8,11 +8,12 @@
 
 namespace keeler {
 
-/// How large a patch is.
+/// How large a patch is, and of what.
 struct PatchScale {
   std::size_t particle_count = 0;
   double size_x = 0.0, size_y = 0.0; ///< m
   double lambda_cr = 0.0;            ///< m
+  double density = 0.0;              ///< of the particles themselves, kg m^-3: asked where the scene does not give it
 };
 
 /// A line each, with numbers; none where nothing is amiss.

@@ -4,6 +4,7 @@
 #include <keeler/io/snapshot.hpp>
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -96,6 +97,23 @@ TEST_CASE("doubts about a patch have numbers, and a large one none") {
   CHECK(doubts(scene({"box.size_in_wavelengths=[8,8]", "particles.optical_depth=0.5",
                       "particles.velocity_dispersion=3.5"}))
             .empty());
+}
+
+TEST_CASE("of a start from a file the kick interval is judged by the file's own density") {
+  const std::string file = (std::filesystem::temp_directory_path() / "keeler-test-dense.hdf").string();
+  const auto said_of = [&](double density) {
+    write_snapshot(file, initial_patch(scene({fmt::format("particles.density={}", density)})), {scene().resolved, {}});
+    const Scene from = scene({"time.step=1e-3", "gravity.kick_every=20"}, file);
+    const PatchScale scale = scale_of(initial_patch(from));
+    std::filesystem::remove(file);
+    CHECK(scale.density == doctest::Approx(density).epsilon(1e-12));
+    const std::vector<std::string> lines = doubts(from, scale);
+    return std::count_if(lines.begin(), lines.end(), [](const std::string& line) {
+      return line.find("kicks are 0.02 orbits apart: aggregates last at r_h 1.3 and cannot rest") == 0;
+    });
+  };
+  CHECK(said_of(1500.0) == 1);
+  CHECK(said_of(600.0) == 0);
 }
 
 TEST_CASE("a share of a start file's particles is kept, the same ones of any state") {
