@@ -109,7 +109,7 @@ std::vector<Key> gravity_keys() {
        .fallback = "0.6",
        .unit = "1",
        .meaning = "a cell is opened when its size exceeds this times its distance",
-       .range = {.low = 0, .high = 1, .low_open = true},
+       .range = {.low = 0.01, .high = 1}, // below, it is the sum over all pairs, and dearer
        .only_with = {"solver", {"tree"}}},
       {.path = "images",
        .type = choice,

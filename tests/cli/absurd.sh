@@ -21,7 +21,8 @@ for absurd in planet.orbital_frequency=1e-12 planet.orbital_frequency=1e200 plan
   refused_by_all "$absurd" "${absurd%%=*}" "$work/planet.toml" --set "$absurd"
 done
 for absurd in particles.density=1e12 particles.density=1e-300 particles.velocity_dispersion=1e6 particles.sizes.radius=1e100 \
-  particles.sizes.radius=1e9 'box.size=[1e9,50]' time.end=1e300 time.end=1e18 particles.count=1e18; do
+  particles.sizes.radius=1e9 'box.size=[1e9,50]' time.end=1e300 time.end=1e18 particles.count=1e18 \
+  gravity.opening_angle=1e-300; do
   refused_by_all "$absurd" "${absurd%%=*}" "$work/scene.toml" --set "$absurd"
 done
 
