@@ -105,6 +105,12 @@ def kicks():
                  [[f"{HILL[density(r)]:.2f}", f"{int(r['gravity.kick_every'])}e-3"] + state_cells(r) for r in ordered])
 
 
+def dense():
+    ordered = sorted(rows("dense"), key=lambda r: float(r["particles.optical_depth"]))
+    return table(["τ", "kick interval, orbits"] + STATE_HEAD,
+                 [[number(r["particles.optical_depth"]), f"{int(r['gravity.kick_every'])}e-3"] + state_cells(r) for r in ordered])
+
+
 def cuts():
     ordered = sorted(rows("cuts"), key=lambda r: (-float(r["time.step"]), float(r["collisions.elastic_below"]), r["carried"]))
     return table(["step, orbits", "elastic below, rΩ"] + STATE_HEAD,
@@ -177,10 +183,10 @@ def main():
     more = sys.argv[1:]
     if more not in ([], ["--tables"]):
         sys.exit("usage: scripts/hard-spheres [--tables]")
-    for grid in ("states", "wakes", "kicks", "cuts", "pile"):
+    for grid in ("states", "wakes", "kicks", "dense", "cuts", "pile"):
         sweep(grid, more)
     text = PAGE.read_text()
-    for name, made in (("states", states), ("wakes", wakes), ("kicks", kicks), ("cuts", cuts), ("pile", pile)):
+    for name, made in (("states", states), ("wakes", wakes), ("kicks", kicks), ("dense", dense), ("cuts", cuts), ("pile", pile)):
         text, count = re.subn(rf"(<!-- {name} -->\n).*?(<!-- end -->)", lambda m: m[1] + made() + m[2], text, flags=re.S)
         if count != 1:
             sys.exit(f"{PAGE}: the marks of the table '{name}' are not there once")
