@@ -23,8 +23,8 @@ struct ForceSample {
   std::array<std::size_t, 4> edges{}; ///< how many stand at each edge; the same particle may stand at two
 };
 
-/// Draws at random, always the same ids of the same particles, in whatever order these are: `even` of all particles, and
-/// `at_each_edge` of those within `edge_width` (m) of an edge, or as many as there are.
+/// Draws at random, always the same ids of the same particles, in whatever order these are: `even` of all particles,
+/// and `at_each_edge` of those within `edge_width` (m) of an edge, or as many as there are.
 ForceSample draw_force_sample(const GravityProblem& problem, std::size_t even, std::size_t at_each_edge,
                               double edge_width);
 
