@@ -1,6 +1,6 @@
 #include <keeler/diagnostics/particle_means.hpp>
 
-#include <keeler/core/exact_sum.hpp>
+#include <keeler/core/threads.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@ namespace keeler {
 namespace {
 
 struct Sums {
-  ExactSum mass, energy, azimuthal, product, heights;
-  ExactVec3 velocities, squares;
+  double mass = 0.0, energy = 0.0, azimuthal = 0.0, product = 0.0, heights = 0.0;
+  Vec3 velocities = Vec3::Zero(), squares = Vec3::Zero();
 
   Sums& operator+=(const Sums& more) {
     mass += more.mass;
@@ -25,8 +25,8 @@ struct Sums {
 };
 
 struct SpinSums {
-  ExactSum mass, inertia, energy, squares;
-  ExactVec3 spins, moments; // Σ m ω, Σ I ω
+  double mass = 0.0, inertia = 0.0, energy = 0.0, squares = 0.0;
+  Vec3 spins = Vec3::Zero(), moments = Vec3::Zero(); // Σ m ω, Σ I ω
 
   SpinSums& operator+=(const SpinSums& more) {
     mass += more.mass;
@@ -43,7 +43,7 @@ SpinMeans spin_means(const Particles& particles, double after) {
   if (!particles.rough)
     return {};
   const SpinTurn turn(after);
-  const SpinSums sums = exact_total<SpinSums>(particles.size(), [&](SpinSums& total, std::size_t k) {
+  const SpinSums sums = ordered_total<SpinSums>(particles.size(), [&](SpinSums& total, std::size_t k) {
     const Body& body = particles.bodies[k];
     const double inertia = 0.4 * body.mass * body.radius * body.radius;
     const Vec3 spin = turn.from_epoch(particles.spins[k]);
@@ -54,27 +54,24 @@ SpinMeans spin_means(const Particles& particles, double after) {
     total.spins += body.mass * spin;
     total.moments += inertia * spin;
   });
-  const double mass = sums.mass.value(), energy = sums.energy.value(), inertia = sums.inertia.value();
-  const Vec3 mean = sums.spins.value() / mass, moment = sums.moments.value(), frame(0.0, 0.0, 1.0);
+  const Vec3 mean = sums.spins / sums.mass, frame(0.0, 0.0, 1.0);
   const auto energy_about = [&](const Vec3& spin) { // Σ ½ I (ω − spin)²
-    return energy - moment.dot(spin) + 0.5 * inertia * spin.squaredNorm();
+    return sums.energy - sums.moments.dot(spin) + 0.5 * sums.inertia * spin.squaredNorm();
   };
   return {energy_about(frame), energy_about(mean), mean,
-          std::sqrt(std::max(0.0, sums.squares.value() / mass - mean.squaredNorm()))};
+          std::sqrt(std::max(0.0, sums.squares / sums.mass - mean.squaredNorm()))};
 }
 
 } // namespace
 
-// Variances in one pass: squares are taken about the velocity of one of the particles, the same in any order, so that a
-// common motion of all does not cancel digits.
+// Variances in one pass: squares are taken about the velocity of one of the particles, so that a common motion of all
+// does not cancel digits.
 ParticleMeans particle_means(const Particles& particles, const Frequencies& frequencies, double after) {
   if (particles.size() == 0)
     return {};
   const Rotation rotation(frequencies, after);
-  const auto first = std::min_element(particles.ids.begin(), particles.ids.end()) - particles.ids.begin();
-  const Vec3 near =
-      peculiar_velocity(particles.bodies[static_cast<std::size_t>(first)].elements, frequencies, rotation);
-  const Sums sums = exact_total<Sums>(particles.size(), [&](Sums& total, std::size_t k) {
+  const Vec3 near = peculiar_velocity(particles.bodies[0].elements, frequencies, rotation);
+  const Sums sums = ordered_total<Sums>(particles.size(), [&](Sums& total, std::size_t k) {
     particles.prefetch_after(k);
     const Body& body = particles.bodies[k];
     const Elements& el = body.elements;
@@ -88,15 +85,14 @@ ParticleMeans particle_means(const Particles& particles, const Frequencies& freq
     total.velocities += momentum;
     total.squares += momentum.cwiseProduct(v);
   });
-  const double mass = sums.mass.value();
-  const Vec3 mean = sums.velocities.value() / mass;
-  const Vec3 variance = (sums.squares.value() / mass - mean.cwiseProduct(mean)).cwiseMax(0.0); // not below by rounding
-  return {mass,
-          sums.energy.value(),
-          sums.azimuthal.value(),
+  const Vec3 mean = sums.velocities / sums.mass;
+  const Vec3 variance = (sums.squares / sums.mass - mean.cwiseProduct(mean)).cwiseMax(0.0); // not below by rounding
+  return {sums.mass,
+          sums.energy,
+          sums.azimuthal,
           variance.cwiseSqrt(),
-          sums.product.value() / mass - mean.x() * mean.y(),
-          std::sqrt(sums.heights.value() / mass),
+          sums.product / sums.mass - mean.x() * mean.y(),
+          std::sqrt(sums.heights / sums.mass),
           spin_means(particles, after)};
 }
 

@@ -15,7 +15,7 @@ struct SpinMeans {
   double dispersion = 0.0;    ///< √⟨|ω − ⟨ω⟩|²⟩, rad⁻¹
 };
 
-/// Weighted by mass. The bits follow from the particles, not from their order in memory or the threads.
+/// Weighted by mass. The bits follow from the particles and their order in memory, not from the threads.
 struct ParticleMeans {
   double mass = 0.0;              ///< Σ m, kg
   double epicyclic_energy = 0.0;  ///< Σ m (½κ²e² + ½ν²i²), kg m² rad⁻²
