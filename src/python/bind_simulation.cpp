@@ -104,8 +104,8 @@ double orbits(const Held& held) {
 PythonSnapshot snapshot(const Held& held) {
   require_own_threads();
   Patch patch = held.simulation().patch_at_break();
-  if (held.broken())
-    keep_possible(patch);
+  if (held.broken() && keep_possible(patch) > 0 && patch.size() == 0)
+    throw Error(ExitCode::run_time, "no particle of this broken simulation can be in a snapshot; look at its arrays");
   return {std::move(patch), held.scene().resolved};
 }
 

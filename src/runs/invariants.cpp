@@ -227,10 +227,11 @@ std::string fault_of_forces(const Scene& scene, const Boundary& boundary, const 
   std::vector<std::size_t> sample;
   for (std::size_t k = 0; k < std::min(sampled, count); ++k)
     sample.push_back(count <= sampled ? k : static_cast<std::size_t>(random.uniform() * static_cast<double>(count)));
-  ImageSettings images = {.rings = tolerance < rough ? 2 : 1};
-  if (const bool pairs = scene.gravity->solver == GravitySettings::Solver::direct ||
-                         scene.gravity->solver == GravitySettings::Solver::tree;
-      pairs && !scene.gravity->images.far)
+  // what sums over pairs itself is held against two rings, so that its own images are not their own judge
+  const bool pairs = scene.gravity->solver == GravitySettings::Solver::direct ||
+                     scene.gravity->solver == GravitySettings::Solver::tree;
+  ImageSettings images = {.rings = pairs || tolerance < rough ? 2 : 1};
+  if (pairs && !scene.gravity->images.far)
     images = scene.gravity->images;
   const std::vector<Vec3> exact =
       sampled_accelerations(problem, sample, images, choose_instruction_set(), Precision::single_precision);

@@ -38,7 +38,7 @@ private:
 
   static constexpr std::size_t most_terms = 128;
 
-  std::array<double, most_terms> terms_; // the first ones wait to be taken
+  std::array<double, most_terms> terms_{}; // the first ones wait to be taken
   std::size_t waiting_ = 0;
   std::array<std::int64_t, 67> words_{}; // in units of 2^(32 w − 1075)
   int taken_ = 0;                        // since the last carry
@@ -67,10 +67,11 @@ struct ExactVec3 {
 /// total of its own. Total holds exact sums and has +=.
 template<class Total, class Add> Total exact_total(std::size_t count, const Add& add) {
   constexpr std::size_t block = 1024;
-  std::vector<Total> totals(static_cast<std::size_t>(threads()));
+  std::vector<Total> totals(count <= block ? 1 : static_cast<std::size_t>(threads()));
   parallel_for((count + block - 1) / block,
                [&](std::size_t b) {
-                 Total& total = totals[static_cast<std::size_t>(omp_get_thread_num())];
+                 // a loop on the calling thread alone has the number that this one has in a region of the caller's
+                 Total& total = totals[static_cast<std::size_t>(omp_get_thread_num()) % totals.size()];
                  for (std::size_t k = b * block; k < std::min(count, (b + 1) * block); ++k)
                    add(total, k);
                },

@@ -156,7 +156,7 @@ class Simulation:
 
     def snapshot(self):
         """The state as a Snapshot: a copy in SI, in the order of the ids. After an InvariantError without the particles that
-        no snapshot may have, of numbers that are not finite."""
+        no snapshot may have: of numbers that are not finite, or out of all bounds."""
         return Snapshot(self._core.snapshot(), f"the simulation at orbit {self.orbits:g}")
 
     def analyze(self):

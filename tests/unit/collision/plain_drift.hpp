@@ -5,6 +5,7 @@
 
 #include <keeler/collision/drift.hpp>
 #include <keeler/contacts/finders.hpp>
+#include <keeler/core/exact_sum.hpp>
 
 #include <cmath>
 #include <map>
@@ -22,6 +23,7 @@ public:
   std::vector<CollisionRecord> collide(Particles& particles, const ShearingBox& box, double offset,
                                        CollisionTally& tally) {
     particles_ = &particles, box_ = box, offset_ = offset;
+    lost_ = flux_ = gain_ = {};
     begin();
     last_.assign(particles.size(), -0.5 * step_);
     pending_.clear();
@@ -44,6 +46,9 @@ public:
           look(j, k);
       }
     }
+    tally.energy_lost += lost_.value();
+    tally.momentum_flux += flux_.value();
+    tally.azimuthal_gain += gain_.value();
     return records;
   }
 
@@ -124,14 +129,14 @@ private:
     const Vec3 place = state_at(a.elements, f_, rotation).position + a.radius * normal;
     double gain = azimuthal_gain(a, -impulse / a.mass, f_, rotation);
     gain += azimuthal_gain(b, impulse / b.mass, f_, rotation);
-    tally.azimuthal_gain += gain;
+    gain_ += gain;
     kick(a.elements, -impulse / a.mass, f_, rotation);
     kick(b.elements, impulse / b.mass, f_, rotation);
     last_[places.first] = last_[places.second] = time;
     ++(after.fast ? tally.fast : tally.slow);
     const double lost = rubbed + 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
-    tally.energy_lost += lost;
-    tally.momentum_flux += relative.position.x() * impulse.y();
+    lost_ += lost;
+    flux_ += relative.position.x() * impulse.y();
     records.push_back(
         {time, low_id, high_id, image, speed, after.fast, tangential_speed, lost, a.radius + b.radius, place});
     return true;
@@ -147,6 +152,7 @@ private:
   double offset_ = 0.0;
   std::vector<double> last_; // velocity change in this step
   std::map<Key, Places> pending_;
+  ExactSum lost_, flux_, gain_; // over the step
 };
 
 } // namespace keeler::test

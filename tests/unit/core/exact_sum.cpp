@@ -132,6 +132,19 @@ TEST_CASE("neither order nor grouping nor threads count") {
   set_threads(1);
 }
 
+TEST_CASE("sums within a parallel region of the caller's") {
+  double sums[4] = {};
+#pragma omp parallel num_threads(4)
+  {
+    set_threads(1);
+    for (const std::size_t count : {std::size_t{10}, std::size_t{5000}})
+      sums[omp_get_thread_num()] += exact_sum(count, [](std::size_t k) { return static_cast<double>(k); });
+  }
+  for (const double sum : sums)
+    CHECK(sum == 45.0 + 12497500.0);
+  set_threads(1);
+}
+
 TEST_CASE("more of one sign than waits for a carry, and as many merged") {
   const double term = 1.0 - 0x1p-53; // all bits set
   ExactSum sum, merged;
