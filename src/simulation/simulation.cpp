@@ -179,7 +179,8 @@ void Simulation::carry_on_resting() {
              [&](const RestingStep& step) { resting_.carry_on(state_.resting, step, state_.collisions); });
 }
 
-// Memory order follows the places every tenth of an orbit, for speed alone.
+// Memory order follows the places every tenth of an orbit. That depends on the tick alone: a restart goes on with the
+// same order, and with the same bits of the means of a row.
 void Simulation::sort_when_due() {
   const std::int64_t longest = scene_.time.automatic ? TimeSettings::longest : 1;
   const auto intervals = std::ceil(sorting_interval / (static_cast<double>(longest) * scene_.time.step));
