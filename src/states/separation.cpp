@@ -1,6 +1,6 @@
 #include "separation.hpp"
 
-#include "neighbour_lists.hpp"
+#include "sphere_neighbours.hpp"
 
 #include <keeler/core/threads.hpp>
 
@@ -125,7 +125,7 @@ private:
   double offset_;
   double ball_radius_ = std::numeric_limits<double>::infinity();
   std::vector<Vec3> moves_, listed_places_;
-  NeighbourLists lists_;
+  SphereNeighbours lists_;
   double tether_ = first_tether;
 };
 

@@ -41,10 +41,10 @@ void run_until(Simulation& simulation, double orbits, PhaseProgress& progress) {
 
 } // namespace
 
-Growth grow(const Scene& scene, double orbits, PhaseProgress& progress) {
+GrownScene grow(const Scene& scene, double orbits, PhaseProgress& progress) {
   progress.begin("the state that is probed", orbits);
   Simulation simulation(coarse(scene), initial_patch(scene));
-  Growth growth;
+  GrownScene growth;
   const double last = std::min(1.0, 0.5 * orbits), begin = bench_seconds();
   double begin_last = begin, from = 0.0;
   std::uint64_t contacts = 0;

@@ -9,7 +9,7 @@
 
 namespace keeler {
 
-struct Growth {
+struct GrownScene {
   std::vector<Patch> states;   ///< of its last orbit, the last one at its end: in a small box wakes come and go
   double orbits = 0.0;         ///< its age
   double contact_rate = 0.0;   ///< of a particle, in the last orbit
@@ -18,6 +18,6 @@ struct Growth {
 };
 
 /// Evolves the scene's start on all threads, with an automatic step and the cheapest solver that is of use.
-Growth grow(const Scene& scene, double orbits, PhaseProgress& progress);
+GrownScene grow(const Scene& scene, double orbits, PhaseProgress& progress);
 
 } // namespace keeler

@@ -79,7 +79,7 @@ int usual_drifts(double interval, double contact_rate) {
 }
 
 // The longest interval that meets the tolerance, by bisection; if none does, the shortest.
-void choose_kicks(Tuning& tuning, const Scene& scene, const Growth& growth, double physics_error,
+void choose_kicks(Tuning& tuning, const Scene& scene, const GrownScene& growth, double physics_error,
                   PhaseProgress& progress) {
   progress.begin("kick intervals", std::ceil(std::log2(kicks_of_tenth.size())));
   std::size_t meeting = 0, missing = kicks_of_tenth.size(); // of the intervals the first `meeting` do
@@ -119,7 +119,8 @@ std::size_t cheapest_step(const std::vector<StepProbe>& steps) {
   return best;
 }
 
-void choose_step(Tuning& tuning, const Scene& scene, const Growth& growth, double interval, PhaseProgress& progress) {
+void choose_step(Tuning& tuning, const Scene& scene, const GrownScene& growth, double interval,
+                 PhaseProgress& progress) {
   tuning.steps = probe_steps(scene, growth.states, interval, drift_candidates(interval, growth.contact_rate), progress);
   tuning.chosen_step = cheapest_step(tuning.steps);
 }
@@ -133,7 +134,7 @@ void choose_threads(Tuning& tuning) {
 }
 
 // The way to the state that was probed costs what it did, times what the settings change at its end.
-void predict(Tuning& tuning, const Scene& scene, const Growth& growth) {
+void predict(Tuning& tuning, const Scene& scene, const GrownScene& growth) {
   const double an_orbit = tuning.steps[tuning.chosen_step].seconds, whole = orbits_of(scene);
   const double until_probed = std::min(1.0, whole / growth.orbits) * growth.seconds * an_orbit / growth.seconds_at_end;
   const double steps = until_probed + std::max(0.0, whole - growth.orbits) * an_orbit;
@@ -170,7 +171,7 @@ Tuning tune(const Scene& scene, const TuneSettings& settings) {
                      "its step by \"keeler study step\" or take another gravity.solver");
   PhaseProgress progress(settings.progress);
   const double usual = scene.gravity ? 4.0 : 8.0; // wakes stand and have passed their overshoot
-  const Growth growth = grow(scene, std::min(settings.orbits.value_or(usual), orbits_of(scene)), progress);
+  const GrownScene growth = grow(scene, std::min(settings.orbits.value_or(usual), orbits_of(scene)), progress);
   const OneThread measured;
   Tuning tuning;
   tuning.particles = growth.states.back().size();

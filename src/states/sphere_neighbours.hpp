@@ -16,7 +16,7 @@ struct Neighbour {
   Image image;
 };
 
-class NeighbourLists {
+class SphereNeighbours {
 public:
   /// All pairs whose distance is below (1 + skin) of the sum of their radii: complete until a sphere has moved by
   /// `skin` of its radius.

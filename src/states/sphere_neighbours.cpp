@@ -1,4 +1,4 @@
-#include "neighbour_lists.hpp"
+#include "sphere_neighbours.hpp"
 
 #include "size_levels.hpp"
 
@@ -47,7 +47,7 @@ Blocks find_pairs(const std::vector<Sphere>& spheres, const ShearingBox& box, do
 
 } // namespace
 
-void NeighbourLists::build(const std::vector<Sphere>& spheres, const ShearingBox& box, double offset, double skin) {
+void SphereNeighbours::build(const std::vector<Sphere>& spheres, const ShearingBox& box, double offset, double skin) {
   Blocks blocks = find_pairs(spheres, box, offset, skin);
   first_.assign(spheres.size() + 2, 0); // a counting sort: first_[i + 1] is where the next neighbour of i goes
   for (const std::vector<Pair>& block : blocks)
