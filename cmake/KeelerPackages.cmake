@@ -10,7 +10,8 @@ set(KEELER_CMAKE_PACKAGES
   "fmt::fmt fmt 9"
   "nlohmann_json::nlohmann_json nlohmann_json 3.11"
   "tomlplusplus::tomlplusplus tomlplusplus"
-  "CLI11::CLI11 CLI11 2.1")
+  "CLI11::CLI11 CLI11 2.1"
+  "MPI::MPI_C MPI COMPONENTS C") # with KEELER_MPI alone
 
 # Target and module of pkg-config, one entry a package.
 set(KEELER_PKGCONFIG_MODULES

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace keeler {
 namespace {
@@ -88,6 +89,26 @@ ExactSum& ExactSum::operator+=(const ExactSum& more) {
   taken_ = 1; // less than a term
   not_finite_ += other.not_finite_;
   return *this;
+}
+
+std::vector<std::uint64_t> ExactSum::words() const {
+  ExactSum size = *this;
+  size.take_terms();
+  size.carry();
+  std::vector<std::uint64_t> words(size.words_.begin(), size.words_.end()); // of the sign modulo 2⁶⁴
+  words.push_back(size.not_finite_ == 0.0 ? 0 : 1);
+  return words;
+}
+
+ExactSum ExactSum::of_words(std::span<const std::uint64_t> words) {
+  ExactSum sum;
+  assert(words.size() == sum.words_.size() + 1);
+  for (std::size_t w = 0; w < sum.words_.size(); ++w)
+    sum.words_[w] = static_cast<std::int64_t>(words[w]);
+  sum.carry();
+  if (words.back() > 0)
+    sum.not_finite_ = std::numeric_limits<double>::quiet_NaN();
+  return sum;
 }
 
 double ExactSum::value() const {

@@ -1,14 +1,5 @@
-#include <keeler/gravity/fft.hpp>
+#include "fft_parts.hpp"
 
-#include "force_split.hpp"
-#include "mesh.hpp"
-#include "near_forces.hpp"
-#include "places.hpp"
-#include "self_force.hpp"
-#include "sheared_transform.hpp"
-#include "wave_kernel.hpp"
-
-#include <keeler/core/error.hpp>
 #include <keeler/core/exact_sum.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/gravity/images.hpp>
@@ -21,9 +12,6 @@
 namespace keeler {
 namespace {
 
-// Distance of planes in spacings. The layer is thin and its vertical pull coherent: an error along z shows most.
-constexpr double flatness = 0.5;
-
 // k times the spacing in the corner of a square mesh.
 constexpr double highest_wave = 1.4142135623730951 * pi;
 
@@ -31,42 +19,6 @@ constexpr double highest_wave = 1.4142135623730951 * pi;
 // clumped ones.
 double band_for(double cut) {
   return std::min(1.25 + 2.0 * cut, 17.0);
-}
-
-// Particles between a lowest and a highest one.
-struct Extent {
-  double low, high;
-};
-
-Extent extent_of(std::span<const Vec3> positions) {
-  if (!std::all_of(positions.begin(), positions.end(), [](const Vec3& p) { return p.allFinite(); }))
-    throw InvariantError("a particle stands at no finite place; take a shorter time.step");
-  Extent z{positions.front().z(), positions.front().z()};
-  for (const Vec3& p : positions) {
-    z.low = std::min(z.low, p.z());
-    z.high = std::max(z.high, p.z());
-  }
-  return z;
-}
-
-// The spacing, made larger where the mesh would hold very many nodes a particle: few particles in a large box, or some
-// that have strayed far from the layer. Clouds grow with it, so the error stays what it was, and neighbours cost more.
-double affordable_spacing(const ShearingBox& box, double spacing, const Extent& z, std::size_t count) {
-  const double most = 0x1p21 + 64.0 * static_cast<double>(count);
-  const auto nodes = [&](double step) {
-    return box.size_x / step * (box.size_y / step) * ((z.high - z.low) / (flatness * step) + 4.0);
-  };
-  while (nodes(spacing) > most)
-    spacing *= 1.1;
-  return spacing;
-}
-
-// About 8 particles a tile: few enough to be close together, and enough to share the search for their neighbours.
-Tiling tiling_for(const MeshShape& shape, std::size_t count) {
-  const double cells = static_cast<double>(shape.columns) * static_cast<double>(shape.rows);
-  const double side = std::round(std::sqrt(8.0 * cells / static_cast<double>(count)));
-  const double longest = static_cast<double>(std::max(shape.columns, shape.rows));
-  return {shape.columns, shape.rows, static_cast<std::size_t>(std::clamp(side, 1.0, longest))};
 }
 
 } // namespace
@@ -93,37 +45,22 @@ double cut_for(double force_error, double mass_spread) {
   return std::clamp(after->cut * std::pow(after->error / wanted, 1.0 / slope), 2.0, 16.0);
 }
 
-struct FftSolver::Parts {
-  Parts(const FftSettings& chosen, InstructionSet set)
-      : settings(chosen), kernels(mesh_kernels(set)), split(band_for(chosen.cut)),
-        waves(split, chosen.cut / flatness, highest_wave * flatness), near(split, set) {}
+FftSolver::Parts::Parts(const FftSettings& chosen, InstructionSet set)
+    : settings(chosen), kernels(mesh_kernels(set)), split(band_for(chosen.cut)),
+      waves(split, chosen.cut / flatness, highest_wave * flatness), near(split, set) {}
 
-  void spread(const GravityProblem& problem, double offset);
-  void fill_mesh(const GravityProblem& problem, double offset);
-  double mesh_potential(const GravityProblem& problem, double offset);
-  NearForces::Energy near_energy(const GravityProblem& problem, double offset);
-  Vec3 accelerate_tile(const GravityProblem& problem, double offset, std::size_t tile, std::span<Vec3> accelerations);
-
-  FftSettings settings;
-  MeshKernels kernels;
-  ForceSplit split;
-  WaveKernel waves;
-  NearForces near;
-  Places places;
-  Mesh mesh;
-  ShearedTransform transform;
-  double radius = 0.0; // of the clouds in this solve, m
-  SelfForce self{};
-};
+MeshShape FftSolver::Parts::choose_mesh(const ShearingBox& box, const Extent& z, std::size_t count) {
+  const double spacing = affordable_spacing(box, settings.spacing, z, count);
+  radius = settings.cut * spacing;
+  const MeshShape shape = mesh_shape(box, spacing, flatness * spacing, z.low, z.high);
+  self = self_force(shape, split, radius);
+  return shape;
+}
 
 // Sorts the particles and spreads their masses on the mesh.
 void FftSolver::Parts::spread(const GravityProblem& problem, double offset) {
   const std::size_t count = problem.positions.size();
-  const Extent z = extent_of(problem.positions);
-  const double spacing = affordable_spacing(problem.box, settings.spacing, z, count);
-  radius = settings.cut * spacing;
-  const MeshShape shape = mesh_shape(problem.box, spacing, flatness * spacing, z.low, z.high);
-  self = self_force(shape, split, radius);
+  const MeshShape shape = choose_mesh(problem.box, extent_of(problem.positions), count);
   places.sort(problem, offset, tiling_for(shape, count));
   mesh.reset(shape);
   mesh.spread(places, kernels);
@@ -140,11 +77,10 @@ void FftSolver::Parts::fill_mesh(const GravityProblem& problem, double offset) {
   });
 }
 
-// Returns Σ m a over the tile, in units of mass.
 Vec3 FftSolver::Parts::accelerate_tile(const GravityProblem& problem, double offset, std::size_t tile,
                                        std::span<Vec3> accelerations) {
   const double unit = problem.newton_g * places.mass_unit(), near_unit = unit / (radius * radius);
-  const std::size_t first = places.first(tile), in_tile = places.first(tile + 1) - first;
+  const std::size_t first = places.first(tile), in_tile = places.end(tile) - first;
   const std::size_t groups = (in_tile + NearTargets::capacity - 1) / NearTargets::capacity;
   Vec3 sum = Vec3::Zero();
   for (std::size_t g = 0; g < groups; ++g) {
@@ -202,9 +138,10 @@ NearForces::Energy FftSolver::Parts::near_energy(const GravityProblem& problem, 
     }
   };
   const Sums sums = exact_total<Sums>(places.tiling().count(), [&](Sums& total, std::size_t tile) {
-    for (std::size_t begin = places.first(tile); begin < places.first(tile + 1); begin += NearTargets::capacity) {
-      const NearForces::Energy energy = near.energy(places, problem.box, offset, radius, begin,
-                                                    std::min(NearTargets::capacity, places.first(tile + 1) - begin));
+    const std::size_t end = places.end(tile);
+    for (std::size_t begin = places.first(tile); begin < end; begin += NearTargets::capacity) {
+      const NearForces::Energy energy =
+          near.energy(places, problem.box, offset, radius, begin, std::min(NearTargets::capacity, end - begin));
       total.potential += energy.potential;
       total.stress += energy.stress;
     }
@@ -222,6 +159,9 @@ std::string FftSolver::name() const {
 }
 
 void FftSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) {
+  if constexpr (Ranks::possible)
+    if (problem.ranks.many())
+      return parts_->accelerate_share(problem, accelerations);
   const std::size_t count = problem.positions.size();
   if (count == 0)
     return;

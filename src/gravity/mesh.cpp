@@ -49,16 +49,18 @@ MeshShape mesh_shape(const ShearingBox& box, double spacing, double plane_spacin
   return shape;
 }
 
-void Mesh::reset(const MeshShape& shape) {
+void Mesh::reset(const MeshShape& shape, const IndexRange& columns) {
   shape_ = shape;
-  const std::size_t columns = shape.columns + MeshShape::ghosts;
-  values_.resize_at_least(columns * shape.column_length());
+  first_column_ = columns.begin;
+  values_.resize_at_least(columns.size() * shape.column_length());
   parallel_for(
-      columns, [&](std::size_t i) { std::memset(column(i), 0, shape.column_length() * sizeof(float)); }, 4);
+      columns.size(),
+      [&](std::size_t i) { std::memset(column(columns.begin + i), 0, shape.column_length() * sizeof(float)); }, 4);
 }
 
 MeshNumbers Mesh::numbers() {
   return {values_.data(),
+          first_column_,
           shape_.column_length(),
           shape_.row_length(),
           {shape_.left, shape_.bottom, shape_.base},
@@ -66,20 +68,22 @@ MeshNumbers Mesh::numbers() {
           {shape_.columns, shape_.rows, shape_.planes - MeshShape::ghosts}};
 }
 
-void Mesh::spread(const Places& places, const MeshKernels& kernels) {
+void Mesh::spread(const Places& places, const IndexRange& tile_columns, const MeshKernels& kernels) {
   const MeshNumbers mesh = numbers();
   const Tiling& tiling = places.tiling();
-  // a slab must be as wide as what its neighbour spreads into it
-  const std::size_t slab = (MeshShape::ghosts + tiling.side - 1) / tiling.side;
-  const std::size_t tile_columns = tiling.tile_columns(), slabs = (tile_columns + slab - 1) / slab;
-  for (const std::size_t parity : {0u, 1u})
-    parallel_for((slabs + 1 - parity) / 2,
+  const std::size_t width = slab(tiling), first_slab = tile_columns.begin / width;
+  const std::size_t end_slab = (tile_columns.end + width - 1) / width;
+  for (const std::size_t parity : {0u, 1u}) {
+    const std::size_t from = first_slab + (first_slab + parity) % 2;
+    parallel_for((end_slab + 1 - std::min(from, end_slab)) / 2,
                  [&](std::size_t half) {
-                   const std::size_t begin = (2 * half + parity) * slab, end = std::min(begin + slab, tile_columns);
+                   const std::size_t begin = (from + 2 * half) * width;
+                   const std::size_t end = std::min(begin + width, tile_columns.end);
                    const std::size_t first = places.first(begin * tiling.tile_rows());
-                   kernels.spread(mesh, places.range(first, places.first(end * tiling.tile_rows()) - first));
+                   kernels.spread(mesh, places.range(first, places.end(end * tiling.tile_rows() - 1) - first));
                  },
                  1);
+  }
 }
 
 } // namespace keeler

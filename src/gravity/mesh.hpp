@@ -9,6 +9,7 @@
 #pragma once
 
 #include "aligned_array.hpp"
+#include "index_range.hpp"
 #include "mesh_kernels.hpp"
 #include "places.hpp"
 
@@ -38,23 +39,32 @@ struct MeshShape {
 /// just that distance. Sizes are such that transforms are fast.
 MeshShape mesh_shape(const ShearingBox& box, double spacing, double plane_spacing, double low, double high);
 
-/// The values at the nodes.
+/// The values at the nodes, of all columns or of a range.
 class Mesh {
 public:
-  /// All zero, of that shape.
-  void reset(const MeshShape& shape);
+  /// All zero, of that shape: all columns, ghosts too, or these.
+  void reset(const MeshShape& shape) { reset(shape, {0, shape.columns + MeshShape::ghosts}); }
+  void reset(const MeshShape& shape, const IndexRange& columns);
 
   const MeshShape& shape() const { return shape_; }
-  float* column(std::size_t i) { return values_.data() + i * shape_.column_length(); }
+  float* column(std::size_t i) { return values_.data() + (i - first_column_) * shape_.column_length(); }
+
+  /// Columns of tiles that are filled by one thread, a slab: as wide as what its neighbour spreads into it.
+  static std::size_t slab(const Tiling& tiling) { return (MeshShape::ghosts + tiling.side - 1) / tiling.side; }
 
   /// Adds the particles' masses. Slabs of the box are filled side by side, every other one first: the order of each
   /// node's sum depends on the places alone.
-  void spread(const Places& places, const MeshKernels& kernels);
+  void spread(const Places& places, const MeshKernels& kernels) {
+    spread(places, {0, places.tiling().tile_columns()}, kernels);
+  }
+  /// Of these columns of tiles alone, whole slabs counted from column 0.
+  void spread(const Places& places, const IndexRange& tile_columns, const MeshKernels& kernels);
 
   MeshNumbers numbers();
 
 private:
   MeshShape shape_;
+  std::size_t first_column_ = 0;
   AlignedArray<float> values_;
 };
 

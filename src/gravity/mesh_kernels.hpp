@@ -43,10 +43,11 @@ struct NearGroup {
 /// below the square of any distance of two bodies.
 inline constexpr float same_near_place_squared = 1e-20f;
 
-/// The mesh's numbers (mesh.hpp): node I, J, K of x, y, z is values[I column_length + K row_length + J].
+/// The mesh's numbers (mesh.hpp), from one column on: node I, J, K of x, y, z is
+/// values[(I − first_column) column_length + K row_length + J].
 struct MeshNumbers {
   float* values;
-  std::size_t column_length, row_length;
+  std::size_t first_column, column_length, row_length;
   double corner[3];     ///< of the cell 0, 0, 0
   double per_metre[3];  ///< cells a metre
   std::size_t cells[3]; ///< of particles; nodes are 3 more

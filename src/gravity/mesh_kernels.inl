@@ -151,7 +151,7 @@ struct OnMesh {
         cell[axis] = mesh.cells[axis] - 1; // rounding may put a coordinate on the far edge
       part[axis] = static_cast<float>(place - static_cast<double>(cell[axis]));
     }
-    node = mesh.values + cell[0] * mesh.column_length + cell[2] * mesh.row_length + cell[1];
+    node = mesh.values + (cell[0] - mesh.first_column) * mesh.column_length + cell[2] * mesh.row_length + cell[1];
   }
   float* node;
   float part[3];

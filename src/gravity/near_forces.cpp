@@ -87,7 +87,7 @@ void NearForces::visit(const Places& places, const ShearingBox& box, double offs
                      [&](std::size_t first, std::size_t last, const Image& image) {
                        group.origin_x = origin_x - image.nx * box.size_x;
                        group.origin_y = origin_y + image.nx * offset - image.ny * box.size_y;
-                       gather(places.first(first), places.first(last + 1));
+                       gather(places.first(first), places.end(last));
                      });
   flush();
 }

@@ -7,14 +7,54 @@
 #include <algorithm>
 
 namespace keeler {
+namespace {
+
+// Particles wherever they stand relative to the cell.
+struct Anywhere {
+  const GravityProblem& problem;
+  double offset;
+
+  std::size_t count() const { return problem.positions.size(); }
+  void prefetch(std::size_t k) const { __builtin_prefetch(&problem.positions[k]); }
+  Vec3 place(std::size_t k) const { return into_cell(problem.box, offset, problem.positions[k]); }
+  double mass(std::size_t k) const { return problem.masses[k]; }
+  std::uint64_t id(std::size_t k) const { return problem.ids[k]; }
+};
+
+struct Inside {
+  std::span<const InsideParticle> particles;
+
+  std::size_t count() const { return particles.size(); }
+  void prefetch(std::size_t k) const { __builtin_prefetch(&particles[k]); }
+  Vec3 place(std::size_t k) const { return {particles[k].x, particles[k].y, particles[k].z}; }
+  double mass(std::size_t k) const { return particles[k].mass; }
+  std::uint64_t id(std::size_t k) const { return particles[k].id; }
+};
+
+} // namespace
 
 void Places::sort(const GravityProblem& problem, double offset, const Tiling& tiling) {
   const std::size_t count = problem.positions.size();
-  const bool same_count = index_.size() == count;
   tiling_ = tiling;
-  const double left = -0.5 * problem.box.size_x, bottom = -0.5 * problem.box.size_y;
-  const double columns_per_metre = static_cast<double>(tiling.columns) / problem.box.size_x;
-  const double rows_per_metre = static_cast<double>(tiling.rows) / problem.box.size_y;
+  const double mass = exact_sum(count, [&](std::size_t k) { return problem.masses[k]; });
+  mass_unit_ = mass > 0.0 ? mass / static_cast<double>(count) : 1.0;
+  put_in_order(Anywhere{problem, offset}, problem.box, {0, tiling.tile_columns()});
+}
+
+void Places::sort(std::span<const InsideParticle> particles, const ShearingBox& box, const Tiling& tiling,
+                  const TileColumns& known, double mass_unit) {
+  tiling_ = tiling;
+  mass_unit_ = mass_unit;
+  put_in_order(Inside{particles}, box, known);
+}
+
+template<class Source>
+void Places::put_in_order(const Source& source, const ShearingBox& box, const TileColumns& known) {
+  const TileFinder find(tiling_, box);
+  const std::size_t count = source.count(), tiles = known.count * tiling_.tile_rows();
+  const bool same_count = index_.size() == count;
+  first_known_ = known.begin * tiling_.tile_rows();
+  behind_ = tiling_.count() - first_known_;
   constexpr std::size_t ahead = 24;
   found_.resize(count);
   tile_of_.resize(count);
@@ -23,37 +63,32 @@ void Places::sort(const GravityProblem& problem, double offset, const Tiling& ti
     // in the order of the last call, where there is one: it is nearly sorted already
     const std::size_t index = same_count ? index_[k] : k;
     if (same_count && k + ahead < count)
-      __builtin_prefetch(&problem.positions[index_[k + ahead]]);
-    const Vec3 p = into_cell(problem.box, offset, problem.positions[index]);
-    const std::size_t a = cell_of(p.x(), left, columns_per_metre, tiling.columns) / tiling.side;
-    const std::size_t b = cell_of(p.y(), bottom, rows_per_metre, tiling.rows) / tiling.side;
+      source.prefetch(index_[k + ahead]);
+    const Vec3 p = source.place(index);
     found_[k] = {p.x(), p.y(), p.z(), static_cast<std::uint32_t>(index)};
-    tile_of_[k] = static_cast<std::uint32_t>(a * tiling.tile_rows() + b);
+    tile_of_[k] = static_cast<std::uint32_t>(local(find.tile(p.x(), p.y())));
   });
 
-  counting_sort(tile_of_, tiling.count(), first_,
-                [&](std::size_t k, std::size_t place) { sorted_[place] = found_[k]; });
+  counting_sort(tile_of_, tiles, first_, [&](std::size_t k, std::size_t place) { sorted_[place] = found_[k]; });
 
   for (auto* const numbers : {&x_, &y_, &z_})
     numbers->resize(count + NearSources::widest);
   mass_.resize(count + NearSources::widest);
   index_.resize(count);
   parallel_for(
-      tiling.count(),
+      tiles,
       [&](std::size_t t) {
         std::sort(sorted_.begin() + first_[t], sorted_.begin() + first_[t + 1], [&](const Place& a, const Place& b) {
-          return a.z != b.z ? a.z < b.z : problem.ids[a.index] < problem.ids[b.index];
+          return a.z != b.z ? a.z < b.z : source.id(a.index) < source.id(b.index);
         });
       },
       16);
-  const double mass = exact_sum(count, [&](std::size_t k) { return problem.masses[k]; });
-  mass_unit_ = mass > 0.0 ? mass / static_cast<double>(count) : 1.0;
   parallel_for(count, [&](std::size_t k) {
     const Place& p = sorted_[k];
     x_[k] = p.x;
     y_[k] = p.y;
     z_[k] = p.z;
-    mass_[k] = static_cast<float>(problem.masses[p.index] / mass_unit_);
+    mass_[k] = static_cast<float>(source.mass(p.index) / mass_unit_);
     index_[k] = p.index;
   });
 }

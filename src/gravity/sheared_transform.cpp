@@ -21,6 +21,13 @@ fftwf_complex* fftw(std::complex<float>* numbers) {
 
 } // namespace
 
+void HalfSpectrum::reset(const IndexRange& columns, const IndexRange& waves, std::size_t planes) {
+  columns_ = columns;
+  waves_ = waves;
+  planes_ = planes;
+  numbers_.resize_at_least(blocks() * waves.size() * planes * block);
+}
+
 ShearedTransform::~ShearedTransform() {
   destroy_plans();
 }
@@ -48,19 +55,20 @@ void ShearedTransform::make_plans() {
   planned_rows_ = shape_.rows;
 }
 
-void ShearedTransform::prepare(const MeshShape& shape, double offset_part) {
+void ShearedTransform::prepare(const MeshShape& shape, double offset_part, const IndexRange& waves) {
   shape_ = shape;
+  first_wave_ = waves.begin;
   if (shape.columns != planned_columns_ || shape.rows != planned_rows_)
     make_plans();
-  spectrum_.resize_at_least(blocks() * waves() * shape.planes * block);
   scratch_.resize(static_cast<std::size_t>(threads()));
   for (auto& scratch : scratch_)
     scratch.resize_at_least(shape.planes * std::max(2 * row_length(), block * spectrum_row()));
-  turns_.resize_at_least(waves() * 2 * row_length());
+  turns_.resize_at_least(waves.size() * 2 * row_length());
   offset_part_ = offset_part;
   parallel_for(
-      waves(),
-      [&](std::size_t m) {
+      waves.size(),
+      [&](std::size_t k) {
+        const std::size_t m = waves.begin + k;
         // e^{−i k_y d x / L_x} at each column, by powers of that of one spacing
         const double angle = -2.0 * pi * offset_part * static_cast<double>(m) / static_cast<double>(shape.columns);
         const std::complex<double> step(std::cos(angle), std::sin(angle));
@@ -86,12 +94,12 @@ std::complex<float>* ShearedTransform::own_scratch() {
   return scratch_[static_cast<std::size_t>(omp_get_thread_num())].data();
 }
 
-void ShearedTransform::forward_y(Mesh& mesh) {
-  const std::size_t columns = shape_.columns + MeshShape::ghosts, planes = shape_.planes, rows = shape_.rows;
+void ShearedTransform::forward_y(Mesh& mesh, HalfSpectrum& half) {
+  const std::size_t planes = shape_.planes, rows = shape_.rows;
   parallel_for(
-      blocks(),
+      half.blocks(),
       [&](std::size_t b) {
-        const std::size_t begin = b * block, count = std::min(block, columns - begin);
+        const std::size_t begin = half.columns().begin + b * block, count = std::min(block, half.columns().end - begin);
         Complex* const spectra = own_scratch();
         for (std::size_t c = 0; c < block; ++c)
           for (std::size_t k = 0; k < planes; ++k) {
@@ -106,20 +114,22 @@ void ShearedTransform::forward_y(Mesh& mesh) {
             }
           }
         const auto* const from = reinterpret_cast<const Whole*>(spectra);
-        for (std::size_t m = 0; m < waves(); ++m)
+        for (std::size_t m = 0; m < waves(); ++m) {
+          auto* const to = reinterpret_cast<Whole*>(half.wave(b, m));
           for (std::size_t k = 0; k < planes; ++k)
             for (std::size_t c = 0; c < block; ++c)
-              reinterpret_cast<Whole*>(wave(b, m))[k * block + c] = from[(c * planes + k) * spectrum_row() + m];
+              to[k * block + c] = from[(c * planes + k) * spectrum_row() + m];
+        }
       },
       1);
 }
 
-void ShearedTransform::forward_x(std::size_t m, Complex* rows, Complex* spectra) {
+void ShearedTransform::forward_x(std::size_t m, HalfSpectrum& half, Complex* rows, Complex* spectra) {
   const std::size_t columns = shape_.columns, planes = shape_.planes;
-  for (std::size_t b = 0; b < blocks(); ++b) {
+  for (std::size_t b = 0; b < half.blocks(); ++b) {
     const auto* const cosine = reinterpret_cast<const Two*>(cosines(m) + b * block);
     const auto* const sine = reinterpret_cast<const Two*>(sines(m) + b * block);
-    const auto* const from = reinterpret_cast<const Two*>(wave(b, m));
+    const auto* const from = reinterpret_cast<const Two*>(half.wave(b, m));
     for (std::size_t k = 0; k < planes; ++k) {
       auto* const to = reinterpret_cast<Two*>(rows + k * row_length() + b * block);
       for (std::size_t c = 0; c < block / 2; ++c) {
@@ -136,7 +146,7 @@ void ShearedTransform::forward_x(std::size_t m, Complex* rows, Complex* spectra)
   }
 }
 
-void ShearedTransform::backward_x(std::size_t m, Complex* spectra, Complex* rows) {
+void ShearedTransform::backward_x(std::size_t m, Complex* spectra, Complex* rows, HalfSpectrum& half) {
   const std::size_t columns = shape_.columns, planes = shape_.planes;
   for (std::size_t k = 0; k < planes; ++k) {
     Complex* const row = rows + k * row_length();
@@ -144,10 +154,10 @@ void ShearedTransform::backward_x(std::size_t m, Complex* spectra, Complex* rows
     for (std::size_t i = columns; i < row_length(); ++i)
       row[i] = row[i % columns];
   }
-  for (std::size_t b = 0; b < blocks(); ++b) {
+  for (std::size_t b = 0; b < half.blocks(); ++b) {
     const auto* const cosine = reinterpret_cast<const Two*>(cosines(m) + b * block);
     const auto* const sine = reinterpret_cast<const Two*>(sines(m) + b * block);
-    auto* const to = reinterpret_cast<Two*>(wave(b, m));
+    auto* const to = reinterpret_cast<Two*>(half.wave(b, m));
     for (std::size_t k = 0; k < planes; ++k) {
       const auto* const from = reinterpret_cast<const Two*>(rows + k * row_length() + b * block);
       for (std::size_t c = 0; c < block / 2; ++c) // back by the same turn
@@ -156,18 +166,20 @@ void ShearedTransform::backward_x(std::size_t m, Complex* spectra, Complex* rows
   }
 }
 
-void ShearedTransform::backward_y(Mesh& mesh) {
-  const std::size_t columns = shape_.columns + MeshShape::ghosts, planes = shape_.planes, rows = shape_.rows;
+void ShearedTransform::backward_y(HalfSpectrum& half, Mesh& mesh) {
+  const std::size_t planes = shape_.planes, rows = shape_.rows;
   parallel_for(
-      blocks(),
+      half.blocks(),
       [&](std::size_t b) {
-        const std::size_t begin = b * block, count = std::min(block, columns - begin);
+        const std::size_t begin = half.columns().begin + b * block, count = std::min(block, half.columns().end - begin);
         Complex* const spectra = own_scratch();
         auto* const to = reinterpret_cast<Whole*>(spectra);
-        for (std::size_t m = 0; m < waves(); ++m)
+        for (std::size_t m = 0; m < waves(); ++m) {
+          const auto* const from = reinterpret_cast<const Whole*>(half.wave(b, m));
           for (std::size_t k = 0; k < planes; ++k)
             for (std::size_t c = 0; c < block; ++c)
-              to[(c * planes + k) * spectrum_row() + m] = reinterpret_cast<const Whole*>(wave(b, m))[k * block + c];
+              to[(c * planes + k) * spectrum_row() + m] = from[k * block + c];
+        }
         for (std::size_t c = 0; c < count; ++c)
           for (std::size_t k = 0; k < planes; ++k) {
             Complex* const spectrum = spectra + (c * planes + k) * spectrum_row();

@@ -25,6 +25,35 @@
 
 namespace keeler {
 
+/// What stands between the transforms along y and x: waves m along y of a range of columns (ghosts too), all planes.
+/// The numbers lie block by block of columns, in a block wave by wave, in a wave plane by plane: a cache line of eight
+/// columns each.
+class HalfSpectrum {
+public:
+  using Complex = std::complex<float>;
+
+  /// Columns that are turned over together.
+  static constexpr std::size_t block = 8;
+
+  /// Forgets what there was.
+  void reset(const IndexRange& columns, const IndexRange& waves, std::size_t planes);
+
+  const IndexRange& columns() const { return columns_; }
+  const IndexRange& waves() const { return waves_; }
+  std::size_t planes() const { return planes_; }
+  std::size_t blocks() const { return (columns_.size() + block - 1) / block; }
+
+  /// Wave m of block b, plane by plane; what the last block has behind the last column means nothing.
+  Complex* wave(std::size_t b, std::size_t m) {
+    return numbers_.data() + (b * waves_.size() + (m - waves_.begin)) * planes_ * block;
+  }
+
+private:
+  IndexRange columns_, waves_;
+  std::size_t planes_ = 0;
+  AlignedArray<Complex> numbers_;
+};
+
 class ShearedTransform {
 public:
   ShearedTransform() = default;
@@ -32,11 +61,13 @@ public:
   ShearedTransform& operator=(const ShearedTransform&) = delete;
   ~ShearedTransform();
 
-  /// For a mesh of that shape at an offset of that part of L_y, in [−½, ½].
-  void prepare(const MeshShape& shape, double offset_part);
-
   /// Waves m = 0 … waves() − 1 along y.
-  std::size_t waves() const { return (shape_.rows + 1) / 2; }
+  std::size_t waves() const { return waves(shape_); }
+  static std::size_t waves(const MeshShape& shape) { return (shape.rows + 1) / 2; }
+
+  /// For a mesh of that shape at an offset of that part of L_y, in [−½, ½]; along x all waves or these are transformed.
+  void prepare(const MeshShape& shape, double offset_part) { prepare(shape, offset_part, {0, waves(shape)}); }
+  void prepare(const MeshShape& shape, double offset_part, const IndexRange& waves);
 
   /// n + m d / L_y, which times 2π / L_x is k_x, of entry n of the transform along x: the alias nearest to 0.
   double turns_x(std::size_t m, std::size_t n) const;
@@ -47,53 +78,65 @@ public:
   /// Replaces the mesh by the transform back of what change(m, from, to) makes of its waves. Both hold one wave m of
   /// every plane, with n along a row. Unscaled: without a change the mesh returns columns × rows times as large.
   template<class Change> void apply(Mesh& mesh, const Change& change) {
-    visit(mesh, [&](std::size_t m, Complex* spectra, Complex* rows) {
-      change(m, static_cast<const Complex*>(spectra), rows);
-      backward_x(m, rows, spectra);
-    });
-    backward_y(mesh);
+    reset_whole();
+    forward_y(mesh, whole_);
+    change_waves(whole_, change);
+    backward_y(whole_, mesh);
   }
 
   /// Calls look(m, spectra, scratch) with the waves of the mesh; scratch has room for as many. The mesh is left as it
   /// is but for its ghosts.
   template<class Look> void visit(Mesh& mesh, const Look& look) {
-    forward_y(mesh);
+    reset_whole();
+    forward_y(mesh, whole_);
+    visit_waves(whole_, look);
+  }
+
+  /// The three steps of apply(), for those who share a mesh. The first and the last are of the columns of the half
+  /// spectrum, which must have all waves; the one between is of its waves, and it must have all columns.
+  void forward_y(Mesh& mesh, HalfSpectrum& half);
+  void backward_y(HalfSpectrum& half, Mesh& mesh);
+  template<class Change> void change_waves(HalfSpectrum& half, const Change& change) {
+    visit_waves(half, [&](std::size_t m, Complex* spectra, Complex* rows) {
+      change(m, static_cast<const Complex*>(spectra), rows);
+      backward_x(m, rows, spectra, half);
+    });
+  }
+
+private:
+  using Complex = std::complex<float>;
+  static constexpr std::size_t block = HalfSpectrum::block;
+
+  template<class Look> void visit_waves(HalfSpectrum& half, const Look& look) {
     parallel_for(
-        waves(),
-        [&](std::size_t m) {
+        half.waves().size(),
+        [&](std::size_t k) {
+          const std::size_t m = half.waves().begin + k;
           Complex* const rows = own_scratch();
           Complex* const spectra = rows + shape_.planes * row_length();
-          forward_x(m, rows, spectra);
+          forward_x(m, half, rows, spectra);
           look(m, spectra, rows);
         },
         1);
   }
 
-private:
-  using Complex = std::complex<float>;
-
-  /// Columns that are turned over together. Between the transforms along y and x they lie block by block, in a block
-  /// wave by wave, in a wave plane by plane: a cache line of eight columns each.
-  static constexpr std::size_t block = 8;
-
-  std::size_t blocks() const { return (shape_.columns + MeshShape::ghosts + block - 1) / block; }
-  Complex* wave(std::size_t b, std::size_t m) { return spectrum_.data() + (b * waves() + m) * shape_.planes * block; }
+  void reset_whole() { whole_.reset({0, shape_.columns + MeshShape::ghosts}, {0, waves()}, shape_.planes); }
   /// Of the turn of each column: (cosine, cosine) and (−sine, sine).
-  Complex* cosines(std::size_t m) { return turns_.data() + 2 * m * row_length(); }
+  Complex* cosines(std::size_t m) { return turns_.data() + 2 * (m - first_wave_) * row_length(); }
   Complex* sines(std::size_t m) { return cosines(m) + row_length(); }
   std::size_t spectrum_row() const { return (shape_.rows / 2 + 1 + 7) / 8 * 8; }
   Complex* own_scratch();
 
-  void forward_y(Mesh& mesh);
-  void forward_x(std::size_t m, Complex* rows, Complex* spectra);
-  void backward_x(std::size_t m, Complex* spectra, Complex* rows);
-  void backward_y(Mesh& mesh);
+  void forward_x(std::size_t m, HalfSpectrum& half, Complex* rows, Complex* spectra);
+  void backward_x(std::size_t m, Complex* spectra, Complex* rows, HalfSpectrum& half);
   void make_plans();
   void destroy_plans();
 
   MeshShape shape_;
   double offset_part_ = 0.0;
-  AlignedArray<Complex> spectrum_, turns_;
+  std::size_t first_wave_ = 0;
+  HalfSpectrum whole_;
+  AlignedArray<Complex> turns_;
   std::vector<AlignedArray<Complex>> scratch_; // one a thread
   std::size_t planned_columns_ = 0, planned_rows_ = 0;
   fftwf_plan forward_y_ = nullptr, backward_y_ = nullptr, forward_x_ = nullptr, backward_x_ = nullptr;

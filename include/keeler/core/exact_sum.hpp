@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace keeler {
@@ -26,6 +27,12 @@ public:
   }
 
   ExactSum& operator+=(const ExactSum& more);
+
+  /// The sum as whole numbers, to be added word by word to those of up to 2³⁰ other sums; the last counts terms that
+  /// were not finite.
+  std::vector<std::uint64_t> words() const;
+  /// The sum of such ones.
+  static ExactSum of_words(std::span<const std::uint64_t> words);
 
   /// The double nearest to the sum, of two the even one. Infinite or not a number as a plain sum, where a term was.
   double value() const;

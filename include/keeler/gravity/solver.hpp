@@ -7,6 +7,7 @@
 #include <keeler/box/shearing_box.hpp>
 #include <keeler/core/vector.hpp>
 #include <keeler/gravity/images.hpp>
+#include <keeler/ranks/ranks.hpp>
 
 #include <cstdint>
 #include <memory>
@@ -15,7 +16,8 @@
 
 namespace keeler {
 
-/// What a solver sees: particles at one instant, in any memory order, wherever they stand relative to the cell.
+/// What a solver sees: particles at one instant, in any memory order, wherever they stand relative to the cell. Of many
+/// ranks each has its own particles, and all ask at once.
 struct GravityProblem {
   std::span<const Vec3> positions;    ///< m, Hill's frame
   std::span<const double> masses;     ///< kg
@@ -23,6 +25,7 @@ struct GravityProblem {
   ShearingBox box;
   double offset = 0.0;   ///< the box's shear offset at this instant, m
   double newton_g = 0.0; ///< m^3 kg^-1 rad^-2
+  Ranks ranks = {};      ///< only `fft` can do with many
 };
 
 class GravitySolver {

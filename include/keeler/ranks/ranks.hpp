@@ -1,0 +1,105 @@
+// The processes that share one run, and what they tell each other. Only a build with KEELER_MPI has more than one; in
+// any other build many() is false while compiling, and what depends on it is left out.
+//
+// Every call of many ranks but own(), count() and many() is collective: all make it, in the same order.
+#pragma once
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/exact_sum.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace keeler {
+
+/// Bytes for each rank, or from each, by its number.
+using Parcels = std::vector<std::vector<std::byte>>;
+
+class Ranks {
+public:
+#ifdef KEELER_MPI
+  static constexpr bool possible = true;
+#else
+  static constexpr bool possible = false;
+#endif
+
+  /// This process alone.
+  Ranks() = default;
+  /// All that the launcher (mpirun) started together; this process alone where there is no launcher. To be called once,
+  /// when the program begins. Throws UsageError in a build without ranks of which a launcher has started several.
+  static Ranks launched();
+
+  std::size_t own() const { return own_; }
+  std::size_t count() const { return count_; }
+  bool many() const { return possible && count_ > 1; }
+  bool is_first() const { return own_ == 0; }
+
+  /// Hands each rank its parcel and returns one from each; one's own comes back as it is.
+  Parcels exchange(Parcels parcels) const;
+  /// The same of rows.
+  template<class Row> std::vector<std::vector<Row>> exchange(const std::vector<std::vector<Row>>& rows) const;
+
+  /// Over all ranks, number by number: modulo 2⁶⁴.
+  void sum(std::span<std::uint64_t> numbers) const;
+  std::uint64_t sum(std::uint64_t number) const {
+    sum(std::span(&number, 1));
+    return number;
+  }
+  /// Each becomes the sum of those of all ranks.
+  void merge(std::initializer_list<ExactSum*> sums) const;
+  double largest(double number) const;
+  double least(double number) const { return -largest(-number); }
+  bool any(bool here) const { return largest(here ? 1.0 : 0.0) > 0.0; }
+
+  /// What the first rank has, on all.
+  void from_first(std::span<std::byte> bytes) const;
+  void from_first(std::string& text) const;
+  template<class Value> Value from_first(Value value) const {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    from_first(std::as_writable_bytes(std::span(&value, 1)));
+    return value;
+  }
+
+  /// Runs on every rank, or on the first one alone. Where it throws an Error on one, all throw: the least such rank what
+  /// it threw, the others an Error of that code and those words, of which they need not speak.
+  void together(const std::function<void()>& work) const;
+  void first_does(const std::function<void()>& work) const;
+
+private:
+  Ranks(std::size_t own, std::size_t count) : own_(own), count_(count) {}
+
+  std::size_t own_ = 0, count_ = 1;
+};
+
+/// Of a launched program at its end. `code` is what this rank ends with. Where the ranks do not all know of an error
+/// that it ends with, it cannot wait for them: all are ended at once.
+void finish_ranks(ExitCode code);
+/// Whether somebody else tells the user of the error that this rank ends with.
+bool another_rank_speaks();
+
+template<class Row>
+std::vector<std::vector<Row>> Ranks::exchange(const std::vector<std::vector<Row>>& rows) const {
+  static_assert(std::is_trivially_copyable_v<Row>);
+  Parcels parcels(rows.size());
+  for (std::size_t rank = 0; rank < rows.size(); ++rank) {
+    const auto bytes = std::as_bytes(std::span(rows[rank]));
+    parcels[rank].assign(bytes.begin(), bytes.end());
+  }
+  parcels = exchange(std::move(parcels));
+  std::vector<std::vector<Row>> received(parcels.size());
+  for (std::size_t rank = 0; rank < parcels.size(); ++rank) {
+    received[rank].resize(parcels[rank].size() / sizeof(Row));
+    if (!parcels[rank].empty())
+      std::memcpy(static_cast<void*>(received[rank].data()), parcels[rank].data(), parcels[rank].size());
+  }
+  return received;
+}
+
+} // namespace keeler

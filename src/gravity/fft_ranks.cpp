@@ -1,0 +1,286 @@
+// The mesh solver on many ranks, with the bits of one process (mesh_shares.hpp). Particles go to the ranks that need
+// them, waves go over in between the two transforms, accelerations come back; all else is done by the owner alone.
+#include "fft_parts.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/exact_sum.hpp>
+#include <keeler/gravity/images.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <complex>
+#include <cstring>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace keeler {
+namespace {
+
+Extent common_extent(const GravityProblem& problem) {
+  Extent z{};
+  problem.ranks.together([&] { z = extent_of(problem.positions); });
+  return {problem.ranks.least(z.low), problem.ranks.largest(z.high)};
+}
+
+double common_mass_unit(const GravityProblem& problem, std::uint64_t count) {
+  auto mass =
+      exact_total<ExactSum>(problem.masses.size(), [&](ExactSum& sum, std::size_t k) { sum += problem.masses[k]; });
+  problem.ranks.merge({&mass});
+  const double whole = mass.value();
+  return whole > 0.0 ? whole / static_cast<double>(count) : 1.0;
+}
+
+std::vector<InsideParticle> put_inside(const GravityProblem& problem, double offset) {
+  std::vector<InsideParticle> inside(problem.positions.size());
+  parallel_for(inside.size(), [&](std::size_t k) {
+    const Vec3 p = into_cell(problem.box, offset, problem.positions[k]);
+    inside[k] = {p.x(), p.y(), p.z(), problem.masses[k], problem.ids[k]};
+  });
+  const double farthest = largest_of(inside.size(), [&](std::size_t k) { return std::fabs(inside[k].x); });
+  problem.ranks.together([&] {
+    if (!(farthest <= 0.5 * (1.0 + loose_edge) * problem.box.size_x))
+      throw InvariantError("a particle stands too far away to be put into the box; take a shorter time.step");
+  });
+  return inside;
+}
+
+std::vector<std::uint64_t> count_in_columns(std::span<const InsideParticle> particles, const Tiling& tiling,
+                                            const TileFinder& find) {
+  std::vector<std::uint64_t> counts(tiling.tile_columns(), 0);
+  for (const InsideParticle& particle : particles)
+    ++counts[find.column(particle.x)];
+  return counts;
+}
+
+// Collective. The mesh's origin may wander against the ranks' particles. So shares are dealt out round the box from
+// where most particles are in the share of the rank that has them already.
+void deal_out(std::vector<MeshShare>& shares, std::span<const std::uint64_t> here, const Ranks& ranks) {
+  std::vector<std::uint64_t> stay(shares.size(), 0); // by how far the shares are turned
+  for (std::size_t turn = 0; turn < stay.size(); ++turn) {
+    const IndexRange& own = shares[(ranks.own() + turn) % shares.size()].own;
+    const auto its = here.subspan(own.begin, own.size());
+    stay[turn] = std::accumulate(its.begin(), its.end(), std::uint64_t{0});
+  }
+  ranks.sum(std::span(stay));
+  std::rotate(shares.begin(), shares.begin() + (std::max_element(stay.begin(), stay.end()) - stay.begin()),
+              shares.end());
+}
+
+// Collective: the share of each rank.
+std::vector<MeshShare> shares_of(std::span<const InsideParticle> particles, const MeshShape& shape,
+                                 const Tiling& tiling, const ShearingBox& box, double reach, const Ranks& ranks) {
+  const std::vector<std::uint64_t> here = count_in_columns(particles, tiling, TileFinder(tiling, box));
+  std::vector<std::uint64_t> all = here;
+  ranks.sum(std::span(all));
+  std::vector<MeshShare> shares = share_mesh(shape, tiling, box, reach, all, ranks.count());
+  deal_out(shares, here, ranks);
+  return shares;
+}
+
+bool is_in(const IndexRange& range, std::size_t column) {
+  return column >= range.begin && column < range.end;
+}
+
+// Collective: rows for each rank become those from each. One's own are many, and are not copied.
+template<class Row> void exchange_others(const Ranks& ranks, std::vector<std::vector<Row>>& rows) {
+  std::vector<Row> own;
+  own.swap(rows[ranks.own()]);
+  rows = ranks.exchange(rows);
+  own.swap(rows[ranks.own()]);
+}
+
+// The particles that a rank must know, and the way home of what becomes of its own ones.
+class Guests {
+public:
+  /// Collective: sends particles to all that must know them.
+  Guests(std::span<const InsideParticle> own, const TileFinder& find, std::span<const MeshShare> shares,
+         const Tiling& tiling, const Ranks& ranks)
+      : find_(find), here_(shares[ranks.own()].own), sent_(ranks.count()), end_of_(ranks.count()) {
+    const auto knowers = who_must_know(shares, tiling);
+    std::vector<std::vector<InsideParticle>> parcels(ranks.count());
+    parcels[ranks.own()].reserve(own.size()); // most of them stay
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      const std::size_t column = find.column(own[k].x);
+      for (const std::uint32_t rank : knowers[column]) {
+        parcels[rank].push_back(own[k]);
+        if (is_in(shares[rank].own, column))
+          sent_[rank].push_back(static_cast<std::uint32_t>(k));
+      }
+    }
+    exchange_others(ranks, parcels);
+    std::size_t count = 0;
+    for (const auto& parcel : parcels)
+      count += parcel.size();
+    particles_.reserve(count);
+    for (std::size_t rank = 0; rank < parcels.size(); ++rank) {
+      particles_.insert(particles_.end(), parcels[rank].begin(), parcels[rank].end());
+      end_of_[rank] = particles_.size();
+      std::vector<InsideParticle>().swap(parcels[rank]);
+    }
+  }
+
+  std::span<const InsideParticle> particles() const { return particles_; }
+
+  /// Collective: from values of particles(), that of each particle comes home from its owner in the mesh.
+  template<class Take> void send_home(std::span<const Vec3> values, const Ranks& ranks, const Take& take) const {
+    using Row = std::array<double, 3>;
+    std::vector<std::vector<Row>> rows(ranks.count());
+    std::size_t k = 0;
+    for (std::size_t rank = 0; rank < rows.size(); ++rank)
+      for (; k < end_of_[rank]; ++k)
+        if (is_in(here_, find_.column(particles_[k].x)))
+          rows[rank].push_back({values[k].x(), values[k].y(), values[k].z()});
+    exchange_others(ranks, rows);
+    for (std::size_t rank = 0; rank < rows.size(); ++rank) {
+      assert(rows[rank].size() == sent_[rank].size());
+      for (std::size_t i = 0; i < rows[rank].size(); ++i)
+        take(sent_[rank][i], Vec3(rows[rank][i][0], rows[rank][i][1], rows[rank][i][2]));
+    }
+  }
+
+private:
+  TileFinder find_;
+  IndexRange here_;
+  std::vector<std::vector<std::uint32_t>> sent_; // to owners, in the order sent
+  std::vector<InsideParticle> particles_;        // by the rank that sent them
+  std::vector<std::size_t> end_of_;
+};
+
+// A part of a half spectrum.
+struct Piece {
+  IndexRange columns, waves;
+
+  std::size_t count(std::size_t planes) const { return columns.size() * waves.size() * planes; }
+};
+
+// Calls move(numbers, at, count) for all numbers of a piece, some columns of one plane at a time; `at` counts them wave
+// by wave, plane by plane.
+template<class Move> void visit(HalfSpectrum& half, const Piece& piece, const Move& move) {
+  constexpr std::size_t block = HalfSpectrum::block;
+  parallel_for(
+      piece.waves.size(),
+      [&](std::size_t w) {
+        for (std::size_t k = 0; k < half.planes(); ++k) {
+          std::size_t at = (w * half.planes() + k) * piece.columns.size();
+          for (std::size_t column = piece.columns.begin; column < piece.columns.end;) {
+            const std::size_t place = column - half.columns().begin, in_block = place % block;
+            const std::size_t count = std::min(block - in_block, piece.columns.end - column);
+            move(half.wave(place / block, piece.waves.begin + w) + k * block + in_block, at, count);
+            column += count;
+            at += count;
+          }
+        }
+      },
+      4);
+}
+
+// Collective: hands the pieces of `from` to the ranks and gets those of `to`.
+void turn_over(const Ranks& ranks, HalfSpectrum& from, std::span<const Piece> sent, HalfSpectrum& to,
+               std::span<const Piece> received) {
+  constexpr std::size_t size = sizeof(HalfSpectrum::Complex);
+  Parcels parcels(ranks.count());
+  for (std::size_t rank = 0; rank < ranks.count(); ++rank) {
+    parcels[rank].resize(size * sent[rank].count(from.planes()));
+    std::byte* const bytes = parcels[rank].data();
+    visit(from, sent[rank], [&](const HalfSpectrum::Complex* numbers, std::size_t at, std::size_t count) {
+      std::memcpy(bytes + size * at, numbers, size * count);
+    });
+  }
+  parcels = ranks.exchange(std::move(parcels));
+  for (std::size_t rank = 0; rank < ranks.count(); ++rank) {
+    assert(parcels[rank].size() == size * received[rank].count(to.planes()));
+    const std::byte* const bytes = parcels[rank].data();
+    visit(to, received[rank], [&](HalfSpectrum::Complex* numbers, std::size_t at, std::size_t count) {
+      std::memcpy(static_cast<void*>(numbers), bytes + size * at, size * count);
+    });
+  }
+}
+
+// What lies behind the last column is turned with it, so it must be numbers.
+void clear_last_block(HalfSpectrum& half) {
+  for (std::size_t m = half.waves().begin; m < half.waves().end; ++m) {
+    HalfSpectrum::Complex* const last = half.wave(half.blocks() - 1, m);
+    std::fill(last, last + half.planes() * HalfSpectrum::block, 0.0f);
+  }
+}
+
+template<class Of> std::vector<Piece> pieces(std::span<const MeshShare> shares, const Of& of) {
+  std::vector<Piece> result;
+  for (const MeshShare& share : shares)
+    result.push_back(of(share));
+  return result;
+}
+
+} // namespace
+
+// Spreads the masses on the share's nodes and turns them into the potential that its particles feel.
+void FftSolver::Parts::fill_share(const Ranks& ranks, const MeshShape& shape, double offset_part,
+                                  std::span<const MeshShare> shares) {
+  const MeshShare& own = shares[ranks.own()];
+  mesh.reset(shape, own.stored);
+  mesh.spread(places, own.spread, kernels);
+  transform.prepare(shape, offset_part, own.waves);
+  waves.prepare(shape);
+
+  const IndexRange all_waves{0, transform.waves()};
+  by_columns.reset(own.nodes, all_waves, shape.planes);
+  transform.forward_y(mesh, by_columns);
+  by_waves.reset({0, shape.columns + MeshShape::ghosts}, own.waves, shape.planes);
+  clear_last_block(by_waves);
+  turn_over(ranks, by_columns,
+            pieces(shares,
+                   [&](const MeshShare& its) {
+                     return Piece{own.nodes, its.waves};
+                   }),
+            by_waves, pieces(shares, [&](const MeshShare& its) {
+              return Piece{its.nodes, own.waves};
+            }));
+  transform.change_waves(by_waves, [&](std::size_t m, const std::complex<float>* from, std::complex<float>* to) {
+    waves.apply(shape, transform, m, kernels, from, to);
+  });
+  by_columns.reset(own.pulled, all_waves, shape.planes);
+  turn_over(ranks, by_waves,
+            pieces(shares,
+                   [&](const MeshShare& its) {
+                     return Piece{its.pulled, own.waves};
+                   }),
+            by_columns, pieces(shares, [&](const MeshShare& its) {
+              return Piece{own.pulled, its.waves};
+            }));
+  transform.backward_y(by_columns, mesh);
+}
+
+void FftSolver::Parts::accelerate_share(const GravityProblem& problem, std::span<Vec3> accelerations) {
+  const Ranks& ranks = problem.ranks;
+  const std::uint64_t count = ranks.sum(problem.positions.size());
+  if (count == 0)
+    return;
+  const double offset = folded_offset(problem.box, problem.offset);
+  const MeshShape shape = choose_mesh(problem.box, common_extent(problem), count);
+  const Tiling tiling = tiling_for(shape, count);
+
+  std::vector<InsideParticle> inside = put_inside(problem, offset);
+  const double reach = settings.short_range ? radius : 0.0;
+  const std::vector<MeshShare> shares = shares_of(inside, shape, tiling, problem.box, reach, ranks);
+  const MeshShare& own = shares[ranks.own()];
+  const Guests guests(inside, TileFinder(tiling, problem.box), shares, tiling, ranks);
+  std::vector<InsideParticle>().swap(inside);
+  places.sort(guests.particles(), problem.box, tiling, own.known, common_mass_unit(problem, count));
+  fill_share(ranks, shape, offset / problem.box.size_y, shares);
+
+  std::vector<Vec3> here(guests.particles().size());
+  std::vector<Vec3> sums(own.own.size() * tiling.tile_rows());
+  parallel_for(
+      sums.size(),
+      [&](std::size_t k) { sums[k] = accelerate_tile(problem, offset, own.own.begin * tiling.tile_rows() + k, here); },
+      4);
+  auto total = exact_total<ExactVec3>(sums.size(), [&](ExactVec3& all, std::size_t k) { all += sums[k]; });
+  ranks.merge({&total.x, &total.y, &total.z});
+  const Vec3 mean = total.value() / static_cast<double>(count); // as on one process
+  guests.send_home(here, ranks, [&](std::size_t k, const Vec3& a) { accelerations[k] = a - mean; });
+}
+
+} // namespace keeler

@@ -1,0 +1,39 @@
+#include "mesh_choice.hpp"
+
+#include <keeler/core/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace keeler {
+
+Extent extent_of(std::span<const Vec3> positions) {
+  if (!std::all_of(positions.begin(), positions.end(), [](const Vec3& p) { return p.allFinite(); }))
+    throw InvariantError("a particle stands at no finite place; take a shorter time.step");
+  Extent z{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const Vec3& p : positions) {
+    z.low = std::min(z.low, p.z());
+    z.high = std::max(z.high, p.z());
+  }
+  return z;
+}
+
+double affordable_spacing(const ShearingBox& box, double spacing, const Extent& z, std::size_t count) {
+  const double most = 0x1p21 + 64.0 * static_cast<double>(count);
+  const auto nodes = [&](double step) {
+    return box.size_x / step * (box.size_y / step) * ((z.high - z.low) / (flatness * step) + 4.0);
+  };
+  while (nodes(spacing) > most)
+    spacing *= 1.1;
+  return spacing;
+}
+
+Tiling tiling_for(const MeshShape& shape, std::size_t count) {
+  const double cells = static_cast<double>(shape.columns) * static_cast<double>(shape.rows);
+  const double side = std::round(std::sqrt(8.0 * cells / static_cast<double>(count)));
+  const double longest = static_cast<double>(std::max(shape.columns, shape.rows));
+  return {shape.columns, shape.rows, static_cast<std::size_t>(std::clamp(side, 1.0, longest))};
+}
+
+} // namespace keeler

@@ -1,0 +1,48 @@
+// Ranks of a build without KEELER_MPI: there is one, and it has nobody to tell anything.
+#include <keeler/ranks/ranks.hpp>
+
+#include <cstdlib>
+#include <string>
+
+namespace keeler {
+namespace {
+
+// How many the launchers of MPI say that they have started.
+bool one_of_several() {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"})
+    if (const char* const size = std::getenv(name); size && std::atoi(size) > 1)
+      return true;
+  return false;
+}
+
+} // namespace
+
+Ranks Ranks::launched() {
+  if (one_of_several())
+    throw UsageError("this Keeler was built without ranks, and a launcher of MPI has started several of it, which would "
+                     "all do the same; start one, or build with -DKEELER_MPI=ON");
+  return {};
+}
+
+Parcels Ranks::exchange(Parcels parcels) const {
+  return parcels;
+}
+void Ranks::sum(std::span<std::uint64_t>) const {}
+void Ranks::merge(std::initializer_list<ExactSum*>) const {}
+double Ranks::largest(double number) const {
+  return number;
+}
+void Ranks::from_first(std::span<std::byte>) const {}
+void Ranks::from_first(std::string&) const {}
+void Ranks::together(const std::function<void()>& work) const {
+  work();
+}
+void Ranks::first_does(const std::function<void()>& work) const {
+  work();
+}
+void finish_ranks(ExitCode) {}
+bool another_rank_speaks() {
+  return false;
+}
+
+} // namespace keeler

@@ -1,0 +1,195 @@
+// Ranks on MPI: the only source that knows of it.
+#include <keeler/ranks/ranks.hpp>
+
+#include <keeler/core/version.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <optional>
+
+#include <mpi.h>
+
+namespace keeler {
+namespace {
+
+constexpr std::size_t longest_message = std::size_t{1} << 30; // bytes: MPI counts in int
+
+bool is_launched = false;
+bool all_know = false;       // of the error that ends this rank
+bool another_speaks = false; // of it
+
+bool has_launcher() {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"})
+    if (std::getenv(name))
+      return true;
+  return false;
+}
+
+int as_int(std::size_t number) {
+  assert(number <= static_cast<std::size_t>(std::numeric_limits<int>::max()));
+  return static_cast<int>(number);
+}
+
+// Whatever must be the same in all for the same bits.
+std::string build() {
+  return program_version() + " " + build_flags();
+}
+
+void require_one_build(const Ranks& ranks) {
+  std::string first = build();
+  ranks.from_first(first);
+  ranks.together([&] {
+    if (first != build())
+      throw UsageError(fmt::format("rank {} runs another build of Keeler ({}) than rank 0 ({}), and would not have the "
+                                   "same bits; start the same program on all machines",
+                                   ranks.own(), build(), first));
+  });
+}
+
+} // namespace
+
+Ranks Ranks::launched() {
+  if (!has_launcher())
+    return {};
+  int provided = 0, own = 0, count = 1;
+  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
+  MPI_Comm_rank(MPI_COMM_WORLD, &own);
+  MPI_Comm_size(MPI_COMM_WORLD, &count);
+  is_launched = true;
+  const Ranks ranks(static_cast<std::size_t>(own), static_cast<std::size_t>(count));
+  require_one_build(ranks);
+  return ranks;
+}
+
+void finish_ranks(ExitCode code) {
+  if (!is_launched)
+    return;
+  const bool wrong = code != ExitCode::done && code != ExitCode::stopped;
+  if (wrong && !all_know)
+    MPI_Abort(MPI_COMM_WORLD, static_cast<int>(code));
+  MPI_Finalize();
+}
+
+bool another_rank_speaks() {
+  return another_speaks;
+}
+
+// Pairs of ranks at equal distances round a ring, so that none waits for more than one other; long parcels in pieces.
+Parcels Ranks::exchange(Parcels parcels) const {
+  assert(parcels.size() == count_);
+  if (!many())
+    return parcels;
+  std::vector<std::uint64_t> sizes(count_), from(count_);
+  std::transform(parcels.begin(), parcels.end(), sizes.begin(), [](const auto& parcel) { return parcel.size(); });
+  MPI_Alltoall(sizes.data(), 1, MPI_UINT64_T, from.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD);
+  Parcels received(count_);
+  received[own_] = std::move(parcels[own_]);
+  std::vector<MPI_Request> requests;
+  const auto in_pieces = [&](std::vector<std::byte>& bytes, const auto& start) {
+    for (std::size_t begin = 0; begin < bytes.size(); begin += longest_message) {
+      requests.emplace_back();
+      start(bytes.data() + begin, as_int(std::min(longest_message, bytes.size() - begin)), &requests.back());
+    }
+  };
+  for (std::size_t step = 1; step < count_; ++step) {
+    const std::size_t other = (own_ + count_ - step) % count_;
+    received[other].resize(from[other]);
+    in_pieces(received[other], [&](std::byte* bytes, int size, MPI_Request* request) {
+      MPI_Irecv(bytes, size, MPI_BYTE, as_int(other), 0, MPI_COMM_WORLD, request);
+    });
+  }
+  for (std::size_t step = 1; step < count_; ++step) {
+    const std::size_t other = (own_ + step) % count_;
+    in_pieces(parcels[other], [&](const std::byte* bytes, int size, MPI_Request* request) {
+      MPI_Isend(bytes, size, MPI_BYTE, as_int(other), 0, MPI_COMM_WORLD, request);
+    });
+  }
+  MPI_Waitall(as_int(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+  return received;
+}
+
+void Ranks::sum(std::span<std::uint64_t> numbers) const {
+  if (many())
+    MPI_Allreduce(MPI_IN_PLACE, numbers.data(), as_int(numbers.size()), MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
+}
+
+void Ranks::merge(std::initializer_list<ExactSum*> sums) const {
+  if (!many())
+    return;
+  std::vector<std::uint64_t> words;
+  for (const ExactSum* sum : sums) {
+    const std::vector<std::uint64_t> its = sum->words();
+    words.insert(words.end(), its.begin(), its.end());
+  }
+  sum(std::span(words));
+  const std::size_t each = words.size() / sums.size();
+  std::size_t begin = 0;
+  for (ExactSum* sum : sums) {
+    *sum = ExactSum::of_words(std::span(words).subspan(begin, each));
+    begin += each;
+  }
+}
+
+double Ranks::largest(double number) const {
+  if (many())
+    MPI_Allreduce(MPI_IN_PLACE, &number, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+  return number;
+}
+
+void Ranks::from_first(std::span<std::byte> bytes) const {
+  for (std::size_t begin = 0; many() && begin < bytes.size(); begin += longest_message)
+    MPI_Bcast(bytes.data() + begin, as_int(std::min(longest_message, bytes.size() - begin)), MPI_BYTE, 0,
+              MPI_COMM_WORLD);
+}
+
+void Ranks::from_first(std::string& text) const {
+  const std::uint64_t size = from_first(static_cast<std::uint64_t>(text.size()));
+  text.resize(size);
+  from_first(std::as_writable_bytes(std::span(text)));
+}
+
+void Ranks::together(const std::function<void()>& work) const {
+  if (!many())
+    return work();
+  std::optional<Error> error;
+  std::exception_ptr thrown;
+  try {
+    work();
+  } catch (const Error& its) {
+    error = its;
+    thrown = std::current_exception();
+  }
+  const auto speaker = static_cast<std::size_t>(least(static_cast<double>(error ? own_ : count_)));
+  if (speaker == count_)
+    return;
+  all_know = true;
+  another_speaks = speaker != own_;
+  // from the speaker to all
+  Parcels parcels(count_);
+  const auto told = [&] { return fmt::format("{:3d}{}", static_cast<int>(error->code()), error->what()); };
+  if (speaker == own_) {
+    const std::string text = told();
+    const auto bytes = std::as_bytes(std::span(text));
+    for (std::vector<std::byte>& parcel : parcels)
+      parcel.assign(bytes.begin(), bytes.end());
+  }
+  const std::vector<std::byte> heard = exchange(std::move(parcels))[speaker];
+  if (speaker == own_)
+    std::rethrow_exception(thrown);
+  const std::string text(reinterpret_cast<const char*>(heard.data()), heard.size());
+  throw Error(static_cast<ExitCode>(std::stoi(text.substr(0, 3))), text.substr(3));
+}
+
+void Ranks::first_does(const std::function<void()>& work) const {
+  together([&] {
+    if (is_first())
+      work();
+  });
+}
+
+} // namespace keeler

@@ -1,0 +1,174 @@
+// The mesh solver on many ranks has the bits of one process, however the particles are dealt out.
+#include <keeler/gravity/fft.hpp>
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/random.hpp>
+
+#include "launched.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+
+using namespace keeler;
+using keeler_test::launched;
+
+namespace {
+
+struct Sample {
+  std::string name;
+  ShearingBox box;
+  std::vector<Vec3> positions;
+  std::vector<double> masses;
+  std::vector<std::uint64_t> ids;
+
+  GravityProblem problem(double offset) const { return {positions, masses, ids, box, offset, 2.7e-3, {}}; }
+};
+
+// Masses by a power law over three decades; place(random) in parts of the box, and a height in metres.
+template<class Place>
+Sample sample(const char* name, std::size_t count, double size_x, double size_y, const Place& place) {
+  Sample made{name, {size_x, size_y, 1.5, 0.0}, {}, {}, {}};
+  for (std::size_t k = 0; k < count; ++k) {
+    RandomStream random(11, RandomPurpose::position, k);
+    const Vec3 part = place(random);
+    made.positions.emplace_back(part.x() * size_x, part.y() * size_y, part.z());
+    made.masses.push_back(1e3 * std::pow(random.uniform() + 1e-3, -1.0));
+    made.ids.push_back(5 * k + 2);
+  }
+  return made;
+}
+
+Vec3 anywhere(RandomStream& random) {
+  const double x = random.uniform() - 0.5, y = random.uniform() - 0.5;
+  return {x, y, random.normal()};
+}
+
+std::vector<Sample> samples() {
+  const auto clumped = [](RandomStream& random) {
+    const double clump = std::floor(5.0 * random.uniform());
+    const double x = 0.01 * random.normal() + 0.2 * clump - 0.5, y = 0.05 * random.normal() - 0.1 * clump;
+    return Vec3(x, y, 0.5 * random.normal());
+  };
+  const auto at_one_side = [](RandomStream& random) {
+    const Vec3 p = anywhere(random);
+    return Vec3(random.uniform() < 0.01 ? p.x() : 0.05 * p.x() - 0.45, p.y(), p.z());
+  };
+  const auto at_both_edges = [](RandomStream& random) {
+    const Vec3 p = anywhere(random);
+    return Vec3(0.06 * p.x() + 0.5, p.y(), p.z());
+  };
+  const auto far_outside = [](RandomStream& random) {
+    const Vec3 p = anywhere(random);
+    return Vec3(p.x() + std::round(3.0 * random.normal()), p.y() + std::round(3.0 * random.normal()), p.z());
+  };
+  const auto in_a_plane = [](RandomStream& random) {
+    const Vec3 p = anywhere(random);
+    return Vec3(p.x(), p.y(), 0.0);
+  };
+  return {
+      sample("even, wide", 6000, 400.0, 60.0, anywhere),
+      sample("even, long", 3000, 50.0, 240.0, anywhere),
+      sample("clumped", 4000, 160.0, 100.0, clumped),
+      sample("at one side", 3000, 300.0, 50.0, at_one_side),
+      sample("at both edges", 2000, 300.0, 50.0, at_both_edges),
+      sample("far outside", 1500, 150.0, 60.0, far_outside),
+      sample("in a plane", 1500, 150.0, 60.0, in_a_plane),
+      sample("a few cells", 60, 9.0, 8.0, anywhere),
+      sample("few in a large box", 5, 300.0, 300.0, anywhere),
+      sample("one", 1, 40.0, 30.0, anywhere),
+  };
+}
+
+enum class Deal { by_id, by_place, to_last };
+
+// Whose particle it is at first: ranks that own nothing are among them.
+std::size_t owner(Deal deal, const Sample& state, std::size_t k, std::size_t ranks) {
+  if (deal == Deal::by_id)
+    return (state.ids[k] * 0x9e3779b97f4a7c15u >> 33) % ranks;
+  const double place = state.positions[k].x() / state.box.size_x;
+  const auto slab = static_cast<std::size_t>((place - std::floor(place)) * static_cast<double>(ranks));
+  return deal == Deal::by_place ? std::min(slab, ranks - 1) : ranks - 1;
+}
+
+struct Share {
+  Sample state;
+  std::vector<std::size_t> numbers; // in the whole
+};
+
+Share own_share(const Sample& whole, Deal deal) {
+  Share share{{whole.name, whole.box, {}, {}, {}}, {}};
+  for (std::size_t k = whole.ids.size(); k-- > 0;)
+    if (owner(deal, whole, k, launched().count()) == launched().own()) {
+      share.state.positions.push_back(whole.positions[k]);
+      share.state.masses.push_back(whole.masses[k]);
+      share.state.ids.push_back(whole.ids[k]);
+      share.numbers.push_back(k);
+    }
+  return share;
+}
+
+std::vector<Vec3> solve(FftSolver& solver, GravityProblem problem, const Ranks& ranks) {
+  std::vector<Vec3> accelerations(problem.positions.size(), Vec3::Constant(1e300));
+  problem.ranks = ranks;
+  solver.accelerate(problem, accelerations);
+  return accelerations;
+}
+
+// Of the share, particles whose bits differ from those of the whole.
+std::size_t differing(const std::vector<Vec3>& whole, const Share& share, const std::vector<Vec3>& part) {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < part.size(); ++k)
+    count += std::memcmp(&whole[share.numbers[k]], &part[k], sizeof(Vec3)) != 0;
+  return count;
+}
+
+} // namespace
+
+TEST_CASE("accelerations of fft and mesh on many ranks have the bits of one process") {
+  for (const bool short_range : {true, false})
+    for (const double cut : {2.5, 7.0}) {
+      if (!short_range && cut > 3.0)
+        continue;
+      const FftSettings settings{1.4, cut, short_range};
+      FftSolver shared(settings, choose_instruction_set()); // its memory serves one state after the other
+      for (const Sample& whole : samples()) {
+        FftSolver alone(settings, choose_instruction_set());
+        for (const double part : {0.0, 0.37, 0.499999, 0.83}) {
+          const double offset = part * whole.box.size_y;
+          const std::vector<Vec3> expected = solve(alone, whole.problem(offset), {});
+          for (const Deal deal : {Deal::by_id, Deal::by_place, Deal::to_last}) {
+            CAPTURE(whole.name);
+            CAPTURE(short_range);
+            CAPTURE(cut);
+            CAPTURE(part);
+            CAPTURE(static_cast<int>(deal));
+            const Share share = own_share(whole, deal);
+            CHECK(differing(expected, share, solve(shared, share.state.problem(offset), launched())) == 0);
+          }
+        }
+      }
+    }
+}
+
+TEST_CASE("a place that is nowhere on one rank is an error on all") {
+  const Sample whole = samples().back();
+  Share share = own_share(whole, Deal::to_last);
+  FftSolver solver({1.4, 2.5, true}, choose_instruction_set());
+  for (const double nowhere : {std::numeric_limits<double>::quiet_NaN(), 1e30}) {
+    if (std::isfinite(nowhere) && !launched().many())
+      continue; // one process takes it for a place at the edge
+    for (Vec3& position : share.state.positions)
+      position.x() = nowhere;
+    CHECK_THROWS_AS(solve(solver, share.state.problem(0.0), launched()), Error);
+  }
+}
+
+TEST_CASE("no particles at all are no error") {
+  const Sample none{"none", {40.0, 30.0, 1.5, 0.0}, {}, {}, {}};
+  FftSolver solver({1.4, 2.5, true}, choose_instruction_set());
+  CHECK(solve(solver, none.problem(0.0), launched()).empty());
+}
