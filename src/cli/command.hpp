@@ -2,6 +2,7 @@
 #pragma once
 
 #include <keeler/core/error.hpp>
+#include <keeler/ranks/ranks.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -25,8 +26,8 @@ ExitCode print_help(const CLI::App& command);
 /// whole command line, for the provenance of what is written.
 void add_check(CLI::App& program, Action& action);
 void add_generate(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
-void add_run(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
-void add_resume(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
+void add_run(CLI::App& program, Action& action, const std::vector<std::string>& arguments, const Ranks& ranks);
+void add_resume(CLI::App& program, Action& action, const std::vector<std::string>& arguments, const Ranks& ranks);
 void add_complete(CLI::App& program, Action& action);
 void add_help(CLI::App& program, Action& action);
 void add_info(CLI::App& program, Action& action);

@@ -5,6 +5,7 @@
 
 #include <keeler/core/threads.hpp>
 #include <keeler/core/version.hpp>
+#include <keeler/ranks/ranks.hpp>
 
 #include <fmt/format.h>
 
@@ -26,7 +27,9 @@ using namespace keeler;
 namespace {
 
 int fail(ExitCode code, const std::string& message) {
-  say(message);
+  if (!another_rank_speaks())
+    say(message);
+  fail_ranks(code);
   return static_cast<int>(code);
 }
 
@@ -34,6 +37,7 @@ int fail(ExitCode code, const std::string& message) {
 int end_with(ExitCode code) {
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
     throw IoError(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
+  finish_ranks();
   return static_cast<int>(code);
 }
 
@@ -46,16 +50,16 @@ void group(CLI::App& program, const std::string& heading) {
 }
 
 // In the order in which a user meets them.
-void add_commands(CLI::App& program, Action& action, const std::vector<std::string>& arguments) {
+void add_commands(CLI::App& program, Action& action, const std::vector<std::string>& arguments, const Ranks& ranks) {
   add_new(program, action);
   add_check(program, action);
   add_tune(program, action);
   add_generate(program, action, arguments);
   add_tile(program, action, arguments);
   group(program, "Start");
-  add_run(program, action, arguments);
+  add_run(program, action, arguments, ranks);
   add_watch(program, action);
-  add_resume(program, action, arguments);
+  add_resume(program, action, arguments, ranks);
   add_sweep(program, action);
   group(program, "Run");
   add_info(program, action);
@@ -72,27 +76,49 @@ void add_commands(CLI::App& program, Action& action, const std::vector<std::stri
   add_complete(program, action);
 }
 
-int run(int argc, char** argv) {
-  CLI::App program("Keeler simulates a self-gravitating patch of a planetary ring.", "keeler");
-  program.set_version_flag("--version", "keeler " + program_version());
-  program.require_subcommand(0, 1);
-  Action action;
-  const std::vector<std::string> arguments(argv, argv + argc);
-  add_commands(program, action, arguments);
-  examples_of(program, {"keeler run a-ring-wakes -o wakes", "keeler report wakes", "keeler help run"});
+// Commands of one process would all do the same.
+void refuse_ranks(const CLI::App& program, const Ranks& ranks) {
+  for (const CLI::App* command : program.get_subcommands())
+    if (ranks.many() && command->get_name() != "run" && command->get_name() != "resume")
+      throw UsageError(fmt::format("'keeler {}' is for one process, and a launcher of MPI has started {}; start it by "
+                                   "itself (only run and resume are shared by ranks)",
+                                   command->get_name(), ranks.count()));
+}
+
+// Whether there is anything to do beyond help.
+bool parse(CLI::App& program, int argc, char** argv, const Ranks& ranks) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& asked) { // --help and --version
     if (program.get_subcommands().empty() && program.remaining_size() > 0)
       throw UsageError(usage_fault(program, CLI::ExtrasError("keeler", program.remaining())));
     program.exit(asked);
-    return end_with(ExitCode::done);
+    return false;
   } catch (const CLI::ParseError& error) {
     throw UsageError(usage_fault(program, error));
   }
+  refuse_ranks(program, ranks);
+  return true;
+}
+
+int run(int argc, char** argv) {
+  const Ranks ranks = Ranks::launched();
+  if (!ranks.is_first() && !std::freopen("/dev/null", "w", stdout)) // results are the first rank's to tell
+    throw IoError("cannot open /dev/null");
+  CLI::App program("Keeler simulates a self-gravitating patch of a planetary ring.", "keeler");
+  program.set_version_flag("--version", "keeler " + program_version());
+  program.require_subcommand(0, 1);
+  Action action;
+  const std::vector<std::string> arguments(argv, argv + argc);
+  add_commands(program, action, arguments, ranks);
+  examples_of(program, {"keeler run a-ring-wakes -o wakes", "keeler report wakes", "keeler help run"});
+  bool acts = false;
+  ranks.together([&] { acts = parse(program, argc, argv, ranks); });
+  if (!acts)
+    return end_with(ExitCode::done);
   if (!action)
     return end_with(print_help(program));
-  set_threads(threads()); // refuses what OMP_NUM_THREADS must not ask for
+  ranks.together([] { set_threads(threads()); }); // refuses what OMP_NUM_THREADS must not ask for
   return end_with(action());
 }
 

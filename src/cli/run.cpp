@@ -29,8 +29,11 @@ struct JobOptions {
   TalkOption talk;
 };
 
-RunOptions run_options(const JobOptions& job, const std::vector<std::string>& arguments, ProgressLine& line) {
+// The first rank alone speaks.
+RunOptions run_options(const JobOptions& job, const std::vector<std::string>& arguments, ProgressLine& line,
+                       const Ranks& ranks) {
   RunOptions options;
+  options.ranks = ranks;
   options.folder = job.folder;
   options.force = job.force;
   options.check = job.check;
@@ -39,6 +42,8 @@ RunOptions run_options(const JobOptions& job, const std::vector<std::string>& ar
   if (job.until > 0.0)
     options.until_orbits = job.until;
   options.arguments = arguments;
+  if (!ranks.is_first())
+    return options;
   options.start_progress = [&line](const StartProgress& progress) { line.show(progress); };
   options.progress = [&line](const RunProgress& progress) { line.show(progress); };
   options.notice = job.talk.notice();
@@ -113,6 +118,10 @@ void print_summary(const std::string& folder, const nlohmann::json& s) {
   fmt::print("time of output                      series {:.2g} s, stresses {:.2g} s, snapshots {:.2g} s, "
              "checkpoints {:.2g} s, checks of forces {:.2g} s\n",
              part("series_s"), part("stresses_s"), part("snapshots_s"), part("checkpoints_s"), part("force_checks_s"));
+  if (const std::uint64_t ranks = s["ranks"].get<std::uint64_t>(); ranks > 1)
+    fmt::print(
+        "exchange of ranks                   {:.1f} s of the first of {}: sending, receiving, waiting for others\n",
+        part("exchange_s"), ranks);
   const nlohmann::json& cost = s["ns_per_particle_step"];
   fmt::print("ns per particle and step            drift {:.0f}, gravity {:.0f}, series {:.1f}\n",
              cost.value("drift", 0.0), cost.value("gravity", 0.0), cost.value("series", 0.0));
@@ -120,7 +129,9 @@ void print_summary(const std::string& folder, const nlohmann::json& s) {
   fmt::print("folder                              {}\n", folder);
 }
 
-ExitCode report(const JobOptions& job, const RunResult& result) {
+ExitCode report(const JobOptions& job, const RunResult& result, const Ranks& ranks) {
+  if (!ranks.is_first())
+    return result.finished ? ExitCode::done : ExitCode::stopped;
   const std::string text = read_text(std::filesystem::path(job.folder) / "summary.json");
   if (job.json)
     fmt::print("{}", text);
@@ -143,7 +154,7 @@ void add_common(CLI::App& command, JobOptions& job) {
 
 } // namespace
 
-void add_run(CLI::App& program, Action& action, const std::vector<std::string>& arguments) {
+void add_run(CLI::App& program, Action& action, const std::vector<std::string>& arguments, const Ranks& ranks) {
   const auto job = std::make_shared<JobOptions>();
   CLI::App& command = *program.add_subcommand("run", "evolve a scene into a folder of results");
   job->scene.add_to(command)->required();
@@ -156,39 +167,43 @@ void add_run(CLI::App& program, Action& action, const std::vector<std::string>& 
   examples_of(command,
               {"keeler run scene.toml -o wakes", "keeler run scene.toml --set time.end=10 --threads 4 -o longer",
                "keeler run scene.toml --from start.hdf -o wakes"});
-  command.callback([job, arguments, &action] {
-    action = [job, arguments] {
+  command.callback([job, arguments, ranks, &action] {
+    action = [job, arguments, ranks] {
       job->threads.apply();
-      job->talk.say_program();
-      const Scene scene = job->scene.load(job->from);
-      job->talk.say_scene(scene);
+      if (ranks.is_first())
+        job->talk.say_program();
+      Scene scene;
+      ranks.together([&] { scene = job->scene.load(job->from); });
+      if (ranks.is_first())
+        job->talk.say_scene(scene);
       RunResult result;
       {
         ProgressLine line(job->talk);
-        result = start_run(scene, run_options(*job, arguments, line), requests_from_signals());
+        result = start_run(scene, run_options(*job, arguments, line, ranks), requests_from_signals());
       }
-      return report(*job, result);
+      return report(*job, result, ranks);
     };
   });
 }
 
-void add_resume(CLI::App& program, Action& action, const std::vector<std::string>& arguments) {
+void add_resume(CLI::App& program, Action& action, const std::vector<std::string>& arguments, const Ranks& ranks) {
   const auto job = std::make_shared<JobOptions>();
   CLI::App& command = *program.add_subcommand("resume", "continue a run from its newest whole checkpoint");
   command.add_option("DIR", job->folder, "the folder of the run")->required()->type_name("");
   command.add_option("--until", job->until, "another end, in orbits since the run began")->check(positive_number());
   add_common(command, *job);
   examples_of(command, {"keeler resume wakes", "keeler resume wakes --until 20"});
-  command.callback([job, arguments, &action] {
-    action = [job, arguments] {
+  command.callback([job, arguments, ranks, &action] {
+    action = [job, arguments, ranks] {
       job->threads.apply();
-      job->talk.say_program();
+      if (ranks.is_first())
+        job->talk.say_program();
       RunResult result;
       {
         ProgressLine line(job->talk);
-        result = resume_run(run_options(*job, arguments, line), requests_from_signals());
+        result = resume_run(run_options(*job, arguments, line, ranks), requests_from_signals());
       }
-      return report(*job, result);
+      return report(*job, result, ranks);
     };
   });
 }

@@ -35,6 +35,13 @@ void DriftPhase::collide(Particles& particles, const ShearingBox& box, double of
   engine_->collide(particles, box, offset, tally, undisturbed);
 }
 
+#ifdef KEELER_MPI
+bool DriftPhase::collide_shared(Particles& particles, const Borders& borders, const Ranks& ranks,
+                                const ShearingBox& box, double offset, CollisionTally& tally) {
+  return engine_->collide_shared(particles, borders, ranks, box, offset, tally);
+}
+#endif
+
 const Finder& DriftPhase::finder() const {
   return engine_->finder();
 }

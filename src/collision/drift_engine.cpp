@@ -1,6 +1,7 @@
 #include "drift_engine.hpp"
 
 #include "ablation.hpp"
+#include "in_place.hpp"
 
 #include <keeler/contacts/certified_finder.hpp>
 #include <keeler/contacts/finders.hpp>
@@ -48,96 +49,19 @@ void DriftEngine::set_pace(double step, double kick_pull, double rest_pull) {
   grid_ = GridPartners(frequencies_, step);
 }
 
-// The orbits in the store itself: one loop has them all.
-struct DriftEngine::InPlace {
-  DriftEngine& drift;
-  CollisionTally& tally;
-
-  const Body& body(std::size_t i) const { return drift.particles_->bodies[i]; }
-  std::uint32_t stamp(std::size_t i) const { return drift.so_far_.stamp(i); }
-  double last_change(std::size_t i) const { return drift.so_far_.last_change(i); }
-  bool is_due(const Event& event) const { return drift.so_far_.holds(event); }
-  bool keeps(const Event&) const { return true; }
-  std::span<const std::uint32_t> to_search_again() const { return {}; }
-
-  void change(std::uint32_t i, const Elements& elements, double time) {
-    if (stamp(i) == 0)
-      drift.touched_.push_back(i);
-    drift.so_far_.change(i, time);
-    drift.particles_->bodies[i].elements = elements;
-    if (drift.through_grid_)
-      drift.grid_.changed(i);
-    else if (!drift.lists_.reaches_far() && !drift.lists_.changed(i, time))
-      list_anew(i);
-    drift.finder().changed(i);
-    if (drift.watch_)
-      drift.watch_->changed(i);
-  }
-
-  void set_spin(std::uint32_t i, const Vec3& spin) { drift.particles_->spins[i] = spin; }
-
-  void list_anew(std::uint32_t i) {
-    drift.lists_.list_anew(i);
-    if (drift.lists_.reaches_far())
-      drift.lists_.make_for_step();
-  }
-
-  // Who watches sees partners in the order of their ids and images.
-  bool may_look_again(std::uint32_t i) const {
-    return !drift.through_grid_ && !drift.watch_ && drift.finder().exact() && drift.lists_.has_many(i);
-  }
-
-  template<class Visit> void visit_partners(std::uint32_t i, double from, double until, const Visit& visit) {
-    if (!drift.watch_)
-      return visit_unordered(i, from, until, visit);
-    std::vector<Candidate> partners;
-    visit_unordered(i, from, until, [&](std::size_t j, const Image& image) {
-      partners.push_back({i, static_cast<std::uint32_t>(j), image});
-    });
-    drift.put_in_order(partners);
-    for (const Candidate& c : partners)
-      visit(c.high, c.image);
-  }
-
-  template<class Visit> void visit_unordered(std::uint32_t i, double from, double until, const Visit& visit) {
-    if (drift.through_grid_)
-      drift.grid_.visit_partners(i, from, visit);
-    else if (drift.lists_.reaches_far())
-      drift.lists_.visit_everywhere(i, from, visit);
-    else
-      drift.lists_.visit_partners(i, from, until, buffer, visit);
-  }
-
-  void prefetch_partner(std::size_t i) const { drift.so_far_.prefetch(i); }
-  void prefetch(std::size_t i, int stage) const {
-    if (stage == 0)
-      drift.so_far_.prefetch(i);
-    if (!drift.through_grid_)
-      drift.lists_.prefetch(i, stage);
-  }
-
-  void find_all(std::span<const Query> queries, std::span<FinderResult> results) const {
-    drift.finder().find_all(queries, results);
-    for (std::size_t k = 0; k < queries.size(); ++k) {
-      if (drift.watch_)
-        drift.watch_->searched(queries[k], results[k]);
-      drift.gave_up_ += results[k].exit == FinderExit::gave_up;
-    }
-  }
-
-  void happened(const Contact& contact) { drift.count(contact, tally); }
-  void record(const CollisionRecord& record) {
-    if (drift.watch_)
-      drift.watch_->collided(record);
-    if (drift.takes_records_)
-      drift.records_.push_back(record);
-  }
-
-  std::vector<std::uint32_t> buffer;
-};
-
 void DriftEngine::collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally,
                           bool undisturbed) {
+  begin_step(particles, box, offset, undisturbed);
+  if (audit_)
+    audit_beginning();
+  carry_out(solve(), tally);
+  if (audit_)
+    audit_end();
+  add_sums(tally);
+  end_step();
+}
+
+void DriftEngine::begin_step(Particles& particles, const ShearingBox& box, double offset, bool undisturbed) {
   touched_.clear();
   particles_ = &particles;
   step_at_hand_ = {&particles, &settings_,   frequencies_, orbital_frequency_, box,
@@ -147,31 +71,33 @@ void DriftEngine::collide(Particles& particles, const ShearingBox& box, double o
   slow_pairs_.clear();
   prepare(undisturbed);
   reject();
-  if (audit_)
-    audit_beginning();
-  std::vector<Event> first = solve();
+}
+
+// All that follows from the first contacts.
+void DriftEngine::carry_out(const std::vector<Event>& first, CollisionTally& tally) {
   const Stopwatch stopwatch(costs_.events);
-  if (!in_domains(first, tally)) {
-    events_.assign(first);
-    InPlace orbits{*this, tally, {}};
-    ContactLoop loop(step_at_hand_, orbits, events_);
-    loop.run();
-    costs_.widest_list = std::max(costs_.widest_list, loop.most_partners());
-  }
-  if (audit_)
-    audit_end();
+  if (in_domains(first, tally))
+    return;
+  events_.assign(first);
+  InPlace orbits{*this, tally, {}};
+  ContactLoop loop(step_at_hand_, orbits, events_);
+  loop.run();
+  costs_.widest_list = std::max(costs_.widest_list, loop.most_partners());
+}
+
+void DriftEngine::end_step() {
   if (!through_grid_)
     lists_.touched(touched_);
-  tally.gave_up += gave_up_;
-  add_sums(tally);
   if (takes_records_)
     takes_records_->recorded(records_);
-  if (particles.size())
-    costs_.bytes_per_particle = bytes() / particles.size();
+  if (particles_->size())
+    costs_.bytes_per_particle = bytes() / particles_->size();
   particles_ = nullptr; // the caller's, who may move it
 }
 
 void DriftEngine::count(const Contact& contact, CollisionTally& tally) {
+  if (Ranks::possible && contact.low >= counted_)
+    return; // a copy: its owner counts
   ++(contact.fast ? tally.fast : tally.slow);
   tally.unresolved += contact.unresolved;
   sums_.energy_lost += contact.energy_lost;
@@ -184,6 +110,7 @@ void DriftEngine::count(const Contact& contact, CollisionTally& tally) {
 }
 
 void DriftEngine::add_sums(CollisionTally& tally) const {
+  tally.gave_up += gave_up_;
   tally.energy_lost += sums_.energy_lost.value();
   tally.momentum_flux += sums_.momentum_flux.value();
   tally.azimuthal_gain += sums_.azimuthal_gain.value();
@@ -205,8 +132,24 @@ bool DriftEngine::in_domains(const std::vector<Event>& first, CollisionTally& ta
       records_.push_back(*record);
   });
   optimistic_.list_touched(touched_);
+  if (Ranks::possible && keeps_changes_)
+    keep_changes();
   costs_.widest_list = std::max(costs_.widest_list, optimistic_.most_partners());
   return true;
+}
+
+// As they were in the domains.
+void DriftEngine::keep_changes() {
+  std::vector<std::uint32_t> places = touched_;
+  std::sort(places.begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  for (const std::uint32_t place : places) {
+    const std::size_t first = changes_.size();
+    optimistic_.visit_changes(place, [&](double time, const Elements& before, const Vec3& spin) {
+      changes_.push_back({place, time, before, {}, spin, Vec3::Zero()});
+    });
+    std::reverse(changes_.begin() + static_cast<std::ptrdiff_t>(first), changes_.end());
+  }
 }
 
 void DriftEngine::prepare(bool undisturbed) {

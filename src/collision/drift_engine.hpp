@@ -9,6 +9,8 @@
 #include <keeler/collision/drift.hpp>
 #include <keeler/collision/neighbour_audit.hpp>
 #include <keeler/core/exact_sum.hpp>
+#include <keeler/ranks/ranks.hpp>
+#include <keeler/slabs/borders.hpp>
 
 namespace keeler {
 
@@ -20,6 +22,8 @@ public:
   DriftEngine& operator=(const DriftEngine&) = delete;
 
   void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally, bool undisturbed);
+  bool collide_shared(Particles& particles, const Borders& borders, const Ranks& ranks, const ShearingBox& box,
+                      double offset, CollisionTally& tally);
   DriftCosts costs() const;
 
   Finder& finder() const {
@@ -35,6 +39,16 @@ public:
 
 private:
   struct InPlace;
+  struct Told;
+  struct FollowsOwners;
+  struct Sharing;
+  /// The end of a particle's path and the begin of the next one.
+  struct PathChange {
+    std::uint32_t place;
+    double time; ///< of the end
+    Elements before, after;
+    Vec3 spin_before, spin_after; ///< of a rough particle
+  };
   /// Over the contacts of the step.
   struct Sums {
     ExactSum energy_lost, momentum_flux, azimuthal_gain;
@@ -45,6 +59,18 @@ private:
     Image image;
   };
 
+  void begin_step(Particles& particles, const ShearingBox& box, double offset, bool undisturbed);
+  void carry_out(const std::vector<Event>& first, CollisionTally& tally);
+  void end_step();
+  PathChange change_of(std::uint32_t place, double time) const {
+    const Vec3 spin = particles_->rough ? particles_->spins[place] : Vec3::Zero();
+    return {place, time, particles_->bodies[place].elements, {}, spin, Vec3::Zero()};
+  }
+  void keep_changes();
+  void complete_changes();
+  void undo_changes();
+  void do_again(Sharing& sharing);
+  void end_shared(Sharing& sharing, CollisionTally& tally);
   void prepare(bool undisturbed);
   bool in_domains(const std::vector<Event>& first, CollisionTally& tally);
   void count(const Contact& contact, CollisionTally& tally);
@@ -83,6 +109,10 @@ private:
   std::vector<SlowPair> slow_pairs_;   // that have touched in the step
   std::uint64_t gave_up_ = 0;
   Sums sums_;
+  static constexpr std::size_t everybody = ~std::size_t{0};
+  std::size_t counted_ = everybody; // particles, the first ones, whose contacts count here
+  bool keeps_changes_ = false;      // only where ranks share a step
+  std::vector<PathChange> changes_; // of the step, then
   DriftCosts costs_;
 };
 

@@ -47,6 +47,9 @@ public:
   std::size_t contacts() const;
   /// Calls visit(contact, its record or null) for each of them, in the order of events.
   template<class Visit> void visit_contacts(const Visit& visit) const;
+  /// Calls visit(end of the path, its elements, spin) for each change of a particle that held, the
+  /// last one first.
+  template<class Visit> void visit_changes(std::uint32_t place, const Visit& visit) const;
   /// Each particle that was hit; who was rolled back and hit again, again.
   void list_touched(std::vector<std::uint32_t>& touched) const;
   /// Of one particle in one search of the step.
@@ -148,6 +151,13 @@ template<class Visit> void OptimisticLoop::visit_contacts(const Visit& visit) co
   for (const auto& [domain, contact] : order_) {
     const Domain& its = domains_[domain];
     visit(its.contacts[contact], its.records.empty() ? nullptr : &its.records[contact]);
+  }
+}
+
+template<class Visit> void OptimisticLoop::visit_changes(std::uint32_t place, const Visit& visit) const {
+  for (std::uint32_t number = newest(place); number; number = change(number).earlier) {
+    const std::vector<Vec3>& spins = domains_[(number - 1) / most_changes].spins;
+    visit(change(number).time, change(number).ended, spins.empty() ? Vec3::Zero() : spins[(number - 1) % most_changes]);
   }
 }
 

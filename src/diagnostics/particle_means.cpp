@@ -1,16 +1,18 @@
 #include <keeler/diagnostics/particle_means.hpp>
 
-#include <keeler/core/threads.hpp>
+#include <keeler/core/exact_sum.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 namespace keeler {
 namespace {
 
 struct Sums {
-  double mass = 0.0, energy = 0.0, azimuthal = 0.0, product = 0.0, heights = 0.0;
-  Vec3 velocities = Vec3::Zero(), squares = Vec3::Zero();
+  ExactSum mass, energy, azimuthal, product, heights;
+  ExactVec3 velocities, squares;
 
   Sums& operator+=(const Sums& more) {
     mass += more.mass;
@@ -25,8 +27,8 @@ struct Sums {
 };
 
 struct SpinSums {
-  double mass = 0.0, inertia = 0.0, energy = 0.0, squares = 0.0;
-  Vec3 spins = Vec3::Zero(), moments = Vec3::Zero(); // Σ m ω, Σ I ω
+  ExactSum mass, inertia, energy, squares;
+  ExactVec3 spins, moments; // Σ m ω, Σ I ω
 
   SpinSums& operator+=(const SpinSums& more) {
     mass += more.mass;
@@ -39,11 +41,11 @@ struct SpinSums {
   }
 };
 
-SpinMeans spin_means(const Particles& particles, double after) {
+SpinMeans spin_means(const Particles& particles, double after, const Ranks& ranks) {
   if (!particles.rough)
     return {};
   const SpinTurn turn(after);
-  const SpinSums sums = ordered_total<SpinSums>(particles.size(), [&](SpinSums& total, std::size_t k) {
+  SpinSums sums = exact_total<SpinSums>(particles.size(), [&](SpinSums& total, std::size_t k) {
     const Body& body = particles.bodies[k];
     const double inertia = 0.4 * body.mass * body.radius * body.radius;
     const Vec3 spin = turn.from_epoch(particles.spins[k]);
@@ -54,24 +56,47 @@ SpinMeans spin_means(const Particles& particles, double after) {
     total.spins += body.mass * spin;
     total.moments += inertia * spin;
   });
-  const Vec3 mean = sums.spins / sums.mass, frame(0.0, 0.0, 1.0);
+  ranks.merge({&sums.mass, &sums.inertia, &sums.energy, &sums.squares, &sums.spins.x, &sums.spins.y, &sums.spins.z,
+               &sums.moments.x, &sums.moments.y, &sums.moments.z});
+  const double mass = sums.mass.value();
+  const Vec3 mean = sums.spins.value() / mass, frame(0.0, 0.0, 1.0), moments = sums.moments.value();
   const auto energy_about = [&](const Vec3& spin) { // Σ ½ I (ω − spin)²
-    return sums.energy - sums.moments.dot(spin) + 0.5 * sums.inertia * spin.squaredNorm();
+    return sums.energy.value() - moments.dot(spin) + 0.5 * sums.inertia.value() * spin.squaredNorm();
   };
   return {energy_about(frame), energy_about(mean), mean,
-          std::sqrt(std::max(0.0, sums.squares / sums.mass - mean.squaredNorm()))};
+          std::sqrt(std::max(0.0, sums.squares.value() / mass - mean.squaredNorm()))};
+}
+
+// Of the particle with the least id: all ranks have the same.
+Vec3 one_velocity(const Particles& particles, const Frequencies& frequencies, const Rotation& rotation,
+                  const Ranks& ranks) {
+  struct One {
+    std::uint64_t id = std::numeric_limits<std::uint64_t>::max();
+    double x = 0.0, y = 0.0, z = 0.0;
+  } one;
+  const auto least = std::min_element(particles.ids.begin(), particles.ids.end());
+  if (least != particles.ids.end()) {
+    const std::size_t k = static_cast<std::size_t>(least - particles.ids.begin());
+    const Vec3 c = peculiar_velocity(particles.bodies[k].elements, frequencies, rotation);
+    one = {*least, c.x(), c.y(), c.z()};
+  }
+  for (const std::vector<One>& other : ranks.exchange(std::vector(ranks.count(), std::vector{one})))
+    if (other.front().id < one.id)
+      one = other.front();
+  return {one.x, one.y, one.z};
 }
 
 } // namespace
 
 // Variances in one pass: squares are taken about the velocity of one of the particles, so that a common motion of all
 // does not cancel digits.
-ParticleMeans particle_means(const Particles& particles, const Frequencies& frequencies, double after) {
-  if (particles.size() == 0)
+ParticleMeans particle_means(const Particles& particles, const Frequencies& frequencies, double after,
+                             const Ranks& ranks) {
+  if (particles.size() == 0 && !ranks.many())
     return {};
   const Rotation rotation(frequencies, after);
-  const Vec3 near = peculiar_velocity(particles.bodies[0].elements, frequencies, rotation);
-  const Sums sums = ordered_total<Sums>(particles.size(), [&](Sums& total, std::size_t k) {
+  const Vec3 near = one_velocity(particles, frequencies, rotation, ranks);
+  Sums sums = exact_total<Sums>(particles.size(), [&](Sums& total, std::size_t k) {
     particles.prefetch_after(k);
     const Body& body = particles.bodies[k];
     const Elements& el = body.elements;
@@ -85,15 +110,18 @@ ParticleMeans particle_means(const Particles& particles, const Frequencies& freq
     total.velocities += momentum;
     total.squares += momentum.cwiseProduct(v);
   });
-  const Vec3 mean = sums.velocities / sums.mass;
-  const Vec3 variance = (sums.squares / sums.mass - mean.cwiseProduct(mean)).cwiseMax(0.0); // not below by rounding
-  return {sums.mass,
-          sums.energy,
-          sums.azimuthal,
+  ranks.merge({&sums.mass, &sums.energy, &sums.azimuthal, &sums.product, &sums.heights, &sums.velocities.x,
+               &sums.velocities.y, &sums.velocities.z, &sums.squares.x, &sums.squares.y, &sums.squares.z});
+  const double mass = sums.mass.value();
+  const Vec3 mean = sums.velocities.value() / mass;
+  const Vec3 variance = (sums.squares.value() / mass - mean.cwiseProduct(mean)).cwiseMax(0.0); // not below by rounding
+  return {mass,
+          sums.energy.value(),
+          sums.azimuthal.value(),
           variance.cwiseSqrt(),
-          sums.product / sums.mass - mean.x() * mean.y(),
-          std::sqrt(sums.heights / sums.mass),
-          spin_means(particles, after)};
+          sums.product.value() / mass - mean.x() * mean.y(),
+          std::sqrt(sums.heights.value() / mass),
+          spin_means(particles, after, ranks)};
 }
 
 } // namespace keeler

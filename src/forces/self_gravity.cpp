@@ -57,7 +57,7 @@ GravityProblem gravity_problem(const Boundary& boundary, double orbital_frequenc
     positions[k] = state_at(body.elements, boundary.frequencies, rotation).position;
     masses[k] = body.mass;
   });
-  return {positions, masses, particles.ids, boundary.box, boundary.offset, newton_g(orbital_frequency)};
+  return {positions, masses, particles.ids, boundary.box, boundary.offset, newton_g(orbital_frequency), boundary.ranks};
 }
 
 std::optional<GravityEnergy> GravityMeter::measure(const Boundary& boundary) {

@@ -19,8 +19,9 @@ bool one_of_several() {
 
 Ranks Ranks::launched() {
   if (one_of_several())
-    throw UsageError("this Keeler was built without ranks, and a launcher of MPI has started several of it, which would "
-                     "all do the same; start one, or build with -DKEELER_MPI=ON");
+    throw UsageError(
+        "this Keeler was built without ranks, and a launcher of MPI has started several of it, which would "
+        "all do the same; start one, or build with -DKEELER_MPI=ON");
   return {};
 }
 
@@ -40,7 +41,11 @@ void Ranks::together(const std::function<void()>& work) const {
 void Ranks::first_does(const std::function<void()>& work) const {
   work();
 }
-void finish_ranks(ExitCode) {}
+double seconds_in_exchange() {
+  return 0.0;
+}
+void finish_ranks() {}
+void fail_ranks(ExitCode) {}
 bool another_rank_speaks() {
   return false;
 }

@@ -1,6 +1,7 @@
 // Ranks on MPI: the only source that knows of it.
 #include <keeler/ranks/ranks.hpp>
 
+#include <keeler/core/stopwatch.hpp>
 #include <keeler/core/version.hpp>
 
 #include <fmt/format.h>
@@ -22,6 +23,7 @@ constexpr std::size_t longest_message = std::size_t{1} << 30; // bytes: MPI coun
 bool is_launched = false;
 bool all_know = false;       // of the error that ends this rank
 bool another_speaks = false; // of it
+double exchanging = 0.0;     // s
 
 bool has_launcher() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"})
@@ -66,13 +68,19 @@ Ranks Ranks::launched() {
   return ranks;
 }
 
-void finish_ranks(ExitCode code) {
-  if (!is_launched)
-    return;
-  const bool wrong = code != ExitCode::done && code != ExitCode::stopped;
-  if (wrong && !all_know)
+double seconds_in_exchange() {
+  return exchanging;
+}
+
+void finish_ranks() {
+  if (is_launched)
+    MPI_Finalize();
+}
+
+void fail_ranks(ExitCode code) {
+  if (is_launched && !all_know)
     MPI_Abort(MPI_COMM_WORLD, static_cast<int>(code));
-  MPI_Finalize();
+  finish_ranks();
 }
 
 bool another_rank_speaks() {
@@ -84,6 +92,7 @@ Parcels Ranks::exchange(Parcels parcels) const {
   assert(parcels.size() == count_);
   if (!many())
     return parcels;
+  const Stopwatch watch(exchanging);
   std::vector<std::uint64_t> sizes(count_), from(count_);
   std::transform(parcels.begin(), parcels.end(), sizes.begin(), [](const auto& parcel) { return parcel.size(); });
   MPI_Alltoall(sizes.data(), 1, MPI_UINT64_T, from.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD);
@@ -114,6 +123,7 @@ Parcels Ranks::exchange(Parcels parcels) const {
 }
 
 void Ranks::sum(std::span<std::uint64_t> numbers) const {
+  const Stopwatch watch(exchanging);
   if (many())
     MPI_Allreduce(MPI_IN_PLACE, numbers.data(), as_int(numbers.size()), MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
 }
@@ -136,12 +146,14 @@ void Ranks::merge(std::initializer_list<ExactSum*> sums) const {
 }
 
 double Ranks::largest(double number) const {
+  const Stopwatch watch(exchanging);
   if (many())
     MPI_Allreduce(MPI_IN_PLACE, &number, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
   return number;
 }
 
 void Ranks::from_first(std::span<std::byte> bytes) const {
+  const Stopwatch watch(exchanging);
   for (std::size_t begin = 0; many() && begin < bytes.size(); begin += longest_message)
     MPI_Bcast(bytes.data() + begin, as_int(std::min(longest_message, bytes.size() - begin)), MPI_BYTE, 0,
               MPI_COMM_WORLD);

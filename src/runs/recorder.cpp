@@ -50,22 +50,26 @@ void OutputCounters::list_fields(FieldTable& table, const Scene& scene) {
     contacts.list_fields(table);
 }
 
-Recorder::Recorder(const RunFolder& folder, const FolderLock& lock, const Scene& scene,
+Recorder::Recorder(const RunFolder& folder, const FolderLock* lock, const Scene& scene,
                    const std::vector<std::string>& arguments, OutputCounters counters,
-                   std::optional<std::int64_t> resumed_at, Notice notice)
-    : folder_(folder), lock_(lock), scene_(scene), provenance_(collect_provenance(arguments)),
+                   std::optional<std::int64_t> resumed_at, Notice notice, const Ranks& ranks)
+    : folder_(folder), lock_(lock), ranks_(ranks), scene_(scene), provenance_(collect_provenance(arguments)),
       counters_(std::move(counters)), notice_(std::move(notice)), columns_(series_columns_of(scene)),
-      series_(open_series(folder.series(), names_of(columns_), scene, resumed_at)),
       moonlet_columns_(moonlet_columns_of(scene)) {
+  if (measures_gravity(scene_))
+    gravity_meter_.emplace(*scene_.gravity, scene_.planet.orbital_frequency);
+  ranks_.first_does([&] { open(resumed_at); });
+}
+
+void Recorder::open(std::optional<std::int64_t> resumed_at) {
+  series_.emplace(open_series(folder_.series(), names_of(columns_), scene_, resumed_at));
   if (!moonlet_columns_.empty()) {
     std::vector<std::string> names;
     for (const MoonletColumn& column : moonlet_columns_)
       names.emplace_back(column.name);
-    moonlets_.emplace(open_series(folder.moonlets(), names, scene, resumed_at));
+    moonlets_.emplace(open_series(folder_.moonlets(), names, scene_, resumed_at));
   }
   write_text(folder_.scene(), scene_.resolved);
-  if (measures_gravity(scene_))
-    gravity_meter_.emplace(*scene_.gravity, scene_.planet.orbital_frequency);
   if (!scene_.output.collisions)
     return;
   std::optional<LogResume> resume;
@@ -82,13 +86,13 @@ void Recorder::tell(const std::string& text) const {
 void Recorder::tell_restored(Series& series, const std::filesystem::path& file) {
   if (!series.take_restored())
     return;
-  log("restored", {{"file", file.filename().string()}});
+  write_log("restored", {{"file", file.filename().string()}});
   tell(fmt::format("'{}' was removed or replaced while the run wrote to it; it is written anew with all its rows",
                    file.string()));
 }
 
 void Recorder::tell_restored() {
-  tell_restored(series_, folder_.series());
+  tell_restored(*series_, folder_.series());
   if (moonlets_)
     tell_restored(*moonlets_, folder_.moonlets());
   if (contact_log_)
@@ -101,19 +105,23 @@ void Recorder::tell_lost_rows(const Series& series, const std::filesystem::path&
   const SeriesGap first = series.gaps().front();
   const std::size_t others = series.gaps().size() - 1;
   for (const SeriesGap& gap : series.gaps())
-    log("rows lost", {{"file", file.filename().string()}, {"from_step", gap.from}, {"to_step", gap.to}});
+    write_log("rows lost", {{"file", file.filename().string()}, {"from_step", gap.from}, {"to_step", gap.to}});
   tell(fmt::format("the rows of '{}' from step {} to {}{} are missing; it goes on without them", file.string(),
                    first.from, first.to, others > 0 ? fmt::format(", and {} more,", counted(others, "gap")) : ""));
 }
 
 void Recorder::tell_losses() {
-  tell_lost_rows(series_, folder_.series());
+  ranks_.first_does([&] { tell_what_was_lost(); });
+}
+
+void Recorder::tell_what_was_lost() {
+  tell_lost_rows(*series_, folder_.series());
   if (moonlets_)
     tell_lost_rows(*moonlets_, folder_.moonlets());
   if (!contact_log_)
     return;
   if (const std::int64_t lost = contact_log_->lost(); lost > 0) {
-    log("contacts lost", {{"rows", lost}});
+    write_log("contacts lost", {{"rows", lost}});
     tell(fmt::format("the last {} rows of the log of contacts are missing or damaged; it goes on without them", lost));
   }
 }
@@ -131,8 +139,10 @@ void Recorder::contacts() {
 }
 
 void Recorder::require_sound(const SimulationState& state, const ParticleMeans& means) {
-  if (const std::string fault = fault_of_books(state, means, scene_.planet.frequencies); !fault.empty())
-    throw InvariantError(fault);
+  ranks_.together([&] {
+    if (const std::string fault = fault_of_books(state, means, scene_.planet.frequencies); !fault.empty())
+      throw InvariantError(fault);
+  });
   sound_step_ = state.step;
 }
 
@@ -145,16 +155,19 @@ void Recorder::require_sound(const Simulation& simulation) {
 void Recorder::snapshot(const Simulation& simulation) {
   const Stopwatch watch(costs_.snapshots);
   require_sound(simulation);
-  write_snapshot(folder_.snapshot(counters_.snapshots), simulation.patch(), {scene_.resolved, provenance_});
+  const Patch patch = simulation.patch();
+  ranks_.first_does([&] {
+    write_snapshot(folder_.snapshot(counters_.snapshots), patch, {scene_.resolved, provenance_});
+    if (contact_log_)
+      contact_log_->end_interval(counters_.last_snapshot_step, simulation.state().step);
+    tell_restored();
+  });
   ++counters_.snapshots;
-  if (contact_log_)
-    contact_log_->end_interval(counters_.last_snapshot_step, simulation.state().step);
   counters_.last_snapshot_step = simulation.state().step;
-  tell_restored();
 }
 
 void Recorder::checkpoint(const Simulation& simulation) {
-  lock_.require_in_place();
+  ranks_.first_does([&] { lock_->require_in_place(); });
   require_sound(simulation);
   if (contact_log_) {
     const Stopwatch watch(costs_.contacts);
@@ -162,19 +175,23 @@ void Recorder::checkpoint(const Simulation& simulation) {
     counters_.contacts = contact_log_->counters();
   }
   const Stopwatch watch(costs_.checkpoints);
-  series_.sync();
+  SimulationState copy = simulation.whole_state();
+  OutputCounters counters = counters_;
+  ++counters.checkpoints;
+  ranks_.first_does([&] { write_checkpoint_of(copy, counters); });
+  counters_ = counters;
+}
+
+void Recorder::write_checkpoint_of(SimulationState& state, OutputCounters& counters) {
+  series_->sync();
   if (moonlets_)
     moonlets_->sync();
   tell_restored();
-  SimulationState copy = simulation.state();
-  OutputCounters counters = counters_;
-  ++counters.checkpoints;
-  FieldTable table = copy.fields();
+  FieldTable table = state.fields();
   counters.list_fields(table, scene_);
   const std::filesystem::path file = checkpoint_path(folder_.path(), counters_.checkpoints);
   write_checkpoint(file, table, {scene_.resolved, provenance_});
-  counters_ = counters;
-  lock_.require_in_place();
+  lock_->require_in_place();
   remove_later_checkpoints(file);
   prune_checkpoints(file);
 }
@@ -182,10 +199,15 @@ void Recorder::checkpoint(const Simulation& simulation) {
 void Recorder::sample(const Simulation& simulation) {
   const std::optional<GravityEnergy> gravity = measure_gravity(simulation);
   const Stopwatch watch(costs_.series);
-  lock_.require_in_place();
   const SeriesSample row(scene_, simulation, gravity);
   require_sound(simulation.state(), row.means);
-  series_.append(simulation.state().step, values_of(columns_, row));
+  ranks_.first_does([&] { append(row); });
+}
+
+void Recorder::append(const SeriesSample& row) {
+  const Simulation& simulation = row.simulation;
+  lock_->require_in_place();
+  series_->append(simulation.state().step, values_of(columns_, row));
   for (std::size_t k = 0; k < simulation.state().moonlets.size(); ++k) {
     std::vector<double> values;
     for (const MoonletColumn& column : moonlet_columns_)
@@ -201,7 +223,7 @@ std::optional<GravityEnergy> Recorder::measure_gravity(const Simulation& simulat
   if (!gravity_meter_ || (step > 0 && step / every == (step - scene_.output.series_every) / every))
     return std::nullopt;
   const Stopwatch watch(costs_.stresses);
-  const std::optional<GravityEnergy> gravity = gravity_meter_->measure(simulation.boundary());
+  const std::optional<GravityEnergy> gravity = simulation.measure(*gravity_meter_);
   if (scene_.output.series_every == 0)
     gravity_meter_.reset(); // there will be no other row
   return gravity;
@@ -231,18 +253,22 @@ void Recorder::check_forces(const Simulation& simulation) {
 }
 
 void Recorder::summary(const nlohmann::ordered_json& summary) {
-  write_text(folder_.summary(), summary.dump(2) + "\n");
+  ranks_.first_does([&] { write_text(folder_.summary(), summary.dump(2) + "\n"); });
 }
 
 void Recorder::log(const std::string& event, const nlohmann::ordered_json& details) {
-  lock_.require_in_place();
+  ranks_.first_does([&] { write_log(event, details); });
+}
+
+void Recorder::write_log(const std::string& event, const nlohmann::ordered_json& details) {
+  lock_->require_in_place();
   nlohmann::ordered_json line;
   line["event"] = event;
   line.update(details);
   line["time"] = utc_now();
   const std::string text = line.dump() + "\n";
   Descriptor file(folder_.log(), O_WRONLY | O_CREAT | O_APPEND);
-  lock_.require_in_place();
+  lock_->require_in_place();
   file.append_whole(std::as_bytes(std::span(text)));
   file.close();
 }

@@ -1,5 +1,6 @@
 // Everything that a run writes. It works on copies and never touches the state. It writes into the folder that the run
-// holds and nowhere else: every call throws IoError once the folder's name stands for something else.
+// holds and nowhere else: every call throws IoError once the folder's name stands for something else. Of a run that
+// ranks share all make each call; the first rank writes, and what it throws all throw.
 #pragma once
 
 #include "contact_log.hpp"
@@ -50,15 +51,16 @@ class Recorder {
 public:
   using Notice = std::function<void(const std::string&)>; ///< a line for the user; may be empty
 
-  /// `resumed_at`: the series is continued from that step, else begun anew. The scene and the lock must outlive it.
-  Recorder(const RunFolder& folder, const FolderLock& lock, const Scene& scene,
+  /// `resumed_at`: the series is continued from that step, else begun anew. The scene and the lock must outlive it; the
+  /// first rank alone has a lock.
+  Recorder(const RunFolder& folder, const FolderLock* lock, const Scene& scene,
            const std::vector<std::string>& arguments, OutputCounters counters, std::optional<std::int64_t> resumed_at,
-           Notice notice);
+           Notice notice, const Ranks& ranks);
 
   /// From now on contacts are logged, where the scene asks for it. The simulation must outlive its last step only.
   void watch(Simulation& simulation);
   /// Throws IoError when the folder's name stands for something else by now.
-  void require_folder() const { lock_.require_in_place(); }
+  void require_folder() const { lock_->require_in_place(); }
 
   /// After each step.
   void contacts();
@@ -73,6 +75,8 @@ public:
   /// with a kick, or at the start.
   void check_forces(const Simulation& simulation);
   void log(const std::string& event, const nlohmann::ordered_json& details);
+  /// Of the first rank alone.
+  void write_log(const std::string& event, const nlohmann::ordered_json& details);
   void summary(const nlohmann::ordered_json& summary);
   const OutputCounters& counters() const { return counters_; }
   const Provenance& provenance() const { return provenance_; }
@@ -80,6 +84,10 @@ public:
   const OutputCosts& costs() const { return costs_; }
 
 private:
+  void open(std::optional<std::int64_t> resumed_at);
+  void append(const SeriesSample& row);
+  void write_checkpoint_of(SimulationState& state, OutputCounters& counters);
+  void tell_what_was_lost();
   std::optional<GravityEnergy> measure_gravity(const Simulation& simulation);
   void require_sound(const SimulationState& state, const ParticleMeans& means);
   void require_sound(const Simulation& simulation);
@@ -89,16 +97,20 @@ private:
   void tell_lost_rows(const Series& series, const std::filesystem::path& file);
 
   RunFolder folder_;
-  const FolderLock& lock_;
-  NamingGuard guard_{[this] { lock_.require_in_place(); }};
+  const FolderLock* lock_;
+  Ranks ranks_;
+  NamingGuard guard_{[this] {
+    if (lock_)
+      lock_->require_in_place();
+  }};
   const Scene& scene_;
   Provenance provenance_;
   OutputCounters counters_;
   Notice notice_;
   std::vector<SeriesColumn> columns_;
-  Series series_;
+  std::optional<Series> series_; // the first rank's
   std::vector<MoonletColumn> moonlet_columns_;
-  std::optional<Series> moonlets_; // only where the scene has some
+  std::optional<Series> moonlets_; // the same; only where the scene has some
   std::optional<ContactLog> contact_log_;
   std::optional<GravityMeter> gravity_meter_; // only where the series has it
   std::int64_t sound_step_ = -1;              // whose state was sound

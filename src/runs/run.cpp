@@ -19,6 +19,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
@@ -54,6 +55,16 @@ template<class Work> RunResult with_advice(const RunOptions& options, const Work
   }
 }
 
+std::string hash_of(const Simulation& simulation, const Scene& scene) {
+  const Ranks& ranks = simulation.ranks();
+  if (!ranks.many())
+    return state_hash(simulation.state(), scene);
+  const SimulationState whole = simulation.whole_state();
+  std::string hash = ranks.is_first() ? state_hash(whole, scene) : "";
+  ranks.from_first(hash);
+  return hash;
+}
+
 class Runner {
 public:
   Runner(const Scene& scene, const RunOptions& options, RunRequests& requests, Simulation& simulation,
@@ -64,6 +75,7 @@ public:
     requests_.patience_s = patience();
     if (options.check)
       check_.emplace(scene, simulation);
+    assert(!check_ || !simulation.ranks().many());
   }
 
   RunResult run() {
@@ -82,7 +94,7 @@ public:
     if (result.finished && has_force_checks() && recorder_.force_checks().last_step != state.step)
       recorder_.check_forces(simulation_);
     result.step = state.step;
-    result.state_hash = state_hash(state, scene_);
+    result.state_hash = hash_of(simulation_, scene_);
     result.resume_command = resume_command(options_);
     return result;
   }
@@ -91,6 +103,8 @@ public:
   std::int64_t last_checkpoint() const { return last_checkpoint_; }
 
 private:
+  const Ranks& ranks() const { return simulation_.ranks(); }
+
   void advance() {
     const Interruptible step(requests_.give_up);
     if (check_)
@@ -112,7 +126,8 @@ private:
       return false;
     // two passes more for the last checkpoint
     const double reserve = (passes_between_stops() + 2.0) * longest_pass_ + recorder_.force_checks().last_s;
-    return requests_.stop || (options_.wall_time_s && watch_.elapsed() + reserve > *options_.wall_time_s);
+    return ranks().from_first(requests_.stop ||
+                              (options_.wall_time_s && watch_.elapsed() + reserve > *options_.wall_time_s));
   }
 
   void record() {
@@ -120,7 +135,7 @@ private:
     recorder_.contacts();
     if (due(scene_.output.series_every))
       recorder_.sample(simulation_);
-    const bool asked = between_kicks() && requests_.snapshot.exchange(false);
+    const bool asked = between_kicks() && ranks().from_first(requests_.snapshot.exchange(false));
     if (due(scene_.output.snapshot_every) || asked)
       recorder_.snapshot(simulation_);
     if (due(scene_.output.checkpoint_every) || checkpoint_due_by_clock()) {
@@ -136,23 +151,25 @@ private:
 
   bool checkpoint_due_by_clock() const {
     const double interval = 60.0 * scene_.output.checkpoint_every_minutes;
-    return interval > 0.0 && between_kicks() && watch_.elapsed() - last_checkpoint_time_ >= interval;
+    return interval > 0.0 && between_kicks() &&
+           ranks().from_first(watch_.elapsed() - last_checkpoint_time_ >= interval);
   }
 
-  // The exact sum is over pairs.
-  bool has_force_checks() const { return scene_.gravity && scene_.gravity->by_pairs(); }
+  // The exact sum is over pairs, wherever they are.
+  bool has_force_checks() const { return scene_.gravity && scene_.gravity->by_pairs() && !ranks().many(); }
 
   // As often as a small share of the time allows: that is another number of steps for each solver and machine, and no
   // state hangs on it.
   bool force_check_due() const {
     const ForceChecks& checks = recorder_.force_checks();
-    const double next =
-        checks.count > 0 ? checks.last_s : first_check * static_cast<double>(simulation_.state().particles.size());
+    const double next = checks.count > 0 ? checks.last_s : first_check * static_cast<double>(simulation_.count());
     return has_force_checks() && between_kicks() && checks.seconds + next <= share_of_checks * watch_.elapsed();
   }
 
   // Three times as long as any pass so far is nothing unusual.
   unsigned patience() const {
+    if (!ranks().is_first())
+      return 0; // it decides
     return static_cast<unsigned>(std::ceil(std::max(least_patience, 3.0 * passes_between_stops() * longest_pass_)));
   }
 
@@ -209,7 +226,8 @@ struct Start {
 
 // The state is that of an unfinished step: what is on disk is all there is.
 [[noreturn]] void fail_given_up(const RunOptions& options, std::int64_t last_checkpoint, Recorder& recorder) {
-  recorder.log("given up", {{"checkpoint_step", last_checkpoint}});
+  if (options.ranks.is_first())
+    recorder.write_log("given up", {{"checkpoint_step", last_checkpoint}});
   if (last_checkpoint < 0)
     throw Error(ExitCode::run_time, "a step was given up on request before there was a checkpoint; start again, with "
                                     "output.checkpoint_every or, where steps do not end, with a shorter time.step");
@@ -231,9 +249,12 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
   } catch (const Interrupted&) {
     fail_given_up(options, runner.last_checkpoint(), recorder);
   } catch (const InvariantError& error) {
+    if (options.ranks.many())
+      throw; // its particles are on many ranks, and not all of them may know
     fail_broken(error, simulation, scene, folder, recorder);
   } catch (const IoError&) {
-    recorder.require_folder(); // a folder that was moved away in the middle of a write is the better reason
+    if (options.ranks.is_first())
+      recorder.require_folder(); // a folder that was moved away in the middle of a write is the better reason
     throw;
   }
   const RunCost cost{.first_step = first_step,
@@ -243,9 +264,12 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
                      .start_s = start.made_s,
                      .output = recorder.costs(),
                      .force_checks = recorder.force_checks()};
+  const Patch patch = simulation.patch();
+  std::optional<Transport> transport;
+  if (options.ranks.is_first())
+    transport = transport_of_run(folder.series(), patch, scene, options.notice);
   const nlohmann::ordered_json summary =
-      summarise(simulation, scene, transport_of_run(folder.series(), simulation.patch(), scene, options.notice), result,
-                cost, recorder.provenance());
+      summarise(simulation, patch, scene, transport, result, cost, recorder.provenance());
   recorder.summary(summary);
   recorder.log(result.finished ? "finished" : "stopped", {{"step", result.step}, {"state_hash", result.state_hash}});
   return result;
@@ -296,70 +320,122 @@ struct Begun {
 Begun first_simulation(const Scene& scene, const RunOptions& options, const RunRequests& requests) {
   try {
     const Interruptible start(requests.stop);
-    const Patch patch = initial_patch(scene, options.start_progress);
-    return {Simulation(scene, patch), scale_of(patch)};
+    Patch patch;
+    options.ranks.together([&] { patch = initial_patch(scene, options.start_progress); });
+    return {Simulation(scene, patch, options.ranks), scale_of(patch)};
   } catch (const Interrupted&) {
     throw Error(ExitCode::run_time, "stopped before the first step (on request), so nothing is written; start again");
   }
 }
 
+// Before the work of an initial state, which tells how many particles there are.
+void require_shareable_start(const Scene& scene, const RunOptions& options) {
+  constexpr std::size_t many = 1000000;
+  if constexpr (Ranks::possible)
+    options.ranks.together([&] {
+      if (options.ranks.many())
+        Simulation::require_shareable(scene, many);
+    });
+}
+
+void refuse_checks_of_many(const RunOptions& options) {
+  options.ranks.together([&] {
+    if (options.check && options.ranks.many())
+      throw UsageError(
+          "--check looks at all particles at once, and several ranks have them; leave it out, or run on one");
+  });
+}
+
+void tell_notices(const Scene& scene, const RunOptions& options, const PatchScale& scale) {
+  if (!options.notice)
+    return;
+  for (const std::string& notice : scene.notices)
+    options.notice(notice);
+  for (const std::string& doubt : doubts(scene, scale))
+    options.notice("note: " + doubt);
+}
+
 RunResult begin(const Scene& scene, const RunOptions& options, RunRequests& requests) {
   Start start;
+  const Ranks& ranks = options.ranks;
   const RunFolder folder(options.folder);
-  if (!options.force)
-    folder.refuse_if_occupied(); // before the work of an initial state
-  folder.require_writable();
+  require_shareable_start(scene, options);
+  ranks.first_does([&] {
+    if (!options.force)
+      folder.refuse_if_occupied(); // before the work of an initial state
+    folder.require_writable();
+  });
   Begun begun = first_simulation(scene, options, requests);
   Simulation& simulation = begun.simulation;
   start.made_s = start.watch.elapsed();
-  folder.make();
-  const FolderLock lock(folder.path());
-  folder.claim(options.force);
-  if (options.notice) {
-    for (const std::string& notice : scene.notices)
-      options.notice(notice);
-    for (const std::string& doubt : doubts(scene, begun.scale))
-      options.notice("note: " + doubt);
-  }
-  Recorder recorder(folder, lock, scene, options.arguments, {}, std::nullopt, options.notice);
-  recorder.log(
-      "started",
-      {{"particles", simulation.state().particles.size()}, {"end_orbits", end_orbits(scene)}, {"threads", threads()}});
+  std::optional<FolderLock> lock;
+  ranks.first_does([&] {
+    folder.make();
+    lock.emplace(folder.path());
+    folder.claim(options.force);
+  });
+  tell_notices(scene, options, begun.scale);
+  Recorder recorder(folder, lock ? &*lock : nullptr, scene, options.arguments, {}, std::nullopt, options.notice, ranks);
+  recorder.log("started", {{"particles", simulation.count()},
+                           {"end_orbits", end_orbits(scene)},
+                           {"threads", threads()},
+                           {"ranks", ranks.count()}});
   recorder.snapshot(simulation);
   recorder.sample(simulation);
   return carry_on(scene, options, requests, folder, simulation, recorder, start);
 }
 
+// The newest whole checkpoint, which the first rank looks for.
+std::filesystem::path newest_checkpoint(const RunOptions& options) {
+  std::string path;
+  options.ranks.first_does([&] {
+    const NewestCheckpoint newest = newest_valid_checkpoint(options.folder);
+    if (options.notice)
+      for (const std::string& warning : newest.warnings)
+        options.notice(warning);
+    path = newest.path.string();
+  });
+  options.ranks.from_first(path);
+  return path;
+}
+
 RunResult go_on(const RunOptions& options, RunRequests& requests) {
   Start start;
+  const Ranks& ranks = options.ranks;
   const RunFolder folder(options.folder);
-  const FolderLock lock(folder.path());
-  const NewestCheckpoint newest = newest_valid_checkpoint(folder.path());
-  if (options.notice)
-    for (const std::string& warning : newest.warnings)
-      options.notice(warning);
-  Loaded loaded = load(newest.path);
+  std::optional<FolderLock> lock;
+  ranks.first_does([&] { lock.emplace(folder.path()); });
+  const std::filesystem::path newest = newest_checkpoint(options);
+  Loaded loaded;
+  Scene scene;
+  ranks.together([&] {
+    loaded = load(newest);
+    scene = until(std::move(loaded.run.scene), options, loaded.run.state.step);
+  });
   const std::int64_t step = start.checkpoint_step = loaded.run.state.step;
-  const Scene scene = until(std::move(loaded.run.scene), options, step);
-  folder.cut_log();
-  if (step >= scene.time.end_step && says_finished(folder.summary())) {
+  ranks.first_does([&] { folder.cut_log(); });
+  if (step >= scene.time.end_step && ranks.from_first(says_finished(folder.summary()))) {
     if (options.notice)
       options.notice(fmt::format("the run in '{}' is finished, nothing was changed; --until with a later orbit than "
                                  "{:.6g} goes on",
                                  options.folder.string(), static_cast<double>(step) * scene.time.step));
     return {true, step, state_hash(loaded.run.state, scene), resume_command(options)};
   }
-  Simulation simulation(scene, std::move(loaded.run.state));
-  folder.cut_snapshots(loaded.counters.snapshots);
-  folder.remove_summary();
-  prune_checkpoints(newest.path);
-  Recorder recorder(folder, lock, scene, options.arguments, loaded.counters, step, options.notice);
+  Simulation simulation(scene, std::move(loaded.run.state), ranks);
+  ranks.first_does([&] {
+    folder.cut_snapshots(loaded.counters.snapshots);
+    folder.remove_summary();
+    prune_checkpoints(newest);
+  });
+  Recorder recorder(folder, lock ? &*lock : nullptr, scene, options.arguments, loaded.counters, step, options.notice,
+                    ranks);
   recorder.tell_losses();
-  recorder.log("resumed", {{"checkpoint", newest.path.filename().string()},
+  recorder.log("resumed", {{"checkpoint", newest.filename().string()},
                            {"step", step},
                            {"orbits", simulation.orbits()},
                            {"end_orbits", end_orbits(scene)},
-                           {"threads", threads()}});
+                           {"threads", threads()},
+                           {"ranks", ranks.count()}});
   return carry_on(scene, options, requests, folder, simulation, recorder, start);
 }
 
@@ -382,10 +458,12 @@ void store_checkpoint(const std::filesystem::path& file, const SimulationState& 
 }
 
 RunResult start_run(const Scene& scene, const RunOptions& options, RunRequests& requests) {
+  refuse_checks_of_many(options);
   return with_advice(options, [&] { return begin(scene, options, requests); });
 }
 
 RunResult resume_run(const RunOptions& options, RunRequests& requests) {
+  refuse_checks_of_many(options);
   return with_advice(options, [&] { return go_on(options, requests); });
 }
 

@@ -83,11 +83,11 @@ bool says_finished(const std::filesystem::path& summary) {
   return json.is_object() && json.contains("finished") && json["finished"] == true;
 }
 
-nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scene,
+nlohmann::ordered_json summarise(const Simulation& simulation, const Patch& patch, const Scene& scene,
                                  const std::optional<Transport>& transport, const RunResult& result,
                                  const RunCost& cost, const Provenance& provenance) {
   const SimulationState& state = simulation.state();
-  const double count = static_cast<double>(state.particles.size()), orbits = simulation.orbits();
+  const double count = static_cast<double>(simulation.count()), orbits = simulation.orbits();
   const auto rate = [&](std::uint64_t n) {
     return orbits > 0.0 ? 2.0 * static_cast<double>(n) / (count * orbits) : 0.0;
   };
@@ -99,7 +99,8 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scen
   json["state_hash"] = result.state_hash;
   json["time_orbits"] = orbits;
   json["steps"] = state.control.steps;
-  json["particle_count"] = state.particles.size();
+  json["particle_count"] = simulation.count();
+  json["ranks"] = simulation.ranks().count();
   json["threads"] = threads();
   json["collisions_per_particle_orbit"] = rate(state.collisions.fast);
   json["slow_contacts_per_particle_orbit"] = rate(state.collisions.slow);
@@ -110,7 +111,7 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scen
   if (scene.gravity && scene.gravity->carries())
     json["resting_contacts"] = state.resting.pairs.size();
   json["finder_gave_up"] = state.collisions.gave_up;
-  json["largest_overlap"] = largest_overlap(simulation.patch()).depth;
+  json["largest_overlap"] = largest_overlap(patch).depth;
   json["force_error"] = force_error(cost.force_checks);
   json["energy_j"] = energies(simulation, scene);
   json["energy_balance"] = energy_balance(transport);
@@ -127,6 +128,7 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scen
                    {"snapshots_s", cost.output.snapshots},
                    {"checkpoints_s", cost.output.checkpoints},
                    {"contacts_s", cost.output.contacts},
+                   {"exchange_s", seconds_in_exchange()},
                    {"force_checks_s", cost.force_checks.seconds}};
   json["ns_per_particle_step"] = {{"drift", split.drift / passes},
                                   {"gravity", split.force("gravity") / passes},

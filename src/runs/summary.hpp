@@ -24,8 +24,9 @@ struct RunCost {
 std::optional<Transport> transport_of_run(const std::filesystem::path& series, const Patch& patch, const Scene& scene,
                                           const std::function<void(const std::string&)>& notice);
 
-/// Counts and energies are those of the whole run, times those of this stretch.
-nlohmann::ordered_json summarise(const Simulation& simulation, const Scene& scene,
+/// Counts and energies are those of the whole run, times those of this stretch. `patch` is the simulation's.
+/// Collective; the first rank's is the one.
+nlohmann::ordered_json summarise(const Simulation& simulation, const Patch& patch, const Scene& scene,
                                  const std::optional<Transport>& transport, const RunResult& result,
                                  const RunCost& cost, const Provenance& provenance);
 

@@ -82,15 +82,18 @@ std::vector<std::unique_ptr<Force>> make_forces(const Scene& scene, const Simula
 
 } // namespace
 
-Simulation::Simulation(const Scene& scene, const Patch& start) : Simulation(scene, first_state(scene, start)) {
+Simulation::Simulation(const Scene& scene, const Patch& start, const Ranks& ranks)
+    : Simulation(scene, first_state(scene, start), ranks) {
   for (std::size_t f = 0; f < forces_.size(); ++f)
     accelerate(f);
 }
 
-Simulation::Simulation(const Scene& scene, SimulationState state)
-    : scene_(scene), state_(std::move(state)),
+Simulation::Simulation(const Scene& scene, SimulationState state, const Ranks& ranks)
+    : scene_(scene), ranks_(ranks), state_(std::move(state)), count_(state_.particles.size()),
       drift_(scene.collisions, scene.planet.frequencies, scene.planet.orbital_frequency, state_.step_length) {
   forces_ = make_forces(scene_, state_);
+  if constexpr (Ranks::possible)
+    divide();
   find_moonlets();
   set_pace();
 }
@@ -105,7 +108,7 @@ void Simulation::advance() {
   {
     const Stopwatch watch(split_.drift);
     drifting_ = true;
-    drift_.collide(state_.particles, state_.box, state_.epoch_offset(), state_.collisions, undisturbed_);
+    collide();
     drifting_ = false;
     note_slow_pairs();
     move_on();
@@ -121,13 +124,20 @@ void Simulation::advance() {
   carry_resting(interval);
 }
 
+void Simulation::collide() {
+  if constexpr (Ranks::possible)
+    if (ranks_.many())
+      return collide_shared();
+  drift_.collide(state_.particles, state_.box, state_.epoch_offset(), state_.collisions, undisturbed_);
+}
+
 // Where the kicks of all forces meet. Elements move to the middle of what the next step is now.
 void Simulation::decide_when_due() {
   if (!scene_.time.automatic || state_.step % decision_ticks != 0)
     return;
   const Stopwatch watch(split_.advance);
   const double tick = state_.tick(), before = state_.step_length;
-  state_.control = decide_step(state_.control, state_.collisions, state_.particles.size(), state_.step);
+  state_.control = decide_step(state_.control, state_.collisions, count_, state_.step);
   state_.step_length = static_cast<double>(state_.control.step) * tick;
   set_pace();
   if (state_.step_length == before)
@@ -179,14 +189,16 @@ void Simulation::carry_on_resting() {
              [&](const RestingStep& step) { resting_.carry_on(state_.resting, step, state_.collisions); });
 }
 
-// Memory order follows the places every tenth of an orbit. That depends on the tick alone: a restart goes on with the
-// same order, and with the same bits of the means of a row.
+// Memory order follows the places every tenth of an orbit.
 void Simulation::sort_when_due() {
   const std::int64_t longest = scene_.time.automatic ? TimeSettings::longest : 1;
   const auto intervals = std::ceil(sorting_interval / (static_cast<double>(longest) * scene_.time.step));
   const std::int64_t interval = longest * static_cast<std::int64_t>(intervals);
   if (state_.step % interval != 0)
     return;
+  if constexpr (Ranks::possible)
+    if (ranks_.many())
+      return slabs_->expire(); // new borders sort too
   const Stopwatch watch(split_.drift);
   drift_.release();
   undisturbed_ = false;
@@ -256,8 +268,17 @@ void Simulation::rebase(double time) {
 }
 
 Boundary Simulation::boundary() const {
-  return {state_.particles, scene_.planet.frequencies, 0.5 * state_.step_length, state_.box, state_.boundary_offset(),
-          state_.step,      two_pi * orbits()};
+  return {state_.particles,         scene_.planet.frequencies,
+          0.5 * state_.step_length, state_.box,
+          state_.boundary_offset(), state_.step,
+          two_pi * orbits(),        ranks_};
+}
+
+std::optional<GravityEnergy> Simulation::measure(GravityMeter& meter) const {
+  if constexpr (Ranks::possible)
+    if (ranks_.many())
+      return measure_whole(meter);
+  return meter.measure(boundary());
 }
 
 void Simulation::accelerate(std::size_t f) {
@@ -275,7 +296,7 @@ void Simulation::half_kick(std::size_t f) {
   const Rotation rotation = boundary().rotation();
   const double half = 0.5 * state_.tick() * static_cast<double>(ticks_between_kicks(f));
   undisturbed_ = false;
-  const KickSums sums = exact_total<KickSums>(state_.particles.size(), [&](KickSums& total, std::size_t k) {
+  KickSums sums = exact_total<KickSums>(state_.particles.size(), [&](KickSums& total, std::size_t k) {
     state_.particles.prefetch_after(k);
     Body& body = state_.particles.bodies[k];
     const Vec3 dv = half * force.accelerations[k];
@@ -283,6 +304,7 @@ void Simulation::half_kick(std::size_t f) {
     total.azimuthal_gain += azimuthal_gain(body, dv, frequencies, rotation);
     kick(body.elements, dv, frequencies, rotation);
   });
+  ranks_.merge({&sums.work, &sums.azimuthal_gain});
   force.work += sums.work.value();
   force.azimuthal_gain += sums.azimuthal_gain.value();
   for (std::size_t k = 0; k < moonlet_places_.size(); ++k)
@@ -290,7 +312,7 @@ void Simulation::half_kick(std::size_t f) {
 }
 
 void Simulation::replace(Particles particles) {
-  assert(state_.step % scene_.kick_interval() == 0 && particles.ids == state_.particles.ids);
+  assert(!ranks_.many() && state_.step % scene_.kick_interval() == 0 && particles.ids == state_.particles.ids);
   const Patch after = patch_of(particles);
   require_sound(after);
   require_apart(after, "the changed state");
@@ -338,7 +360,18 @@ Patch Simulation::patch_of(const Particles& particles) const {
 }
 
 Patch Simulation::patch() const {
+  if constexpr (Ranks::possible)
+    if (ranks_.many())
+      return patch_of(all_particles());
   return patch_of(state_.particles);
+}
+
+SimulationState Simulation::whole_state() const {
+  SimulationState whole = state_;
+  if constexpr (Ranks::possible)
+    if (ranks_.many())
+      gather(whole);
+  return whole;
 }
 
 Patch Simulation::patch_at_break() const {
@@ -353,7 +386,7 @@ double Simulation::offset_at_break() const {
 }
 
 ParticleMeans Simulation::means() const {
-  return particle_means(state_.particles, scene_.planet.frequencies, -0.5 * state_.step_length);
+  return particle_means(state_.particles, scene_.planet.frequencies, -0.5 * state_.step_length, ranks_);
 }
 
 } // namespace keeler

@@ -48,7 +48,7 @@ FAULTS = [
           "const double curved = 0.5 * half * half *", "const double curved = 0.05 * half * half *",
           "collision", "at every step, and after every hit, the lists visit whoever may touch, each pair once"),
     Fault("stale-list", "a stale list: who is hit and leaves its slack in the step keeps its old list",
-          "src/collision/drift_engine.cpp",
+          "src/collision/in_place.hpp",
           "    else if (!drift.lists_.reaches_far() && !drift.lists_.changed(i, time))\n      list_anew(i);\n",
           "    else if (!drift.lists_.reaches_far())\n      drift.lists_.changed(i, time);\n",
           "many_steps", "the same bits as the plain twin: cold states that heat up within a step"),

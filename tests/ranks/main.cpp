@@ -20,6 +20,6 @@ int main(int argc, char** argv) {
   if (!ranks.is_first())
     context.setOption("minimal", true); // speaks of failures alone
   const bool failed = ranks.any(context.run() != 0);
-  finish_ranks(ExitCode::done); // they all know
+  finish_ranks();
   return failed ? 1 : 0;
 }

@@ -1,6 +1,5 @@
 // The order of particles in memory. It follows their places in the box, so that neighbours share cache lines and pages.
-// No result depends on it but the means of a row of the series and, after an edit, the start of the energy; and it
-// follows from the state alone.
+// No result depends on it.
 #pragma once
 
 #include <keeler/box/shearing_box.hpp>

@@ -11,6 +11,8 @@
 #include <keeler/contacts/finder.hpp>
 #include <keeler/core/field_table.hpp>
 #include <keeler/particles/store.hpp>
+#include <keeler/ranks/ranks.hpp>
+#include <keeler/slabs/borders.hpp>
 
 #include <memory>
 #include <span>
@@ -108,6 +110,13 @@ public:
   /// (interrupt.hpp).
   void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally,
                bool undisturbed = false);
+
+  /// The same of a step that ranks share: own particles and copies (slabs/borders.hpp), which have the bits of their
+  /// owners. All ranks call it at once, with an exact finder and no onlookers. The own particles become what they would
+  /// on one rank, and each contact counts on all ranks. Returns false on all, with everything as it was, where an own
+  /// particle of one went farther than the margin.
+  bool collide_shared(Particles& particles, const Borders& borders, const Ranks& ranks, const ShearingBox& box,
+                      double offset, CollisionTally& tally);
 
   const Finder& finder() const;
   DriftCosts costs() const;

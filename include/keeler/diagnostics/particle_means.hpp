@@ -1,9 +1,11 @@
-// Means over all particles of a run, from their elements as they lie in memory: no copy, no sorting, one pass on all
-// threads. The same numbers as those of a patch (diagnostics/dispersion.hpp), up to rounding.
+// Means over all particles of a run, from their elements as they lie in memory: no copy, no sorting, and exact sums, so
+// that neither memory order nor ranks show. The same numbers as those of a patch (diagnostics/dispersion.hpp), up to
+// rounding.
 #pragma once
 
 #include <keeler/orbit/elements.hpp>
 #include <keeler/particles/store.hpp>
+#include <keeler/ranks/ranks.hpp>
 
 namespace keeler {
 
@@ -15,7 +17,7 @@ struct SpinMeans {
   double dispersion = 0.0;    ///< √⟨|ω − ⟨ω⟩|²⟩, rad⁻¹
 };
 
-/// Weighted by mass. The bits follow from the particles and their order in memory, not from the threads.
+/// Weighted by mass. The bits follow from the particles alone.
 struct ParticleMeans {
   double mass = 0.0;              ///< Σ m, kg
   double epicyclic_energy = 0.0;  ///< Σ m (½κ²e² + ½ν²i²), kg m² rad⁻²
@@ -26,7 +28,9 @@ struct ParticleMeans {
   SpinMeans spin;
 };
 
-/// At `after` (rad) from the epoch of the elements. All are 0 without particles.
-ParticleMeans particle_means(const Particles& particles, const Frequencies& frequencies, double after);
+/// At `after` (rad) from the epoch of the elements. All are 0 without particles. Collective: of the particles of all
+/// ranks.
+ParticleMeans particle_means(const Particles& particles, const Frequencies& frequencies, double after,
+                             const Ranks& ranks = {});
 
 } // namespace keeler

@@ -6,6 +6,7 @@
 #include <keeler/box/shearing_box.hpp>
 #include <keeler/core/key.hpp>
 #include <keeler/particles/store.hpp>
+#include <keeler/ranks/ranks.hpp>
 
 #include <cstdint>
 #include <memory>
@@ -24,6 +25,7 @@ struct Boundary {
   double offset;     ///< the box's shear offset at this boundary, m
   std::int64_t step; ///< steps done
   double time = 0.0; ///< since the run began, rad
+  Ranks ranks = {};  ///< of many each has its own particles
 
   /// Turns elements at the epoch back to this boundary.
   Rotation rotation() const { return {frequencies, -to_epoch}; }
@@ -40,8 +42,8 @@ public:
   /// kick as often or in a divisor of that: 1 unless there is a reason.
   virtual std::int64_t kick_every() const { return 1; }
 
-  /// Writes each particle's acceleration (m rad⁻²), in the order of the particles. The bits must depend on the
-  /// particles and the step alone, never on threads or memory order, or a restart would not go on as the run did.
+  /// Writes each particle's acceleration (m rad⁻²), in the order of the particles. Collective. The bits must depend on
+  /// the particles and the step alone, never on threads or memory order, or a restart would not go on as the run did.
   virtual void accelerate(const Boundary& boundary, std::span<Vec3> accelerations) = 0;
 };
 

@@ -36,10 +36,18 @@ public:
   /// when the program begins. Throws UsageError in a build without ranks of which a launcher has started several.
   static Ranks launched();
 
-  std::size_t own() const { return own_; }
-  std::size_t count() const { return count_; }
-  bool many() const { return possible && count_ > 1; }
-  bool is_first() const { return own_ == 0; }
+  std::size_t own() const {
+    return own_;
+  }
+  std::size_t count() const {
+    return count_;
+  }
+  bool many() const {
+    return possible && count_ > 1;
+  }
+  bool is_first() const {
+    return own_ == 0;
+  }
 
   /// Hands each rank its parcel and returns one from each; one's own comes back as it is.
   Parcels exchange(Parcels parcels) const;
@@ -55,8 +63,12 @@ public:
   /// Each becomes the sum of those of all ranks.
   void merge(std::initializer_list<ExactSum*> sums) const;
   double largest(double number) const;
-  double least(double number) const { return -largest(-number); }
-  bool any(bool here) const { return largest(here ? 1.0 : 0.0) > 0.0; }
+  double least(double number) const {
+    return -largest(-number);
+  }
+  bool any(bool here) const {
+    return largest(here ? 1.0 : 0.0) > 0.0;
+  }
 
   /// What the first rank has, on all.
   void from_first(std::span<std::byte> bytes) const;
@@ -67,8 +79,8 @@ public:
     return value;
   }
 
-  /// Runs on every rank, or on the first one alone. Where it throws an Error on one, all throw: the least such rank what
-  /// it threw, the others an Error of that code and those words, of which they need not speak.
+  /// Runs on every rank, or on the first one alone. Where it throws an Error on one, all throw: the least such rank
+  /// what it threw, the others an Error of that code and those words, of which they need not speak.
   void together(const std::function<void()>& work) const;
   void first_does(const std::function<void()>& work) const;
 
@@ -78,15 +90,19 @@ private:
   std::size_t own_ = 0, count_ = 1;
 };
 
-/// Of a launched program at its end. `code` is what this rank ends with. Where the ranks do not all know of an error
-/// that it ends with, it cannot wait for them: all are ended at once.
-void finish_ranks(ExitCode code);
+/// Wall time (s) that this rank has spent in calls of Ranks so far: sending, receiving, and waiting for the others.
+double seconds_in_exchange();
+
+/// Of a launched program at its end: waits for the others.
+void finish_ranks();
+/// The same of a rank that ends with an error, and this code. Where the others do not know of it, they wait for this
+/// rank somewhere else: then all are ended at once.
+void fail_ranks(ExitCode code);
 /// Whether somebody else tells the user of the error that this rank ends with.
 bool another_rank_speaks();
 
-template<class Row>
-std::vector<std::vector<Row>> Ranks::exchange(const std::vector<std::vector<Row>>& rows) const {
-  static_assert(std::is_trivially_copyable_v<Row>);
+template<class Row> std::vector<std::vector<Row>> Ranks::exchange(const std::vector<std::vector<Row>>& rows) const {
+  static_assert(std::is_trivially_destructible_v<Row>); // plain numbers; those of Eigen are not copied trivially
   Parcels parcels(rows.size());
   for (std::size_t rank = 0; rank < rows.size(); ++rank) {
     const auto bytes = std::as_bytes(std::span(rows[rank]));

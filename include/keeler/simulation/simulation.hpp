@@ -1,14 +1,21 @@
 // The step: kick–drift–kick. The forces' half kicks, a drift with its collisions, the forces' half kicks; the kicks of
 // a force only every k-th drift, and none at all in a scene without forces.
+//
+// Of a run that ranks share each rank has a Simulation of its own particles: state().particles, and the accelerations.
+// All else of the state is that of the whole run, on each. What is said to be collective all ranks call at once.
 #pragma once
 
 #include <keeler/forces/force.hpp>
+#include <keeler/forces/self_gravity.hpp>
+#include <keeler/ranks/ranks.hpp>
 #include <keeler/resting/resting_contacts.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/state.hpp>
+#include <keeler/slabs/slabs.hpp>
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,13 +39,15 @@ struct TimeSplit {
 class Simulation {
 public:
   /// A new run from a patch; time starts at zero. Throws InvariantError when particles overlap by more than rounding.
-  Simulation(const Scene& scene, const Patch& start);
+  /// Collective, as all that follows from it: every rank gives the whole patch. Throws UsageError for what the scene
+  /// asks for and ranks cannot share yet.
+  Simulation(const Scene& scene, const Patch& start, const Ranks& ranks = {});
 
   /// A run that goes on from a state, to the bit.
-  Simulation(const Scene& scene, SimulationState state);
+  Simulation(const Scene& scene, SimulationState state, const Ranks& ranks = {});
 
-  /// One step. Throws InvariantError, or Interrupted when an Interruptible (interrupt.hpp) asks for it; the state is
-  /// then that of an unfinished step and must not be stored.
+  /// One step; collective. Throws InvariantError, or Interrupted when an Interruptible (interrupt.hpp) asks for it; the
+  /// state is then that of an unfinished step and must not be stored.
   void advance();
 
   /// The same particles with other elements, radii, masses or spins, given from outside where kicks meet (the step is a
@@ -50,12 +59,20 @@ public:
   const SimulationState& state() const { return state_; }
   /// The state itself, its arrays where they are in memory; nothing else may be asked of the simulation afterwards.
   SimulationState take_state() && { return std::move(state_); }
+  /// Throws UsageError for what a scene of so many particles asks for and ranks cannot share yet. In builds with ranks.
+  static void require_shareable(const Scene& scene, std::size_t count);
+
+  const Ranks& ranks() const { return ranks_; }
+  /// Particles of all ranks.
+  std::size_t count() const { return count_; }
+  /// Collective: the state with the particles of all ranks, on the first one; on the others nothing that is of use.
+  SimulationState whole_state() const;
   double orbits() const { return static_cast<double>(state_.step) * scene_.time.step; }
 
   /// The body of a moonlet, k < state().moonlets.size().
   const Body& moonlet(std::size_t k) const { return state_.particles.bodies[moonlet_places_[k]]; }
 
-  /// A Cartesian copy of the present state.
+  /// A Cartesian copy of the present state. Collective: the first rank gets it, the others one without particles.
   Patch patch() const;
 
   /// The same when advance() has thrown: of the last boundary, or, in the middle of a drift, of the time of the last
@@ -68,10 +85,13 @@ public:
   /// The particles at this boundary between steps, as forces see them; not to be kept beyond the next step.
   Boundary boundary() const;
 
-  /// Means over the particles now, at this boundary.
+  /// The energy of self-gravity at this boundary, on the first rank. Collective.
+  std::optional<GravityEnergy> measure(GravityMeter& meter) const;
+
+  /// Means over all particles now, at this boundary. Collective.
   ParticleMeans means() const;
 
-  /// Where the energy of the random motions came from and went.
+  /// Where the energy of the random motions came from and went. Collective.
   EnergyBalance balance() const { return balance(means()); }
   /// The same where the means are known already.
   EnergyBalance balance(const ParticleMeans& now) const { return state_.balance(now, scene_.planet.frequencies); }
@@ -90,6 +110,15 @@ public:
   DriftPhase& drift() { return drift_; }
 
 private:
+  // of a run that ranks share (shared.cpp)
+  void divide();
+  void collide_shared();
+  void gather(SimulationState& state) const;
+  Particles all_particles() const;
+  std::optional<GravityEnergy> measure_whole(GravityMeter& meter) const;
+  Slabs::Holding holding();
+
+  void collide();
   Patch patch_of(const Particles& particles) const;
   Patch patch_of(const Particles& particles, double offset, double after) const;
   void wrap_changed(const Particles& before);
@@ -111,12 +140,15 @@ private:
   bool kick_due(std::size_t f) const { return state_.step % ticks_between_kicks(f) == 0; }
 
   Scene scene_;
+  Ranks ranks_;
   SimulationState state_;
+  std::size_t count_;
   DriftPhase drift_;
   bool drifting_ = false;                      // until collisions are carried out
   bool undisturbed_ = false;                   // the particles, but for moving on, since the last drift
   std::vector<std::unique_ptr<Force>> forces_; // in the order of state_.forces
   RestingContacts resting_;
+  std::unique_ptr<Slabs> slabs_;            // only of a run that ranks share
   std::vector<std::size_t> moonlet_places_; // in memory
   TimeSplit split_;
 };

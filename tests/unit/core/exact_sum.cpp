@@ -182,3 +182,23 @@ TEST_CASE("of vectors") {
   sum += more;
   CHECK(sum.value() == Vec3(1e-30, 1.0, 0.25));
 }
+
+TEST_CASE("in words: added word by word, of any number of parts") {
+  std::mt19937_64 random(11);
+  const std::vector<double> terms = random_terms(random, 3000, -60, 60);
+  std::vector<std::uint64_t> words(ExactSum().words().size());
+  ExactSum whole;
+  for (std::size_t part = 0; part < 7; ++part) {
+    ExactSum sum;
+    for (std::size_t k = part; k < terms.size(); k += 7)
+      sum += terms[k];
+    const std::vector<std::uint64_t> its = sum.words();
+    for (std::size_t w = 0; w < words.size(); ++w)
+      words[w] += its[w];
+  }
+  for (const double term : terms)
+    whole += term;
+  CHECK(ExactSum::of_words(words).value() == whole.value());
+  words.back() = 1; // one of them was not finite
+  CHECK(std::isnan(ExactSum::of_words(words).value()));
+}

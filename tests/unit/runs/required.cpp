@@ -113,8 +113,8 @@ double held_by_recorder(const std::filesystem::path& folder, const Scene& scene)
   run.make();
   Simulation simulation(scene, initial_patch(scene));
   const FolderLock lock(run.path());
-  std::optional<Recorder> recorder(std::in_place, run, lock, scene, std::vector<std::string>{}, OutputCounters{},
-                                   std::nullopt, Recorder::Notice{});
+  std::optional<Recorder> recorder(std::in_place, run, &lock, scene, std::vector<std::string>{}, OutputCounters{},
+                                   std::nullopt, Recorder::Notice{}, Ranks());
   recorder->sample(simulation);
   recorder->watch(simulation);
   for (int k = 0; k < 3; ++k) {

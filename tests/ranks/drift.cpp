@@ -1,0 +1,168 @@
+// A drift that ranks share against the plain one of the tests, which knows one list of all particles: the same bits.
+#include "launched.hpp"
+
+#include "unit/collision/plain_drift.hpp"
+#include "unit/collision/ring.hpp"
+#include "unit/collision/same_bits.hpp"
+#include "unit/collision/scenario.hpp"
+
+#include <keeler/collision/drift.hpp>
+#include <keeler/slabs/slabs.hpp>
+
+#include <doctest/doctest.h>
+
+#include <map>
+
+using namespace keeler;
+using test::Ring;
+using test::Scenario;
+
+namespace {
+
+// A rank's part of a ring.
+class Part {
+public:
+  Part(const Ring& ring, const CollisionSettings& settings, const Slabs::Reach& reach)
+      : own(ring.particles), slabs(keeler_test::launched(), ring.box, ring.frequencies, reach),
+        drift(settings, ring.frequencies, test::omega, ring.step), step_(ring.step) {
+    slabs.divide({own, {}});
+  }
+
+  void collide(const ShearingBox& box, double offset, CollisionTally& tally) {
+    for (bool done = false; !done;) {
+      if (!slabs.serve(own, step_)) {
+        drift.release();
+        slabs.make_borders({own, {}}, offset, step_);
+      }
+      slabs.add_copies(own);
+      done = drift.collide_shared(own, slabs.borders(), keeler_test::launched(), box, offset, tally);
+      slabs.drop_copies(own);
+      if (!done)
+        slabs.widen();
+    }
+  }
+
+  Particles own;
+  Slabs slabs;
+  DriftPhase drift;
+
+private:
+  double step_;
+};
+
+// Those of the whole that the part owns, in its order.
+Particles part_of(const Particles& whole, const Particles& own) {
+  std::map<std::uint64_t, std::size_t> places;
+  for (std::size_t k = 0; k < whole.size(); ++k)
+    places[whole.ids[k]] = k;
+  Particles part;
+  part.rough = whole.rough;
+  for (const std::uint64_t id : own.ids) {
+    part.ids.push_back(id);
+    part.bodies.push_back(whole.bodies[places.at(id)]);
+    if (whole.rough)
+      part.spins.push_back(whole.spins[places.at(id)]);
+  }
+  return part;
+}
+
+struct Walk {
+  std::size_t contacts = 0;
+  DriftCosts costs;
+  std::uint64_t borders = 0; // times made
+};
+
+// Some steps of a scenario's patch; all ranks see the same patch.
+Walk walk(const Scenario& s, std::uint64_t seed, int steps, const Slabs::Reach& reach = {}) {
+  const Ranks& ranks = keeler_test::launched();
+  const CollisionSettings settings = test::settings_of(s);
+  Ring ring(test::make_patch(s, seed), settings, s.step);
+  Part part(ring, settings, reach);
+  test::PlainDrift plain(settings, ring.frequencies, test::omega, ring.step);
+  Walk walked;
+  for (int k = 0; k < steps; ++k) {
+    CollisionTally tally, expected;
+    walked.contacts += plain.collide(ring.particles, ring.box, ring.epoch_offset(), expected).size();
+    part.collide(ring.box, ring.epoch_offset(), tally);
+    INFO("step ", k);
+    const bool same = test::same_bits(part.own, part_of(ring.particles, part.own));
+    REQUIRE(!ranks.any(!same));
+    REQUIRE(ranks.sum(part.own.size()) == s.count);
+    REQUIRE(test::same_bits(tally, expected));
+    ring.move_on();
+    part.own = part_of(ring.particles, part.own);
+  }
+  walked.costs = part.drift.costs();
+  walked.borders = part.slabs.times_made();
+  return walked;
+}
+
+} // namespace
+
+TEST_CASE("ranks: the same bits as the plain drift, loose and dense, for steps from 1/1000 to 1/20 orbit") {
+  for (const double step : {1e-3, 5e-3, 2e-2, 5e-2})
+    for (const std::uint64_t seed : {1u, 2u}) {
+      CAPTURE(step);
+      CAPTURE(seed);
+      Scenario s;
+      s.step = two_pi * step;
+      s.count = 150;
+      CHECK(walk(s, seed, 30).contacts > 0);
+      s.count = 100;
+      s.filling = 0.4, s.optical_depth = 1.2;
+      CHECK(walk(s, seed, 30).contacts > 0);
+    }
+}
+
+// Without copies beyond the near ones, and with hardly a margin, nearly every step is done again.
+TEST_CASE("ranks: where copies go other ways than their owners say, the step is done again, with the same bits") {
+  std::uint64_t again = 0, rounds = 0, strayed = 0;
+  for (const double step : {2e-3, 1e-2, 4e-2})
+    for (const double growth : {1.0, 1.5}) {
+      CAPTURE(step);
+      Scenario s;
+      s.step = two_pi * step;
+      s.count = 200;
+      s.filling = 0.45, s.optical_depth = 1.0;
+      const Walk walked = walk(s, 7, 25, {.growth = growth, .rows_beyond = 0.0});
+      again += walked.costs.shared_again;
+      rounds += walked.costs.rounds_again;
+      strayed += walked.costs.steps - 25;
+    }
+  MESSAGE(again, " steps again in ", rounds, " rounds, ", strayed, " with wider borders");
+  const bool many = keeler_test::launched().many();
+  CHECK(again >= (many ? 10 : 0));
+  CHECK(rounds > (many ? again : 0));
+  CHECK(strayed >= (many ? 1 : 0));
+}
+
+TEST_CASE(
+    "ranks: the same bits as the plain drift, general frequencies, sizes 1:30, sticky, elastic and rough spheres") {
+  Scenario s;
+  s.count = 120;
+  s.step = two_pi * 4e-3;
+  SUBCASE("an oblate planet") {
+    s.kappa = 0.986, s.nu = 1.013;
+  }
+  SUBCASE("sizes 1:30") {
+    s.smallest = 1.0 / 30, s.count = 200;
+  }
+  SUBCASE("no rebound") {
+    s.restitution = constant_restitution(0.0), s.filling = 0.3;
+  }
+  SUBCASE("elastic") {
+    s.restitution = constant_restitution(1.0);
+  }
+  SUBCASE("rough spheres") {
+    s.friction = {.tangential_restitution = 0.5};
+  }
+  CHECK(walk(s, 3, 40).contacts > 20);
+}
+
+TEST_CASE("ranks: borders serve for many steps") {
+  Scenario s;
+  s.count = 220;
+  s.optical_depth = 0.2;
+  s.step = two_pi * 1e-3;
+  CHECK(walk(s, 5, 60).borders < 30);
+}

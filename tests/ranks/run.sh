@@ -1,0 +1,142 @@
+#!/bin/bash
+# run.sh KEELER SOURCE_DIR MPIEXEC: runs that ranks share have the bits of one process, whatever their number, that of
+# threads, and that of ranks after a restart; and errors end all of them with one line of Keeler's and its exit code.
+# shellcheck source=tests/cli/helpers.sh
+source "$(dirname "$0")/../cli/helpers.sh"
+mpiexec=$3
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 # containers of tests
+
+# without files in memory, which a limit on the size of files would forbid
+transport=(--mca btl 'self,tcp')
+export PMIX_MCA_gds=hash
+
+# shared RANKS THREADS CODE ARGUMENT...: by so many ranks, the program ends with this code; output as of runs(), without
+# what the launcher says
+shared() {
+  local ranks=$1 threads=$2 expected=$3 code=0
+  shift 3
+  "$mpiexec" -n "$ranks" --oversubscribe --bind-to none "${transport[@]}" -x OMP_NUM_THREADS="$threads" "$keeler" "$@" \
+    >"$work/out" 2>"$work/all" || code=$?
+  grep -E '^keeler: |^[0-9.]+/[0-9.]+ orbits ' "$work/all" >"$work/err"
+  [ "$code" -eq "$expected" ] || fail "$ranks ranks, $*: exit $code instead of $expected: $(tail -n 20 "$work/all")"
+}
+
+scene() { # NAME TEXT: common parts come from here
+  cat - >"$work/$1.toml" <<END
+title = "$1"
+[planet]
+preset = "saturn-a-ring"
+$2
+END
+}
+scene uniform '[box]
+size = [150, 60]
+[particles]
+count = 1500
+density = 600.0
+sizes = { law = "equal", radius = 1.0 }
+[time]
+step = 2e-3
+end = 0.2
+[output]
+series_every = 0.02
+snapshot_every = 0.1
+checkpoint_every = 0.1'
+scene wakes '[box]
+size = [150, 100]
+[particles]
+count = 2500
+density = 600.0
+sizes = { law = "equal", radius = 1.0 }
+[gravity]
+solver = "fft"
+[time]
+step = 2e-3
+end = 0.2
+[output]
+series_every = 0.02
+snapshot_every = 0.1
+checkpoint_every = 0.1'
+scene sizes '[box]
+size = [60, 40]
+[particles]
+count = 2000
+density = 600.0
+sizes = { law = "power", exponent = 3.0, min = 0.03, max = 3.0 }
+[collisions.friction]
+tangential_restitution = 0.5
+[gravity]
+solver = "auto"
+[time]
+step = "auto"
+end = 0.125
+[output]
+series_every = 0.03125'
+
+# same NAME FOLDER OTHER
+same() {
+  [ "$(state_hash "$2")" = "$(state_hash "$3")" ] || fail "$1: state_hash differs"
+  same_series "$1" "$2" "$3"
+  same_snapshots "$1" "$2" "$3"
+}
+
+for name in uniform wakes sizes; do
+  runs 0 run "$work/$name.toml" -o "$work/$name-1"
+  for ranks in "2 1" "2 2" "3 1" "4 2" "8 1"; do
+    read -r count threads <<<"$ranks"
+    shared "$count" "$threads" 0 run "$work/$name.toml" -o "$work/$name-$count-$threads"
+    same "$name, $count ranks of $threads threads" "$work/$name-1" "$work/$name-$count-$threads"
+  done
+done
+
+# Stopped on 4 ranks, on with 3, then on one.
+shared 4 1 0 run "$work/wakes.toml" -o "$work/cut" --set time.end=0.1
+shared 3 1 0 resume "$work/cut" --until 0.16
+runs 0 resume "$work/cut" --until 0.2
+[ "$(state_hash "$work/cut")" = "$(state_hash "$work/wakes-1")" ] || fail "4, 3, 1 ranks: state_hash differs"
+same_series "4, 3, 1 ranks" "$work/wakes-1" "$work/cut"
+
+# What cannot be shared yet is refused by name, before anything is written.
+refused() { # WORDS ARGUMENT...
+  local words=$1
+  shift
+  shared 2 1 2 "$@"
+  [ "$(wc -l <"$work/err")" -eq 1 ] || fail "$words: not one line: $(cat "$work/all")"
+  grep -qF -- "$words" "$work/err" || fail "no '$words' in: $(cat "$work/err")"
+  [ ! -e "$work/none" ] || fail "$words: something was written"
+}
+refused 'set gravity.solver to "fft"' run "$work/wakes.toml" -o "$work/none" --set gravity.solver=tree
+refused 'set gravity.resting_contacts to "bounced"' run "$work/wakes.toml" -o "$work/none" \
+  --set gravity.resting_contacts=carried
+refused 'set collisions.finder to "certified"' run "$work/uniform.toml" -o "$work/none" --set collisions.finder=original
+refused 'leave it out' run "$work/uniform.toml" -o "$work/none" --check
+refused "'keeler analyze' is for one process" analyze "$work/uniform-1"
+refused 'particles.count' run "$work/uniform.toml" -o "$work/none" --set particles.count=-1
+refused "is not empty" run "$work/uniform.toml" -o "$work/uniform-1"
+
+# A full disk, which a limit on file size stands for: exit 4, the last checkpoint is good.
+shared 2 1 0 run "$work/wakes.toml" -o "$work/full" --set time.end=0.1
+(
+  ulimit -f 40
+  shared 2 1 4 resume "$work/full" --until 0.2
+  report >/dev/null
+) || fail "a full disk"
+[ "$(grep -c '^keeler: ' "$work/err")" -eq 1 ] || fail "a full disk: not one line: $(cat "$work/err")"
+grep -q "free some space, then continue with" "$work/err" || fail "a full disk: $(cat "$work/err")"
+shared 2 1 0 resume "$work/full" --until 0.2
+same "after a full disk" "$work/wakes-1" "$work/full"
+
+# A rank is killed: all end, not with success, and the last checkpoint goes on.
+"$mpiexec" -n 3 --oversubscribe -x OMP_NUM_THREADS=1 "$keeler" run "$work/wakes.toml" -o "$work/killed" \
+  --set time.end=50 --set output.checkpoint_every=0.02 --set output.snapshot_every=0.1 >/dev/null 2>&1 &
+launcher=$!
+for _ in $(seq 600); do
+  [ -n "$(newest_checkpoint "$work/killed" 2>/dev/null)" ] && break
+  sleep 0.1
+done
+pkill -KILL -f -n -- "$keeler run $work/wakes.toml -o $work/killed" || fail "there was no rank to kill"
+code=0
+wait $launcher || code=$?
+[ "$code" -ne 0 ] || fail "a killed rank: exit 0"
+shared 2 1 0 resume "$work/killed" --until 1
+report
