@@ -17,6 +17,15 @@ if(KEELER_SANITIZE)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # gcc's manual: sanitizers bring false alarms of this kind; the other builds keep it.
     target_compile_options(keeler_flags INTERFACE -Wno-maybe-uninitialized)
+  else() # nothing becomes vectors there, which is no fault
+    target_compile_options(keeler_flags INTERFACE -Wno-pass-failed)
+  endif()
+  # As a library, which the Python package and its interpreter can share.
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND KEELER_SANITIZE MATCHES "^address")
+    execute_process(COMMAND "${CMAKE_CXX_COMPILER}" -print-file-name=libclang_rt.asan-${CMAKE_SYSTEM_PROCESSOR}.so
+      OUTPUT_VARIABLE KEELER_ADDRESS_RUNTIME OUTPUT_STRIP_TRAILING_WHITESPACE)
+    cmake_path(GET KEELER_ADDRESS_RUNTIME PARENT_PATH runtime_folder)
+    add_link_options(-shared-libasan "-Wl,-rpath,${runtime_folder}")
   endif()
 endif()
 
