@@ -50,19 +50,25 @@ int whole_intervals(double steps, int kick_every) {
 
 StepBench bench_step(const StepBenchSettings& settings) {
   PhaseProgress progress(settings.progress);
-  BenchState state =
-      settings.from ? stored_state(*settings.from) : gravity_state(settings.count, GravityState::clumped, progress);
+  BenchState state;
   StepBench bench;
-  bench.choice = choice_for(settings, state);
+  settings.ranks.together([&] {
+    state =
+        settings.from ? stored_state(*settings.from) : gravity_state(settings.count, GravityState::clumped, progress);
+    bench.choice = choice_for(settings, state);
+  });
   state.scene.gravity = bench.choice.settings;
   bench.step_orbits = state.scene.time.step;
   bench.dispersion_r_omega = velocity_in_radii(state.patch, velocity_dispersion(state.patch)).x();
   const int kick_every = bench.choice.settings.kick_every;
   const int steps = whole_intervals(steps_worth_timing(state.patch.size(), bench.step_orbits, most_steps), kick_every);
 
-  Simulation simulation(state.scene, state.patch);
-  state.patch = {}; // room: a large state is held once
-  bench.timed = time_steps(simulation, steps, settings.repeats, kick_every, progress);
+  Simulation simulation(state.scene, state.patch, settings.ranks);
+  std::optional<Simulation> alone;
+  if (settings.ranks.many() && settings.ranks.is_first())
+    alone.emplace(state.scene, state.patch);
+  state.patch = {}; // room: a large state is held once, and by the first rank twice
+  bench.timed = time_steps(simulation, steps, settings.repeats, kick_every, progress, alone ? &*alone : nullptr);
   return bench;
 }
 

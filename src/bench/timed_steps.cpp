@@ -54,10 +54,21 @@ Lap run(Simulation& simulation, int steps) {
 struct Gains {
   std::vector<double> step, drift, events, gravity, pair;
 
-  void compare(Simulation& simulation, const Lap& several, double pair_ns, int steps) {
+  void compare_threads(Simulation& simulation, const Lap& several, double pair_ns, int steps) {
     const int count = threads();
     set_threads(1);
-    const Lap one = run(simulation, steps);
+    compare(run(simulation, steps), several);
+    pair.push_back(pair_yardstick(wall_seconds) / pair_ns);
+    set_threads(count);
+  }
+
+  // The others wait.
+  void compare_ranks(const Ranks& ranks, Simulation* alone, const Lap& shared, int steps) {
+    ranks.first_does([&] { compare(run(*alone, steps), shared); });
+    pair.push_back(1.0);
+  }
+
+  void compare(const Lap& one, const Lap& several) {
     const auto gain = [&](Clock clock) {
       return several.seconds(clock) > 0.0 ? one.seconds(clock) / several.seconds(clock) : 1.0;
     };
@@ -65,8 +76,6 @@ struct Gains {
     drift.push_back(gain(&Clocks::drift));
     events.push_back(gain(&Clocks::events));
     gravity.push_back(gain(&Clocks::gravity));
-    pair.push_back(pair_yardstick(wall_seconds) / pair_ns);
-    set_threads(count);
   }
 
   Speedups medians() const { return {median(step), median(drift), median(events), median(gravity), median(pair)}; }
@@ -79,7 +88,7 @@ void take_times(const std::vector<Lap>& laps, TimedSteps& timed) {
       seconds.push_back(lap.seconds(clock));
     return 1e9 * median(seconds) / (static_cast<double>(timed.count) * timed.steps);
   };
-  timed.ns_per_particle_step = ns(&Clocks::whole);
+  timed.ns_per_particle_step = ns(timed.ranks > 1 ? &Clocks::wall : &Clocks::whole);
   timed.split = {ns(&Clocks::drift), ns(&Clocks::advance), ns(&Clocks::gravity), ns(&Clocks::kick)};
   timed.drift_split = {ns(&Clocks::build), ns(&Clocks::reject), ns(&Clocks::solve), ns(&Clocks::events)};
 }
@@ -92,6 +101,31 @@ struct Counts {
   explicit Counts(Simulation& simulation) : tally(simulation.state().collisions), costs(simulation.drift().costs()) {}
 };
 
+// Those that each rank has of its own particles.
+void add_over_ranks(const Ranks& ranks, TimedSteps& timed) {
+  for (std::uint64_t* const count : {&timed.recontacts, &timed.lists_made, &timed.listed_anew, &timed.deferred,
+                                     &timed.in_sequence, &timed.rolled_back, &timed.pairs_tested, &timed.survivors})
+    *count = ranks.sum(*count);
+}
+
+// What ranks told each other since `before`.
+ExchangeSplit exchange_since(const ExchangeCosts& before, const Ranks& ranks, double steps, std::size_t count) {
+  const ExchangeCosts after = exchange_costs(); // and what follows adds to them
+  const double each_step = 1.0 / (steps * static_cast<double>(ranks.count()));
+  const auto total = [&](std::uint64_t number) { return static_cast<double>(ranks.sum(number)) * each_step; };
+  const std::uint64_t messages = after.messages - before.messages, bytes = after.bytes - before.bytes;
+  const std::uint64_t common = after.common - before.common;
+  const auto ns = static_cast<std::uint64_t>(1e9 * (after.seconds - before.seconds));
+  return {total(ns) / static_cast<double>(count), total(messages), total(bytes), total(common)};
+}
+
+void operator+=(ExchangeSplit& sum, const ExchangeSplit& more) {
+  sum.ns += more.ns;
+  sum.messages += more.messages;
+  sum.bytes += more.bytes;
+  sum.common += more.common;
+}
+
 void add_counts(const Counts& before, const Counts& after, TimedSteps& timed) {
   timed.collisions += after.tally.fast - before.tally.fast;
   timed.contacts += after.tally.fast + after.tally.slow - before.tally.fast - before.tally.slow;
@@ -103,6 +137,7 @@ void add_counts(const Counts& before, const Counts& after, TimedSteps& timed) {
   timed.rolled_back += after.costs.rolled_back - before.costs.rolled_back;
   timed.pairs_tested += after.costs.pairs_tested - before.costs.pairs_tested;
   timed.survivors += after.costs.survivors - before.costs.survivors;
+  timed.shared_again += after.costs.shared_again - before.costs.shared_again;
   timed.widest_list = after.costs.widest_list;
   timed.bytes_per_particle = after.costs.bytes_per_particle;
 }
@@ -115,14 +150,20 @@ double steps_worth_timing(std::size_t count, double step, double most) {
   return std::clamp(enough_passes / particles, least, std::max(least, most));
 }
 
-TimedSteps time_steps(Simulation& simulation, int steps, int repeats, int kick_every, PhaseProgress& progress) {
+TimedSteps time_steps(Simulation& simulation, int steps, int repeats, int kick_every, PhaseProgress& progress,
+                      Simulation* alone) {
+  const Ranks& ranks = simulation.ranks();
   TimedSteps timed;
-  timed.count = simulation.state().particles.size();
+  timed.count = simulation.count();
+  timed.ranks = ranks.count();
   timed.steps = steps;
   timed.repeats = repeats;
   progress.begin("timing", repeats);
-  run(simulation, (untimed_steps + kick_every - 1) / kick_every * kick_every);
-  MemoryYardstick memory(timed.count);
+  const int untimed = (untimed_steps + kick_every - 1) / kick_every * kick_every;
+  run(simulation, untimed);
+  if (alone)
+    run(*alone, untimed);
+  MemoryYardstick memory(simulation.state().particles.size());
   std::vector<double> line, pair;
   std::vector<Lap> laps;
   Gains gains;
@@ -130,15 +171,21 @@ TimedSteps time_steps(Simulation& simulation, int steps, int repeats, int kick_e
     line.push_back(memory.measure());
     pair.push_back(pair_yardstick());
     const Counts before(simulation);
+    ranks.any(false); // all begin together
+    const ExchangeCosts exchanged = exchange_costs();
     laps.push_back(run(simulation, steps));
+    timed.exchange += exchange_since(exchanged, ranks, steps * repeats, timed.count);
     add_counts(before, Counts(simulation), timed);
-    if (threads() > 1)
-      gains.compare(simulation, laps.back(), pair.back(), steps);
+    if (ranks.many())
+      gains.compare_ranks(ranks, alone, laps.back(), steps);
+    else if (threads() > 1)
+      gains.compare_threads(simulation, laps.back(), pair.back(), steps);
     progress.add(1.0);
   }
   take_times(laps, timed);
+  add_over_ranks(ranks, timed);
   timed.yardsticks = {median(line), median(pair)};
-  if (threads() > 1)
+  if (ranks.is_first() && (ranks.many() || threads() > 1))
     timed.speedup = gains.medians();
   return timed;
 }

@@ -3,12 +3,12 @@
 
 namespace keeler {
 
-void add_bench(CLI::App& program, Action& action) {
+void add_bench(CLI::App& program, Action& action, const Ranks& ranks) {
   CLI::App& command = *program.add_subcommand("bench", "time a kernel on this machine");
   command.require_subcommand(1);
   add_bench_drift(command, action);
   add_bench_gravity(command, action);
-  add_bench_step(command, action);
+  add_bench_step(command, action, ranks);
 }
 
 } // namespace keeler

@@ -9,7 +9,7 @@ namespace keeler {
 
 void add_bench_drift(CLI::App& bench, Action& action);
 void add_bench_gravity(CLI::App& bench, Action& action);
-void add_bench_step(CLI::App& bench, Action& action);
+void add_bench_step(CLI::App& bench, Action& action, const Ranks& ranks);
 
 /// --threads N for a bench: one unless given.
 struct BenchThreadOption {
@@ -33,9 +33,12 @@ inline void add_repeats(CLI::App& command, int& repeats) {
   command.add_option("--repeats", repeats, "times measured; medians are given (default: 5)")->check(positive_number());
 }
 
-/// What measure(settings) returns, with progress shown when it takes so long that one wonders.
-template<class Settings, class Measure> auto measured(Settings settings, const Measure& measure) {
+/// What measure(settings) returns, with progress shown when it takes so long that one wonders; the first rank's alone.
+template<class Settings, class Measure>
+auto measured(Settings settings, const Measure& measure, const Ranks& ranks = {}) {
   constexpr double patience_s = 5.0;
+  if (!ranks.is_first())
+    return measure(settings);
   ProgressLine line;
   settings.progress = [&line](const Progress& progress) {
     if (progress.elapsed_s > patience_s)

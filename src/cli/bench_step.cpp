@@ -34,7 +34,15 @@ void print_json(const StepOptions& options, const StepBench& b) {
   json["collisions_per_particle_step"] = 2.0 * t.per_particle_step(t.collisions);
   json["contacts_per_particle_step"] = 2.0 * t.per_particle_step(t.contacts);
   add_drift_counts(json, t);
-  if (threads() > 1)
+  if (t.ranks > 1) {
+    json["ranks"] = t.ranks;
+    json["exchange"] = {{"ns", t.exchange.ns},
+                        {"messages", t.exchange.messages},
+                        {"bytes", t.exchange.bytes},
+                        {"common", t.exchange.common}};
+    json["shared_again"] = t.shared_again;
+  }
+  if (t.ranks > 1 || threads() > 1)
     json["speedup"] = {{"step", t.speedup.step},
                        {"drift", t.speedup.drift},
                        {"events", t.speedup.events},
@@ -54,6 +62,17 @@ void print_json(const StepOptions& options, const StepBench& b) {
   fmt::print("{}\n", json.dump(2));
 }
 
+void print_ranks(const TimedSteps& t) {
+  fmt::print("over one rank, by turns             {:.2f} times as fast, the drift {:.2f}, its events {:.2f}, the "
+             "solves {:.2f}\n",
+             t.speedup.step, t.speedup.drift, t.speedup.events, t.speedup.gravity);
+  fmt::print("exchange of {} ranks{:16}{:.1f}, {:.1f} % of a step, waiting included\n", t.ranks, "", t.exchange.ns,
+             100.0 * t.exchange.ns / t.ns_per_particle_step);
+  fmt::print("  a rank sends in a step            {} bytes in {} messages, and takes part in {} common sums\n",
+             figures(t.exchange.bytes, 3), figures(t.exchange.messages, 3), figures(t.exchange.common, 3));
+  fmt::print("  steps done again                  {} of {}\n", t.shared_again, t.steps * t.repeats);
+}
+
 void print_text(const StepOptions& options, const StepBench& b) {
   const TimedSteps& t = b.timed;
   fmt::print("ns per particle and step            {:.1f} (median of {} of {} of {} orbit, {}, {})\n",
@@ -64,7 +83,9 @@ void print_text(const StepOptions& options, const StepBench& b) {
   fmt::print("the drift of these                  build {:.1f}, reject {:.1f}, solve {:.1f}, events {:.1f}\n",
              t.drift_split.build, t.drift_split.reject, t.drift_split.solve, t.drift_split.events);
   print_over_yardsticks(t.split.drift, t.yardsticks);
-  if (threads() > 1)
+  if (t.ranks > 1)
+    print_ranks(t);
+  else if (threads() > 1)
     fmt::print("over one thread, by turns           {:.2f} times as fast, the drift {:.2f}, its events {:.2f}, the "
                "solves {:.2f}, a pair {:.2f}\n",
                t.speedup.step, t.speedup.drift, t.speedup.events, t.speedup.gravity, t.speedup.pair);
@@ -83,7 +104,7 @@ void print_text(const StepOptions& options, const StepBench& b) {
 
 ExitCode bench(StepOptions& options) {
   options.threads.apply();
-  const StepBench result = measured(options.bench, bench_step);
+  const StepBench result = measured(options.bench, bench_step, options.bench.ranks);
   if (options.json)
     print_json(options, result);
   else
@@ -93,8 +114,9 @@ ExitCode bench(StepOptions& options) {
 
 } // namespace
 
-void add_bench_step(CLI::App& bench_command, Action& action) {
+void add_bench_step(CLI::App& bench_command, Action& action, const Ranks& ranks) {
   const auto options = std::make_shared<StepOptions>();
+  options->bench.ranks = ranks;
   CLI::App& step = *bench_command.add_subcommand(
       "step", "a whole step, gravity and collisions, in a clumped patch of Saturn's A ring or in a snapshot");
   StepBenchSettings& s = options->bench;

@@ -36,7 +36,7 @@ void add_analyze(CLI::App& program, Action& action);
 void add_new(CLI::App& program, Action& action);
 void add_render(CLI::App& program, Action& action);
 void add_report(CLI::App& program, Action& action);
-void add_bench(CLI::App& program, Action& action);
+void add_bench(CLI::App& program, Action& action, const Ranks& ranks);
 void add_study(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
 void add_sweep(CLI::App& program, Action& action);
 void add_tile(CLI::App& program, Action& action, const std::vector<std::string>& arguments);

@@ -69,7 +69,7 @@ void add_commands(CLI::App& program, Action& action, const std::vector<std::stri
   add_convert(program, action);
   group(program, "Look");
   add_study(program, action, arguments);
-  add_bench(program, action);
+  add_bench(program, action, ranks);
   group(program, "Study");
   add_help(program, action);
   group(program, "Help");
@@ -78,11 +78,13 @@ void add_commands(CLI::App& program, Action& action, const std::vector<std::stri
 
 // Commands of one process would all do the same.
 void refuse_ranks(const CLI::App& program, const Ranks& ranks) {
-  for (const CLI::App* command : program.get_subcommands())
-    if (ranks.many() && command->get_name() != "run" && command->get_name() != "resume")
+  for (const CLI::App* command : program.get_subcommands()) {
+    const bool timed = command->get_name() == "bench" && command->got_subcommand("step");
+    if (ranks.many() && !timed && command->get_name() != "run" && command->get_name() != "resume")
       throw UsageError(fmt::format("'keeler {}' is for one process, and a launcher of MPI has started {}; start it by "
-                                   "itself (only run and resume are shared by ranks)",
+                                   "itself (only run, resume and bench step are shared by ranks)",
                                    command->get_name(), ranks.count()));
+  }
 }
 
 // Whether there is anything to do beyond help.

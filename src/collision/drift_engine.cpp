@@ -79,7 +79,7 @@ void DriftEngine::carry_out(const std::vector<Event>& first, CollisionTally& tal
   if (in_domains(first, tally))
     return;
   events_.assign(first);
-  InPlace orbits{*this, tally, {}};
+  InPlace orbits{*this, tally};
   ContactLoop loop(step_at_hand_, orbits, events_);
   loop.run();
   costs_.widest_list = std::max(costs_.widest_list, loop.most_partners());
@@ -95,9 +95,10 @@ void DriftEngine::end_step() {
   particles_ = nullptr; // the caller's, who may move it
 }
 
-void DriftEngine::count(const Contact& contact, CollisionTally& tally) {
+// Whether it is this rank's.
+bool DriftEngine::count(const Contact& contact, CollisionTally& tally) {
   if (Ranks::possible && contact.low >= counted_)
-    return; // a copy: its owner counts
+    return false; // a copy: its owner counts
   ++(contact.fast ? tally.fast : tally.slow);
   tally.unresolved += contact.unresolved;
   sums_.energy_lost += contact.energy_lost;
@@ -107,6 +108,7 @@ void DriftEngine::count(const Contact& contact, CollisionTally& tally) {
   costs_.recontacts += contact.again;
   if (contact.slow > 0.0F)
     slow_pairs_.push_back({contact.low, contact.high, contact.slow});
+  return true;
 }
 
 void DriftEngine::add_sums(CollisionTally& tally) const {
@@ -127,8 +129,7 @@ bool DriftEngine::in_domains(const std::vector<Event>& first, CollisionTally& ta
   if (domains < 2 || !optimistic_.carry_out(step_at_hand_, *particles_, so_far_, finder(), lists_, first, domains))
     return false;
   optimistic_.visit_contacts([&](const Contact& contact, const CollisionRecord* record) {
-    count(contact, tally);
-    if (takes_records_)
+    if (count(contact, tally) && takes_records_)
       records_.push_back(*record);
   });
   optimistic_.list_touched(touched_);

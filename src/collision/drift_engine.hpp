@@ -71,9 +71,10 @@ private:
   void undo_changes();
   void do_again(Sharing& sharing);
   void end_shared(Sharing& sharing, CollisionTally& tally);
+  void gather_records(const Ranks& ranks);
   void prepare(bool undisturbed);
   bool in_domains(const std::vector<Event>& first, CollisionTally& tally);
-  void count(const Contact& contact, CollisionTally& tally);
+  bool count(const Contact& contact, CollisionTally& tally);
   void add_sums(CollisionTally& tally) const;
   template<class Body> void for_each_block(const Body& body) const;
   void reject();

@@ -87,15 +87,16 @@ struct DriftEngine::InPlace {
     }
   }
 
-  void happened(const Contact& contact) { drift.count(contact, tally); }
+  void happened(const Contact& contact) { is_counted = drift.count(contact, tally); }
   void record(const CollisionRecord& record) {
     if (drift.watch_)
       drift.watch_->collided(record);
-    if (drift.takes_records_)
+    if (drift.takes_records_ && is_counted)
       drift.records_.push_back(record);
   }
 
-  std::vector<std::uint32_t> buffer;
+  std::vector<std::uint32_t> buffer{};
+  bool is_counted = true; // the last contact
 };
 
 } // namespace keeler

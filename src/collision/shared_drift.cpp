@@ -25,6 +25,8 @@
 #include <cassert>
 #include <cstring>
 #include <exception>
+#include <tuple>
+#include <utility>
 
 namespace keeler {
 
@@ -170,7 +172,7 @@ struct DriftEngine::Sharing {
 
   // The whole step, with the copies on the paths that were heard.
   void follow_owners() {
-    FollowsOwners orbits{{drift, tally, {}}, borders.own};
+    FollowsOwners orbits{{drift, tally}, borders.own};
     orbits.told = heard;
     orbits.lines.resize(borders.near.size());
     std::vector<Event> events = first;
@@ -213,7 +215,7 @@ void DriftEngine::complete_changes() {
 // Everything as at the start of the step.
 void DriftEngine::undo_changes() {
   CollisionTally none;
-  InPlace orbits{*this, none, {}};
+  InPlace orbits{*this, none};
   so_far_.begin_step(particles_->size(), step_at_hand_.begin);
   for (std::size_t k = 0; k < changes_.size(); ++k) {
     const PathChange& change = changes_[k];
@@ -231,13 +233,14 @@ void DriftEngine::undo_changes() {
   }
   changes_.clear();
   slow_pairs_.clear();
+  records_.clear();
   sums_ = {};
   gave_up_ = 0;
 }
 
 bool DriftEngine::collide_shared(Particles& particles, const Borders& borders, const Ranks& ranks,
                                  const ShearingBox& box, double offset, CollisionTally& tally) {
-  assert(finder().exact() && !observer_ && !audit_);
+  assert(finder().exact() && !(observer_ && observer_->looks_on()) && !audit_);
   counted_ = borders.own;
   keeps_changes_ = true;
   changes_.clear();
@@ -270,6 +273,19 @@ void DriftEngine::do_again(Sharing& sharing) {
   } while (sharing.tell());
 }
 
+// To the first rank, in the order of events.
+void DriftEngine::gather_records(const Ranks& ranks) {
+  std::vector<std::vector<CollisionRecord>> sent(ranks.count());
+  sent[0] = std::exchange(records_, {});
+  for (const std::vector<CollisionRecord>& some : ranks.exchange(sent))
+    records_.insert(records_.end(), some.begin(), some.end());
+  const auto key = [](const CollisionRecord& r) {
+    return std::tuple(r.time, r.low_id, r.high_id, r.image.nx, r.image.ny);
+  };
+  std::sort(records_.begin(), records_.end(),
+            [&](const CollisionRecord& a, const CollisionRecord& b) { return key(a) < key(b); });
+}
+
 // The step is done: what it did, on all ranks.
 void DriftEngine::end_shared(Sharing& sharing, CollisionTally& tally) {
   const Ranks& ranks = sharing.ranks;
@@ -277,6 +293,8 @@ void DriftEngine::end_shared(Sharing& sharing, CollisionTally& tally) {
     if (sharing.failure)
       std::rethrow_exception(sharing.failure);
   });
+  if (takes_records_)
+    gather_records(ranks);
   ranks.merge({&sums_.energy_lost, &sums_.momentum_flux, &sums_.azimuthal_gain});
   add_sums(tally);
   std::uint64_t counts[] = {sharing.tally.fast, sharing.tally.slow, sharing.tally.unresolved};

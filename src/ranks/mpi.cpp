@@ -23,7 +23,7 @@ constexpr std::size_t longest_message = std::size_t{1} << 30; // bytes: MPI coun
 bool is_launched = false;
 bool all_know = false;       // of the error that ends this rank
 bool another_speaks = false; // of it
-double exchanging = 0.0;     // s
+ExchangeCosts costs;
 
 bool has_launcher() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"})
@@ -68,8 +68,8 @@ Ranks Ranks::launched() {
   return ranks;
 }
 
-double seconds_in_exchange() {
-  return exchanging;
+const ExchangeCosts& exchange_costs() {
+  return costs;
 }
 
 void finish_ranks() {
@@ -92,7 +92,7 @@ Parcels Ranks::exchange(Parcels parcels) const {
   assert(parcels.size() == count_);
   if (!many())
     return parcels;
-  const Stopwatch watch(exchanging);
+  const Stopwatch watch(costs.seconds);
   std::vector<std::uint64_t> sizes(count_), from(count_);
   std::transform(parcels.begin(), parcels.end(), sizes.begin(), [](const auto& parcel) { return parcel.size(); });
   MPI_Alltoall(sizes.data(), 1, MPI_UINT64_T, from.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD);
@@ -114,7 +114,9 @@ Parcels Ranks::exchange(Parcels parcels) const {
   }
   for (std::size_t step = 1; step < count_; ++step) {
     const std::size_t other = (own_ + step) % count_;
+    costs.bytes += parcels[other].size();
     in_pieces(parcels[other], [&](const std::byte* bytes, int size, MPI_Request* request) {
+      ++costs.messages;
       MPI_Isend(bytes, size, MPI_BYTE, as_int(other), 0, MPI_COMM_WORLD, request);
     });
   }
@@ -123,7 +125,8 @@ Parcels Ranks::exchange(Parcels parcels) const {
 }
 
 void Ranks::sum(std::span<std::uint64_t> numbers) const {
-  const Stopwatch watch(exchanging);
+  const Stopwatch watch(costs.seconds);
+  ++costs.common;
   if (many())
     MPI_Allreduce(MPI_IN_PLACE, numbers.data(), as_int(numbers.size()), MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
 }
@@ -146,14 +149,16 @@ void Ranks::merge(std::initializer_list<ExactSum*> sums) const {
 }
 
 double Ranks::largest(double number) const {
-  const Stopwatch watch(exchanging);
+  const Stopwatch watch(costs.seconds);
+  ++costs.common;
   if (many())
     MPI_Allreduce(MPI_IN_PLACE, &number, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
   return number;
 }
 
 void Ranks::from_first(std::span<std::byte> bytes) const {
-  const Stopwatch watch(exchanging);
+  const Stopwatch watch(costs.seconds);
+  ++costs.common;
   for (std::size_t begin = 0; many() && begin < bytes.size(); begin += longest_message)
     MPI_Bcast(bytes.data() + begin, as_int(std::min(longest_message, bytes.size() - begin)), MPI_BYTE, 0,
               MPI_COMM_WORLD);

@@ -43,7 +43,7 @@ double collisional_gain(Sample s) {
 const MoonletColumn all_columns[] = {
     {"time_orbits", "orbits", "time since the run began", [](Sample s) { return s.simulation.orbits(); }},
     {"id", "1", "of the moonlet: the ids after the particles', in the order of the scene",
-     [](Sample s) { return static_cast<double>(s.simulation.state().first_moonlet() + s.k); }},
+     [](Sample s) { return static_cast<double>(s.simulation.first_moonlet() + s.k); }},
     {"guiding_x_m", "m", "X of its guiding centre, not wrapped: X − X at the start is a change of semi-major axis",
      guiding_x},
     {"guiding_y_m", "m", "Y of its guiding centre, not wrapped: its longitude beside that of the middle of the box",

@@ -11,13 +11,13 @@
 
 namespace keeler {
 
-/// One moonlet at one instant of a run, between two steps.
+/// One moonlet at one instant of a run, between two steps. The values of its columns are collective.
 struct MoonletSample {
   const Scene& scene;
   const Simulation& simulation;
   std::size_t k; ///< which, from 0
 
-  const Body& body() const { return simulation.moonlet(k); }
+  Body body() const { return simulation.moonlet(k); }
   const MoonletTrack& track() const { return simulation.state().moonlets[k]; }
 };
 

@@ -129,13 +129,15 @@ void Recorder::tell_what_was_lost() {
 void Recorder::watch(Simulation& simulation) {
   if (contact_log_)
     contact_log_->watch(simulation);
+  else if (scene_.output.collisions)
+    simulation.drift().observe(&for_first_);
 }
 
 void Recorder::contacts() {
-  if (!contact_log_)
+  if (!scene_.output.collisions)
     return;
   const Stopwatch watch(costs_.contacts);
-  contact_log_->write_full_files();
+  ranks_.first_does([&] { contact_log_->write_full_files(); });
 }
 
 void Recorder::require_sound(const SimulationState& state, const ParticleMeans& means) {
@@ -169,10 +171,12 @@ void Recorder::snapshot(const Simulation& simulation) {
 void Recorder::checkpoint(const Simulation& simulation) {
   ranks_.first_does([&] { lock_->require_in_place(); });
   require_sound(simulation);
-  if (contact_log_) {
+  if (scene_.output.collisions) {
     const Stopwatch watch(costs_.contacts);
-    contact_log_->write_all();
-    counters_.contacts = contact_log_->counters();
+    ranks_.first_does([&] {
+      contact_log_->write_all();
+      counters_.contacts = contact_log_->counters();
+    });
   }
   const Stopwatch watch(costs_.checkpoints);
   SimulationState copy = simulation.whole_state();
@@ -201,19 +205,19 @@ void Recorder::sample(const Simulation& simulation) {
   const Stopwatch watch(costs_.series);
   const SeriesSample row(scene_, simulation, gravity);
   require_sound(simulation.state(), row.means);
-  ranks_.first_does([&] { append(row); });
+  std::vector<std::vector<double>> moonlets(simulation.state().moonlets.size());
+  for (std::size_t k = 0; k < moonlets.size(); ++k)
+    for (const MoonletColumn& column : moonlet_columns_)
+      moonlets[k].push_back(column.value({scene_, simulation, k}));
+  ranks_.first_does([&] { append(row, moonlets); });
 }
 
-void Recorder::append(const SeriesSample& row) {
-  const Simulation& simulation = row.simulation;
+void Recorder::append(const SeriesSample& row, const std::vector<std::vector<double>>& moonlets) {
+  const std::int64_t step = row.simulation.state().step;
   lock_->require_in_place();
-  series_->append(simulation.state().step, values_of(columns_, row));
-  for (std::size_t k = 0; k < simulation.state().moonlets.size(); ++k) {
-    std::vector<double> values;
-    for (const MoonletColumn& column : moonlet_columns_)
-      values.push_back(column.value({scene_, simulation, k}));
-    moonlets_->append(simulation.state().step, values);
-  }
+  series_->append(step, values_of(columns_, row));
+  for (const std::vector<double>& values : moonlets)
+    moonlets_->append(step, values);
   tell_restored();
 }
 

@@ -85,7 +85,7 @@ public:
 
 private:
   void open(std::optional<std::int64_t> resumed_at);
-  void append(const SeriesSample& row);
+  void append(const SeriesSample& row, const std::vector<std::vector<double>>& moonlets);
   void write_checkpoint_of(SimulationState& state, OutputCounters& counters);
   void tell_what_was_lost();
   std::optional<GravityEnergy> measure_gravity(const Simulation& simulation);
@@ -110,8 +110,12 @@ private:
   std::vector<SeriesColumn> columns_;
   std::optional<Series> series_; // the first rank's
   std::vector<MoonletColumn> moonlet_columns_;
-  std::optional<Series> moonlets_; // the same; only where the scene has some
-  std::optional<ContactLog> contact_log_;
+  std::optional<Series> moonlets_;        // the same; only where the scene has some
+  std::optional<ContactLog> contact_log_; // the first rank's, to which the others give theirs
+  struct ForFirst final : DriftObserver {
+    bool looks_on() const override { return false; }
+    bool wants_records() const override { return true; }
+  } for_first_;
   std::optional<GravityMeter> gravity_meter_; // only where the series has it
   std::int64_t sound_step_ = -1;              // whose state was sound
   ForceChecks force_checks_;

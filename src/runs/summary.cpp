@@ -128,7 +128,7 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const Patch& patc
                    {"snapshots_s", cost.output.snapshots},
                    {"checkpoints_s", cost.output.checkpoints},
                    {"contacts_s", cost.output.contacts},
-                   {"exchange_s", seconds_in_exchange()},
+                   {"exchange_s", exchange_costs().seconds},
                    {"force_checks_s", cost.force_checks.seconds}};
   json["ns_per_particle_step"] = {{"drift", split.drift / passes},
                                   {"gravity", split.force("gravity") / passes},

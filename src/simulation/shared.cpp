@@ -44,10 +44,6 @@ void Simulation::require_shareable(const Scene& scene, std::size_t count) {
   }
   if (!make_finder(scene.collisions.finder)->exact())
     refuse("an inexact finder", "set collisions.finder to \"certified\"");
-  if (!scene.moonlets.empty())
-    refuse("a scene with moonlets", "leave them out");
-  if (scene.output.collisions)
-    refuse("a log of contacts", "leave output.collisions out");
 }
 
 void Simulation::divide() {
@@ -72,6 +68,7 @@ void Simulation::collide_shared() {
     if (!slabs_->serve(state_.particles, state_.step_length)) {
       drift_.release();
       slabs_->make_borders(holding(), offset, state_.step_length);
+      find_moonlets();
     }
     slabs_->add_copies(state_.particles);
     const bool done =

@@ -60,7 +60,7 @@ SimulationState first_state(const Scene& scene, const Patch& start) {
     el = state.box.image_of(el, state.box.image_into_cell(el.guiding_x, el.guiding_y, offset), offset);
   }
   for (std::size_t k = 0; k < state.moonlets.size(); ++k) // a fresh patch is in the order of the ids
-    state.moonlets[k].start_x = state.particles.bodies[state.first_moonlet() + k].elements.guiding_x;
+    state.moonlets[k].start_x = state.particles.bodies[start.size() - state.moonlets.size() + k].elements.guiding_x;
   const ParticleMeans means = particle_means(state.particles, scene.planet.frequencies, -0.5 * state.step_length);
   state.energy = {means.epicyclic_energy, means.azimuthal, means.spin.energy};
   return state;
@@ -214,12 +214,34 @@ void Simulation::sort_when_due() {
 }
 
 void Simulation::find_moonlets() {
-  moonlet_places_.resize(state_.moonlets.size());
+  moonlet_places_.assign(state_.moonlets.size(), elsewhere);
   if (moonlet_places_.empty())
     return;
   for (std::size_t place = 0; place < state_.particles.size(); ++place)
-    if (const std::uint64_t id = state_.particles.ids[place]; id >= state_.first_moonlet())
-      moonlet_places_[id - state_.first_moonlet()] = place;
+    if (const std::uint64_t id = state_.particles.ids[place]; id >= first_moonlet())
+      moonlet_places_[id - first_moonlet()] = place;
+}
+
+Body Simulation::moonlet(std::size_t k) const {
+  Body body{};
+  if (moonlet_places_[k] != elsewhere)
+    body = state_.particles.bodies[moonlet_places_[k]];
+  if (ranks_.many()) {
+    double numbers[sizeof(Body) / sizeof(double)];
+    static_assert(sizeof numbers == sizeof body);
+    std::memcpy(numbers, &body, sizeof body);
+    from_owners(numbers);
+    std::memcpy(static_cast<void*>(&body), numbers, sizeof body);
+  }
+  return body;
+}
+
+// What owners of moonlets have, to all ranks; the numbers of others are 0.
+void Simulation::from_owners(std::span<double> numbers) const {
+  std::vector<std::uint64_t> bits(numbers.size());
+  std::memcpy(bits.data(), numbers.data(), numbers.size_bytes());
+  ranks_.sum(std::span(bits));
+  std::memcpy(numbers.data(), bits.data(), numbers.size_bytes());
 }
 
 // To the epoch of the next step.
@@ -235,6 +257,7 @@ void Simulation::rebase(double time) {
   const Rebase to_epoch(scene_.planet.frequencies, time);
   const double offset = state_.epoch_offset();
   const bool with_moonlets = !state_.moonlets.empty();
+  moonlet_wraps_.assign(2 * state_.moonlets.size(), 0.0);
   parallel_for(state_.particles.size(), [&](std::size_t k) {
     state_.particles.prefetch_after(k);
     Elements& el = state_.particles.bodies[k].elements;
@@ -243,9 +266,10 @@ void Simulation::rebase(double time) {
     if (image != Image{}) {
       el = state_.box.image_of(el, image, offset);
       if (with_moonlets)
-        note_wrap(k, image, offset);
+        note_wrap(k, state_.box.displacement(image, offset));
     }
   });
+  wrap_moonlets();
   if (state_.particles.rough) {
     const FixedRotation turn(time); // of the stars in Hill's frame
     parallel_for(state_.particles.size(), [&](std::size_t k) {
@@ -256,15 +280,25 @@ void Simulation::rebase(double time) {
 }
 
 // Of a particle that has gone round an edge, whoever it is. Rare: it stays out of the loop over all of them.
-[[gnu::noinline]] void Simulation::note_wrap(std::size_t k, const Image& image, double offset) {
+[[gnu::noinline]] void Simulation::note_wrap(std::size_t k, const Vec3& shift) {
   const std::uint64_t id = state_.particles.ids[k];
-  if (id < state_.first_moonlet())
+  if (id < first_moonlet())
     return;
-  assert(id - state_.first_moonlet() < state_.moonlets.size());
-  MoonletTrack& track = state_.moonlets[id - state_.first_moonlet()];
-  const Vec3 shift = state_.box.displacement(image, offset);
-  track.shift_x += shift.x();
-  track.shift_y += shift.y();
+  assert(id - first_moonlet() < state_.moonlets.size());
+  double* const wrap = &moonlet_wraps_[2 * (id - first_moonlet())];
+  wrap[0] = shift.x();
+  wrap[1] = shift.y();
+}
+
+// The wraps that were noted, into the tracks.
+void Simulation::wrap_moonlets() {
+  if (moonlet_wraps_.empty())
+    return;
+  from_owners(moonlet_wraps_);
+  for (std::size_t k = 0; k < state_.moonlets.size(); ++k) {
+    state_.moonlets[k].shift_x += moonlet_wraps_[2 * k];
+    state_.moonlets[k].shift_y += moonlet_wraps_[2 * k + 1];
+  }
 }
 
 Boundary Simulation::boundary() const {
@@ -307,8 +341,14 @@ void Simulation::half_kick(std::size_t f) {
   ranks_.merge({&sums.work, &sums.azimuthal_gain});
   force.work += sums.work.value();
   force.azimuthal_gain += sums.azimuthal_gain.value();
-  for (std::size_t k = 0; k < moonlet_places_.size(); ++k)
-    force.moonlet_gains[k] += moonlet(k).mass * half * force.accelerations[moonlet_places_[k]].y();
+  std::vector<double> gains(moonlet_places_.size(), 0.0);
+  for (std::size_t k = 0; k < gains.size(); ++k)
+    if (const std::size_t place = moonlet_places_[k]; place != elsewhere)
+      gains[k] = state_.particles.bodies[place].mass * half * force.accelerations[place].y();
+  if (!gains.empty())
+    from_owners(gains);
+  for (std::size_t k = 0; k < gains.size(); ++k)
+    force.moonlet_gains[k] += gains[k];
 }
 
 void Simulation::replace(Particles particles) {
@@ -336,6 +376,7 @@ void Simulation::replace(Particles particles) {
 // Into the cell, those that may be far from it. The others stay to the bit where the last kick has left them.
 void Simulation::wrap_changed(const Particles& before) {
   const double offset = state_.epoch_offset();
+  moonlet_wraps_.assign(2 * state_.moonlets.size(), 0.0);
   for (std::size_t k = 0; k < before.size(); ++k) {
     Elements& el = state_.particles.bodies[k].elements;
     if (std::memcmp(&el, &before.bodies[k].elements, sizeof el) == 0)
@@ -343,8 +384,9 @@ void Simulation::wrap_changed(const Particles& before) {
     const Image image = state_.box.image_into_cell(el.guiding_x, el.guiding_y, offset);
     el = state_.box.image_of(el, image, offset);
     if (image != Image{} && !state_.moonlets.empty())
-      note_wrap(k, image, offset);
+      note_wrap(k, state_.box.displacement(image, offset));
   }
+  wrap_moonlets();
 }
 
 // At `after` the epoch, with the box's shear offset of then.

@@ -72,15 +72,47 @@ step = "auto"
 end = 0.125
 [output]
 series_every = 0.03125'
+# it goes round the edge of the box
+scene moonlet '[box]
+size = [120, 60]
+[particles]
+count = 700
+density = 600.0
+sizes = { law = "equal", radius = 1.0 }
+[[moonlet]]
+radius = 6.0
+density = 700.0
+place = [59, -9, 0]
+velocity = [0.004, 0, 0]
+[gravity]
+solver = "fft"
+resting_contacts = "bounced"
+[time]
+step = 2e-3
+end = 0.2
+[output]
+collisions = { min_speed = 1e-4 }
+series_every = 0.02
+snapshot_every = 0.1
+checkpoint_every = 0.1'
 
 # same NAME FOLDER OTHER
 same() {
   [ "$(state_hash "$2")" = "$(state_hash "$3")" ] || fail "$1: state_hash differs"
   same_series "$1" "$2" "$3"
   same_snapshots "$1" "$2" "$3"
+  if [ -e "$2/moonlets.csv" ]; then
+    cmp -s "$2/moonlets.csv" "$3/moonlets.csv" || fail "$1: moonlets.csv differs"
+  fi
+  if [ -e "$2/impact_speeds.csv" ]; then
+    cmp -s "$2/impact_speeds.csv" "$3/impact_speeds.csv" || fail "$1: impact_speeds.csv differs"
+    for column in Step Time X Y Z LowID HighID ImageX ImageY NormalSpeed; do
+      same_bytes "$1" "$2/collisions_000000.h5" "$3/collisions_000000.h5" "/Contacts/$column"
+    done
+  fi
 }
 
-for name in uniform wakes sizes; do
+for name in uniform wakes sizes moonlet; do
   runs 0 run "$work/$name.toml" -o "$work/$name-1"
   for ranks in "2 1" "2 2" "3 1" "4 2" "8 1"; do
     read -r count threads <<<"$ranks"
@@ -111,8 +143,19 @@ refused 'set gravity.resting_contacts to "bounced"' run "$work/wakes.toml" -o "$
 refused 'set collisions.finder to "certified"' run "$work/uniform.toml" -o "$work/none" --set collisions.finder=original
 refused 'leave it out' run "$work/uniform.toml" -o "$work/none" --check
 refused "'keeler analyze' is for one process" analyze "$work/uniform-1"
+refused "'keeler bench' is for one process" bench drift --count 100
 refused 'particles.count' run "$work/uniform.toml" -o "$work/none" --set particles.count=-1
 refused "is not empty" run "$work/uniform.toml" -o "$work/uniform-1"
+
+# A bench says what ranks gain, and what they tell each other.
+shared 2 1 0 bench step --count 3000 --solver fft --repeats 1 --json
+python3 - "$work/out" <<'END' || fail "bench step: $(cat "$work/out")"
+import json, sys
+bench = json.load(open(sys.argv[1]))
+assert bench["ranks"] == 2 and bench["speedup"]["step"] > 0 and bench["contacts"] > 0
+exchange = bench["exchange"]
+assert 0 < exchange["ns"] < bench["ns_per_particle_step"] and exchange["messages"] > 1 and exchange["bytes"] > 48
+END
 
 # A full disk, which a limit on file size stands for: exit 4, the last checkpoint is good.
 shared 2 1 0 run "$work/wakes.toml" -o "$work/full" --set time.end=0.1

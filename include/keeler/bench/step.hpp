@@ -4,6 +4,7 @@
 #include <keeler/bench/gravity_choices.hpp>
 #include <keeler/bench/timed_steps.hpp>
 #include <keeler/core/progress.hpp>
+#include <keeler/ranks/ranks.hpp>
 
 #include <cstddef>
 #include <functional>
@@ -18,6 +19,7 @@ struct StepBenchSettings {
   std::optional<int> kick_every;     ///< none: 1, or what the snapshot's scene has
   std::optional<std::string> solver; ///< with its default settings; none: tree, or what the snapshot's scene has
   int repeats = 5;
+  Ranks ranks;                                   ///< that share the steps
   std::function<void(const Progress&)> progress; ///< may be empty
 };
 
@@ -28,8 +30,8 @@ struct StepBench {
   TimedSteps timed;                ///< in whole kick intervals
 };
 
-/// Throws UsageError for a snapshot whose scene has no gravity, and what read_snapshot(), patch_from_snapshot() and
-/// Simulation throw.
+/// Collective; the first rank's is the result. Throws UsageError for a snapshot whose scene has no gravity, and what
+/// read_snapshot(), patch_from_snapshot() and Simulation throw.
 StepBench bench_step(const StepBenchSettings& settings);
 
 } // namespace keeler

@@ -90,8 +90,13 @@ private:
   std::size_t own_ = 0, count_ = 1;
 };
 
-/// Wall time (s) that this rank has spent in calls of Ranks so far: sending, receiving, and waiting for the others.
-double seconds_in_exchange();
+/// What this rank's calls of Ranks have cost so far.
+struct ExchangeCosts {
+  double seconds = 0.0;                  ///< wall time: sending, receiving, and waiting for the others
+  std::uint64_t messages = 0, bytes = 0; ///< sent to others by exchange()
+  std::uint64_t common = 0; ///< calls in which all ranks get the same: sums, least, largest, what the first has
+};
+const ExchangeCosts& exchange_costs();
 
 /// Of a launched program at its end: waits for the others.
 void finish_ranks();

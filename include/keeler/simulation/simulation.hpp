@@ -16,6 +16,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -69,8 +70,10 @@ public:
   SimulationState whole_state() const;
   double orbits() const { return static_cast<double>(state_.step) * scene_.time.step; }
 
-  /// The body of a moonlet, k < state().moonlets.size().
-  const Body& moonlet(std::size_t k) const { return state_.particles.bodies[moonlet_places_[k]]; }
+  /// The id of the first moonlet; of none the number of particles.
+  std::uint64_t first_moonlet() const { return count_ - state_.moonlets.size(); }
+  /// The body of a moonlet, k < state().moonlets.size(). Collective.
+  Body moonlet(std::size_t k) const;
 
   /// A Cartesian copy of the present state. Collective: the first rank gets it, the others one without particles.
   Patch patch() const;
@@ -110,6 +113,8 @@ public:
   DriftPhase& drift() { return drift_; }
 
 private:
+  static constexpr std::size_t elsewhere = ~std::size_t{0};
+
   // of a run that ranks share (shared.cpp)
   void divide();
   void collide_shared();
@@ -129,7 +134,9 @@ private:
   void sort_when_due();
   void decide_when_due();
   void find_moonlets();
-  void note_wrap(std::size_t k, const Image& image, double offset);
+  void from_owners(std::span<double> numbers) const;
+  void note_wrap(std::size_t k, const Vec3& shift);
+  void wrap_moonlets();
   void set_pace();
   bool carries() const { return scene_.gravity && scene_.gravity->carries(); }
   double kick_interval() const { return static_cast<double>(ticks_between_kicks(0)) * state_.tick(); }
@@ -149,7 +156,8 @@ private:
   std::vector<std::unique_ptr<Force>> forces_; // in the order of state_.forces
   RestingContacts resting_;
   std::unique_ptr<Slabs> slabs_;            // only of a run that ranks share
-  std::vector<std::size_t> moonlet_places_; // in memory
+  std::vector<std::size_t> moonlet_places_; // in memory; elsewhere for those of other ranks
+  std::vector<double> moonlet_wraps_;       // x and y by which each has gone round an edge just now, m
   TimeSplit split_;
 };
 

@@ -80,9 +80,6 @@ struct SimulationState {
   /// file: a step would read beyond arrays, or not end. The particles themselves are for the step to judge.
   std::string fault(const Scene& scene) const;
 
-  /// The id of the first moonlet; of none the number of particles.
-  std::uint64_t first_moonlet() const { return particles.size() - moonlets.size(); }
-
   /// Shear offset at the epoch of the elements, and at this boundary between steps.
   double epoch_offset() const { return box.offset(2 * step + control.step, 0.5 * tick()); }
   double boundary_offset() const { return box.offset(2 * step, 0.5 * tick()); }
