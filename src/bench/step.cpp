@@ -39,6 +39,7 @@ GravityChoice choice_for(const StepBenchSettings& settings, const BenchState& st
     choice = choice_of(gravity, state.patch.size());
   }
   choice.settings.kick_every = settings.kick_every.value_or(choice.settings.kick_every);
+  choice.settings.resting_contacts = state.scene.gravity->resting_contacts;
   return choice;
 }
 

@@ -133,24 +133,11 @@ bool DriftEngine::in_domains(const std::vector<Event>& first, CollisionTally& ta
       records_.push_back(*record);
   });
   optimistic_.list_touched(touched_);
-  if (Ranks::possible && keeps_changes_)
-    keep_changes();
+  if constexpr (Ranks::possible)
+    if (borders_)
+      note_changes_of_domains();
   costs_.widest_list = std::max(costs_.widest_list, optimistic_.most_partners());
   return true;
-}
-
-// As they were in the domains.
-void DriftEngine::keep_changes() {
-  std::vector<std::uint32_t> places = touched_;
-  std::sort(places.begin(), places.end());
-  places.erase(std::unique(places.begin(), places.end()), places.end());
-  for (const std::uint32_t place : places) {
-    const std::size_t first = changes_.size();
-    optimistic_.visit_changes(place, [&](double time, const Elements& before, const Vec3& spin) {
-      changes_.push_back({place, time, before, {}, spin, Vec3::Zero()});
-    });
-    std::reverse(changes_.begin() + static_cast<std::ptrdiff_t>(first), changes_.end());
-  }
 }
 
 void DriftEngine::prepare(bool undisturbed) {

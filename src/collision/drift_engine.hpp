@@ -42,6 +42,12 @@ private:
   struct Told;
   struct FollowsOwners;
   struct Sharing;
+  /// Of a step that ranks share: how a particle began it that has been hit.
+  struct Beginning {
+    std::uint32_t place;
+    Elements elements;
+    Vec3 spin; ///< of a rough particle
+  };
   /// The end of a particle's path and the begin of the next one.
   struct PathChange {
     std::uint32_t place;
@@ -62,11 +68,10 @@ private:
   void begin_step(Particles& particles, const ShearingBox& box, double offset, bool undisturbed);
   void carry_out(const std::vector<Event>& first, CollisionTally& tally);
   void end_step();
-  PathChange change_of(std::uint32_t place, double time) const {
-    const Vec3 spin = particles_->rough ? particles_->spins[place] : Vec3::Zero();
-    return {place, time, particles_->bodies[place].elements, {}, spin, Vec3::Zero()};
-  }
-  void keep_changes();
+  void note_change(std::uint32_t place, double time, const Elements& after);
+  void note_path(std::uint32_t place, const Elements& path);
+  void note_changes_of_domains();
+  void forget_changes();
   void complete_changes();
   void undo_changes();
   void do_again(Sharing& sharing);
@@ -112,8 +117,11 @@ private:
   Sums sums_;
   static constexpr std::size_t everybody = ~std::size_t{0};
   std::size_t counted_ = everybody; // particles, the first ones, whose contacts count here
-  bool keeps_changes_ = false;      // only where ranks share a step
-  std::vector<PathChange> changes_; // of the step, then
+  // of a step that ranks share
+  const Borders* borders_ = nullptr;  // none otherwise
+  std::vector<Beginning> beginnings_; // once each
+  std::vector<PathChange> changes_;   // of particles that two ranks have
+  bool strayed_ = false;              // an own particle, from where the borders are good
   DriftCosts costs_;
 };
 

@@ -23,8 +23,9 @@ struct DriftEngine::InPlace {
   void change(std::uint32_t i, const Elements& elements, double time) {
     if (stamp(i) == 0)
       drift.touched_.push_back(i);
-    if (Ranks::possible && drift.keeps_changes_)
-      drift.changes_.push_back(drift.change_of(i, time));
+    if constexpr (Ranks::possible)
+      if (drift.borders_)
+        drift.note_change(i, time, elements);
     drift.so_far_.change(i, time);
     drift.particles_->bodies[i].elements = elements;
     if (drift.through_grid_)

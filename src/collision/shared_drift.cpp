@@ -190,13 +190,50 @@ struct DriftEngine::Sharing {
   }
 
   // Whether all own particles of all ranks have stayed where their borders are good.
-  bool within_margins() const {
-    const auto strays = [&](const PathChange& c) {
-      return c.place < borders.own && !borders.keeps(c.place, c.after, drift.step_);
-    };
-    return !ranks.any(std::any_of(drift.changes_.begin(), drift.changes_.end(), strays));
-  }
+  bool within_margins() const { return !ranks.any(drift.strayed_); }
 };
+
+void DriftEngine::forget_changes() {
+  beginnings_.clear();
+  changes_.clear();
+  strayed_ = false;
+}
+
+// Before it happens.
+void DriftEngine::note_change(std::uint32_t place, double time, const Elements& after) {
+  const Elements& before = particles_->bodies[place].elements;
+  const Vec3 spin = particles_->rough ? particles_->spins[place] : Vec3::Zero();
+  if (so_far_.stamp(place) == 0)
+    beginnings_.push_back({place, before, spin});
+  if (borders_->is_shared(place))
+    changes_.push_back({place, time, before, {}, spin, Vec3::Zero()});
+  note_path(place, after);
+}
+
+void DriftEngine::note_path(std::uint32_t place, const Elements& path) {
+  strayed_ = strayed_ || (place < borders_->own && !borders_->keeps(place, path, step_));
+}
+
+// The same of a step that was carried out in domains.
+void DriftEngine::note_changes_of_domains() {
+  std::vector<std::uint32_t> places = touched_;
+  std::sort(places.begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  for (const std::uint32_t place : places) {
+    const bool is_shared = borders_->is_shared(place);
+    const auto changes_before = static_cast<std::ptrdiff_t>(changes_.size());
+    Beginning first{place, particles_->bodies[place].elements, Vec3::Zero()};
+    optimistic_.visit_changes(place, [&](double time, const Elements& before, const Vec3& spin) { // from the last one
+      note_path(place, first.elements);
+      if (is_shared)
+        changes_.push_back({place, time, before, {}, spin, Vec3::Zero()});
+      first.elements = before;
+      first.spin = spin;
+    });
+    beginnings_.push_back(first);
+    std::reverse(changes_.begin() + changes_before, changes_.end());
+  }
+}
 
 // Sorts the changes of a step that has been carried out, and fills in what paths changed to.
 void DriftEngine::complete_changes() {
@@ -217,21 +254,17 @@ void DriftEngine::undo_changes() {
   CollisionTally none;
   InPlace orbits{*this, none};
   so_far_.begin_step(particles_->size(), step_at_hand_.begin);
-  for (std::size_t k = 0; k < changes_.size(); ++k) {
-    const PathChange& change = changes_[k];
-    const std::uint32_t place = change.place;
-    if (k > 0 && changes_[k - 1].place == place)
-      continue;
-    particles_->bodies[place].elements = change.before;
+  for (const auto& [place, elements, spin] : beginnings_) {
+    particles_->bodies[place].elements = elements;
     if (particles_->rough)
-      particles_->spins[place] = change.spin_before;
+      particles_->spins[place] = spin;
     if (through_grid_)
       grid_.changed(place);
     else if (!lists_.reaches_far() && !lists_.changed(place, step_at_hand_.begin))
       orbits.list_anew(place);
     finder().changed(place);
   }
-  changes_.clear();
+  forget_changes();
   slow_pairs_.clear();
   records_.clear();
   sums_ = {};
@@ -242,8 +275,8 @@ bool DriftEngine::collide_shared(Particles& particles, const Borders& borders, c
                                  const ShearingBox& box, double offset, CollisionTally& tally) {
   assert(finder().exact() && !(observer_ && observer_->looks_on()) && !audit_);
   counted_ = borders.own;
-  keeps_changes_ = true;
-  changes_.clear();
+  borders_ = &borders;
+  forget_changes();
   Sharing sharing{*this, borders, ranks};
   ranks.together([&] {
     begin_step(particles, box, offset, false);

@@ -200,12 +200,14 @@ void Slabs::lend(const Particles& particles, double step) {
                reach = near + 2.0 * reach_.rows_beyond * mean;
   borders_.own = particles.size();
   borders_.lent.assign(ranks_.count(), {});
+  borders_.is_lent.assign(particles.size(), 0);
   std::vector<std::vector<Body>> bodies(ranks_.count());
   std::vector<std::vector<std::uint64_t>> ids(ranks_.count());
   for (std::size_t rank = 0; rank < ranks_.count(); ++rank)
     for (std::size_t k = 0; rank != ranks_.own() && k < particles.size(); ++k)
       if (is_within(borders_.references[k], rank, reach)) {
         borders_.lent[rank].push_back(static_cast<std::uint32_t>(k));
+        borders_.is_lent[k] = 1;
         bodies[rank].push_back(particles.bodies[k]);
         ids[rank].push_back(particles.ids[k]);
       }

@@ -19,6 +19,7 @@ namespace keeler {
 struct Borders {
   std::size_t own = 0;                          ///< particles
   std::vector<std::vector<std::uint32_t>> lent; ///< to each rank copies of these own ones, by place
+  std::vector<std::uint8_t> is_lent;            ///< each own one: whether somebody has a copy
   std::vector<std::size_t> first; ///< copies of rank r's stand in [first[r], first[r + 1]), in the order it lent them
   std::vector<std::uint8_t> near; ///< each copy, from the first one on: whether an own particle may touch it
   std::vector<double> references; ///< of the own ones, m
@@ -28,9 +29,13 @@ struct Borders {
 
   /// How far across a path leads from that reference at most, from half a step before to half a step after the epoch.
   double way(double reference, const Elements& el, double step) const {
-    const double distance = std::remainder(place_across(el) - reference, size_x);
+    double distance = place_across(el) - reference;
+    if (std::fabs(distance) > 0.5 * size_x)
+      distance = std::remainder(distance, size_x);
     return std::fabs(distance) + 0.5 * step * kappa * el.eccentricity();
   }
+  /// Whether two ranks have it.
+  bool is_shared(std::size_t place) const { return place >= own || is_lent[place]; }
   bool keeps(std::size_t place, const Elements& el, double step) const {
     return way(references[place], el, step) <= margin;
   }
