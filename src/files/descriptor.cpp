@@ -76,18 +76,36 @@ void Descriptor::append_whole(std::span<const std::byte> content) {
   }
 }
 
-std::string Descriptor::read_all() const {
-  std::string content(size(), '\0');
-  for (std::size_t have = 0; have < content.size();) {
-    const std::size_t length = std::min(content.size() - have, largest_transfer);
+void Descriptor::write_at(std::size_t place, std::span<const std::byte> content) {
+  while (!content.empty()) {
+    const std::size_t length = std::min(content.size(), largest_transfer);
+    const ssize_t written =
+        retried([&] { return ::pwrite(number_, content.data(), length, static_cast<off_t>(place)); });
+    if (written < 0)
+      fail("write", file_);
+    content = content.subspan(static_cast<std::size_t>(written));
+    place += static_cast<std::size_t>(written);
+  }
+}
+
+std::size_t Descriptor::read_at(std::size_t place, std::span<std::byte> into) const {
+  std::size_t have = 0;
+  while (have < into.size()) {
+    const std::size_t length = std::min(into.size() - have, largest_transfer);
     const ssize_t got =
-        retried([&] { return ::pread(number_, content.data() + have, length, static_cast<off_t>(have)); });
+        retried([&] { return ::pread(number_, into.data() + have, length, static_cast<off_t>(place + have)); });
     if (got < 0)
       fail("read", file_);
     if (got == 0)
-      content.resize(have);
+      break;
     have += static_cast<std::size_t>(got);
   }
+  return have;
+}
+
+std::string Descriptor::read_all() const {
+  std::string content(size(), '\0');
+  content.resize(read_at(0, std::as_writable_bytes(std::span(content))));
   return content;
 }
 

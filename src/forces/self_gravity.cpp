@@ -13,7 +13,7 @@ class SelfGravity : public Force {
 public:
   SelfGravity(const GravitySettings& settings, const ForceContext& context)
       : settings_(settings), orbital_frequency_(context.orbital_frequency), seed_(context.seed),
-        solver_(make_gravity_solver(settings, context.masses, context.box.area())) {}
+        solver_(make_gravity_solver(settings, context.masses, context.box.area(), context.ranks)) {}
 
   std::string name() const override { return "gravity"; }
   std::int64_t kick_every() const override { return settings_.kick_every; }

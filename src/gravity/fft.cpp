@@ -23,10 +23,13 @@ double band_for(double cut) {
 
 } // namespace
 
-double mass_spread(std::span<const double> masses) {
-  const double sum = exact_sum(masses.size(), [&](std::size_t k) { return masses[k]; });
-  const double squares = exact_sum(masses.size(), [&](std::size_t k) { return masses[k] * masses[k]; });
-  return sum > 0.0 ? std::sqrt(squares * static_cast<double>(masses.size())) / sum : 1.0;
+double mass_spread(std::span<const double> masses, const Ranks& ranks) {
+  auto sum = exact_total<ExactSum>(masses.size(), [&](ExactSum& total, std::size_t k) { total += masses[k]; });
+  auto squares =
+      exact_total<ExactSum>(masses.size(), [&](ExactSum& total, std::size_t k) { total += masses[k] * masses[k]; });
+  ranks.merge({&sum, &squares});
+  const double mass = sum.value(), count = static_cast<double>(ranks.sum(masses.size()));
+  return mass > 0.0 ? std::sqrt(squares.value() * count) / mass : 1.0;
 }
 
 // The errors of equal spheres, a little more than measured in fresh and clumped patches (docs/dev/gravity-fft.md); what

@@ -20,9 +20,12 @@ bool pairwise(const GravitySettings& settings) {
   return settings.solver == Solver::direct || settings.solver == Solver::tree;
 }
 
-std::unique_ptr<FftSolver> make_fft(const GravitySettings& settings, std::span<const double> masses, double area) {
-  const double distance = std::sqrt(area / static_cast<double>(std::max<std::size_t>(masses.size(), 1)));
-  const double cut = settings.mesh_cut > 0.0 ? settings.mesh_cut : cut_for(settings.force_error, mass_spread(masses));
+std::unique_ptr<FftSolver> make_fft(const GravitySettings& settings, std::span<const double> masses, double area,
+                                    const Ranks& ranks) {
+  const std::size_t count = ranks.sum(masses.size());
+  const double distance = std::sqrt(area / static_cast<double>(std::max<std::size_t>(count, 1)));
+  const double cut =
+      settings.mesh_cut > 0.0 ? settings.mesh_cut : cut_for(settings.force_error, mass_spread(masses, ranks));
   return std::make_unique<FftSolver>(FftSettings{settings.mesh_spacing * distance, cut, settings.solver == Solver::fft},
                                      choose_instruction_set());
 }
@@ -38,16 +41,16 @@ GravitySettings chosen_for(std::size_t count, GravitySettings settings) {
 }
 
 std::unique_ptr<GravitySolver> make_gravity_solver(const GravitySettings& settings, std::span<const double> masses,
-                                                   double area) {
+                                                   double area, const Ranks& ranks) {
   const InstructionSet set = choose_instruction_set();
-  const GravitySettings chosen = chosen_for(masses.size(), settings);
+  const GravitySettings chosen = chosen_for(ranks.sum(masses.size()), settings);
   if (chosen.solver == Solver::direct)
     return std::make_unique<DirectSolver>(chosen.images, set);
   if (chosen.solver == Solver::tree)
     return std::make_unique<TreeSolver>(chosen.opening_angle, chosen.images, set);
   if (chosen.solver == Solver::axisymmetric)
     return std::make_unique<AxisymmetricSolver>(chosen.shortest_wavelength);
-  return make_fft(chosen, masses, area);
+  return make_fft(chosen, masses, area, ranks);
 }
 
 bool has_energy_meter(const GravitySettings& settings) {
@@ -65,7 +68,7 @@ std::unique_ptr<EnergyMeter> make_energy_meter(const GravitySettings& settings, 
     chosen = {};
   if (settings.solver != Solver::mesh)
     chosen.solver = Solver::fft;
-  return make_fft(chosen, masses, area);
+  return make_fft(chosen, masses, area, {});
 }
 
 } // namespace keeler

@@ -1,8 +1,9 @@
 #include <keeler/io/checkpoint.hpp>
 
+#include "field_rows.hpp"
 #include "formats.hpp"
 #include "provenance_attributes.hpp"
-#include "sealed_image.hpp"
+#include "sealed_file.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/io/hash.hpp>
@@ -53,10 +54,10 @@ std::optional<FieldType> field_type_named(const std::string& name) {
   return std::nullopt;
 }
 
-hdf5::Layout layout_of(const Field& field) {
+hdf5::Layout layout_of(const Field& field, std::size_t rows) {
   hdf5::Layout layout{type_name(field.type), {}};
   if (!field.scalar)
-    layout.shape.push_back(field.rows());
+    layout.shape.push_back(rows);
   if (field.components > 1)
     layout.shape.push_back(field.components);
   return layout;
@@ -69,11 +70,12 @@ std::string describe(const hdf5::Layout& layout) {
 // Over the fields in order of their names, and the scene; provenance is left out.
 class ContentChecksum {
 public:
-  void add(const std::string& name, const hdf5::Layout& layout, std::span<const std::byte> bytes) {
+  /// Then its rows, all of them before the next field.
+  void begin(const std::string& name, const hdf5::Layout& layout) {
     hash_.add_text(name);
     hash_.add_text(describe(layout));
-    hash_.add_bytes(bytes);
   }
+  void add(std::span<const std::byte> rows) { hash_.add_bytes(rows); }
   std::string finish(const std::string& scene) {
     hash_.add_text(scene);
     return hash_.hex();
@@ -82,17 +84,6 @@ public:
 private:
   Hash hash_;
 };
-
-std::string content_checksum(const FieldTable& table, const std::string& scene) {
-  std::vector<const Field*> by_name;
-  for (const Field& field : table.fields())
-    by_name.push_back(&field);
-  std::sort(by_name.begin(), by_name.end(), [](const Field* a, const Field* b) { return a->name < b->name; });
-  ContentChecksum checksum;
-  for (const Field* field : by_name)
-    checksum.add(field->name, layout_of(*field), {static_cast<const std::byte*>(field->data()), field->bytes()});
-  return checksum.finish(scene);
-}
 
 void check_format(const hdf5::Handle& image) {
   if (!hdf5::has_attribute(image, "format") || hdf5::read_text_attribute(image, "format") != checkpoint_format)
@@ -122,7 +113,8 @@ StoredCheckpoint load(const hdf5::Handle& image) {
   for (const std::string& name : hdf5::names_in(group)) {
     stored.fields.push_back(load_field(group, name));
     const StoredField& field = stored.fields.back();
-    checksum.add(field.name, field.layout, field.bytes);
+    checksum.begin(field.name, field.layout);
+    checksum.add(field.bytes);
   }
   if (checksum.finish(stored.header.scene) != hdf5::read_text_attribute(image, "checksum"))
     throw IoError("its fields do not match their checksum");
@@ -144,7 +136,7 @@ const StoredField& match(const std::vector<StoredField>& stored, const Field& fi
       std::find_if(stored.begin(), stored.end(), [&](const StoredField& other) { return other.name == field.name; });
   if (found == stored.end())
     throw IoError(fmt::format("it has no field '{}'", field.name));
-  hdf5::Layout expected = layout_of(field);
+  hdf5::Layout expected = layout_of(field, field.rows());
   if (!field.scalar && !found->layout.shape.empty())
     expected.shape[0] = found->layout.shape[0]; // the number of rows is the file's to say
   if (describe(expected) != describe(found->layout))
@@ -160,23 +152,83 @@ void check_nothing_forgotten(const std::vector<StoredField>& stored, const Field
       throw IoError(fmt::format("it has a field '{}' that this run does not know", field.name));
 }
 
+void write_header(const hdf5::Handle& root, const CheckpointHeader& header) {
+  hdf5::write_attribute(root, "format", std::string_view(checkpoint_format));
+  hdf5::write_attribute(root, "format_version", checkpoint_version);
+  hdf5::write_text_dataset(root, "scene", header.scene);
+  write_provenance(hdf5::create_group(root, "provenance"), header.provenance);
+  hdf5::create_group(root, "fields");
+}
+
+hdf5::Handle create_field(const hdf5::Handle& root, const Field& field, const hdf5::Layout& layout) {
+  const hdf5::Handle group = hdf5::open_group(root, "fields");
+  hdf5::Handle dataset = hdf5::create_dataset(group, field.name, hdf5::native_type(field.type), layout.shape);
+  hdf5::write_attribute(dataset, "unit", field.unit);
+  hdf5::write_attribute(dataset, "about", field.about);
+  return dataset;
+}
+
+// The first rank's file, for all.
+class NewCheckpoint {
+public:
+  NewCheckpoint(const std::filesystem::path& file, const CheckpointHeader& header, const Ranks& ranks)
+      : header_(header), ranks_(ranks) {
+    ranks_.first_does([&] { file_.emplace(file); });
+    write([&](const hdf5::Handle& root) { write_header(root, header); });
+  }
+
+  void add(const Field& field) {
+    const FieldRows rows(field, ranks_);
+    const hdf5::Layout layout = layout_of(field, rows.count());
+    const hid_t type = hdf5::native_type(field.type);
+    std::optional<hdf5::Handle> dataset;
+    write([&](const hdf5::Handle& root) {
+      dataset.emplace(create_field(root, field, layout));
+      checksum_.begin(field.name, layout);
+    });
+    rows.visit([&](std::size_t first, std::size_t count, std::span<const std::byte> bytes) {
+      write([&](const hdf5::Handle&) {
+        checksum_.add(bytes);
+        if (field.scalar)
+          hdf5::write_scalar(*dataset, type, bytes.data());
+        else
+          hdf5::write_rows(*dataset, type, first, count, bytes.data());
+      });
+    });
+  }
+
+  void finish() {
+    write([&](const hdf5::Handle& root) { hdf5::write_attribute(root, "checksum", checksum_.finish(header_.scene)); });
+    ranks_.first_does([&] { file_->finish(); });
+  }
+
+private:
+  template<class Work> void write(const Work& work) {
+    ranks_.first_does([&] { file_->write(work); });
+  }
+
+  const CheckpointHeader& header_;
+  Ranks ranks_;
+  std::optional<SealedFile> file_;
+  ContentChecksum checksum_;
+};
+
+std::vector<const Field*> by_name(const FieldTable& table) {
+  std::vector<const Field*> fields;
+  for (const Field& field : table.fields())
+    fields.push_back(&field);
+  std::sort(fields.begin(), fields.end(), [](const Field* a, const Field* b) { return a->name < b->name; });
+  return fields;
+}
+
 } // namespace
 
-void write_checkpoint(const std::filesystem::path& file, const FieldTable& table, const CheckpointHeader& header) {
-  const hdf5::Handle image = hdf5::create_image();
-  hdf5::write_attribute(image, "format", std::string_view(checkpoint_format));
-  hdf5::write_attribute(image, "format_version", checkpoint_version);
-  hdf5::write_attribute(image, "checksum", content_checksum(table, header.scene));
-  hdf5::write_text_dataset(image, "scene", header.scene);
-  write_provenance(hdf5::create_group(image, "provenance"), header.provenance);
-  const hdf5::Handle group = hdf5::create_group(image, "fields");
-  for (const Field& field : table.fields()) {
-    const hdf5::Handle dataset =
-        hdf5::write_dataset(group, field.name, hdf5::native_type(field.type), layout_of(field).shape, field.data());
-    hdf5::write_attribute(dataset, "unit", field.unit);
-    hdf5::write_attribute(dataset, "about", field.about);
-  }
-  write_sealed(file, image);
+void write_checkpoint(const std::filesystem::path& file, const FieldTable& table, const CheckpointHeader& header,
+                      const Ranks& ranks) {
+  NewCheckpoint made(file, header, ranks);
+  for (const Field* field : by_name(table))
+    made.add(*field);
+  made.finish();
 }
 
 CheckpointHeader read_checkpoint(const std::filesystem::path& file, const FieldTable& table) {

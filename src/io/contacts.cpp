@@ -2,7 +2,7 @@
 
 #include "formats.hpp"
 #include "provenance_attributes.hpp"
-#include "sealed_image.hpp"
+#include "sealed_file.hpp"
 
 #include <keeler/core/error.hpp>
 
@@ -52,11 +52,8 @@ template<> struct Stored<bool> { using type = std::uint8_t; };
 template<class Member>
 using StoredType = typename Stored<std::remove_cvref_t<std::invoke_result_t<Member, ContactRow&>>>::type;
 
-} // namespace
-
-void write_contacts(const std::filesystem::path& file, std::span<const ContactRow> rows, const ContactMeta& meta) {
-  const hdf5::Handle image = hdf5::create_image();
-  const hdf5::Handle group = hdf5::create_group(image, group_name);
+void write_into(const hdf5::Handle& root, std::span<const ContactRow> rows, const ContactMeta& meta) {
+  const hdf5::Handle group = hdf5::create_group(root, group_name);
   hdf5::write_attribute(group, "first_row", meta.first_row);
   hdf5::write_attribute(group, "Omega", meta.orbital_frequency);
   for_each_column([&](const std::string& name, std::string_view unit, std::string_view about, const auto& member) {
@@ -68,12 +65,19 @@ void write_contacts(const std::filesystem::path& file, std::span<const ContactRo
     hdf5::write_attribute(dataset, "unit", unit);
     hdf5::write_attribute(dataset, "about", about);
   });
-  hdf5::write_attribute(hdf5::create_group(image, "Parameters"), "scene", meta.scene);
-  const hdf5::Handle code = hdf5::create_group(image, "Code");
+  hdf5::write_attribute(hdf5::create_group(root, "Parameters"), "scene", meta.scene);
+  const hdf5::Handle code = hdf5::create_group(root, "Code");
   write_provenance(code, meta.provenance);
   hdf5::write_attribute(code, "format", std::string_view(contacts_format));
   hdf5::write_attribute(code, "format_version", contacts_version);
-  write_sealed(file, image);
+}
+
+} // namespace
+
+void write_contacts(const std::filesystem::path& file, std::span<const ContactRow> rows, const ContactMeta& meta) {
+  SealedFile out(file);
+  out.write([&](const hdf5::Handle& root) { write_into(root, rows, meta); });
+  out.finish();
 }
 
 ContactFile read_contacts(const std::filesystem::path& file) {

@@ -1,7 +1,7 @@
 #include <keeler/io/describe.hpp>
 
 #include "formats.hpp"
-#include "sealed_image.hpp"
+#include "sealed_file.hpp"
 
 #include <keeler/core/error.hpp>
 

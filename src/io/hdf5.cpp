@@ -11,33 +11,17 @@
 #include <new>
 
 namespace keeler::hdf5 {
-namespace {
 
-// HDF5 takes two files in memory of one name for the same file.
 std::string fresh_name() {
   static std::atomic<unsigned long> count{0};
-  return fmt::format("keeler-image-{}", count++);
+  return fmt::format("keeler-{}", count++);
 }
 
-// HDF5 crashes in places where an allocation fails. So what it is about to take, and some for itself, is tried before:
-// throws std::bad_alloc.
 void require_memory(std::size_t bytes) {
   constexpr std::size_t for_itself = std::size_t{16} << 20;
   ::operator delete(::operator new(for_itself + bytes));
 }
 
-// Access to files in memory. The oldest format is kept: H5Fget_file_image of HDF5 1.10.8 clears a flag in newer
-// superblocks without renewing their checksum, and the image no longer opens.
-Handle image_access() {
-  constexpr std::size_t growth = std::size_t{1} << 22;
-  require_memory(growth);
-  Handle access(checked("prepare a file in memory", [] { return H5Pcreate(H5P_FILE_ACCESS); }), H5Pclose);
-  checked("prepare a file in memory", [&] { return H5Pset_fapl_core(access.id(), growth, false); });
-  return access;
-}
-
-// No time stamps: equal content gives equal bytes. Attributes keep their order, which makes HDF5 take object headers of
-// version 2 with room for attributes beyond 64 KiB.
 Handle creation_list(hid_t kind) {
   Handle list(checked("prepare an object", [&] { return H5Pcreate(kind); }), H5Pclose);
   checked("prepare an object", [&] { return H5Pset_obj_track_times(list.id(), false); });
@@ -45,6 +29,8 @@ Handle creation_list(hid_t kind) {
           [&] { return H5Pset_attr_creation_order(list.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED); });
   return list;
 }
+
+namespace {
 
 std::string type_name(hid_t type) {
   switch (checked("read a type", [&] { return H5Tget_class(type); })) {
@@ -116,10 +102,9 @@ namespace {
 
 // Chunks of about a megabyte for rows of a few numbers.
 void set_compressed(const Handle& list, const Shape& shape) {
-  constexpr hsize_t rows = 1 << 16;
   constexpr unsigned level = 1; // higher levels cost several times the time and gain a few per cent on such data
   Shape chunk = shape;
-  chunk[0] = std::min(chunk[0], rows);
+  chunk[0] = std::min<hsize_t>(chunk[0], chunk_rows);
   const int rank = static_cast<int>(shape.size());
   checked("set compression", [&] { return H5Pset_chunk(list.id(), rank, chunk.data()); });
   checked("set compression", [&] { return H5Pset_shuffle(list.id()); });
@@ -172,23 +157,11 @@ hid_t native_type(FieldType type) {
   return H5T_NATIVE_UINT32;
 }
 
-Handle create_image() {
-  const Handle access = image_access();
-  const Handle creation = creation_list(H5P_FILE_CREATE);
-  return {checked("create a file in memory",
-                  [&] { return H5Fcreate(fresh_name().c_str(), H5F_ACC_EXCL, creation.id(), access.id()); }),
-          H5Fclose};
-}
-
-std::vector<std::byte> image_of(const Handle& file) {
-  checked("complete a file in memory", [&] { return H5Fflush(file.id(), H5F_SCOPE_LOCAL); });
-  std::vector<std::byte> image(used_size(file));
-  checked("copy a file in memory", [&] { return H5Fget_file_image(file.id(), image.data(), image.size()); });
-  return image;
-}
-
 Handle open_image(std::span<const std::byte> image) {
-  const Handle access = image_access();
+  constexpr std::size_t growth = std::size_t{1} << 22;
+  require_memory(growth);
+  const Handle access(checked("prepare a file in memory", [] { return H5Pcreate(H5P_FILE_ACCESS); }), H5Pclose);
+  checked("prepare a file in memory", [&] { return H5Pset_fapl_core(access.id(), growth, false); });
   void* bytes = const_cast<std::byte*>(image.data()); // copied, not changed
   checked("open a file in memory", [&] { return H5Pset_file_image(access.id(), bytes, image.size()); });
   return {checked("open as HDF5", [&] { return H5Fopen(fresh_name().c_str(), H5F_ACC_RDONLY, access.id()); }),
@@ -232,25 +205,62 @@ void link_again(const Handle& from, const std::string& name, const Handle& to, c
           [&] { return H5Lcreate_hard(from.id(), name.c_str(), to.id(), new_name.c_str(), H5P_DEFAULT, H5P_DEFAULT); });
 }
 
-Handle write_dataset(const Handle& parent, const std::string& name, hid_t type, const Shape& shape, const void* data,
-                     Packing packing) {
-  const std::string what = "write '" + name + "'";
+Handle create_dataset(const Handle& parent, const std::string& name, hid_t type, const Shape& shape, Packing packing) {
   const Handle space = make_space(shape);
   const Handle list = creation_list(H5P_DATASET_CREATE);
   const bool empty = std::find(shape.begin(), shape.end(), hsize_t{0}) != shape.end();
   if (packing == Packing::compressed && !empty)
     set_compressed(list, shape);
-  Handle dataset(checked(what,
-                         [&] {
-                           return H5Dcreate2(parent.id(), name.c_str(), type, space.id(), H5P_DEFAULT, list.id(),
-                                             H5P_DEFAULT);
-                         }),
-                 H5Dclose);
-  if (empty)
-    return dataset;
-  require_memory(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.id())) * H5Tget_size(type));
-  checked(what, [&] { return H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data); });
+  return {checked("write '" + name + "'",
+                  [&] {
+                    return H5Dcreate2(parent.id(), name.c_str(), type, space.id(), H5P_DEFAULT, list.id(), H5P_DEFAULT);
+                  }),
+          H5Dclose};
+}
+
+Handle write_dataset(const Handle& parent, const std::string& name, hid_t type, const Shape& shape, const void* data,
+                     Packing packing) {
+  Handle dataset = create_dataset(parent, name, type, shape, packing);
+  const std::size_t count = Layout{{}, shape}.count();
+  require_memory(count * H5Tget_size(type));
+  if (count > 0)
+    checked("write '" + name + "'", [&] { return H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data); });
   return dataset;
+}
+
+namespace {
+
+// Calls move(space of memory, space of the file) for `count` rows from the `first` one on.
+template<class Move>
+void move_rows(const std::string& what, const Handle& dataset, std::size_t first, std::size_t count, const Move& move) {
+  if (count == 0)
+    return;
+  const Handle there(checked(what, [&] { return H5Dget_space(dataset.id()); }), H5Sclose);
+  Shape shape = layout_of_dataset(dataset).shape, begin(shape.size());
+  begin[0] = first;
+  shape[0] = count;
+  const Handle here = make_space(shape);
+  checked(what, [&] {
+    return H5Sselect_hyperslab(there.id(), H5S_SELECT_SET, begin.data(), nullptr, shape.data(), nullptr);
+  });
+  require_memory(Layout{{}, shape}.count() * sizeof(double));
+  checked(what, [&] { return move(here.id(), there.id()); });
+}
+
+} // namespace
+
+void write_scalar(const Handle& dataset, hid_t type, const void* number) {
+  checked("write a dataset", [&] { return H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, number); });
+}
+
+void write_rows(const Handle& dataset, hid_t type, std::size_t first, std::size_t count, const void* data) {
+  move_rows("write a dataset", dataset, first, count,
+            [&](hid_t here, hid_t there) { return H5Dwrite(dataset.id(), type, here, there, H5P_DEFAULT, data); });
+}
+
+void read_rows(const Handle& dataset, hid_t type, std::size_t first, std::size_t count, void* into) {
+  move_rows("read a dataset", dataset, first, count,
+            [&](hid_t here, hid_t there) { return H5Dread(dataset.id(), type, here, there, H5P_DEFAULT, into); });
 }
 
 Handle open_dataset(const Handle& parent, const std::string& name) {

@@ -1,6 +1,6 @@
 // The part of HDF5 that Keeler uses, with every return code checked and no printing by the library.
-// Files are built and read as images in memory: HDF5 1.10 reports no error from H5Fclose on a full disk, so the writing
-// is done by write_file(). HDF5 as packaged is not thread-safe: use this from one thread at a time.
+// Files are made on disk (hdf5_disk.hpp), and read there or from an image in memory. HDF5 as packaged is not
+// thread-safe: use this from one thread at a time.
 #pragma once
 
 #include <keeler/core/field_table.hpp>
@@ -17,8 +17,8 @@
 
 namespace keeler::hdf5 {
 
-/// An open HDF5 object; closed when it goes out of scope. Nothing is lost when that close fails: images are copied out
-/// before.
+/// An open HDF5 object; closed when it goes out of scope. Nothing is lost when that close fails: what a file needs is
+/// with its disk then, or the failure is known there.
 class Handle {
 public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -36,10 +36,6 @@ private:
 
 /// What the functions below throw: IoError "cannot DO WHAT: HDF5's innermost reason".
 
-/// A new, empty file in memory.
-Handle create_image();
-/// The bytes of a file in memory, complete and readable as a file.
-std::vector<std::byte> image_of(const Handle& file);
 /// Opens, for reading, a file from its bytes, which are copied.
 Handle open_image(std::span<const std::byte> image);
 /// How many bytes of its image a file uses; bytes beyond that are no part of it.
@@ -77,6 +73,17 @@ enum class Packing {
   plain,     ///< one contiguous block
   compressed ///< chunks with shuffle, gzip and a Fletcher-32 checksum
 };
+
+/// A dataset for rows to come.
+Handle create_dataset(const Handle& parent, const std::string& name, hid_t type, const Shape& shape,
+                      Packing packing = Packing::plain);
+/// The one number of a dataset without rows.
+void write_scalar(const Handle& dataset, hid_t type, const void* number);
+/// `count` rows of a dataset with rows, from the `first` one on. The rows of a compressed one are written by whole
+/// multiples of chunk_rows, but for the last ones: else chunks are unpacked and packed again.
+inline constexpr std::size_t chunk_rows = std::size_t{1} << 16;
+void write_rows(const Handle& dataset, hid_t type, std::size_t first, std::size_t count, const void* data);
+void read_rows(const Handle& dataset, hid_t type, std::size_t first, std::size_t count, void* into);
 
 /// Writes a dataset and returns it, for attributes.
 Handle write_dataset(const Handle& parent, const std::string& name, hid_t type, const Shape& shape, const void* data,

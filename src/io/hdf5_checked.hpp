@@ -36,6 +36,17 @@ template<class Call> auto checked(const std::string& what, const Call& call) {
   return result;
 }
 
+/// HDF5 takes two files of one name for the same file: a name that no other file has.
+std::string fresh_name();
+
+/// HDF5 crashes in places where an allocation fails. So what it is about to take, and some for itself, is tried before:
+/// throws std::bad_alloc.
+void require_memory(std::size_t bytes = 0);
+
+/// What objects of a kind are made with. No time stamps: equal content gives equal bytes. Attributes keep their order,
+/// which makes HDF5 take object headers of version 2 with room for attributes beyond 64 KiB.
+Handle creation_list(hid_t kind);
+
 /// Shared by datasets and attributes.
 Layout layout_of(const Handle& type, const Handle& space);
 Handle make_space(const Shape& shape);

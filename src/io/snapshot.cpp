@@ -2,7 +2,7 @@
 
 #include "formats.hpp"
 #include "provenance_attributes.hpp"
-#include "sealed_image.hpp"
+#include "sealed_file.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
@@ -233,18 +233,20 @@ void require_consistent(const Patch& patch) {
 
 void write_snapshot(const std::filesystem::path& file, const Patch& patch, const SnapshotMeta& meta) {
   assert(patch.orbital_frequency > 0.0);
-  const hdf5::Handle image = hdf5::create_image();
-  write_header(image, patch);
-  write_particles(image, patch);
-  write_vtk_view(image, patch.size());
-  write_ring_box(image, patch);
-  hdf5::write_attribute(hdf5::create_group(image, "Parameters"), "scene", meta.scene);
-  const hdf5::Handle code = hdf5::create_group(image, "Code");
-  write_provenance(code, meta.provenance);
-  hdf5::write_attribute(code, "format", std::string_view(snapshot_format));
-  hdf5::write_attribute(code, "format_version", snapshot_version);
-  write_clumping(image, meta);
-  write_sealed(file, image);
+  SealedFile out(file);
+  out.write([&](const hdf5::Handle& image) {
+    write_header(image, patch);
+    write_particles(image, patch);
+    write_vtk_view(image, patch.size());
+    write_ring_box(image, patch);
+    hdf5::write_attribute(hdf5::create_group(image, "Parameters"), "scene", meta.scene);
+    const hdf5::Handle code = hdf5::create_group(image, "Code");
+    write_provenance(code, meta.provenance);
+    hdf5::write_attribute(code, "format", std::string_view(snapshot_format));
+    hdf5::write_attribute(code, "format_version", snapshot_version);
+    write_clumping(image, meta);
+  });
+  out.finish();
 }
 
 Snapshot read_snapshot(const std::filesystem::path& file) {

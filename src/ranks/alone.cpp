@@ -28,6 +28,9 @@ Ranks Ranks::launched() {
 Parcels Ranks::exchange(Parcels parcels) const {
   return parcels;
 }
+std::vector<std::byte> Ranks::gather(std::vector<std::byte> bytes) const {
+  return bytes;
+}
 void Ranks::sum(std::span<std::uint64_t>) const {}
 void Ranks::merge(std::initializer_list<ExactSum*>) const {}
 double Ranks::largest(double number) const {

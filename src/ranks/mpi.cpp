@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include <mpi.h>
@@ -30,6 +31,10 @@ bool has_launcher() {
     if (std::getenv(name))
       return true;
   return false;
+}
+
+void note(std::size_t bytes) {
+  costs.largest = std::max(costs.largest, static_cast<std::uint64_t>(bytes));
 }
 
 int as_int(std::size_t number) {
@@ -96,6 +101,8 @@ Parcels Ranks::exchange(Parcels parcels) const {
   std::vector<std::uint64_t> sizes(count_), from(count_);
   std::transform(parcels.begin(), parcels.end(), sizes.begin(), [](const auto& parcel) { return parcel.size(); });
   MPI_Alltoall(sizes.data(), 1, MPI_UINT64_T, from.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD);
+  for (const auto& bytes : {sizes, from})
+    note(std::accumulate(bytes.begin(), bytes.end(), std::uint64_t{0}) - bytes[own_]);
   Parcels received(count_);
   received[own_] = std::move(parcels[own_]);
   std::vector<MPI_Request> requests;
@@ -122,6 +129,20 @@ Parcels Ranks::exchange(Parcels parcels) const {
   }
   MPI_Waitall(as_int(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
   return received;
+}
+
+std::vector<std::byte> Ranks::gather(std::vector<std::byte> bytes) const {
+  if (!many())
+    return bytes;
+  const Stopwatch watch(costs.seconds);
+  const int own = as_int(bytes.size());
+  std::vector<int> sizes(is_first() ? count_ : 0), places(sizes.size());
+  MPI_Gather(&own, 1, MPI_INT, sizes.data(), 1, MPI_INT, 0, MPI_COMM_WORLD);
+  std::exclusive_scan(sizes.begin(), sizes.end(), places.begin(), 0);
+  std::vector<std::byte> all(is_first() ? static_cast<std::size_t>(places.back() + sizes.back()) : 0);
+  note(std::max(bytes.size(), all.size()));
+  MPI_Gatherv(bytes.data(), own, MPI_BYTE, all.data(), sizes.data(), places.data(), MPI_BYTE, 0, MPI_COMM_WORLD);
+  return all;
 }
 
 void Ranks::sum(std::span<std::uint64_t> numbers) const {
@@ -159,6 +180,7 @@ double Ranks::largest(double number) const {
 void Ranks::from_first(std::span<std::byte> bytes) const {
   const Stopwatch watch(costs.seconds);
   ++costs.common;
+  note(bytes.size());
   for (std::size_t begin = 0; many() && begin < bytes.size(); begin += longest_message)
     MPI_Bcast(bytes.data() + begin, as_int(std::min(longest_message, bytes.size() - begin)), MPI_BYTE, 0,
               MPI_COMM_WORLD);

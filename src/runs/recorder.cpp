@@ -179,25 +179,24 @@ void Recorder::checkpoint(const Simulation& simulation) {
     });
   }
   const Stopwatch watch(costs_.checkpoints);
-  SimulationState copy = simulation.whole_state();
+  ranks_.first_does([&] {
+    series_->sync();
+    if (moonlets_)
+      moonlets_->sync();
+    tell_restored();
+  });
   OutputCounters counters = counters_;
   ++counters.checkpoints;
-  ranks_.first_does([&] { write_checkpoint_of(copy, counters); });
-  counters_ = counters;
-}
-
-void Recorder::write_checkpoint_of(SimulationState& state, OutputCounters& counters) {
-  series_->sync();
-  if (moonlets_)
-    moonlets_->sync();
-  tell_restored();
-  FieldTable table = state.fields();
+  FieldTable table = simulation.state().fields();
   counters.list_fields(table, scene_);
   const std::filesystem::path file = checkpoint_path(folder_.path(), counters_.checkpoints);
-  write_checkpoint(file, table, {scene_.resolved, provenance_});
-  lock_->require_in_place();
-  remove_later_checkpoints(file);
-  prune_checkpoints(file);
+  write_checkpoint(file, table, {scene_.resolved, provenance_}, ranks_);
+  ranks_.first_does([&] {
+    lock_->require_in_place();
+    remove_later_checkpoints(file);
+    prune_checkpoints(file);
+  });
+  counters_ = counters;
 }
 
 void Recorder::sample(const Simulation& simulation) {

@@ -86,7 +86,6 @@ public:
 private:
   void open(std::optional<std::int64_t> resumed_at);
   void append(const SeriesSample& row, const std::vector<std::vector<double>>& moonlets);
-  void write_checkpoint_of(SimulationState& state, OutputCounters& counters);
   void tell_what_was_lost();
   std::optional<GravityEnergy> measure_gravity(const Simulation& simulation);
   void require_sound(const SimulationState& state, const ParticleMeans& means);

@@ -55,16 +55,6 @@ template<class Work> RunResult with_advice(const RunOptions& options, const Work
   }
 }
 
-std::string hash_of(const Simulation& simulation, const Scene& scene) {
-  const Ranks& ranks = simulation.ranks();
-  if (!ranks.many())
-    return state_hash(simulation.state(), scene);
-  const SimulationState whole = simulation.whole_state();
-  std::string hash = ranks.is_first() ? state_hash(whole, scene) : "";
-  ranks.from_first(hash);
-  return hash;
-}
-
 class Runner {
 public:
   Runner(const Scene& scene, const RunOptions& options, RunRequests& requests, Simulation& simulation,
@@ -94,7 +84,7 @@ public:
     if (result.finished && has_force_checks() && recorder_.force_checks().last_step != state.step)
       recorder_.check_forces(simulation_);
     result.step = state.step;
-    result.state_hash = hash_of(simulation_, scene_);
+    result.state_hash = state_hash(simulation_.state(), scene_, ranks());
     result.resume_command = resume_command(options_);
     return result;
   }
@@ -450,9 +440,8 @@ StoredRun load_newest_checkpoint(const std::filesystem::path& folder) {
 }
 
 void store_checkpoint(const std::filesystem::path& file, const SimulationState& state, const Scene& scene) {
-  SimulationState copy = state;
   OutputCounters counters;
-  FieldTable table = copy.fields();
+  FieldTable table = state.fields();
   counters.list_fields(table, scene);
   write_checkpoint(file, table, {scene.resolved, collect_provenance({})});
 }

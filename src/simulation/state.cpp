@@ -16,12 +16,17 @@ SimulationState::SimulationState(const Scene& scene) : moonlets(scene.moonlets.s
   carries = scene.gravity && scene.gravity->carries();
 }
 
+// Nobody changes a state through the table that is made here.
+FieldTable SimulationState::fields() const {
+  return const_cast<SimulationState*>(this)->fields();
+}
+
 FieldTable SimulationState::fields() {
   FieldTable table;
   particles.list_fields(table);
   for (ForceState& force : forces) {
-    table.rows<double>(force.name + "_accelerations", force.accelerations, "m rad^-2",
-                       "of the last kick of this force");
+    table.particle_rows<double>(force.name + "_accelerations", force.accelerations, "m rad^-2",
+                                "of the last kick of this force");
     table.scalar(force.name + "_work", force.work, "kg m^2 rad^-2", "energy gained from its kicks");
     table.scalar(force.name + "_azimuthal_gain", force.azimuthal_gain, "kg m^2 rad^-2",
                  "sum of m c_y^2 gained by its kicks");

@@ -41,7 +41,7 @@ def checksum(file):
 
 
 def seal(content):
-    """As src/io/sealed_image.cpp."""
+    """As src/io/sealed_file.cpp."""
     return f"KEELER-SEAL {len(content):016x} {hex_of(content)}  \n".encode()
 
 

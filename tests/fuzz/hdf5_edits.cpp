@@ -286,6 +286,13 @@ void edit(const hdf5::Handle& file, Draw& draw) {
     }
 }
 
+std::string content_of(const hdf5::Handle& file) {
+  hdf5::checked("complete a file", [&] { return H5Fflush(file.id(), H5F_SCOPE_LOCAL); });
+  std::string content(hdf5::used_size(file), '\0');
+  hdf5::checked("copy a file", [&] { return H5Fget_file_image(file.id(), content.data(), content.size()); });
+  return content;
+}
+
 void renew_checksum(const hdf5::Handle& file) {
   if (!hdf5::exists(file, "fields"))
     return;

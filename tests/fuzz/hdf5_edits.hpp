@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace keeler::fuzz {
@@ -16,6 +17,9 @@ std::vector<std::byte> unsealed(const std::filesystem::path& file);
 
 /// Opens a file from its bytes to be changed, in memory alone.
 hdf5::Handle open_to_edit(const std::vector<std::byte>& content);
+
+/// Its bytes as they are now.
+std::string content_of(const hdf5::Handle& file);
 
 /// Makes the edits that an input asks for; one that the library refuses is left out.
 void edit(const hdf5::Handle& file, Draw& draw);

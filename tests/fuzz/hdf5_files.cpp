@@ -1,7 +1,7 @@
 // Targets that read Keeler's HDF5 files: a snapshot and a checkpoint whose content was changed before they were sealed,
 // and files that other programs wrote or damaged.
 #include "hdf5_edits.hpp"
-#include "sealed_image.hpp"
+#include "sealed_file.hpp"
 #include "targets.hpp"
 
 #include <keeler/core/error.hpp>
@@ -52,7 +52,8 @@ void write_edited(const fs::path& file, const std::vector<std::byte>& pristine, 
   const hdf5::Handle image = open_to_edit(pristine);
   edit(image, draw);
   reads([&] { renew_checksum(image); }); // of fields that cannot be read there is none
-  write_sealed(file, image);
+  const std::string content = content_of(image);
+  put(file, content + seal_of(std::as_bytes(std::span(content))));
 }
 
 } // namespace

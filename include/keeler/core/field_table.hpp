@@ -40,6 +40,7 @@ struct Field {
   FieldType type = FieldType::float64;
   std::size_t components = 1;
   bool scalar = false;
+  bool divided = false;                    ///< of ranks that share a run each has a part of the rows
   std::string unit;                        ///< "m", "kg", "rad", "1", ...
   std::string about;                       ///< one line
   std::function<std::size_t()> rows;       ///< rows at present
@@ -70,6 +71,13 @@ public:
     field.resize = [&data](std::size_t count) { data.resize(count); };
     field.data = [&data]() -> void* { return data.data(); };
     fields_.push_back(std::move(field));
+  }
+
+  /// The same, with a row for each particle of this rank.
+  template<class T, class Row>
+  void particle_rows(std::string name, std::vector<Row>& data, std::string unit, std::string about) {
+    rows<T>(std::move(name), data, std::move(unit), std::move(about));
+    fields_.back().divided = true;
   }
 
   const std::vector<Field>& fields() const { return fields_; }

@@ -24,9 +24,14 @@ public:
   void write_all(std::span<const std::byte> content);
   /// Adds it to a file opened with O_APPEND; after a failure the file ends where it did before.
   void append_whole(std::span<const std::byte> content);
+  /// Writes all of it from that byte on, wherever the position is.
+  void write_at(std::size_t place, std::span<const std::byte> content);
+  /// Fills `into` from that byte on; returns how much of it there is before the file ends.
+  std::size_t read_at(std::size_t place, std::span<std::byte> into) const;
   /// All of a file that is open for reading too, whatever has become of its name.
   std::string read_all() const;
   std::size_t size() const;
+  /// Cuts it there, or fills it with zeros up to there.
   void truncate(std::size_t size);
   /// Forces the content to disk.
   void sync();

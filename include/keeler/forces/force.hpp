@@ -53,6 +53,7 @@ struct ForceContext {
   ShearingBox box;
   double orbital_frequency = 0.0; ///< rad/s
   std::uint64_t seed = 1;
+  Ranks ranks = {}; ///< of many each has its own particles, and makes each force at the same time
 };
 
 /// A force that a scene can ask for by a table of its own: that table's name, its keys, and how it is made from them.

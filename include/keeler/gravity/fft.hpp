@@ -23,8 +23,8 @@ struct FftSettings {
 /// The cheapest spacing of the mesh, in mean distances of particles, (their number an area)^−1/2.
 inline constexpr double cheapest_spacing = 1.6;
 
-/// √⟨m²⟩ / ⟨m⟩: 1 for equal masses. The same bits in any order.
-double mass_spread(std::span<const double> masses);
+/// √⟨m²⟩ / ⟨m⟩: 1 for equal masses. The same bits in any order. Collective: of the masses of all ranks.
+double mass_spread(std::span<const double> masses, const Ranks& ranks = {});
 
 /// A cut, from 2 to 16, for a rms error of the force over its rms, with that spacing. It kept errors down to 1e-4 in
 /// every patch measured (docs/dev/gravity-fft.md).

@@ -74,10 +74,10 @@ struct GravitySettings {
 /// number measured (docs/theory/gravity.md); direct for a few. Others are returned as they are.
 GravitySettings chosen_for(std::size_t count, GravitySettings settings);
 
-/// The solver for particles of these masses on an area (m²). Throws UsageError when the environment variable
-/// KEELER_SIMD names instructions that are not to be had (simd.hpp).
+/// The solver for particles of these masses on an area (m²). Collective: of the particles of all ranks. Throws
+/// UsageError when the environment variable KEELER_SIMD names instructions that are not to be had (simd.hpp).
 std::unique_ptr<GravitySolver> make_gravity_solver(const GravitySettings& settings, std::span<const double> masses,
-                                                   double area);
+                                                   double area, const Ranks& ranks = {});
 
 /// What measures the energy and the stress that belong to the forces of such a solver: of the same periodic sum for
 /// `direct` and `tree`, of the mesh or the radial waves alone for `mesh` and `axisymmetric`; null where only some rings

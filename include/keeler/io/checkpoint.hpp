@@ -4,6 +4,7 @@
 
 #include <keeler/core/field_table.hpp>
 #include <keeler/io/provenance.hpp>
+#include <keeler/ranks/ranks.hpp>
 
 #include <filesystem>
 #include <string>
@@ -17,8 +18,10 @@ struct CheckpointHeader {
 };
 
 /// Writes every field of the table; names are unique and have no '/'. Complete or not at all: see write_file().
-/// Throws IoError.
-void write_checkpoint(const std::filesystem::path& file, const FieldTable& table, const CheckpointHeader& header);
+/// Collective: the first rank writes. Of divided fields the file has the rows of all ranks, in the order of the ranks,
+/// which come to the first one a piece at a time; of others it has those of the first. Throws IoError.
+void write_checkpoint(const std::filesystem::path& file, const FieldTable& table, const CheckpointHeader& header,
+                      const Ranks& ranks = {});
 
 /// Fills every field of the table. Throws IoError, and leaves the table's data alone, when the file is damaged, of
 /// another kind or a newer version, or when its fields are not those of the table in name, type and shape.

@@ -50,10 +50,12 @@ struct Particles {
 
   /// Everything that must be stored to continue exactly.
   void list_fields(FieldTable& table) {
-    table.rows<double>("bodies", bodies, "m, kg", "X, Y, e cos, e sin, i sin, i cos at the epoch; radius; mass");
-    table.rows<std::uint64_t>("ids", ids, "1", "unique identity, kept for ever");
+    table.particle_rows<double>("bodies", bodies, "m, kg",
+                                "X, Y, e cos, e sin, i sin, i cos at the epoch; radius; mass");
+    table.particle_rows<std::uint64_t>("ids", ids, "1", "unique identity, kept for ever");
     if (rough)
-      table.rows<double>("spins", spins, "rad^-1", "angular velocity against the stars, in Hill's frame at the epoch");
+      table.particle_rows<double>("spins", spins, "rad^-1",
+                                  "angular velocity against the stars, in Hill's frame at the epoch");
   }
 };
 

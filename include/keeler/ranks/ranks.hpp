@@ -54,6 +54,11 @@ public:
   /// The same of rows.
   template<class Row> std::vector<std::vector<Row>> exchange(const std::vector<std::vector<Row>>& rows) const;
 
+  /// On the first rank what all have, in the order of the ranks, less than 2 GiB in all; nothing on the others.
+  std::vector<std::byte> gather(std::vector<std::byte> bytes) const;
+  /// The same of rows.
+  template<class Row> std::vector<Row> gather(const std::vector<Row>& rows) const;
+
   /// Over all ranks, number by number: modulo 2⁶⁴.
   void sum(std::span<std::uint64_t> numbers) const;
   std::uint64_t sum(std::uint64_t number) const {
@@ -95,6 +100,7 @@ struct ExchangeCosts {
   double seconds = 0.0;                  ///< wall time: sending, receiving, and waiting for the others
   std::uint64_t messages = 0, bytes = 0; ///< sent to others by exchange()
   std::uint64_t common = 0; ///< calls in which all ranks get the same: sums, least, largest, what the first has
+  std::uint64_t largest = 0; ///< bytes that one call has sent from here, or brought here: a part of the particles' at most
 };
 const ExchangeCosts& exchange_costs();
 
@@ -105,6 +111,16 @@ void finish_ranks();
 void fail_ranks(ExitCode code);
 /// Whether somebody else tells the user of the error that this rank ends with.
 bool another_rank_speaks();
+
+template<class Row> std::vector<Row> Ranks::gather(const std::vector<Row>& rows) const {
+  static_assert(std::is_trivially_destructible_v<Row>);
+  const auto own = std::as_bytes(std::span(rows));
+  const std::vector<std::byte> bytes = gather(std::vector<std::byte>(own.begin(), own.end()));
+  std::vector<Row> all(bytes.size() / sizeof(Row));
+  if (!bytes.empty())
+    std::memcpy(static_cast<void*>(all.data()), bytes.data(), bytes.size());
+  return all;
+}
 
 template<class Row> std::vector<std::vector<Row>> Ranks::exchange(const std::vector<std::vector<Row>>& rows) const {
   static_assert(std::is_trivially_destructible_v<Row>); // plain numbers; those of Eigen are not copied trivially

@@ -75,6 +75,8 @@ struct SimulationState {
 
   /// Every field that must be stored to continue exactly. A new piece of state is one more line here.
   FieldTable fields();
+  /// The same of a state that is only to be stored: nothing may be read into it.
+  FieldTable fields() const;
 
   /// What in it no run of this scene has: "its step is 0 ticks long"; empty where nothing is. Of what was read from a
   /// file: a step would read beyond arrays, or not end. The particles themselves are for the step to judge.

@@ -1,6 +1,6 @@
 #include <keeler/io/checkpoint.hpp>
 
-#include "sealed_image.hpp"
+#include "sealed_file.hpp"
 #include "unit/files/disk.hpp"
 
 #include <keeler/core/error.hpp>
@@ -67,16 +67,18 @@ const CheckpointHeader header{"title = \"Ring κ\"\n", {{"version", "0"}, {"host
 
 // Fields, and the scene's text, as write_checkpoint would write them, with a version and a checksum of choice.
 void write_by_hand(const std::filesystem::path& file, std::int64_t version, const std::string& checksum) {
-  const hdf5::Handle image = hdf5::create_image();
-  hdf5::write_attribute(image, "format", std::string_view("keeler checkpoint"));
-  hdf5::write_attribute(image, "format_version", version);
-  hdf5::write_attribute(image, "checksum", checksum);
-  hdf5::write_text_dataset(image, "scene", "");
-  const hdf5::Handle provenance = hdf5::create_group(image, "provenance");
-  hdf5::write_attribute(provenance, "version", std::string_view("0.7"));
-  hdf5::write_attribute(provenance, "commit", std::string_view("abc"));
-  hdf5::create_group(image, "fields");
-  write_sealed(file, image);
+  SealedFile out(file);
+  out.write([&](const hdf5::Handle& root) {
+    hdf5::write_attribute(root, "format", std::string_view("keeler checkpoint"));
+    hdf5::write_attribute(root, "format_version", version);
+    hdf5::write_attribute(root, "checksum", checksum);
+    hdf5::write_text_dataset(root, "scene", "");
+    const hdf5::Handle provenance = hdf5::create_group(root, "provenance");
+    hdf5::write_attribute(provenance, "version", std::string_view("0.7"));
+    hdf5::write_attribute(provenance, "commit", std::string_view("abc"));
+    hdf5::create_group(root, "fields");
+  });
+  out.finish();
 }
 
 } // namespace
@@ -191,7 +193,7 @@ TEST_CASE("another version and other contents are refused with the reason") {
       read_checkpoint(file, none),
       doctest::Contains("use the older Keeler 0.7 (commit abc), which wrote it, or begin a run from its newest"),
       IoError);
-  write_sealed(file, hdf5::create_image());
+  SealedFile(file).finish();
   CHECK_THROWS_WITH_AS(read_checkpoint(file, none), doctest::Contains("not a checkpoint"), IoError);
 }
 

@@ -1,28 +1,39 @@
-#include "hdf5.hpp"
+#include "hdf5_content.hpp"
 
 #include <keeler/core/error.hpp>
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstring>
 
+#include <fcntl.h>
+
 using namespace keeler;
+using namespace keeler::test;
 
-TEST_CASE("what goes into a file in memory comes out of its image") {
-  const hdf5::Handle file = hdf5::create_image();
-  const hdf5::Handle group = hdf5::create_group(file, "group");
+namespace {
+
+hdf5::Handle new_file(const std::filesystem::path& path) {
+  return hdf5::create_on(std::make_shared<hdf5::Disk>(Descriptor(path, O_RDWR | O_CREAT), 0));
+}
+
+} // namespace
+
+TEST_CASE("what goes into a file comes out of its bytes") {
   const std::vector<double> values{1.0, -0.0, 1e-310, 0.1};
-  hdf5::write_dataset(group, "plain", values);
-  hdf5::write_dataset(group, "packed", values, hdf5::Packing::compressed);
-  hdf5::write_dataset(group, "empty", std::vector<std::int64_t>{}, hdf5::Packing::compressed);
-  hdf5::write_attribute(group, "number", std::int64_t{-7});
-  hdf5::write_attribute(group, "list", std::vector<std::uint32_t>{1, 2, 3});
-  hdf5::write_attribute(group, "none", std::string_view(""));
   const std::string long_text(100000, 'x'); // more than the 64 KiB of older attributes
-  hdf5::write_attribute(group, "text", long_text);
-  hdf5::write_text_dataset(file, "words", "κ = 1\n");
-
-  const std::vector<std::byte> image = hdf5::image_of(file);
+  const std::vector<std::byte> image = hdf5_content([&](const hdf5::Handle& file) {
+    const hdf5::Handle group = hdf5::create_group(file, "group");
+    hdf5::write_dataset(group, "plain", values);
+    hdf5::write_dataset(group, "packed", values, hdf5::Packing::compressed);
+    hdf5::write_dataset(group, "empty", std::vector<std::int64_t>{}, hdf5::Packing::compressed);
+    hdf5::write_attribute(group, "number", std::int64_t{-7});
+    hdf5::write_attribute(group, "list", std::vector<std::uint32_t>{1, 2, 3});
+    hdf5::write_attribute(group, "none", std::string_view(""));
+    hdf5::write_attribute(group, "text", long_text);
+    hdf5::write_text_dataset(file, "words", "κ = 1\n");
+  });
   const hdf5::Handle back = hdf5::open_image(image);
   CHECK(hdf5::used_size(back) == image.size());
   const hdf5::Handle read = hdf5::open_group(back, "group");
@@ -44,22 +55,47 @@ TEST_CASE("what goes into a file in memory comes out of its image") {
   CHECK(hdf5::attribute_names(read) == std::vector<std::string>{"list", "none", "number", "text"});
 }
 
-TEST_CASE("equal content gives equal bytes, and files in memory do not mix") {
-  const hdf5::Handle one = hdf5::create_image(), two = hdf5::create_image();
-  hdf5::write_attribute(one, "number", 1.0);
-  hdf5::write_attribute(two, "number", 2.0);
-  const std::vector<std::byte> first = hdf5::image_of(one);
-  const hdf5::Handle three = hdf5::create_image();
-  hdf5::write_attribute(three, "number", 1.0);
-  CHECK(hdf5::image_of(three) == first);
-  CHECK(hdf5::image_of(two) != first);
-  const hdf5::Handle one_read = hdf5::open_image(first), two_read = hdf5::open_image(hdf5::image_of(two));
+TEST_CASE("equal content gives equal bytes, and files that are open at once do not mix") {
+  const auto number = [](double value) {
+    return [value](const hdf5::Handle& file) { hdf5::write_attribute(file, "number", value); };
+  };
+  std::vector<std::byte> inner;
+  const std::vector<std::byte> first = hdf5_content([&](const hdf5::Handle& file) {
+    inner = hdf5_content(number(2.0));
+    number(1.0)(file);
+  });
+  CHECK(hdf5_content(number(1.0)) == first);
+  CHECK(inner != first);
+  const hdf5::Handle one_read = hdf5::open_image(first), two_read = hdf5::open_image(inner);
   CHECK(hdf5::read_attribute<double>(one_read, "number") == 1.0);
   CHECK(hdf5::read_attribute<double>(two_read, "number") == 2.0);
 }
 
+TEST_CASE("rows that are written piece by piece are those written at once, byte by byte") {
+  const std::size_t count = 3 * hdf5::chunk_rows + 17;
+  std::vector<double> values(count);
+  for (std::size_t k = 0; k < count; ++k)
+    values[k] = 1.0 / static_cast<double>(k + 1);
+  for (const hdf5::Packing packing : {hdf5::Packing::plain, hdf5::Packing::compressed}) {
+    const auto whole =
+        hdf5_content([&](const hdf5::Handle& file) { hdf5::write_dataset(file, "data", values, packing); });
+    for (const std::size_t rows : {hdf5::chunk_rows, 2 * hdf5::chunk_rows})
+      CHECK(hdf5_content([&](const hdf5::Handle& file) {
+              const auto type = hdf5::native_type<double>();
+              const hdf5::Handle dataset = hdf5::create_dataset(file, "data", type, {count}, packing);
+              for (std::size_t k = 0; k < count; k += rows)
+                hdf5::write_rows(dataset, type, k, std::min(rows, count - k), values.data() + k);
+            }) == whole);
+    const hdf5::Handle read = hdf5::open_image(whole), dataset = hdf5::open_dataset(read, "data");
+    std::vector<double> some(100000);
+    hdf5::read_rows(dataset, hdf5::native_type<double>(), 12345, some.size(), some.data());
+    CHECK(std::equal(some.begin(), some.end(), values.begin() + 12345));
+  }
+}
+
 TEST_CASE("a second name is the same object") {
-  const hdf5::Handle file = hdf5::create_image();
+  const TemporaryFolder folder;
+  const hdf5::Handle file = new_file(folder / "a.h5");
   const hdf5::Handle a = hdf5::create_group(file, "a"), b = hdf5::create_group(file, "b");
   const hdf5::Handle dataset = hdf5::write_dataset(a, "data", std::vector<double>{1.0, 2.0});
   hdf5::link_again(a, "data", b, "other");
@@ -68,7 +104,8 @@ TEST_CASE("a second name is the same object") {
 }
 
 TEST_CASE("failures of HDF5 are errors with its reason, and it prints nothing itself") {
-  const hdf5::Handle file = hdf5::create_image();
+  const TemporaryFolder folder;
+  const hdf5::Handle file = new_file(folder / "a.h5");
   hdf5::write_dataset(file, "data", std::vector<double>{1.0});
   CHECK_THROWS_WITH_AS(hdf5::open_group(file, "absent"), doctest::Contains("cannot open group 'absent': "), IoError);
   CHECK_THROWS_AS(hdf5::write_dataset(file, "data", std::vector<double>{1.0}), IoError);

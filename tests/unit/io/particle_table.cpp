@@ -1,4 +1,4 @@
-#include "hdf5.hpp"
+#include "hdf5_content.hpp"
 
 #include <keeler/io/particle_table.hpp>
 
@@ -21,9 +21,7 @@ ParticleTable table_of(const std::string& text) {
 }
 
 ParticleTable table_of(const std::function<void(const hdf5::Handle&)>& fill) {
-  const hdf5::Handle image = hdf5::create_image();
-  fill(image);
-  write_file(file, hdf5::image_of(image));
+  write_file(file, test::hdf5_content(fill));
   return read_particle_table(file);
 }
 

@@ -1,6 +1,6 @@
 #include <keeler/io/snapshot.hpp>
 
-#include "sealed_image.hpp"
+#include "sealed_file.hpp"
 #include "unit/files/disk.hpp"
 
 #include <keeler/core/error.hpp>
@@ -237,7 +237,7 @@ TEST_CASE("another tool may change a snapshot, within what a patch can be") {
   }
   CHECK_THROWS_WITH_AS(read_snapshot(file), doctest::Contains("Masses has the shape [2], not [3]"), IoError);
 
-  write_sealed(file, hdf5::create_image());
+  SealedFile(file).finish();
   CHECK_THROWS_WITH_AS(read_snapshot(file), doctest::Contains("not a Keeler snapshot"), IoError);
 }
 

@@ -1,4 +1,4 @@
-#include "sealed_image.hpp"
+#include "sealed_file.hpp"
 
 #include "unit/files/disk.hpp"
 
@@ -12,9 +12,9 @@ using namespace keeler::test;
 namespace {
 
 void write_number(const std::filesystem::path& file, double number) {
-  const hdf5::Handle image = hdf5::create_image();
-  hdf5::write_attribute(image, "number", number);
-  write_sealed(file, image);
+  SealedFile out(file);
+  out.write([&](const hdf5::Handle& root) { hdf5::write_attribute(root, "number", number); });
+  out.finish();
 }
 
 double number_in(const std::filesystem::path& file, const std::string& name) {

@@ -4,10 +4,15 @@
 #pragma once
 
 #include "apart.hpp"
-#include "hdf5.hpp"
+#include "hdf5_disk.hpp"
+
+#include <keeler/files/files.hpp>
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,10 +22,25 @@ namespace keeler {
 /// What stands behind a content.
 std::string seal_of(std::span<const std::byte> content);
 
-/// Writes a file built in memory, sealed, as write_file() does.
-void write_sealed(const std::filesystem::path& file, const hdf5::Handle& image);
+/// A sealed file in the making. It is never in memory as a whole. As of write_file(): it takes its name when it is
+/// finished, and goes when it is not.
+class SealedFile {
+public:
+  /// Throws IoError, as all calls do; DiskFullError where room is missing.
+  explicit SealedFile(const std::filesystem::path& file);
 
-/// Opens a sealed file for reading from a copy in memory. Throws IoError naming the file and what is wrong with it.
+  /// The file, for `work` that writes into it.
+  void write(const std::function<void(const hdf5::Handle& root)>& work);
+  void finish();
+
+private:
+  NewFile unfinished_;
+  std::shared_ptr<hdf5::Disk> disk_;
+  std::optional<hdf5::Handle> root_;
+};
+
+/// Opens a sealed file for reading where it is, when it is whole. Throws IoError naming the file and what is wrong with
+/// it.
 hdf5::Handle open_sealed(const std::filesystem::path& file);
 
 /// A file that may have lost its seal: tools that change HDF5 files in place drop it.

@@ -1,0 +1,43 @@
+#include "field_rows.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace keeler {
+
+FieldRows::FieldRows(const Field& field, const Ranks& ranks, std::size_t most_bytes)
+    : field_(field), ranks_(ranks), gathers_(field.divided && ranks.many()),
+      row_bytes_(field.components * size_of(field.type)),
+      rows_at_a_time_(std::max<std::size_t>(1, most_bytes / row_bytes_)), count_(ranks.from_first(field.rows())) {
+  if (!gathers_)
+    return;
+  std::vector<std::uint64_t> counts(ranks.count());
+  counts[ranks.own()] = field.rows();
+  ranks.sum(std::span(counts));
+  before_ = std::accumulate(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(ranks.own()), std::size_t{0});
+  count_ = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+}
+
+// Of those rows of all, the ones that this rank has.
+std::span<const std::byte> FieldRows::own(std::size_t first, std::size_t count) const {
+  const std::size_t begin = std::max(first, before_), end = std::min(first + count, before_ + field_.rows());
+  if (begin >= end)
+    return {};
+  const auto* const data = static_cast<const std::byte*>(field_.data());
+  return {data + (begin - before_) * row_bytes_, (end - begin) * row_bytes_};
+}
+
+void FieldRows::visit(const Piece& piece) const {
+  for (std::size_t first = 0; first < count_; first += rows_at_a_time_) {
+    const std::size_t count = std::min(rows_at_a_time_, count_ - first);
+    const std::span<const std::byte> here = own(first, count);
+    if (gathers_) {
+      const std::vector<std::byte> all = ranks_.gather({here.begin(), here.end()});
+      piece(first, count, all);
+    } else
+      piece(first, count, here);
+  }
+}
+
+} // namespace keeler

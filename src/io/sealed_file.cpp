@@ -1,0 +1,126 @@
+#include "sealed_file.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/io/hash.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include <fcntl.h>
+
+namespace keeler {
+namespace {
+
+constexpr std::string_view mark = "KEELER-SEAL";
+constexpr std::size_t seal_size = 64;
+
+std::string_view as_text(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+[[noreturn]] void damaged(const std::filesystem::path& file, const std::string& reason) {
+  throw IoError(fmt::format("'{}' is damaged: {}", file.string(), reason));
+}
+
+std::string seal_of(std::uint64_t size, const Hash& hash) {
+  return fmt::format("{} {:016x} {}  \n", mark, size, hash.hex()); // 11 + 1 + 16 + 1 + 32 + 3
+}
+
+void require_match(const std::filesystem::path& file, const std::string& seal, const std::string& expected) {
+  if (seal != expected)
+    damaged(file, "its content does not match its checksum");
+}
+
+// Of its first bytes, read piece by piece.
+Hash hash_of(const Descriptor& file, std::uint64_t size) {
+  std::vector<std::byte> piece(std::min<std::uint64_t>(size, std::uint64_t{1} << 20));
+  Hash hash;
+  for (std::uint64_t place = 0; place < size;) {
+    const std::span<std::byte> wanted =
+        std::span(piece).first(static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), size - place)));
+    const std::size_t have = file.read_at(place, wanted);
+    if (have == 0)
+      break; // cut meanwhile
+    hash.add_bytes(wanted.first(have));
+    place += have;
+  }
+  return hash;
+}
+
+} // namespace
+
+std::string seal_of(std::span<const std::byte> content) {
+  Hash hash;
+  hash.add_bytes(content);
+  return seal_of(content.size(), hash);
+}
+
+SealedFile::SealedFile(const std::filesystem::path& file)
+    : unfinished_(file),
+      disk_(std::make_shared<hdf5::Disk>(Descriptor(unfinished_.temporary(), O_RDWR | O_CREAT | O_TRUNC), 0)) {
+  root_.emplace(hdf5::create_on(disk_));
+}
+
+void SealedFile::write(const std::function<void(const hdf5::Handle& root)>& work) {
+  try {
+    work(*root_);
+  } catch (const IoError&) {
+    disk_->require_sound(); // the better reason
+    throw;
+  }
+  disk_->require_sound();
+}
+
+void SealedFile::finish() {
+  root_.reset();
+  disk_->require_sound();
+  const std::string seal = seal_of(disk_->size(), hash_of(disk_->file(), disk_->size()));
+  disk_->file().write_at(disk_->size(), std::as_bytes(std::span(seal)));
+  disk_->file().close();
+  unfinished_.keep();
+}
+
+hdf5::Handle open_sealed(const std::filesystem::path& file) {
+  Descriptor descriptor(file, O_RDONLY);
+  const std::size_t size = descriptor.size();
+  std::string seal(seal_size, '\0');
+  if (size >= seal_size)
+    descriptor.read_at(size - seal_size, std::as_writable_bytes(std::span(seal)));
+  if (!seal.starts_with(mark))
+    damaged(file, "its end is missing or it is not a Keeler file");
+  const std::size_t content = size - seal_size;
+  require_match(file, seal, seal_of(content, hash_of(descriptor, content)));
+  return hdf5::open_on(std::make_shared<hdf5::Disk>(std::move(descriptor), content));
+}
+
+FileContent load_content(const std::filesystem::path& file) {
+  FileContent content{read_file(file), false};
+  const std::size_t size = content.bytes.size();
+  if (size < seal_size || !as_text(std::span(content.bytes).last(seal_size)).starts_with(mark))
+    return content;
+  const std::string seal(as_text(std::span(content.bytes).last(seal_size)));
+  content.bytes.resize(size - seal_size);
+  require_match(file, seal, seal_of(content.bytes));
+  content.sealed = true;
+  return content;
+}
+
+hdf5::Handle open_unsealed(const std::filesystem::path& file, const std::vector<std::byte>& content) {
+  try {
+    hdf5::Handle image = hdf5::open_image(content);
+    // Tools that change a file in place end it where its content ends; anything more is a seal that lost its mark.
+    if (hdf5::used_size(image) != content.size())
+      damaged(file, "its end is not what was written");
+    return image;
+  } catch (const IoError& error) {
+    if (!as_text(content).starts_with("\x89HDF\r\n\x1a\n"))
+      throw IoError(fmt::format("'{}' is no snapshot: it does not begin as HDF5 files do; name a snapshot (.hdf), a "
+                                "checkpoint (.h5) or the folder of a run",
+                                file.string()));
+    throw IoError(fmt::format("cannot read '{}' as HDF5: {}", file.string(), error.what()));
+  }
+}
+
+} // namespace keeler

@@ -1,0 +1,21 @@
+// The bytes of an HDF5 file that a test makes, as another program would write them: without a seal.
+#pragma once
+
+#include "sealed_file.hpp"
+#include "unit/files/disk.hpp"
+
+#include <functional>
+#include <vector>
+
+namespace keeler::test {
+
+inline std::vector<std::byte> hdf5_content(const std::function<void(const hdf5::Handle&)>& fill) {
+  const TemporaryFolder folder;
+  SealedFile out(folder / "a.h5");
+  out.write(fill);
+  out.finish();
+  std::vector<std::byte> content = load_content(folder / "a.h5").bytes;
+  return content;
+}
+
+} // namespace keeler::test
