@@ -67,7 +67,7 @@ std::optional<GravityEnergy> GravityMeter::measure(const Boundary& boundary) {
   std::vector<double> masses;
   const GravityProblem problem = gravity_problem(boundary, orbital_frequency_, positions, masses);
   if (!solver_)
-    solver_ = make_energy_meter(settings_, masses, problem.box.area());
+    solver_ = make_energy_meter(settings_, masses, problem.box.area(), boundary.ranks);
   return solver_->energy(problem);
 }
 

@@ -105,50 +105,57 @@ Vec3 FftSolver::Parts::accelerate_tile(const GravityProblem& problem, double off
   return sum;
 }
 
-// ½ Σ m_i m_j of the clouds' potential at the other particles, wave by wave, in units of mass: a particle's potential
-// in its own cloud is taken out.
-double FftSolver::Parts::mesh_potential(const GravityProblem& problem, double offset) {
-  spread(problem, offset);
+double FftSolver::Parts::wave_potential(std::size_t m, const std::complex<float>* from,
+                                        const std::complex<float>* to) const {
   const MeshShape& shape = mesh.shape();
+  double sum = 0.0;
+  for (std::size_t p = 0; p < shape.planes; ++p)
+    for (std::size_t n = 0; n < shape.columns; ++n) {
+      const std::size_t at = p * transform.row_length() + n;
+      sum += static_cast<double>(from[at].real()) * static_cast<double>(to[at].real()) +
+             static_cast<double>(from[at].imag()) * static_cast<double>(to[at].imag());
+    }
+  return m == 0 ? 0.5 * sum : sum; // waves −m count as much
+}
+
+ExactSum FftSolver::Parts::squared_masses(std::size_t begin, std::size_t end) const {
+  const ParticleRange some = places.range(begin, end - begin);
+  return exact_total<ExactSum>(
+      some.count, [&](ExactSum& sum, std::size_t k) { sum += static_cast<double>(some.mass[k]) * some.mass[k]; });
+}
+
+double FftSolver::Parts::mesh_potential(const GravityProblem& problem, double offset) {
+  if constexpr (Ranks::possible)
+    if (problem.ranks.many())
+      return share_of_potential(problem, offset);
+  spread(problem, offset);
   std::vector<double> sums(transform.waves());
   transform.visit(mesh, [&](std::size_t m, const std::complex<float>* from, std::complex<float>* to) {
-    waves.apply(shape, transform, m, kernels, from, to);
-    double sum = 0.0;
-    for (std::size_t p = 0; p < shape.planes; ++p)
-      for (std::size_t n = 0; n < shape.columns; ++n) {
-        const std::size_t at = p * transform.row_length() + n;
-        sum += static_cast<double>(from[at].real()) * static_cast<double>(to[at].real()) +
-               static_cast<double>(from[at].imag()) * static_cast<double>(to[at].imag());
-      }
-    sums[m] = m == 0 ? 0.5 * sum : sum; // waves −m count as much
+    waves.apply(mesh.shape(), transform, m, kernels, from, to);
+    sums[m] = wave_potential(m, from, to);
   });
-  const ParticleRange all = places.range(0, places.count());
-  const double squares =
-      exact_sum(all.count, [&](std::size_t k) { return static_cast<double>(all.mass[k]) * all.mass[k]; });
+  const double squares = squared_masses(0, places.count()).value();
   return exact_sum(sums.size(), [&](std::size_t m) { return sums[m]; }) - 0.5 * squares * split.potential()[0] / radius;
 }
 
-// Of the mesh that mesh_potential() had.
-NearForces::Energy FftSolver::Parts::near_energy(const GravityProblem& problem, double offset) {
-  places.sort(problem, offset, tiling_for(mesh.shape(), problem.positions.size()));
-  struct Sums {
-    ExactSum potential, stress;
-
-    Sums& operator+=(const Sums& more) {
-      potential += more.potential;
-      stress += more.stress;
-      return *this;
-    }
-  };
-  const Sums sums = exact_total<Sums>(places.tiling().count(), [&](Sums& total, std::size_t tile) {
-    const std::size_t end = places.end(tile);
-    for (std::size_t begin = places.first(tile); begin < end; begin += NearTargets::capacity) {
+NearSums FftSolver::Parts::near_sums(const ShearingBox& box, double offset, std::size_t first_tile, std::size_t tiles) {
+  return exact_total<NearSums>(tiles, [&](NearSums& total, std::size_t k) {
+    const std::size_t end = places.end(first_tile + k);
+    for (std::size_t begin = places.first(first_tile + k); begin < end; begin += NearTargets::capacity) {
       const NearForces::Energy energy =
-          near.energy(places, problem.box, offset, radius, begin, std::min(NearTargets::capacity, end - begin));
+          near.energy(places, box, offset, radius, begin, std::min(NearTargets::capacity, end - begin));
       total.potential += energy.potential;
       total.stress += energy.stress;
     }
   });
+}
+
+NearForces::Energy FftSolver::Parts::near_energy(const GravityProblem& problem, double offset) {
+  if constexpr (Ranks::possible)
+    if (problem.ranks.many())
+      return share_of_near_energy(problem, offset);
+  places.sort(problem, offset, tiling_for(mesh.shape(), problem.positions.size()));
+  const NearSums sums = near_sums(problem.box, offset, 0, places.tiling().count());
   return {sums.potential.value(), sums.stress.value()};
 }
 
@@ -184,7 +191,7 @@ void FftSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accele
 // The mesh's part of dΦ/dγ is a difference: particles and box are sheared a little to both sides.
 GravityEnergy FftSolver::energy(const GravityProblem& problem) {
   const std::size_t count = problem.positions.size();
-  if (count == 0)
+  if (problem.ranks.sum(count) == 0)
     return {};
   constexpr double strain = 5e-3;
   double potentials[2] = {};

@@ -216,38 +216,70 @@ template<class Of> std::vector<Piece> pieces(std::span<const MeshShare> shares, 
 
 } // namespace
 
-// Spreads the masses on the share's nodes and turns them into the potential that its particles feel.
-void FftSolver::Parts::fill_share(const Ranks& ranks, const MeshShape& shape, double offset_part,
-                                  std::span<const MeshShare> shares) {
-  const MeshShare& own = shares[ranks.own()];
+// What a rank knows in a solve: the shares of all, and the particles in its own one.
+struct FftSolver::Parts::Known {
+  MeshShape shape;
+  double offset_part; // of the box's length
+  std::vector<MeshShare> shares;
+  MeshShare own;
+  Guests guests;
+
+  std::size_t first_tile(const Tiling& tiling) const { return own.own.begin * tiling.tile_rows(); }
+  std::size_t tiles(const Tiling& tiling) const { return own.own.size() * tiling.tile_rows(); }
+};
+
+// Collective: chooses the mesh, shares it, and puts the particles in order that this rank must know.
+FftSolver::Parts::Known FftSolver::Parts::know(const GravityProblem& problem, double offset, bool with_neighbours) {
+  const Ranks& ranks = problem.ranks;
+  const std::uint64_t count = ranks.sum(problem.positions.size());
+  const MeshShape shape = choose_mesh(problem.box, common_extent(problem), count);
+  const Tiling tiling = tiling_for(shape, count);
+  std::vector<InsideParticle> inside = put_inside(problem, offset);
+  std::vector<MeshShare> shares = shares_of(inside, shape, tiling, problem.box, with_neighbours ? radius : 0.0, ranks);
+  const MeshShare own = shares[ranks.own()];
+  Guests guests(inside, TileFinder(tiling, problem.box), shares, tiling, ranks);
+  std::vector<InsideParticle>().swap(inside);
+  places.sort(guests.particles(), problem.box, tiling, own.known, common_mass_unit(problem, count));
+  return {shape, offset / problem.box.size_y, std::move(shares), own, std::move(guests)};
+}
+
+// Spreads the masses on the share's nodes; some waves of the whole mesh are then this rank's.
+void FftSolver::Parts::turn_to_waves(const Ranks& ranks, const Known& known) {
+  const MeshShare& own = known.own;
+  const MeshShape& shape = known.shape;
   mesh.reset(shape, own.stored);
   mesh.spread(places, own.spread, kernels);
-  transform.prepare(shape, offset_part, own.waves);
+  transform.prepare(shape, known.offset_part, own.waves);
   waves.prepare(shape);
 
-  const IndexRange all_waves{0, transform.waves()};
-  by_columns.reset(own.nodes, all_waves, shape.planes);
+  by_columns.reset(own.nodes, {0, transform.waves()}, shape.planes);
   transform.forward_y(mesh, by_columns);
   by_waves.reset({0, shape.columns + MeshShape::ghosts}, own.waves, shape.planes);
   clear_last_block(by_waves);
   turn_over(ranks, by_columns,
-            pieces(shares,
+            pieces(known.shares,
                    [&](const MeshShare& its) {
                      return Piece{own.nodes, its.waves};
                    }),
-            by_waves, pieces(shares, [&](const MeshShare& its) {
+            by_waves, pieces(known.shares, [&](const MeshShare& its) {
               return Piece{its.nodes, own.waves};
             }));
+}
+
+// Turns the masses into the potential that the share's particles feel.
+void FftSolver::Parts::fill_share(const Ranks& ranks, const Known& known) {
+  const MeshShare& own = known.own;
+  turn_to_waves(ranks, known);
   transform.change_waves(by_waves, [&](std::size_t m, const std::complex<float>* from, std::complex<float>* to) {
-    waves.apply(shape, transform, m, kernels, from, to);
+    waves.apply(known.shape, transform, m, kernels, from, to);
   });
-  by_columns.reset(own.pulled, all_waves, shape.planes);
+  by_columns.reset(own.pulled, {0, transform.waves()}, known.shape.planes);
   turn_over(ranks, by_waves,
-            pieces(shares,
+            pieces(known.shares,
                    [&](const MeshShare& its) {
                      return Piece{its.pulled, own.waves};
                    }),
-            by_columns, pieces(shares, [&](const MeshShare& its) {
+            by_columns, pieces(known.shares, [&](const MeshShare& its) {
               return Piece{own.pulled, its.waves};
             }));
   transform.backward_y(by_columns, mesh);
@@ -259,28 +291,42 @@ void FftSolver::Parts::accelerate_share(const GravityProblem& problem, std::span
   if (count == 0)
     return;
   const double offset = folded_offset(problem.box, problem.offset);
-  const MeshShape shape = choose_mesh(problem.box, common_extent(problem), count);
-  const Tiling tiling = tiling_for(shape, count);
+  const Known known = know(problem, offset, settings.short_range);
+  fill_share(ranks, known);
 
-  std::vector<InsideParticle> inside = put_inside(problem, offset);
-  const double reach = settings.short_range ? radius : 0.0;
-  const std::vector<MeshShare> shares = shares_of(inside, shape, tiling, problem.box, reach, ranks);
-  const MeshShare& own = shares[ranks.own()];
-  const Guests guests(inside, TileFinder(tiling, problem.box), shares, tiling, ranks);
-  std::vector<InsideParticle>().swap(inside);
-  places.sort(guests.particles(), problem.box, tiling, own.known, common_mass_unit(problem, count));
-  fill_share(ranks, shape, offset / problem.box.size_y, shares);
-
-  std::vector<Vec3> here(guests.particles().size());
-  std::vector<Vec3> sums(own.own.size() * tiling.tile_rows());
+  std::vector<Vec3> here(known.guests.particles().size());
+  std::vector<Vec3> sums(known.tiles(places.tiling()));
+  const std::size_t first = known.first_tile(places.tiling());
   parallel_for(
-      sums.size(),
-      [&](std::size_t k) { sums[k] = accelerate_tile(problem, offset, own.own.begin * tiling.tile_rows() + k, here); },
-      4);
+      sums.size(), [&](std::size_t k) { sums[k] = accelerate_tile(problem, offset, first + k, here); }, 4);
   auto total = exact_total<ExactVec3>(sums.size(), [&](ExactVec3& all, std::size_t k) { all += sums[k]; });
   ranks.merge({&total.x, &total.y, &total.z});
   const Vec3 mean = total.value() / static_cast<double>(count); // as on one process
-  guests.send_home(here, ranks, [&](std::size_t k, const Vec3& a) { accelerations[k] = a - mean; });
+  known.guests.send_home(here, ranks, [&](std::size_t k, const Vec3& a) { accelerations[k] = a - mean; });
+}
+
+double FftSolver::Parts::share_of_potential(const GravityProblem& problem, double offset) {
+  const Known known = know(problem, offset, false);
+  turn_to_waves(problem.ranks, known);
+  std::vector<double> sums(known.own.waves.size());
+  transform.visit_waves(by_waves, [&](std::size_t m, const std::complex<float>* from, std::complex<float>* to) {
+    waves.apply(known.shape, transform, m, kernels, from, to);
+    sums[m - known.own.waves.begin] = wave_potential(m, from, to);
+  });
+  auto sum = exact_total<ExactSum>(sums.size(), [&](ExactSum& all, std::size_t k) { all += sums[k]; });
+  const std::size_t tiles = known.tiles(places.tiling()), first = known.first_tile(places.tiling());
+  ExactSum squares;
+  if (tiles > 0)
+    squares = squared_masses(places.first(first), places.end(first + tiles - 1));
+  problem.ranks.merge({&sum, &squares});
+  return sum.value() - 0.5 * squares.value() * split.potential()[0] / radius;
+}
+
+NearForces::Energy FftSolver::Parts::share_of_near_energy(const GravityProblem& problem, double offset) {
+  const Known known = know(problem, offset, true);
+  NearSums sums = near_sums(problem.box, offset, known.first_tile(places.tiling()), known.tiles(places.tiling()));
+  problem.ranks.merge({&sums.potential, &sums.stress});
+  return {sums.potential.value(), sums.stress.value()};
 }
 
 } // namespace keeler

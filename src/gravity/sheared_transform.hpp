@@ -97,28 +97,28 @@ public:
   void forward_y(Mesh& mesh, HalfSpectrum& half);
   void backward_y(HalfSpectrum& half, Mesh& mesh);
   template<class Change> void change_waves(HalfSpectrum& half, const Change& change) {
-    visit_waves(half, [&](std::size_t m, Complex* spectra, Complex* rows) {
-      change(m, static_cast<const Complex*>(spectra), rows);
+    visit_waves(half, [&](std::size_t m, std::complex<float>* spectra, std::complex<float>* rows) {
+      change(m, static_cast<const std::complex<float>*>(spectra), rows);
       backward_x(m, rows, spectra, half);
     });
   }
-
-private:
-  using Complex = std::complex<float>;
-  static constexpr std::size_t block = HalfSpectrum::block;
-
+  /// As visit(), of these waves.
   template<class Look> void visit_waves(HalfSpectrum& half, const Look& look) {
     parallel_for(
         half.waves().size(),
         [&](std::size_t k) {
           const std::size_t m = half.waves().begin + k;
-          Complex* const rows = own_scratch();
-          Complex* const spectra = rows + shape_.planes * row_length();
+          std::complex<float>* const rows = own_scratch();
+          std::complex<float>* const spectra = rows + shape_.planes * row_length();
           forward_x(m, half, rows, spectra);
           look(m, spectra, rows);
         },
         1);
   }
+
+private:
+  using Complex = std::complex<float>;
+  static constexpr std::size_t block = HalfSpectrum::block;
 
   void reset_whole() { whole_.reset({0, shape_.columns + MeshShape::ghosts}, {0, waves()}, shape_.planes); }
   /// Of the turn of each column: (cosine, cosine) and (−sine, sine).

@@ -58,7 +58,7 @@ bool has_energy_meter(const GravitySettings& settings) {
 }
 
 std::unique_ptr<EnergyMeter> make_energy_meter(const GravitySettings& settings, std::span<const double> masses,
-                                               double area) {
+                                               double area, const Ranks& ranks) {
   if (!has_energy_meter(settings))
     return nullptr;
   if (settings.solver == Solver::axisymmetric)
@@ -68,7 +68,7 @@ std::unique_ptr<EnergyMeter> make_energy_meter(const GravitySettings& settings, 
     chosen = {};
   if (settings.solver != Solver::mesh)
     chosen.solver = Solver::fft;
-  return make_fft(chosen, masses, area, {});
+  return make_fft(chosen, masses, area, ranks);
 }
 
 } // namespace keeler

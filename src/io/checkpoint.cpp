@@ -20,12 +20,9 @@ namespace {
 struct StoredField {
   std::string name;
   hdf5::Layout layout;
-  std::vector<std::byte> bytes;
-};
+  hdf5::Handle dataset;
 
-struct StoredCheckpoint {
-  CheckpointHeader header;
-  std::vector<StoredField> fields; // by name
+  std::size_t rows() const { return layout.shape.empty() ? 1 : layout.shape[0]; }
 };
 
 constexpr FieldType field_types[] = {FieldType::float64, FieldType::float32, FieldType::int64, FieldType::uint64,
@@ -92,42 +89,54 @@ void check_format(const hdf5::Handle& image) {
                   ", or begin a run from its newest snapshot");
 }
 
-StoredField load_field(const hdf5::Handle& group, const std::string& name) {
-  const hdf5::Handle dataset = hdf5::open_dataset(group, name);
-  StoredField field{name, hdf5::layout_of_dataset(dataset), {}};
-  const std::optional<FieldType> type = field_type_named(field.layout.type);
-  if (!type)
-    throw IoError(fmt::format("field '{}' has the unknown type '{}'", name, field.layout.type));
-  field.bytes.resize(field.layout.count() * size_of(*type));
-  hdf5::read_dataset(dataset, hdf5::native_type(*type), field.bytes.data());
-  return field;
+StoredField open_field(const hdf5::Handle& group, const std::string& name) {
+  hdf5::Handle dataset = hdf5::open_dataset(group, name);
+  hdf5::Layout layout = hdf5::layout_of_dataset(dataset);
+  if (!field_type_named(layout.type))
+    throw IoError(fmt::format("field '{}' has the unknown type '{}'", name, layout.type));
+  return {name, std::move(layout), std::move(dataset)};
 }
 
-StoredCheckpoint load(const hdf5::Handle& image) {
-  check_format(image);
-  StoredCheckpoint stored;
-  stored.header.scene = hdf5::read_text_dataset(image, "scene");
-  stored.header.provenance = read_provenance(hdf5::open_group(image, "provenance"));
-  const hdf5::Handle group = hdf5::open_group(image, "fields");
+// By name.
+std::vector<StoredField> open_fields(const hdf5::Handle& root) {
+  const hdf5::Handle group = hdf5::open_group(root, "fields");
+  std::vector<StoredField> fields;
+  for (const std::string& name : hdf5::names_in(group))
+    fields.push_back(open_field(group, name));
+  return fields;
+}
+
+void read_field(const StoredField& field, std::size_t first, std::size_t count, void* into) {
+  const hid_t type = hdf5::native_type(*field_type_named(field.layout.type));
+  if (field.layout.shape.empty())
+    hdf5::read_dataset(field.dataset, type, into);
+  else
+    hdf5::read_rows(field.dataset, type, first, count, into);
+}
+
+// All rows, a piece at a time.
+void add_rows(ContentChecksum& checksum, const StoredField& field) {
+  const std::size_t rows = field.rows(), bytes = field.layout.count() * size_of(*field_type_named(field.layout.type));
+  if (bytes == 0)
+    return;
+  const std::size_t row_bytes = bytes / rows;
+  const std::size_t at_a_time = std::clamp<std::size_t>(FieldRows::largest_piece / row_bytes, 1, rows);
+  std::vector<std::byte> piece(at_a_time * row_bytes);
+  for (std::size_t first = 0; first < rows; first += at_a_time) {
+    const std::size_t count = std::min(at_a_time, rows - first);
+    read_field(field, first, count, piece.data());
+    checksum.add(std::span(piece).first(count * row_bytes));
+  }
+}
+
+void require_checksum(const hdf5::Handle& root, const std::vector<StoredField>& fields, const std::string& scene) {
   ContentChecksum checksum;
-  for (const std::string& name : hdf5::names_in(group)) {
-    stored.fields.push_back(load_field(group, name));
-    const StoredField& field = stored.fields.back();
+  for (const StoredField& field : fields) {
     checksum.begin(field.name, field.layout);
-    checksum.add(field.bytes);
+    add_rows(checksum, field);
   }
-  if (checksum.finish(stored.header.scene) != hdf5::read_text_attribute(image, "checksum"))
+  if (checksum.finish(scene) != hdf5::read_text_attribute(root, "checksum"))
     throw IoError("its fields do not match their checksum");
-  return stored;
-}
-
-StoredCheckpoint load(const std::filesystem::path& file) {
-  const hdf5::Handle image = open_sealed(file);
-  try {
-    return load(image);
-  } catch (const IoError& error) {
-    throw IoError(fmt::format("cannot read checkpoint '{}': {}", file.string(), error.what()));
-  }
 }
 
 // The stored field that belongs to a field of the table.
@@ -231,26 +240,76 @@ void write_checkpoint(const std::filesystem::path& file, const FieldTable& table
   made.finish();
 }
 
-CheckpointHeader read_checkpoint(const std::filesystem::path& file, const FieldTable& table) {
-  const StoredCheckpoint stored = load(file);
-  try {
-    check_nothing_forgotten(stored.fields, table);
-    for (const Field& field : table.fields())
-      match(stored.fields, field);
-  } catch (const IoError& error) {
-    throw IoError(fmt::format("checkpoint '{}' does not fit: {}", file.string(), error.what()));
+struct Checkpoint::Parts {
+  std::filesystem::path file;
+  Ranks ranks;
+  CheckpointHeader header;
+  std::optional<hdf5::Handle> root;
+  std::vector<StoredField> fields; // by name
+
+  // Where nobody has looked through it yet, it is looked through.
+  void open(const std::optional<std::string>& seal) {
+    root.emplace(seal ? open_sealed(file, *seal) : open_sealed(file));
+    try {
+      check_format(*root);
+      header.scene = hdf5::read_text_dataset(*root, "scene");
+      header.provenance = read_provenance(hdf5::open_group(*root, "provenance"));
+      fields = open_fields(*root);
+      if (!seal)
+        require_checksum(*root, fields, header.scene);
+    } catch (const IoError& error) {
+      throw IoError(fmt::format("cannot read checkpoint '{}': {}", file.string(), error.what()));
+    }
   }
-  for (const Field& field : table.fields()) {
-    const StoredField& source = match(stored.fields, field);
-    if (!field.scalar)
-      field.resize(source.layout.shape[0]);
-    std::copy(source.bytes.begin(), source.bytes.end(), static_cast<std::byte*>(field.data()));
+
+  void require_fit(const FieldTable& table) const {
+    try {
+      check_nothing_forgotten(fields, table);
+      for (const Field& field : table.fields())
+        match(fields, field);
+    } catch (const IoError& error) {
+      throw IoError(fmt::format("checkpoint '{}' does not fit: {}", file.string(), error.what()));
+    }
   }
-  return stored.header;
+
+  // All rows, or this rank's part of them.
+  void fill(const Field& field) const {
+    const StoredField& source = match(fields, field);
+    const std::size_t all = source.rows(), parts = field.divided ? ranks.count() : 1,
+                      part = field.divided ? ranks.own() : 0;
+    const std::size_t first = all * part / parts, end = all * (part + 1) / parts;
+    field.resize(end - first);
+    read_field(source, first, end - first, field.data());
+  }
+};
+
+Checkpoint::Checkpoint(const std::filesystem::path& file, const Ranks& ranks) : parts_(std::make_unique<Parts>()) {
+  parts_->file = file;
+  parts_->ranks = ranks;
+  std::string seal;
+  ranks.first_does([&] {
+    parts_->open(std::nullopt);
+    seal = seal_in(file);
+  });
+  ranks.from_first(seal);
+  ranks.together([&] {
+    if (!ranks.is_first())
+      parts_->open(seal);
+  });
 }
 
-CheckpointHeader read_checkpoint_header(const std::filesystem::path& file) {
-  return load(file).header;
+Checkpoint::~Checkpoint() = default;
+
+const CheckpointHeader& Checkpoint::header() const {
+  return parts_->header;
+}
+
+void Checkpoint::read(const FieldTable& table) const {
+  parts_->ranks.together([&] { parts_->require_fit(table); });
+  parts_->ranks.together([&] {
+    for (const Field& field : table.fields())
+      parts_->fill(field);
+  });
 }
 
 } // namespace keeler

@@ -33,6 +33,16 @@ void require_match(const std::filesystem::path& file, const std::string& seal, c
     damaged(file, "its content does not match its checksum");
 }
 
+std::string seal_at_end(const std::filesystem::path& file, const Descriptor& descriptor) {
+  const std::size_t size = descriptor.size();
+  std::string seal(seal_size, '\0');
+  if (size >= seal_size)
+    descriptor.read_at(size - seal_size, std::as_writable_bytes(std::span(seal)));
+  if (!seal.starts_with(mark))
+    damaged(file, "its end is missing or it is not a Keeler file");
+  return seal;
+}
+
 // Of its first bytes, read piece by piece.
 Hash hash_of(const Descriptor& file, std::uint64_t size) {
   std::vector<std::byte> piece(std::min<std::uint64_t>(size, std::uint64_t{1} << 20));
@@ -84,14 +94,20 @@ void SealedFile::finish() {
 
 hdf5::Handle open_sealed(const std::filesystem::path& file) {
   Descriptor descriptor(file, O_RDONLY);
-  const std::size_t size = descriptor.size();
-  std::string seal(seal_size, '\0');
-  if (size >= seal_size)
-    descriptor.read_at(size - seal_size, std::as_writable_bytes(std::span(seal)));
-  if (!seal.starts_with(mark))
-    damaged(file, "its end is missing or it is not a Keeler file");
-  const std::size_t content = size - seal_size;
+  const std::string seal = seal_at_end(file, descriptor);
+  const std::size_t content = descriptor.size() - seal_size;
   require_match(file, seal, seal_of(content, hash_of(descriptor, content)));
+  return hdf5::open_on(std::make_shared<hdf5::Disk>(std::move(descriptor), content));
+}
+
+std::string seal_in(const std::filesystem::path& file) {
+  return seal_at_end(file, Descriptor(file, O_RDONLY));
+}
+
+hdf5::Handle open_sealed(const std::filesystem::path& file, const std::string& seal) {
+  Descriptor descriptor(file, O_RDONLY);
+  require_match(file, seal_at_end(file, descriptor), seal);
+  const std::size_t content = descriptor.size() - seal_size;
   return hdf5::open_on(std::make_shared<hdf5::Disk>(std::move(descriptor), content));
 }
 

@@ -43,6 +43,11 @@ private:
 /// it.
 hdf5::Handle open_sealed(const std::filesystem::path& file);
 
+/// The seal at the end of a file. Throws IoError where there is none.
+std::string seal_in(const std::filesystem::path& file);
+/// The same file, of which somebody else has found that it is whole and has this seal.
+hdf5::Handle open_sealed(const std::filesystem::path& file, const std::string& seal);
+
 /// A file that may have lost its seal: tools that change HDF5 files in place drop it.
 struct FileContent {
   std::vector<std::byte> bytes; ///< without the seal

@@ -157,9 +157,14 @@ void Recorder::require_sound(const Simulation& simulation) {
 void Recorder::snapshot(const Simulation& simulation) {
   const Stopwatch watch(costs_.snapshots);
   require_sound(simulation);
-  const Patch patch = simulation.patch();
+  std::optional<SnapshotFile> file;
   ranks_.first_does([&] {
-    write_snapshot(folder_.snapshot(counters_.snapshots), patch, {scene_.resolved, provenance_});
+    file.emplace(folder_.snapshot(counters_.snapshots), simulation.frame(), simulation.count(),
+                 simulation.state().particles.rough, SnapshotMeta{scene_.resolved, provenance_});
+  });
+  simulation.visit_patch(SnapshotFile::piece, [&](const Patch& piece) { file->add(piece); });
+  ranks_.first_does([&] {
+    file->finish();
     if (contact_log_)
       contact_log_->end_interval(counters_.last_snapshot_step, simulation.state().step);
     tell_restored();

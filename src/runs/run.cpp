@@ -254,12 +254,14 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
                      .start_s = start.made_s,
                      .output = recorder.costs(),
                      .force_checks = recorder.force_checks()};
-  const Patch patch = simulation.patch();
+  const RingScale scale{.mass = simulation.means().mass,
+                        .orbital_frequency = scene.planet.orbital_frequency,
+                        .shear = simulation.state().box.shear,
+                        .driven = !scene.external_forces.empty()};
   std::optional<Transport> transport;
   if (options.ranks.is_first())
-    transport = transport_of_run(folder.series(), patch, scene, options.notice);
-  const nlohmann::ordered_json summary =
-      summarise(simulation, patch, scene, transport, result, cost, recorder.provenance());
+    transport = transport_of_run(folder.series(), scale, options.notice);
+  const nlohmann::ordered_json summary = summarise(simulation, scene, transport, result, cost, recorder.provenance());
   recorder.summary(summary);
   recorder.log(result.finished ? "finished" : "stopped", {{"step", result.step}, {"state_hash", result.state_hash}});
   return result;
@@ -270,16 +272,20 @@ struct Loaded {
   OutputCounters counters;
 };
 
-Loaded load(const std::filesystem::path& file) {
+// Collective: each rank gets a part of the particles.
+Loaded load(const std::filesystem::path& file, const Ranks& ranks = {}) {
   Loaded loaded;
-  const CheckpointHeader header = read_checkpoint_header(file);
-  loaded.run.scene = parse_stored_scene(header.scene, file.string());
+  const Checkpoint checkpoint(file, ranks);
+  ranks.together([&] { loaded.run.scene = parse_stored_scene(checkpoint.header().scene, file.string()); });
   loaded.run.state = SimulationState(loaded.run.scene);
   FieldTable table = loaded.run.state.fields();
   loaded.counters.list_fields(table, loaded.run.scene);
-  read_checkpoint(file, table);
-  if (const std::string fault = loaded.run.state.fault(loaded.run.scene); !fault.empty())
-    throw IoError(fmt::format("checkpoint '{}' does not fit: {}", file.string(), fault));
+  checkpoint.read(table);
+  const std::string fault = loaded.run.state.fault(loaded.run.scene, ranks);
+  ranks.together([&] {
+    if (!fault.empty())
+      throw IoError(fmt::format("checkpoint '{}' does not fit: {}", file.string(), fault));
+  });
   return loaded;
 }
 
@@ -303,7 +309,7 @@ Scene until(Scene scene, const RunOptions& options, std::int64_t step) {
 
 struct Begun {
   Simulation simulation;
-  PatchScale scale;
+  PatchScale scale; // the first rank's
 };
 
 // Until there is a run, a stop is heeded at once: there is nothing that could be kept.
@@ -311,8 +317,12 @@ Begun first_simulation(const Scene& scene, const RunOptions& options, const RunR
   try {
     const Interruptible start(requests.stop);
     Patch patch;
-    options.ranks.together([&] { patch = initial_patch(scene, options.start_progress); });
-    return {Simulation(scene, patch, options.ranks), scale_of(patch)};
+    PatchScale scale;
+    options.ranks.first_does([&] {
+      patch = initial_patch(scene, options.start_progress);
+      scale = scale_of(patch);
+    });
+    return {Simulation(scene, patch, options.ranks), scale};
   } catch (const Interrupted&) {
     throw Error(ExitCode::run_time, "stopped before the first step (on request), so nothing is written; start again");
   }
@@ -396,12 +406,9 @@ RunResult go_on(const RunOptions& options, RunRequests& requests) {
   std::optional<FolderLock> lock;
   ranks.first_does([&] { lock.emplace(folder.path()); });
   const std::filesystem::path newest = newest_checkpoint(options);
-  Loaded loaded;
+  Loaded loaded = load(newest, ranks);
   Scene scene;
-  ranks.together([&] {
-    loaded = load(newest);
-    scene = until(std::move(loaded.run.scene), options, loaded.run.state.step);
-  });
+  ranks.together([&] { scene = until(std::move(loaded.run.scene), options, loaded.run.state.step); });
   const std::int64_t step = start.checkpoint_step = loaded.run.state.step;
   ranks.first_does([&] { folder.cut_log(); });
   if (step >= scene.time.end_step && ranks.from_first(says_finished(folder.summary()))) {
@@ -409,7 +416,7 @@ RunResult go_on(const RunOptions& options, RunRequests& requests) {
       options.notice(fmt::format("the run in '{}' is finished, nothing was changed; --until with a later orbit than "
                                  "{:.6g} goes on",
                                  options.folder.string(), static_cast<double>(step) * scene.time.step));
-    return {true, step, state_hash(loaded.run.state, scene), resume_command(options)};
+    return {true, step, state_hash(loaded.run.state, scene, ranks), resume_command(options)};
   }
   Simulation simulation(scene, std::move(loaded.run.state), ranks);
   ranks.first_does([&] {

@@ -1,6 +1,5 @@
 #include "summary.hpp"
 
-#include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/memory.hpp>
 #include <keeler/core/threads.hpp>
@@ -62,12 +61,12 @@ nlohmann::ordered_json energy_balance(const std::optional<Transport>& t) {
 
 } // namespace
 
-std::optional<Transport> transport_of_run(const std::filesystem::path& series, const Patch& patch, const Scene& scene,
+std::optional<Transport> transport_of_run(const std::filesystem::path& series, const RingScale& scale,
                                           const std::function<void(const std::string&)>& notice) {
   try {
     const SeriesTable table = read_series(series);
     if (enough_rows(table)) // too few say nothing
-      return transport(table, RingScale::of(patch, !scene.external_forces.empty()), {});
+      return transport(table, scale, {});
   } catch (const Error& error) {
     if (notice)
       notice(fmt::format("no balance of energy: {}", error.what()));
@@ -83,9 +82,8 @@ bool says_finished(const std::filesystem::path& summary) {
   return json.is_object() && json.contains("finished") && json["finished"] == true;
 }
 
-nlohmann::ordered_json summarise(const Simulation& simulation, const Patch& patch, const Scene& scene,
-                                 const std::optional<Transport>& transport, const RunResult& result,
-                                 const RunCost& cost, const Provenance& provenance) {
+nlohmann::ordered_json summarise(Simulation& simulation, const Scene& scene, const std::optional<Transport>& transport,
+                                 const RunResult& result, const RunCost& cost, const Provenance& provenance) {
   const SimulationState& state = simulation.state();
   const double count = static_cast<double>(simulation.count()), orbits = simulation.orbits();
   const auto rate = [&](std::uint64_t n) {
@@ -111,7 +109,7 @@ nlohmann::ordered_json summarise(const Simulation& simulation, const Patch& patc
   if (scene.gravity && scene.gravity->carries())
     json["resting_contacts"] = state.resting.pairs.size();
   json["finder_gave_up"] = state.collisions.gave_up;
-  json["largest_overlap"] = largest_overlap(patch).depth;
+  json["largest_overlap"] = simulation.largest_overlap();
   json["force_error"] = force_error(cost.force_checks);
   json["energy_j"] = energies(simulation, scene);
   json["energy_balance"] = energy_balance(transport);

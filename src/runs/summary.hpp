@@ -21,14 +21,13 @@ struct RunCost {
 };
 
 /// By the series of the run. None, with a notice where it is damaged: that must not keep a run from ending well.
-std::optional<Transport> transport_of_run(const std::filesystem::path& series, const Patch& patch, const Scene& scene,
+std::optional<Transport> transport_of_run(const std::filesystem::path& series, const RingScale& scale,
                                           const std::function<void(const std::string&)>& notice);
 
-/// Counts and energies are those of the whole run, times those of this stretch. `patch` is the simulation's.
-/// Collective; the first rank's is the one.
-nlohmann::ordered_json summarise(const Simulation& simulation, const Patch& patch, const Scene& scene,
-                                 const std::optional<Transport>& transport, const RunResult& result,
-                                 const RunCost& cost, const Provenance& provenance);
+/// Counts and energies are those of the whole run, times those of this stretch. Collective; the first rank's is the
+/// one.
+nlohmann::ordered_json summarise(Simulation& simulation, const Scene& scene, const std::optional<Transport>& transport,
+                                 const RunResult& result, const RunCost& cost, const Provenance& provenance);
 
 /// Whether the folder's summary is that of a finished run. False when there is none.
 bool says_finished(const std::filesystem::path& summary);

@@ -1,34 +1,14 @@
 // A run that ranks share: docs/dev/ranks.md.
 #include <keeler/simulation/simulation.hpp>
 
+#include <keeler/cells/overlap.hpp>
 #include <keeler/collision/settings.hpp>
 #include <keeler/contacts/finders.hpp>
 #include <keeler/core/error.hpp>
-#include <keeler/core/units.hpp>
 
 #include <fmt/format.h>
 
 namespace keeler {
-namespace {
-
-// To the first rank, in the order of the ranks.
-template<class Row> std::vector<Row> gathered(const Ranks& ranks, const std::vector<Row>& rows) {
-  std::vector<std::vector<Row>> sent(ranks.count());
-  sent[0] = rows;
-  std::vector<std::vector<Row>> received = ranks.exchange(sent);
-  std::size_t count = 0;
-  for (const std::vector<Row>& some : received)
-    count += some.size();
-  std::vector<Row> all;
-  all.reserve(count);
-  for (std::vector<Row>& some : received) {
-    all.insert(all.end(), some.begin(), some.end());
-    std::vector<Row>().swap(some);
-  }
-  return all;
-}
-
-} // namespace
 
 // What has an order, a place or a network of all particles still.
 void Simulation::require_shareable(const Scene& scene, std::size_t count) {
@@ -62,14 +42,28 @@ Slabs::Holding Simulation::holding() {
   return holding;
 }
 
+// That are good for the step to come.
+void Simulation::require_borders() {
+  if (slabs_->serve(state_.particles, state_.step_length))
+    return;
+  drift_.release();
+  slabs_->make_borders(holding(), state_.epoch_offset(), state_.step_length);
+  find_moonlets();
+}
+
+// Whoever touches an own particle in the step to come has a copy here, and that step begins at this boundary.
+double Simulation::largest_overlap_shared() {
+  require_borders();
+  slabs_->add_copies(state_.particles);
+  const double depth = keeler::largest_overlap(patch_of(state_.particles)).depth;
+  slabs_->drop_copies(state_.particles);
+  return ranks_.largest(depth);
+}
+
 void Simulation::collide_shared() {
   const double offset = state_.epoch_offset();
   for (;;) {
-    if (!slabs_->serve(state_.particles, state_.step_length)) {
-      drift_.release();
-      slabs_->make_borders(holding(), offset, state_.step_length);
-      find_moonlets();
-    }
+    require_borders();
     slabs_->add_copies(state_.particles);
     const bool done =
         drift_.collide_shared(state_.particles, slabs_->borders(), ranks_, state_.box, offset, state_.collisions);
@@ -78,31 +72,6 @@ void Simulation::collide_shared() {
       return;
     slabs_->widen();
   }
-}
-
-Particles Simulation::all_particles() const {
-  const Particles& own = state_.particles;
-  Particles all;
-  all.bodies = gathered(ranks_, own.bodies);
-  all.ids = gathered(ranks_, own.ids);
-  all.rough = own.rough;
-  if (own.rough)
-    all.spins = gathered(ranks_, own.spins);
-  return all;
-}
-
-std::optional<GravityEnergy> Simulation::measure_whole(GravityMeter& meter) const {
-  const Particles all = all_particles();
-  if (!ranks_.is_first())
-    return std::nullopt;
-  return meter.measure({all, scene_.planet.frequencies, 0.5 * state_.step_length, state_.box, state_.boundary_offset(),
-                        state_.step, two_pi * orbits(), Ranks()});
-}
-
-void Simulation::gather(SimulationState& state) const {
-  state.particles = all_particles();
-  for (std::size_t f = 0; f < state.forces.size(); ++f)
-    state.forces[f].accelerations = gathered(ranks_, state_.forces[f].accelerations);
 }
 
 } // namespace keeler

@@ -8,6 +8,7 @@
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/forces/self_gravity.hpp>
+#include <keeler/particles/by_id.hpp>
 
 #include <fmt/format.h>
 
@@ -66,12 +67,30 @@ SimulationState first_state(const Scene& scene, const Patch& start) {
   return state;
 }
 
-std::vector<std::unique_ptr<Force>> make_forces(const Scene& scene, const SimulationState& state) {
+// Collective: what the first rank has of all but the particles, on the others too.
+void share(SimulationState& state, const Ranks& ranks) {
+  const FieldTable table = state.fields();
+  for (const Field& field : table.fields())
+    if (!field.divided) {
+      field.resize(ranks.from_first(field.rows()));
+      ranks.from_first(std::span(static_cast<std::byte*>(field.data()), field.bytes()));
+    }
+}
+
+// Of a patch that the first rank has, and with it all particles.
+SimulationState first_state(const Scene& scene, const Patch& start, const Ranks& ranks) {
+  SimulationState state(scene);
+  ranks.first_does([&] { state = first_state(scene, start); });
+  share(state, ranks);
+  return state;
+}
+
+std::vector<std::unique_ptr<Force>> make_forces(const Scene& scene, const SimulationState& state, const Ranks& ranks) {
   std::vector<double> masses;
   if (!state.forces.empty())
     for (const Body& body : state.particles.bodies)
       masses.push_back(body.mass);
-  const ForceContext context{masses, state.box, scene.planet.orbital_frequency, scene.particles.seed};
+  const ForceContext context{masses, state.box, scene.planet.orbital_frequency, scene.particles.seed, ranks};
   std::vector<std::unique_ptr<Force>> forces;
   if (scene.gravity)
     forces.push_back(make_self_gravity(*scene.gravity, context));
@@ -83,17 +102,17 @@ std::vector<std::unique_ptr<Force>> make_forces(const Scene& scene, const Simula
 } // namespace
 
 Simulation::Simulation(const Scene& scene, const Patch& start, const Ranks& ranks)
-    : Simulation(scene, first_state(scene, start), ranks) {
+    : Simulation(scene, first_state(scene, start, ranks), ranks) {
   for (std::size_t f = 0; f < forces_.size(); ++f)
     accelerate(f);
 }
 
 Simulation::Simulation(const Scene& scene, SimulationState state, const Ranks& ranks)
-    : scene_(scene), ranks_(ranks), state_(std::move(state)), count_(state_.particles.size()),
+    : scene_(scene), ranks_(ranks), state_(std::move(state)), count_(ranks.sum(state_.particles.size())),
       drift_(scene.collisions, scene.planet.frequencies, scene.planet.orbital_frequency, state_.step_length) {
-  forces_ = make_forces(scene_, state_);
   if constexpr (Ranks::possible)
     divide();
+  forces_ = make_forces(scene_, state_, ranks_);
   find_moonlets();
   set_pace();
 }
@@ -309,9 +328,6 @@ Boundary Simulation::boundary() const {
 }
 
 std::optional<GravityEnergy> Simulation::measure(GravityMeter& meter) const {
-  if constexpr (Ranks::possible)
-    if (ranks_.many())
-      return measure_whole(meter);
   return meter.measure(boundary());
 }
 
@@ -368,7 +384,7 @@ void Simulation::replace(Particles particles) {
   resting_ = RestingContacts();
   state_.resting.pairs.clear();
   state_.resting.loads.clear();
-  forces_ = make_forces(scene_, state_);
+  forces_ = make_forces(scene_, state_, ranks_);
   for (std::size_t f = 0; f < forces_.size(); ++f)
     accelerate(f);
 }
@@ -402,18 +418,16 @@ Patch Simulation::patch_of(const Particles& particles) const {
 }
 
 Patch Simulation::patch() const {
-  if constexpr (Ranks::possible)
-    if (ranks_.many())
-      return patch_of(all_particles());
+  assert(!ranks_.many());
   return patch_of(state_.particles);
 }
 
-SimulationState Simulation::whole_state() const {
-  SimulationState whole = state_;
-  if constexpr (Ranks::possible)
-    if (ranks_.many())
-      gather(whole);
-  return whole;
+Patch Simulation::frame() const {
+  return patch_of(Particles());
+}
+
+void Simulation::visit_patch(std::size_t rows, const std::function<void(const Patch&)>& piece) const {
+  visit_by_id(state_.particles, ranks_, rows, [&](const Particles& some) { piece(patch_of(some)); });
 }
 
 Patch Simulation::patch_at_break() const {
@@ -425,6 +439,13 @@ double Simulation::offset_at_break() const {
     return state_.boundary_offset();
   const double offset = state_.epoch_offset() + state_.box.shear * state_.box.size_x * time_at_break();
   return offset - std::floor(offset / state_.box.size_y) * state_.box.size_y;
+}
+
+double Simulation::largest_overlap() {
+  if constexpr (Ranks::possible)
+    if (ranks_.many())
+      return largest_overlap_shared();
+  return keeler::largest_overlap(patch()).depth;
 }
 
 ParticleMeans Simulation::means() const {

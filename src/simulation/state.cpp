@@ -53,9 +53,9 @@ FieldTable SimulationState::fields() {
   return table;
 }
 
-std::string SimulationState::fault(const Scene& scene) const {
+std::string SimulationState::fault(const Scene& scene, const Ranks& ranks) const {
   const std::size_t count = particles.size();
-  if (count == 0 || particles.ids.size() != count || (particles.rough && particles.spins.size() != count))
+  if (ranks.sum(count) == 0 || particles.ids.size() != count || (particles.rough && particles.spins.size() != count))
     return "its particles are none, or their arrays have different lengths";
   if (moonlets.size() != scene.moonlets.size() || moonlets.size() > count)
     return fmt::format("it has {} moonlets, and its scene {}", moonlets.size(), scene.moonlets.size());

@@ -30,24 +30,38 @@ std::vector<double> places_across(const Particles& particles, double size_x) {
   return across;
 }
 
-// Each to its rank; what comes back stands in the order of the ranks.
-template<class Row> void route(const Ranks& ranks, std::vector<Row>& rows, const std::vector<std::uint32_t>& to) {
-  std::vector<std::vector<Row>> sent(ranks.count());
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    sent[to[k]].push_back(rows[k]);
-  rows.clear();
-  for (const std::vector<Row>& some : ranks.exchange(sent))
-    rows.insert(rows.end(), some.begin(), some.end());
+// The places of those that go to another rank.
+std::vector<std::uint32_t> leaving(const std::vector<std::uint32_t>& to, std::size_t own) {
+  std::vector<std::uint32_t> places;
+  for (std::size_t k = 0; k < to.size(); ++k)
+    if (to[k] != own)
+      places.push_back(static_cast<std::uint32_t>(k));
+  return places;
 }
 
-template<class Row> void keep(std::vector<Row>& rows, const std::vector<std::uint32_t>& which) {
-  if (rows.empty())
-    return;
-  std::vector<Row> kept;
-  kept.reserve(which.size());
-  for (const std::uint32_t k : which)
-    kept.push_back(rows[k]);
-  rows = std::move(kept);
+// Collective: each row to its rank, those that leave a piece at a time. The others stay in their order, and those that
+// come stand behind them.
+template<class Row>
+void route(const Ranks& ranks, std::vector<Row>& rows, const std::vector<std::uint32_t>& to,
+           const std::vector<std::uint32_t>& leave) {
+  constexpr std::size_t piece = (std::size_t{16} << 20) / sizeof(Row);
+  std::vector<Row> come;
+  for (std::size_t begin = 0; ranks.any(begin < leave.size()); begin = std::min(begin + piece, leave.size())) {
+    std::vector<std::vector<Row>> sent(ranks.count());
+    for (std::size_t k = begin; k < std::min(begin + piece, leave.size()); ++k)
+      sent[to[leave[k]]].push_back(rows[leave[k]]);
+    for (const std::vector<Row>& some : ranks.exchange(sent))
+      come.insert(come.end(), some.begin(), some.end());
+  }
+  std::size_t stay = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (to[k] == ranks.own())
+      rows[stay++] = rows[k];
+  rows.resize(stay);
+  if (rows.capacity() > 2 * (stay + come.size())) // of one that had all
+    rows.shrink_to_fit();
+  rows.reserve(stay + come.size());
+  rows.insert(rows.end(), come.begin(), come.end());
 }
 
 } // namespace
@@ -62,19 +76,8 @@ Slabs::Slabs(const Ranks& ranks, const ShearingBox& box, const Frequencies& freq
 
 void Slabs::divide(Holding holding) {
   const std::vector<double> across = places_across(holding.particles, box_.size_x);
-  std::vector<double> sorted = across;
-  std::sort(sorted.begin(), sorted.end());
-  for (std::size_t rank = 1; rank < ranks_.count(); ++rank)
-    bounds_[rank] = sorted[sorted.size() * rank / ranks_.count()];
-  std::vector<std::uint32_t> own;
-  for (std::size_t k = 0; k < across.size(); ++k)
-    if (owner(across[k]) == ranks_.own())
-      own.push_back(static_cast<std::uint32_t>(k));
-  keep(holding.particles.bodies, own);
-  keep(holding.particles.ids, own);
-  keep(holding.particles.spins, own);
-  for (std::vector<Vec3>* rows : holding.rows)
-    keep(*rows, own);
+  balance(across);
+  migrate(holding, across);
 }
 
 std::size_t Slabs::owner(double across) const {
@@ -87,6 +90,16 @@ bool Slabs::is_within(double across, std::size_t rank, double reach) const {
   const double low = bounds_[rank], high = bounds_[rank + 1];
   const auto is_near = [&](double x) { return x >= low - reach && x < high + reach; };
   return is_near(across) || is_near(across - box_.size_x) || is_near(across + box_.size_x);
+}
+
+// The other ranks whose slabs are so near stand beside each other, on both sides of one's own.
+template<class Visit> void Slabs::for_each_within(double across, double reach, const Visit& visit) const {
+  const std::size_t count = ranks_.count(), own = ranks_.own();
+  std::size_t up = 1, down = 1;
+  for (; up < count && is_within(across, (own + up) % count, reach); ++up)
+    visit((own + up) % count);
+  for (; up + down <= count && is_within(across, (own + count - down) % count, reach); ++down)
+    visit((own + count - down) % count);
 }
 
 double Slabs::largest_way(const Particles& particles, const std::vector<double>& references, double step) const {
@@ -175,13 +188,14 @@ void Slabs::migrate(Holding& holding, const std::vector<double>& across) const {
   std::vector<std::uint32_t> to(across.size());
   std::transform(across.begin(), across.end(), to.begin(),
                  [&](double x) { return static_cast<std::uint32_t>(owner(x)); });
-  route(ranks_, holding.particles.bodies, to);
-  route(ranks_, holding.particles.ids, to);
+  const std::vector<std::uint32_t> leave = leaving(to, ranks_.own());
+  route(ranks_, holding.particles.bodies, to, leave);
+  route(ranks_, holding.particles.ids, to, leave);
   if (holding.particles.rough)
-    route(ranks_, holding.particles.spins, to);
+    route(ranks_, holding.particles.spins, to, leave);
   for (std::vector<Vec3>* rows : holding.rows)
     if (ranks_.any(!rows->empty()))
-      route(ranks_, *rows, to);
+      route(ranks_, *rows, to, leave);
 }
 
 // Copies to all whose particles they may touch before borders are made anew, and to some rows beyond.
@@ -203,14 +217,13 @@ void Slabs::lend(const Particles& particles, double step) {
   borders_.is_lent.assign(particles.size(), 0);
   std::vector<std::vector<Body>> bodies(ranks_.count());
   std::vector<std::vector<std::uint64_t>> ids(ranks_.count());
-  for (std::size_t rank = 0; rank < ranks_.count(); ++rank)
-    for (std::size_t k = 0; rank != ranks_.own() && k < particles.size(); ++k)
-      if (is_within(borders_.references[k], rank, reach)) {
-        borders_.lent[rank].push_back(static_cast<std::uint32_t>(k));
-        borders_.is_lent[k] = 1;
-        bodies[rank].push_back(particles.bodies[k]);
-        ids[rank].push_back(particles.ids[k]);
-      }
+  for (std::size_t k = 0; k < particles.size(); ++k)
+    for_each_within(borders_.references[k], reach, [&](std::size_t rank) {
+      borders_.lent[rank].push_back(static_cast<std::uint32_t>(k));
+      borders_.is_lent[k] = 1;
+      bodies[rank].push_back(particles.bodies[k]);
+      ids[rank].push_back(particles.ids[k]);
+    });
   copies_.bodies.clear();
   copies_.ids.clear();
   borders_.first.assign(1, particles.size());

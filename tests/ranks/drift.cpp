@@ -25,6 +25,8 @@ public:
   Part(const Ring& ring, const CollisionSettings& settings, const Slabs::Reach& reach)
       : own(ring.particles), slabs(keeler_test::launched(), ring.box, ring.frequencies, reach),
         drift(settings, ring.frequencies, test::omega, ring.step), step_(ring.step) {
+    if (!keeler_test::launched().is_first())
+      own.bodies.clear(), own.ids.clear(), own.spins.clear();
     slabs.divide({own, {}});
   }
 

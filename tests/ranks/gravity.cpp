@@ -154,6 +154,30 @@ TEST_CASE("accelerations of fft and mesh on many ranks have the bits of one proc
     }
 }
 
+TEST_CASE("energy and stress on many ranks have the bits of one process, on each of them") {
+  for (const bool short_range : {true, false}) {
+    const FftSettings settings{1.4, 2.5, short_range};
+    FftSolver shared(settings, choose_instruction_set());
+    for (const Sample& whole : samples()) {
+      FftSolver alone(settings, choose_instruction_set());
+      for (const double part : {0.0, 0.37, 0.83}) {
+        const GravityEnergy expected = alone.energy(whole.problem(part * whole.box.size_y));
+        for (const Deal deal : {Deal::by_id, Deal::by_place, Deal::to_last}) {
+          CAPTURE(whole.name);
+          CAPTURE(short_range);
+          CAPTURE(part);
+          const Share share = own_share(whole, deal);
+          GravityProblem problem = share.state.problem(part * whole.box.size_y);
+          problem.ranks = launched();
+          const GravityEnergy found = shared.energy(problem);
+          CHECK(found.potential == expected.potential);
+          CHECK(found.stress == expected.stress);
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("a place that is nowhere on one rank is an error on all") {
   const Sample whole = samples().back();
   Share share = own_share(whole, Deal::to_last);

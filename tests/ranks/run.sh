@@ -128,6 +128,34 @@ runs 0 resume "$work/cut" --until 0.2
 [ "$(state_hash "$work/cut")" = "$(state_hash "$work/wakes-1")" ] || fail "4, 3, 1 ranks: state_hash differs"
 same_series "4, 3, 1 ranks" "$work/wakes-1" "$work/cut"
 
+# More particles than come at once: the same files, and resumed, the first rank keeps far from what one process takes.
+scene many '[box]
+size = [3000, 600]
+[particles]
+count = 300000
+density = 600.0
+sizes = { law = "equal", radius = 1.0 }
+[time]
+step = 2e-3
+end = 4e-3
+[output]
+series_every = 2e-3'
+peak() { text peak_memory_mb "$1/summary.json"; }
+runs 0 run "$work/many.toml" -o "$work/many-1"
+shared 4 1 0 run "$work/many.toml" -o "$work/many-4"
+same "many" "$work/many-1" "$work/many-4"
+(
+  ulimit -f 18000 # a checkpoint's second piece does not fit
+  shared 4 1 4 resume "$work/many-4" --until 8e-3
+  report >/dev/null
+) || fail "many: a full disk"
+[ "$(find "$work/many-4" -name 'checkpoint_*' | wc -l)" -eq 1 ] || fail "many: a full disk: other checkpoints"
+shared 4 1 0 resume "$work/many-4" --until 8e-3
+runs 0 resume "$work/many-1" --until 8e-3
+same "many, resumed" "$work/many-1" "$work/many-4"
+awk "BEGIN { exit !($(peak "$work/many-4") < 0.6 * $(peak "$work/many-1")) }" ||
+  fail "many: the first of 4 ranks took $(peak "$work/many-4") MB, one process $(peak "$work/many-1") MB"
+
 # What cannot be shared yet is refused by name, before anything is written.
 refused() { # WORDS ARGUMENT...
   local words=$1

@@ -20,6 +20,7 @@ GravityProblem gravity_problem(const Boundary& boundary, double orbital_frequenc
                                std::vector<double>& masses);
 
 /// Measures the energy and the stress of the particles in their own gravity, along a run of always the same particles.
+/// Collective.
 class GravityMeter {
 public:
   GravityMeter(const GravitySettings& settings, double orbital_frequency)

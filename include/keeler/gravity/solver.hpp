@@ -81,9 +81,9 @@ std::unique_ptr<GravitySolver> make_gravity_solver(const GravitySettings& settin
 
 /// What measures the energy and the stress that belong to the forces of such a solver: of the same periodic sum for
 /// `direct` and `tree`, of the mesh or the radial waves alone for `mesh` and `axisymmetric`; null where only some rings
-/// of images act. Throws as above.
+/// of images act. Collective, and throws, as above.
 bool has_energy_meter(const GravitySettings& settings);
 std::unique_ptr<EnergyMeter> make_energy_meter(const GravitySettings& settings, std::span<const double> masses,
-                                               double area);
+                                               double area, const Ranks& ranks = {});
 
 } // namespace keeler

@@ -7,6 +7,7 @@
 #include <keeler/ranks/ranks.hpp>
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
 namespace keeler {
@@ -23,11 +24,25 @@ struct CheckpointHeader {
 void write_checkpoint(const std::filesystem::path& file, const FieldTable& table, const CheckpointHeader& header,
                       const Ranks& ranks = {});
 
-/// Fills every field of the table. Throws IoError, and leaves the table's data alone, when the file is damaged, of
-/// another kind or a newer version, or when its fields are not those of the table in name, type and shape.
-CheckpointHeader read_checkpoint(const std::filesystem::path& file, const FieldTable& table);
+/// A checkpoint that is whole, open for reading where it is.
+class Checkpoint {
+public:
+  /// Looks through the whole file, a piece at a time. Collective: the first rank does, the others trust its seal.
+  /// Throws IoError when it is damaged, of another kind or a newer version.
+  explicit Checkpoint(const std::filesystem::path& file, const Ranks& ranks = {});
+  ~Checkpoint();
 
-/// Verifies the whole file and returns what stands beside the fields: the scene says which table to make.
-CheckpointHeader read_checkpoint_header(const std::filesystem::path& file);
+  /// The scene says which table to make.
+  const CheckpointHeader& header() const;
+
+  /// Fills every field of the table; of divided ones each rank gets a part of the rows, the first rank the first ones.
+  /// Collective. Throws IoError, and leaves the table's data alone, when the fields are not those of the table in name,
+  /// type and shape.
+  void read(const FieldTable& table) const;
+
+private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
 
 } // namespace keeler

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,30 @@ struct Snapshot {
   SnapshotMeta meta;
 };
 
-/// Writes a patch whose orbital frequency is known. Complete or not at all: see write_file(). Throws IoError.
+/// A snapshot in the making, whose particles come a piece at a time. Complete or not at all: it takes its name when it
+/// is finished, as of write_file(). Throws IoError.
+class SnapshotFile {
+public:
+  /// Particles of a piece; the last one may have fewer.
+  static constexpr std::size_t piece = std::size_t{1} << 17;
+
+  /// `frame`: all of the patch but its particles, of which there will be `count`, rough or not. Its orbital frequency
+  /// is known.
+  SnapshotFile(const std::filesystem::path& file, const Patch& frame, std::size_t count, bool rough,
+               const SnapshotMeta& meta);
+  ~SnapshotFile();
+
+  /// The next particles, in the order of their ids: those of a patch from the `first` one on, or all of it.
+  void add(const Patch& patch, std::size_t first, std::size_t count);
+  void add(const Patch& patch) { add(patch, 0, patch.size()); }
+  void finish();
+
+private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+/// Writes a whole patch. Throws IoError.
 void write_snapshot(const std::filesystem::path& file, const Patch& patch, const SnapshotMeta& meta);
 
 /// Reads a snapshot, also one that another tool has changed. All comes back bit for bit except velocities, which pass

@@ -13,6 +13,7 @@
 #include <keeler/simulation/state.hpp>
 #include <keeler/slabs/slabs.hpp>
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -40,11 +41,12 @@ struct TimeSplit {
 class Simulation {
 public:
   /// A new run from a patch; time starts at zero. Throws InvariantError when particles overlap by more than rounding.
-  /// Collective, as all that follows from it: every rank gives the whole patch. Throws UsageError for what the scene
-  /// asks for and ranks cannot share yet.
+  /// Collective, as all that follows from it: the first rank gives the patch, and hands the particles out. Throws
+  /// UsageError for what the scene asks for and ranks cannot share yet.
   Simulation(const Scene& scene, const Patch& start, const Ranks& ranks = {});
 
-  /// A run that goes on from a state, to the bit.
+  /// A run that goes on from a state, to the bit. Collective: each rank gives a part of the particles, whichever, with
+  /// their accelerations, and all else of the state.
   Simulation(const Scene& scene, SimulationState state, const Ranks& ranks = {});
 
   /// One step; collective. Throws InvariantError, or Interrupted when an Interruptible (interrupt.hpp) asks for it; the
@@ -66,8 +68,6 @@ public:
   const Ranks& ranks() const { return ranks_; }
   /// Particles of all ranks.
   std::size_t count() const { return count_; }
-  /// Collective: the state with the particles of all ranks, on the first one; on the others nothing that is of use.
-  SimulationState whole_state() const;
   double orbits() const { return static_cast<double>(state_.step) * scene_.time.step; }
 
   /// The id of the first moonlet; of none the number of particles.
@@ -75,8 +75,13 @@ public:
   /// The body of a moonlet, k < state().moonlets.size(). Collective.
   Body moonlet(std::size_t k) const;
 
-  /// A Cartesian copy of the present state. Collective: the first rank gets it, the others one without particles.
+  /// A Cartesian copy of the present state. Not of a run that ranks share: nobody has all its particles.
   Patch patch() const;
+  /// The same without particles.
+  Patch frame() const;
+  /// Collective: on the first rank piece(patch) for the particles of all ranks in the order of their ids, `rows` at a
+  /// time, fewer the last time. What it throws all ranks throw.
+  void visit_patch(std::size_t rows, const std::function<void(const Patch&)>& piece) const;
 
   /// The same when advance() has thrown: of the last boundary, or, in the middle of a drift, of the time of the last
   /// contact that was carried out.
@@ -88,11 +93,15 @@ public:
   /// The particles at this boundary between steps, as forces see them; not to be kept beyond the next step.
   Boundary boundary() const;
 
-  /// The energy of self-gravity at this boundary, on the first rank. Collective.
+  /// The energy of self-gravity at this boundary. Collective.
   std::optional<GravityEnergy> measure(GravityMeter& meter) const;
 
   /// Means over all particles now, at this boundary. Collective.
   ParticleMeans means() const;
+
+  /// How deep two particles stand inside each other at this boundary at most, of the sum of their radii; 0 when none
+  /// do. Collective. The order in memory may change.
+  double largest_overlap();
 
   /// Where the energy of the random motions came from and went. Collective.
   EnergyBalance balance() const { return balance(means()); }
@@ -117,10 +126,9 @@ private:
 
   // of a run that ranks share (shared.cpp)
   void divide();
+  void require_borders();
   void collide_shared();
-  void gather(SimulationState& state) const;
-  Particles all_particles() const;
-  std::optional<GravityEnergy> measure_whole(GravityMeter& meter) const;
+  double largest_overlap_shared();
   Slabs::Holding holding();
 
   void collide();

@@ -5,6 +5,7 @@
 #include <keeler/collision/drift.hpp>
 #include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/particles/patch.hpp>
+#include <keeler/ranks/ranks.hpp>
 #include <keeler/resting/resting_contacts.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/step_control.hpp>
@@ -79,8 +80,9 @@ struct SimulationState {
   FieldTable fields() const;
 
   /// What in it no run of this scene has: "its step is 0 ticks long"; empty where nothing is. Of what was read from a
-  /// file: a step would read beyond arrays, or not end. The particles themselves are for the step to judge.
-  std::string fault(const Scene& scene) const;
+  /// file: a step would read beyond arrays, or not end. The particles themselves are for the step to judge. Collective:
+  /// each rank has a part of the particles, or none.
+  std::string fault(const Scene& scene, const Ranks& ranks = {}) const;
 
   /// Shear offset at the epoch of the elements, and at this boundary between steps.
   double epoch_offset() const { return box.offset(2 * step + control.step, 0.5 * tick()); }

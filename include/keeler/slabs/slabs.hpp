@@ -33,7 +33,7 @@ public:
       : Slabs(ranks, box, frequencies, Reach()) {}
   Slabs(const Ranks& ranks, const ShearingBox& box, const Frequencies& frequencies, const Reach& reach);
 
-  /// Of a holding that all ranks have whole, each keeps its own part.
+  /// Each particle goes to its owner from the rank that has it, whichever that is; all may be with one.
   void divide(Holding holding);
 
   /// Whether the borders are good for a step of that length.
@@ -61,6 +61,7 @@ private:
   void learn();
   std::size_t owner(double across) const;
   bool is_within(double across, std::size_t rank, double reach) const;
+  template<class Visit> void for_each_within(double across, double reach, const Visit& visit) const;
   void balance(const std::vector<double>& across);
   void migrate(Holding& holding, const std::vector<double>& across) const;
   void lend(const Particles& particles, double step);

@@ -241,6 +241,33 @@ TEST_CASE("another tool may change a snapshot, within what a patch can be") {
   CHECK_THROWS_WITH_AS(read_snapshot(file), doctest::Contains("not a Keeler snapshot"), IoError);
 }
 
+TEST_CASE("a snapshot whose particles come in pieces is that of the whole patch, byte by byte") {
+  const TemporaryFolder folder;
+  const Patch patch = sample(SnapshotFile::piece + 4321);
+  write_snapshot(folder / "whole.hdf", patch, meta);
+  const auto rows = [&](const auto& all, std::size_t first, std::size_t count) {
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+    return std::remove_cvref_t<decltype(all)>(begin, begin + static_cast<std::ptrdiff_t>(count));
+  };
+  SnapshotFile pieces(folder / "pieces.hdf", patch, patch.size(), false, meta);
+  for (std::size_t first = 0; first < patch.size(); first += SnapshotFile::piece) {
+    const std::size_t count = std::min(SnapshotFile::piece, patch.size() - first);
+    Patch piece = patch;
+    piece.positions = rows(patch.positions, first, count);
+    piece.velocities = rows(patch.velocities, first, count);
+    piece.radii = rows(patch.radii, first, count);
+    piece.masses = rows(patch.masses, first, count);
+    piece.ids = rows(patch.ids, first, count);
+    pieces.add(piece);
+  }
+  CHECK_FALSE(std::filesystem::exists(folder / "pieces.hdf"));
+  pieces.finish();
+  CHECK(read_file(folder / "pieces.hdf") == read_file(folder / "whole.hdf"));
+  CHECK(same_but_velocities(read_snapshot(folder / "pieces.hdf").patch, patch));
+  { const SnapshotFile unfinished(folder / "other.hdf", patch, patch.size(), false, meta); }
+  CHECK(folder.file_count() == 2);
+}
+
 TEST_CASE("a full disk is an error and leaves the former snapshot") {
   const TemporaryFolder folder;
   const auto file = folder / "a.hdf";

@@ -1,0 +1,79 @@
+// No rank of a run has all particles: what it gets and sends at once, and its memory, stay a part of what all take.
+#include "launched.hpp"
+
+#include "unit/files/disk.hpp"
+
+#include <keeler/core/memory.hpp>
+#include <keeler/runs/run.hpp>
+
+#include <doctest/doctest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+using namespace keeler;
+using keeler_test::launched;
+
+namespace {
+
+constexpr std::size_t count = 600000;
+constexpr double piece = 16.0 * (1 << 20); // bytes
+constexpr double most_memory = 750.0;      // bytes an own particle; bodies and ids of all would be 288 more
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool is_sanitized = true;
+#else
+constexpr bool is_sanitized = false;
+#endif
+
+Scene many_particles() {
+  return parse_scene(R"(
+[planet]
+preset = "saturn-a-ring"
+[box]
+size = [6000, 600]
+[particles]
+count = 600000
+density = 600.0
+sizes = { law = "equal", radius = 1.0 }
+[time]
+step = 2e-3
+end = 4e-3
+[output]
+checkpoint_every = 2e-3
+)",
+                     "test scene", {});
+}
+
+} // namespace
+
+TEST_CASE("a run and its snapshots, checkpoints, hash and resumption keep particles where they are") {
+  const Ranks& ranks = launched();
+  std::unique_ptr<test::TemporaryFolder> folder;
+  if (ranks.is_first())
+    folder = std::make_unique<test::TemporaryFolder>();
+  std::string path = folder ? *folder / "run" : "";
+  ranks.from_first(path);
+
+  const double before = peak_memory();
+  RunOptions options;
+  options.folder = path;
+  options.ranks = ranks;
+  RunRequests requests;
+  const RunResult run = start_run(many_particles(), options, requests);
+  options.until_orbits = 8e-3;
+  const RunResult resumed = resume_run(options, requests);
+  CHECK(run.finished);
+  CHECK(resumed.step == 4);
+
+  const double own = static_cast<double>(count) / static_cast<double>(ranks.count());
+  CHECK(static_cast<double>(largest_exchange()) < 1.05 * piece);
+  const double memory = (peak_memory() - before) / own;
+  MESSAGE("rank " << ranks.own() << ": " << 1e-6 * static_cast<double>(largest_exchange()) << " MB at once, " << memory
+                  << " bytes of memory for each own particle");
+  CHECK((ranks.is_first() || is_sanitized || memory < most_memory)); // the first one has made the start
+  // Its bodies in one place alone would be more than a piece: what is counted would show it.
+  const std::vector<std::byte> bodies(64 * static_cast<std::size_t>(own));
+  ranks.gather(bodies);
+  CHECK((!ranks.is_first() || static_cast<double>(largest_exchange()) > 2.0 * piece));
+}
