@@ -44,7 +44,7 @@ std::string seal_at_end(const std::filesystem::path& file, const Descriptor& des
 }
 
 // Of its first bytes, read piece by piece.
-Hash hash_of(const Descriptor& file, std::uint64_t size) {
+Hash hash_of(const std::filesystem::path& name, const Descriptor& file, std::uint64_t size) {
   std::vector<std::byte> piece(std::min<std::uint64_t>(size, std::uint64_t{1} << 20));
   Hash hash;
   for (std::uint64_t place = 0; place < size;) {
@@ -52,7 +52,7 @@ Hash hash_of(const Descriptor& file, std::uint64_t size) {
         std::span(piece).first(static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), size - place)));
     const std::size_t have = file.read_at(place, wanted);
     if (have == 0)
-      break; // cut meanwhile
+      damaged(name, "it was cut while it was read");
     hash.add_bytes(wanted.first(have));
     place += have;
   }
@@ -86,7 +86,7 @@ void SealedFile::write(const std::function<void(const hdf5::Handle& root)>& work
 void SealedFile::finish() {
   root_.reset();
   disk_->require_sound();
-  const std::string seal = seal_of(disk_->size(), hash_of(disk_->file(), disk_->size()));
+  const std::string seal = seal_of(disk_->size(), hash_of(unfinished_.temporary(), disk_->file(), disk_->size()));
   disk_->file().write_at(disk_->size(), std::as_bytes(std::span(seal)));
   disk_->file().close();
   unfinished_.keep();
@@ -96,7 +96,7 @@ hdf5::Handle open_sealed(const std::filesystem::path& file) {
   Descriptor descriptor(file, O_RDONLY);
   const std::string seal = seal_at_end(file, descriptor);
   const std::size_t content = descriptor.size() - seal_size;
-  require_match(file, seal, seal_of(content, hash_of(descriptor, content)));
+  require_match(file, seal, seal_of(content, hash_of(file, descriptor, content)));
   return hdf5::open_on(std::make_shared<hdf5::Disk>(std::move(descriptor), content));
 }
 
