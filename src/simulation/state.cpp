@@ -54,10 +54,10 @@ FieldTable SimulationState::fields() {
 }
 
 std::string SimulationState::fault(const Scene& scene, const Ranks& ranks) const {
-  const std::size_t count = particles.size();
-  if (ranks.sum(count) == 0 || particles.ids.size() != count || (particles.rough && particles.spins.size() != count))
+  const std::size_t count = particles.size(), of_all = ranks.sum(count);
+  if (of_all == 0 || particles.ids.size() != count || (particles.rough && particles.spins.size() != count))
     return "its particles are none, or their arrays have different lengths";
-  if (moonlets.size() != scene.moonlets.size() || moonlets.size() > count)
+  if (moonlets.size() != scene.moonlets.size() || moonlets.size() > of_all)
     return fmt::format("it has {} moonlets, and its scene {}", moonlets.size(), scene.moonlets.size());
   for (const ForceState& force : forces)
     if ((!force.accelerations.empty() && force.accelerations.size() != count) ||
