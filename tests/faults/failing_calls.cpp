@@ -73,6 +73,20 @@ template<class Call> auto unless_due(bool counted, const Call& call) -> decltype
   return counted && is_due() ? static_cast<decltype(call())>(failed()) : call();
 }
 
+// write(part) writes so much of it.
+template<class Write> ssize_t written(int descriptor, size_t size, const Write& write) {
+  if (!is_ours(descriptor) || !is_due())
+    return write(size);
+  if (settings().fault == "torn" || settings().fault == "nospace") {
+    const ssize_t half = write(size / 2);
+    if (half > 0 && settings().fault == "nospace") {
+      --calls; // the next write of the same descriptor is the one that has no room
+      return half;
+    }
+  }
+  return failed();
+}
+
 int opened(const char* name, const char* path, int flags, mode_t mode) {
   const bool counted = is_ours(path) && ((flags & O_ACCMODE) != O_RDONLY || (flags & O_DIRECTORY) != 0);
   const int descriptor =
@@ -125,17 +139,15 @@ int open64(const char* path, int flags, ...) {
 }
 
 ssize_t write(int descriptor, const void* content, size_t size) {
-  const auto real = original<ssize_t(int, const void*, size_t)>("write");
-  if (!is_ours(descriptor) || !is_due())
-    return real(descriptor, content, size);
-  if (settings().fault == "torn" || settings().fault == "nospace") {
-    const ssize_t half = real(descriptor, content, size / 2);
-    if (half > 0 && settings().fault == "nospace") {
-      --calls; // the next write of the same descriptor is the one that has no room
-      return half;
-    }
-  }
-  return failed();
+  return written(descriptor, size, [&](size_t part) {
+    return original<ssize_t(int, const void*, size_t)>("write")(descriptor, content, part);
+  });
+}
+
+ssize_t pwrite(int descriptor, const void* content, size_t size, off_t place) {
+  return written(descriptor, size, [&](size_t part) {
+    return original<ssize_t(int, const void*, size_t, off_t)>("pwrite")(descriptor, content, part, place);
+  });
 }
 
 int fsync(int descriptor) {
