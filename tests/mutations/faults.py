@@ -110,8 +110,8 @@ FAULTS = [
           "gravity", "a contact across the sheared edge counts at its true distance"),
     Fault("checkpoint-forces", "a checkpoint field left out: the accelerations of the last kick",
           "src/simulation/state.cpp",
-          '    table.rows<double>(force.name + "_accelerations", force.accelerations, "m rad^-2",\n'
-          '                       "of the last kick of this force");\n', "",
+          '    table.particle_rows<double>(force.name + "_accelerations", force.accelerations, "m rad^-2",\n'
+          '                                "of the last kick of this force");\n', "",
           "runs", "the field table holds all that a run needs to go on to the bit"),
     Fault("checkpoint-books", "a checkpoint field left out: what the energy budget began with",
           "src/simulation/state.cpp",
