@@ -150,6 +150,10 @@ Handle create_on(const std::shared_ptr<Disk>& disk) {
           H5Fclose};
 }
 
+void flush(const Handle& file) {
+  checked("complete a file", [&] { return H5Fflush(file.id(), H5F_SCOPE_LOCAL); });
+}
+
 Handle open_on(const std::shared_ptr<Disk>& disk) {
   const Handle access = access_to(&disk);
   return {checked("open as HDF5", [&] { return H5Fopen(fresh_name().c_str(), H5F_ACC_RDONLY, access.id()); }),

@@ -37,8 +37,11 @@ private:
   std::exception_ptr failure_;
 };
 
-/// A new, empty HDF5 file. What is written is whole once the handle is closed and require_sound() has passed.
+/// A new, empty HDF5 file. It is whole when it was flushed and closed, require_sound() has passed, and the library
+/// holds the disk no more.
 Handle create_on(const std::shared_ptr<Disk>& disk);
+/// Writes all of a file that the library still has in memory.
+void flush(const Handle& file);
 /// Opens one for reading.
 Handle open_on(const std::shared_ptr<Disk>& disk);
 

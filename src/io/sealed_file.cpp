@@ -84,8 +84,11 @@ void SealedFile::write(const std::function<void(const hdf5::Handle& root)>& work
 }
 
 void SealedFile::finish() {
+  write([](const hdf5::Handle& root) { hdf5::flush(root); });
   root_.reset();
   disk_->require_sound();
+  if (disk_.use_count() > 1)
+    throw IoError(fmt::format("cannot write '{}': HDF5 did not close it", unfinished_.temporary().string()));
   const std::string seal = seal_of(disk_->size(), hash_of(unfinished_.temporary(), disk_->file(), disk_->size()));
   disk_->file().write_at(disk_->size(), std::as_bytes(std::span(seal)));
   disk_->file().close();

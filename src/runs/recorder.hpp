@@ -1,4 +1,4 @@
-// Everything that a run writes. It works on copies and never touches the state. It writes into the folder that the run
+// Everything that a run writes. It reads the state and never changes it. It writes into the folder that the run
 // holds and nowhere else: every call throws IoError once the folder's name stands for something else. Of a run that
 // ranks share all make each call; the first rank writes, and what it throws all throw.
 #pragma once

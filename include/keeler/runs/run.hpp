@@ -48,7 +48,7 @@ struct RunOptions {
   std::vector<std::string> arguments; ///< the command line, for provenance
   std::function<void(const StartProgress&)> start_progress;
   std::function<void(const RunProgress&)> progress;
-  Ranks ranks = {}; ///< that share the run: all call with the same options, the first one reads and writes the folder
+  Ranks ranks = {}; ///< that share the run: all call with the same options, the first one writes the folder
   std::function<void(const std::string&)> notice; ///< a line for the user: rounding, a damaged checkpoint passed over
 };
 

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+#include <optional>
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -33,6 +35,17 @@ TEST_CASE("a sealed file opens here, and for readers that know no seal") {
   const hdf5::Handle plain(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   REQUIRE(plain.id() >= 0);
   CHECK(hdf5::read_attribute<double>(plain, "number") == 42.0);
+}
+
+TEST_CASE("a file that is still open somewhere is not taken for finished") {
+  const TemporaryFolder folder;
+  {
+    SealedFile out(folder / "a.h5");
+    std::optional<hdf5::Handle> left;
+    out.write([&](const hdf5::Handle& root) { left.emplace(hdf5::create_group(root, "group")); });
+    CHECK_THROWS_WITH_AS(out.finish(), doctest::Contains("did not close it"), IoError);
+  }
+  CHECK(folder.file_count() == 0);
 }
 
 TEST_CASE("another tool may change a file in place; it then has no seal") {
