@@ -2,7 +2,7 @@
 
 #include "broken_state.hpp"
 #include "recorder.hpp"
-#include "step_check.hpp"
+#include "runner.hpp"
 #include "summary.hpp"
 
 #include <keeler/core/error.hpp>
@@ -19,23 +19,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-constexpr double first_check = 5e-6;      // s a particle: what a check is taken to cost before there was one
-constexpr double share_of_checks = 0.005; // of the wall time, for the errors of forces; one at the end besides
-constexpr double least_patience = 5.0;    // s, with a stop
-
 std::int64_t whole_kicks(const Scene& scene, double steps) {
   const auto block = static_cast<double>(scene.kick_interval());
   return static_cast<std::int64_t>(std::max(1.0, std::round(steps / block)) * block);
-}
-
-double end_orbits(const Scene& scene) {
-  return static_cast<double>(scene.time.end_step) * scene.time.step;
 }
 
 std::string resume_command(const RunOptions& options) {
@@ -54,157 +45,6 @@ template<class Work> RunResult with_advice(const RunOptions& options, const Work
     throw DiskFullError(fmt::format("{}; free some space, then {}", full.what(), advice));
   }
 }
-
-class Runner {
-public:
-  Runner(const Scene& scene, const RunOptions& options, RunRequests& requests, Simulation& simulation,
-         Recorder& recorder, const Stopwatch& watch, std::int64_t last_checkpoint)
-      : scene_(scene), options_(options), requests_(requests), simulation_(simulation), recorder_(recorder),
-        watch_(watch), first_step_(simulation.state().step), last_checkpoint_(last_checkpoint),
-        first_collisions_(simulation.state().collisions.fast + simulation.state().collisions.slow) {
-    requests_.patience_s = patience();
-    if (options.check)
-      check_.emplace(scene, simulation);
-    assert(!check_ || !simulation.ranks().many());
-  }
-
-  RunResult run() {
-    const SimulationState& state = simulation_.state();
-    while (state.step < scene_.time.end_step && !must_stop()) {
-      advance();
-      record();
-      report();
-    }
-    RunResult result;
-    result.finished = state.step >= scene_.time.end_step;
-    if (result.finished && state.step != recorder_.counters().last_snapshot_step)
-      recorder_.snapshot(simulation_);
-    if (state.step != last_checkpoint_)
-      recorder_.checkpoint(simulation_);
-    if (result.finished && has_force_checks() && recorder_.force_checks().last_step != state.step)
-      recorder_.check_forces(simulation_);
-    result.step = state.step;
-    result.state_hash = state_hash(simulation_.state(), scene_, ranks());
-    result.resume_command = resume_command(options_);
-    return result;
-  }
-
-  /// -1: none yet.
-  std::int64_t last_checkpoint() const { return last_checkpoint_; }
-
-private:
-  const Ranks& ranks() const { return simulation_.ranks(); }
-
-  void advance() {
-    const Interruptible step(requests_.give_up);
-    if (check_)
-      check_->begin();
-    simulation_.advance();
-    if (check_)
-      check_->end();
-  }
-
-  bool due(std::int64_t every) const { return every > 0 && simulation_.state().step % every == 0; }
-
-  // Half way through a kick interval the closing half kick is missing: stop and snapshot only at its end.
-  bool between_kicks() const { return due(scene_.kick_interval()); }
-
-  double passes_between_stops() const { return static_cast<double>(scene_.kick_interval()); }
-
-  bool must_stop() const {
-    if (!between_kicks())
-      return false;
-    // two passes more for the last checkpoint
-    const double reserve = (passes_between_stops() + 2.0) * longest_pass_ + recorder_.force_checks().last_s;
-    return ranks().from_first(requests_.stop ||
-                              (options_.wall_time_s && watch_.elapsed() + reserve > *options_.wall_time_s));
-  }
-
-  void record() {
-    const std::int64_t step = simulation_.state().step;
-    recorder_.contacts();
-    if (due(scene_.output.series_every))
-      recorder_.sample(simulation_);
-    const bool asked = between_kicks() && ranks().from_first(requests_.snapshot.exchange(false));
-    if (due(scene_.output.snapshot_every) || asked)
-      recorder_.snapshot(simulation_);
-    if (due(scene_.output.checkpoint_every) || checkpoint_due_by_clock()) {
-      recorder_.checkpoint(simulation_);
-      last_checkpoint_ = step;
-      last_checkpoint_time_ = watch_.elapsed();
-    }
-    if (force_check_due()) {
-      recorder_.check_forces(simulation_);
-      last_time_ += recorder_.force_checks().last_s; // not what a step takes
-    }
-  }
-
-  bool checkpoint_due_by_clock() const {
-    const double interval = 60.0 * scene_.output.checkpoint_every_minutes;
-    return interval > 0.0 && between_kicks() &&
-           ranks().from_first(watch_.elapsed() - last_checkpoint_time_ >= interval);
-  }
-
-  // The exact sum is over pairs, wherever they are.
-  bool has_force_checks() const { return scene_.gravity && scene_.gravity->by_pairs() && !ranks().many(); }
-
-  // As often as a small share of the time allows: that is another number of steps for each solver and machine, and no
-  // state hangs on it.
-  bool force_check_due() const {
-    const ForceChecks& checks = recorder_.force_checks();
-    const double next = checks.count > 0 ? checks.last_s : first_check * static_cast<double>(simulation_.count());
-    return has_force_checks() && between_kicks() && checks.seconds + next <= share_of_checks * watch_.elapsed();
-  }
-
-  // Three times as long as any pass so far is nothing unusual.
-  unsigned patience() const {
-    if (!ranks().is_first())
-      return 0; // it decides
-    return static_cast<unsigned>(std::ceil(std::max(least_patience, 3.0 * passes_between_stops() * longest_pass_)));
-  }
-
-  // A mean over the steps so far whose weights grow with the third power of the step: steps get dearer as wakes grow,
-  // and what is left will cost what the last ones did.
-  void take_pace(double now) {
-    const std::int64_t step = simulation_.state().step;
-    const auto new_steps = static_cast<double>(step - paced_step_), all = static_cast<double>(step - first_step_);
-    seconds_per_step_ += std::min(1.0, 4.0 * new_steps / all) * ((now - paced_s_) / new_steps - seconds_per_step_);
-    paced_step_ = step;
-    paced_s_ = now;
-  }
-
-  void report() {
-    const double now = watch_.elapsed();
-    take_pace(now);
-    longest_pass_ = std::max(longest_pass_, now - last_time_);
-    requests_.patience_s = patience();
-    last_time_ = now;
-    if (!options_.progress)
-      return;
-    const SimulationState& state = simulation_.state();
-    RunProgress p;
-    p.step = state.step, p.first_step = first_step_, p.end_step = scene_.time.end_step;
-    p.orbits = simulation_.orbits(), p.end_orbits = end_orbits(scene_);
-    p.elapsed_s = now;
-    p.remaining_s = seconds_per_step_ * static_cast<double>(p.end_step - p.step);
-    p.collisions_per_second =
-        static_cast<double>(state.collisions.fast + state.collisions.slow - first_collisions_) / (now - start_);
-    options_.progress(p);
-  }
-
-  const Scene& scene_;
-  const RunOptions& options_;
-  RunRequests& requests_;
-  Simulation& simulation_;
-  Recorder& recorder_;
-  const Stopwatch& watch_; // since the command began, as a queue counts
-  std::optional<StepCheck> check_;
-  std::int64_t first_step_, last_checkpoint_;
-  std::uint64_t first_collisions_;
-  std::int64_t paced_step_ = first_step_;
-  double seconds_per_step_ = 0.0, paced_s_ = watch_.elapsed();
-  double start_ = watch_.elapsed(), last_time_ = start_, last_checkpoint_time_ = start_, longest_pass_ = 0.0;
-};
 
 // When the command began, and the step whose checkpoint it found.
 struct Start {
@@ -236,6 +76,7 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
   RunResult result;
   try {
     result = runner.run();
+    result.resume_command = resume_command(options);
   } catch (const Interrupted&) {
     fail_given_up(options, runner.last_checkpoint(), recorder);
   } catch (const InvariantError& error) {
