@@ -99,8 +99,8 @@ private:
 struct ExchangeCosts {
   double seconds = 0.0;                  ///< wall time: sending, receiving, and waiting for the others
   std::uint64_t messages = 0, bytes = 0; ///< sent to others by exchange()
-  std::uint64_t common = 0; ///< calls in which all ranks get the same: sums, least, largest, what the first has
-  std::uint64_t largest = 0; ///< bytes that one call has sent from here, or brought here: a part of the particles' at most
+  std::uint64_t common = 0;  ///< calls in which all ranks get the same: sums, least, largest, what the first has
+  std::uint64_t largest = 0; ///< bytes sent from here, or brought here, by one call: a part of the particles' at most
 };
 const ExchangeCosts& exchange_costs();
 
