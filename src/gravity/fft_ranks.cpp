@@ -84,40 +84,31 @@ bool is_in(const IndexRange& range, std::size_t column) {
   return column >= range.begin && column < range.end;
 }
 
-// Collective: rows for each rank become those from each. One's own are many, and are not copied.
-template<class Row> void exchange_others(const Ranks& ranks, std::vector<std::vector<Row>>& rows) {
-  std::vector<Row> own;
-  own.swap(rows[ranks.own()]);
-  rows = ranks.exchange(rows);
-  own.swap(rows[ranks.own()]);
-}
-
-// The particles that a rank must know, and the way home of what becomes of its own ones.
+// The particles that a rank must know, and the way home of what becomes of its own ones. Most stay where they are.
 class Guests {
 public:
   /// Collective: sends particles to all that must know them.
   Guests(std::span<const InsideParticle> own, const TileFinder& find, std::span<const MeshShare> shares,
          const Tiling& tiling, const Ranks& ranks)
-      : find_(find), here_(shares[ranks.own()].own), sent_(ranks.count()), end_of_(ranks.count()) {
+      : find_(find), here_(shares[ranks.own()].own), sent_(ranks.count()), from_(ranks.count()) {
     const auto knowers = who_must_know(shares, tiling);
     std::vector<std::vector<InsideParticle>> parcels(ranks.count());
-    parcels[ranks.own()].reserve(own.size()); // most of them stay
+    particles_.reserve(own.size() + own.size() / 2);
     for (std::size_t k = 0; k < own.size(); ++k) {
       const std::size_t column = find.column(own[k].x);
       for (const std::uint32_t rank : knowers[column]) {
-        parcels[rank].push_back(own[k]);
+        (rank == ranks.own() ? particles_ : parcels[rank]).push_back(own[k]);
         if (is_in(shares[rank].own, column))
           sent_[rank].push_back(static_cast<std::uint32_t>(k));
       }
     }
-    exchange_others(ranks, parcels);
-    std::size_t count = 0;
-    for (const auto& parcel : parcels)
-      count += parcel.size();
-    particles_.reserve(count);
+    from_[ranks.own()] = {0, particles_.size()};
+    parcels = ranks.exchange(parcels);
     for (std::size_t rank = 0; rank < parcels.size(); ++rank) {
+      if (rank == ranks.own())
+        continue;
+      from_[rank] = {particles_.size(), particles_.size() + parcels[rank].size()};
       particles_.insert(particles_.end(), parcels[rank].begin(), parcels[rank].end());
-      end_of_[rank] = particles_.size();
       std::vector<InsideParticle>().swap(parcels[rank]);
     }
   }
@@ -128,14 +119,19 @@ public:
   template<class Take> void send_home(std::span<const Vec3> values, const Ranks& ranks, const Take& take) const {
     using Row = std::array<double, 3>;
     std::vector<std::vector<Row>> rows(ranks.count());
-    std::size_t k = 0;
-    for (std::size_t rank = 0; rank < rows.size(); ++rank)
-      for (; k < end_of_[rank]; ++k)
+    const auto visit_owned = [&](std::size_t rank, const auto& visit) {
+      for (std::size_t k = from_[rank].begin; k < from_[rank].end; ++k)
         if (is_in(here_, find_.column(particles_[k].x)))
-          rows[rank].push_back({values[k].x(), values[k].y(), values[k].z()});
-    exchange_others(ranks, rows);
+          visit(values[k]);
+    };
+    for (std::size_t rank = 0; rank < rows.size(); ++rank)
+      if (rank != ranks.own())
+        visit_owned(rank, [&](const Vec3& value) { rows[rank].push_back({value.x(), value.y(), value.z()}); });
+    rows = ranks.exchange(rows);
+    auto own = sent_[ranks.own()].begin();
+    visit_owned(ranks.own(), [&](const Vec3& value) { take(*own++, value); });
     for (std::size_t rank = 0; rank < rows.size(); ++rank) {
-      assert(rows[rank].size() == sent_[rank].size());
+      assert(rank == ranks.own() || rows[rank].size() == sent_[rank].size());
       for (std::size_t i = 0; i < rows[rank].size(); ++i)
         take(sent_[rank][i], Vec3(rows[rank][i][0], rows[rank][i][1], rows[rank][i][2]));
     }
@@ -145,8 +141,8 @@ private:
   TileFinder find_;
   IndexRange here_;
   std::vector<std::vector<std::uint32_t>> sent_; // to owners, in the order sent
-  std::vector<InsideParticle> particles_;        // by the rank that sent them
-  std::vector<std::size_t> end_of_;
+  std::vector<InsideParticle> particles_;        // own ones first
+  std::vector<IndexRange> from_;                 // each rank, these
 };
 
 // A part of a half spectrum.
@@ -156,25 +152,53 @@ struct Piece {
   std::size_t count(std::size_t planes) const { return columns.size() * waves.size() * planes; }
 };
 
-// Calls move(numbers, at, count) for all numbers of a piece, some columns of one plane at a time; `at` counts them wave
-// by wave, plane by plane.
-template<class Move> void visit(HalfSpectrum& half, const Piece& piece, const Move& move) {
+// Numbers of one wave and plane that stand together, from a column on.
+struct Run {
+  HalfSpectrum::Complex* numbers;
+  std::size_t count;
+};
+
+Run run_at(HalfSpectrum& half, std::size_t wave, std::size_t plane, std::size_t column) {
   constexpr std::size_t block = HalfSpectrum::block;
+  const std::size_t place = column - half.columns().begin, in_block = place % block;
+  return {half.wave(place / block, wave) + plane * block + in_block, block - in_block};
+}
+
+// Calls row(wave, plane, at) for all rows of columns of a piece; `at` counts their numbers wave by wave, plane by
+// plane.
+template<class Row> void for_each_row(const Piece& piece, std::size_t planes, const Row& row) {
   parallel_for(
       piece.waves.size(),
       [&](std::size_t w) {
-        for (std::size_t k = 0; k < half.planes(); ++k) {
-          std::size_t at = (w * half.planes() + k) * piece.columns.size();
-          for (std::size_t column = piece.columns.begin; column < piece.columns.end;) {
-            const std::size_t place = column - half.columns().begin, in_block = place % block;
-            const std::size_t count = std::min(block - in_block, piece.columns.end - column);
-            move(half.wave(place / block, piece.waves.begin + w) + k * block + in_block, at, count);
-            column += count;
-            at += count;
-          }
-        }
+        for (std::size_t plane = 0; plane < planes; ++plane)
+          row(piece.waves.begin + w, plane, (w * planes + plane) * piece.columns.size());
       },
       4);
+}
+
+// Calls move(numbers, at, count) for all numbers of a piece, some columns of one plane at a time.
+template<class Move> void visit(HalfSpectrum& half, const Piece& piece, const Move& move) {
+  for_each_row(piece, half.planes(), [&](std::size_t wave, std::size_t plane, std::size_t at) {
+    for (std::size_t column = piece.columns.begin; column < piece.columns.end;) {
+      const Run run = run_at(half, wave, plane, column);
+      const std::size_t count = std::min(run.count, piece.columns.end - column);
+      move(run.numbers, at, count);
+      column += count;
+      at += count;
+    }
+  });
+}
+
+// The piece that stays on this rank.
+void copy(HalfSpectrum& from, HalfSpectrum& to, const Piece& piece) {
+  for_each_row(piece, from.planes(), [&](std::size_t wave, std::size_t plane, std::size_t) {
+    for (std::size_t column = piece.columns.begin; column < piece.columns.end;) {
+      const Run old = run_at(from, wave, plane, column), its = run_at(to, wave, plane, column);
+      const std::size_t count = std::min({old.count, its.count, piece.columns.end - column});
+      std::copy_n(old.numbers, count, its.numbers);
+      column += count;
+    }
+  });
 }
 
 // Collective: hands the pieces of `from` to the ranks and gets those of `to`.
@@ -183,6 +207,8 @@ void turn_over(const Ranks& ranks, HalfSpectrum& from, std::span<const Piece> se
   constexpr std::size_t size = sizeof(HalfSpectrum::Complex);
   Parcels parcels(ranks.count());
   for (std::size_t rank = 0; rank < ranks.count(); ++rank) {
+    if (rank == ranks.own())
+      continue;
     parcels[rank].resize(size * sent[rank].count(from.planes()));
     std::byte* const bytes = parcels[rank].data();
     visit(from, sent[rank], [&](const HalfSpectrum::Complex* numbers, std::size_t at, std::size_t count) {
@@ -190,7 +216,10 @@ void turn_over(const Ranks& ranks, HalfSpectrum& from, std::span<const Piece> se
     });
   }
   parcels = ranks.exchange(std::move(parcels));
+  copy(from, to, sent[ranks.own()]);
   for (std::size_t rank = 0; rank < ranks.count(); ++rank) {
+    if (rank == ranks.own())
+      continue;
     assert(parcels[rank].size() == size * received[rank].count(to.planes()));
     const std::byte* const bytes = parcels[rank].data();
     visit(to, received[rank], [&](HalfSpectrum::Complex* numbers, std::size_t at, std::size_t count) {
