@@ -65,7 +65,7 @@ NewestCheckpoint newest_valid_checkpoint(const std::filesystem::path& folder) {
   NewestCheckpoint newest;
   for (const std::filesystem::path& file : list_checkpoints(folder)) {
     try {
-      Checkpoint{file};
+      const Checkpoint whole(file);
       newest.path = file;
       return newest;
     } catch (const IoError& error) {
