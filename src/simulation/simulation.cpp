@@ -1,8 +1,9 @@
 #include <keeler/simulation/simulation.hpp>
 
+#include "first_state.hpp"
+
 #include <keeler/cells/order.hpp>
 #include <keeler/cells/overlap.hpp>
-#include <keeler/core/error.hpp>
 #include <keeler/core/exact_sum.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
@@ -10,9 +11,6 @@
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/particles/by_id.hpp>
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cassert>
 #include <cstring>
 
@@ -31,59 +29,6 @@ struct KickSums {
     return *this;
   }
 };
-
-SimulationState first_state(const Scene& scene, const Patch& start) {
-  require_sound(start);
-  require_apart(start, "the initial state");
-  const double largest = start.size() ? *std::max_element(start.radii.begin(), start.radii.end()) : 0.0;
-  if (!(std::min(start.box.size_x, start.box.size_y) >= 2.0 * largest))
-    throw UsageError(
-        fmt::format("the box of the initial state, {:.4g} m x {:.4g} m, is smaller than its largest particle "
-                    "({:.4g} m across); start from another state",
-                    start.box.size_x, start.box.size_y, 2.0 * largest));
-  SimulationState state(scene);
-  if (scene.time.automatic)
-    state.control = StepControl::automatic(!state.forces.empty());
-  state.step_length = static_cast<double>(state.control.step) * scene.step_length();
-  state.box = start.box;
-  state.box.shear = scene.planet.frequencies.shear();
-  state.box.first_offset = start.offset;
-  Patch patch = start;
-  patch.frequencies = scene.planet.frequencies;
-  if (!scene.collisions.friction)
-    patch.spins.clear();
-  else if (patch.spins.empty()) // no spin against the stars
-    patch.spins.assign(patch.size(), Vec3::Zero());
-  state.particles = particles_from(patch, 0.5 * state.step_length);
-  const double offset = state.epoch_offset();
-  for (Body& body : state.particles.bodies) {
-    Elements& el = body.elements;
-    el = state.box.image_of(el, state.box.image_into_cell(el.guiding_x, el.guiding_y, offset), offset);
-  }
-  for (std::size_t k = 0; k < state.moonlets.size(); ++k) // a fresh patch is in the order of the ids
-    state.moonlets[k].start_x = state.particles.bodies[start.size() - state.moonlets.size() + k].elements.guiding_x;
-  const ParticleMeans means = particle_means(state.particles, scene.planet.frequencies, -0.5 * state.step_length);
-  state.energy = {means.epicyclic_energy, means.azimuthal, means.spin.energy};
-  return state;
-}
-
-// Collective: what the first rank has of all but the particles, on the others too.
-void share(SimulationState& state, const Ranks& ranks) {
-  const FieldTable table = state.fields();
-  for (const Field& field : table.fields())
-    if (!field.divided) {
-      field.resize(ranks.from_first(field.rows()));
-      ranks.from_first(std::span(static_cast<std::byte*>(field.data()), field.bytes()));
-    }
-}
-
-// Of a patch that the first rank has, and with it all particles.
-SimulationState first_state(const Scene& scene, const Patch& start, const Ranks& ranks) {
-  SimulationState state(scene);
-  ranks.first_does([&] { state = first_state(scene, start); });
-  share(state, ranks);
-  return state;
-}
 
 std::vector<std::unique_ptr<Force>> make_forces(const Scene& scene, const SimulationState& state, const Ranks& ranks) {
   std::vector<double> masses;
@@ -232,37 +177,6 @@ void Simulation::sort_when_due() {
   find_moonlets();
 }
 
-void Simulation::find_moonlets() {
-  moonlet_places_.assign(state_.moonlets.size(), elsewhere);
-  if (moonlet_places_.empty())
-    return;
-  for (std::size_t place = 0; place < state_.particles.size(); ++place)
-    if (const std::uint64_t id = state_.particles.ids[place]; id >= first_moonlet())
-      moonlet_places_[id - first_moonlet()] = place;
-}
-
-Body Simulation::moonlet(std::size_t k) const {
-  Body body{};
-  if (moonlet_places_[k] != elsewhere)
-    body = state_.particles.bodies[moonlet_places_[k]];
-  if (ranks_.many()) {
-    double numbers[sizeof(Body) / sizeof(double)];
-    static_assert(sizeof numbers == sizeof body);
-    std::memcpy(numbers, &body, sizeof body);
-    from_owners(numbers);
-    std::memcpy(static_cast<void*>(&body), numbers, sizeof body);
-  }
-  return body;
-}
-
-// What owners of moonlets have, to all ranks; the numbers of others are 0.
-void Simulation::from_owners(std::span<double> numbers) const {
-  std::vector<std::uint64_t> bits(numbers.size());
-  std::memcpy(bits.data(), numbers.data(), numbers.size_bytes());
-  ranks_.sum(std::span(bits));
-  std::memcpy(numbers.data(), bits.data(), numbers.size_bytes());
-}
-
 // To the epoch of the next step.
 void Simulation::move_on() {
   const Stopwatch watch(split_.advance);
@@ -295,28 +209,6 @@ void Simulation::rebase(double time) {
       Vec3& spin = state_.particles.spins[k];
       turn.turn(spin.y(), spin.x());
     });
-  }
-}
-
-// Of a particle that has gone round an edge, whoever it is. Rare: it stays out of the loop over all of them.
-[[gnu::noinline]] void Simulation::note_wrap(std::size_t k, const Vec3& shift) {
-  const std::uint64_t id = state_.particles.ids[k];
-  if (id < first_moonlet())
-    return;
-  assert(id - first_moonlet() < state_.moonlets.size());
-  double* const wrap = &moonlet_wraps_[2 * (id - first_moonlet())];
-  wrap[0] = shift.x();
-  wrap[1] = shift.y();
-}
-
-// The wraps that were noted, into the tracks.
-void Simulation::wrap_moonlets() {
-  if (moonlet_wraps_.empty())
-    return;
-  from_owners(moonlet_wraps_);
-  for (std::size_t k = 0; k < state_.moonlets.size(); ++k) {
-    state_.moonlets[k].shift_x += moonlet_wraps_[2 * k];
-    state_.moonlets[k].shift_y += moonlet_wraps_[2 * k + 1];
   }
 }
 
