@@ -16,6 +16,7 @@
 
 #include <complex>
 #include <span>
+#include <vector>
 
 namespace keeler {
 
@@ -59,6 +60,8 @@ struct FftSolver::Parts {
   struct Known;
   Known know(const GravityProblem& problem, double offset, bool with_neighbours);
   void turn_to_waves(const Ranks& ranks, const Known& known);
+  std::vector<Blocks> columns_of_share(const Known& known);
+  std::vector<Blocks> waves_of_share(const Known& known);
   void fill_share(const Ranks& ranks, const Known& known);
 
   FftSettings settings;

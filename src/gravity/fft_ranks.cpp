@@ -88,21 +88,27 @@ bool is_in(const IndexRange& range, std::size_t column) {
 class Guests {
 public:
   /// Collective: sends particles to all that must know them.
-  Guests(std::span<const InsideParticle> own, const TileFinder& find, std::span<const MeshShare> shares,
+  Guests(std::vector<InsideParticle> own, const TileFinder& find, std::span<const MeshShare> shares,
          const Tiling& tiling, const Ranks& ranks)
-      : find_(find), here_(shares[ranks.own()].own), sent_(ranks.count()), from_(ranks.count()) {
+      : find_(find), here_(shares[ranks.own()].own), sent_(ranks.count()), particles_(std::move(own)),
+        from_(ranks.count()) {
     const auto knowers = who_must_know(shares, tiling);
     std::vector<std::vector<InsideParticle>> parcels(ranks.count());
-    particles_.reserve(own.size() + own.size() / 2);
-    for (std::size_t k = 0; k < own.size(); ++k) {
-      const std::size_t column = find.column(own[k].x);
+    std::size_t stay = 0;
+    for (std::size_t k = 0; k < particles_.size(); ++k) {
+      const InsideParticle particle = particles_[k];
+      const std::size_t column = find.column(particle.x);
       for (const std::uint32_t rank : knowers[column]) {
-        (rank == ranks.own() ? particles_ : parcels[rank]).push_back(own[k]);
+        if (rank == ranks.own())
+          particles_[stay++] = particle;
+        else
+          parcels[rank].push_back(particle);
         if (is_in(shares[rank].own, column))
           sent_[rank].push_back(static_cast<std::uint32_t>(k));
       }
     }
-    from_[ranks.own()] = {0, particles_.size()};
+    particles_.resize(stay);
+    from_[ranks.own()] = {0, stay};
     parcels = ranks.exchange(parcels);
     for (std::size_t rank = 0; rank < parcels.size(); ++rank) {
       if (rank == ranks.own())
@@ -145,102 +151,27 @@ private:
   std::vector<IndexRange> from_;                 // each rank, these
 };
 
-// A part of a half spectrum.
-struct Piece {
-  IndexRange columns, waves;
-
-  std::size_t count(std::size_t planes) const { return columns.size() * waves.size() * planes; }
+// The columns of all ranks in one half spectrum, and which of its blocks are whose. Ranks transform the columns that
+// they only feel, too: what they have there does not count, for these are later ranks' own.
+struct SpectrumOfAll {
+  std::vector<IndexRange> columns, blocks;
 };
 
-// Numbers of one wave and plane that stand together, from a column on.
-struct Run {
-  HalfSpectrum::Complex* numbers;
-  std::size_t count;
-};
-
-Run run_at(HalfSpectrum& half, std::size_t wave, std::size_t plane, std::size_t column) {
-  constexpr std::size_t block = HalfSpectrum::block;
-  const std::size_t place = column - half.columns().begin, in_block = place % block;
-  return {half.wave(place / block, wave) + plane * block + in_block, block - in_block};
-}
-
-// Calls row(wave, plane, at) for all rows of columns of a piece; `at` counts their numbers wave by wave, plane by
-// plane.
-template<class Row> void for_each_row(const Piece& piece, std::size_t planes, const Row& row) {
-  parallel_for(
-      piece.waves.size(),
-      [&](std::size_t w) {
-        for (std::size_t plane = 0; plane < planes; ++plane)
-          row(piece.waves.begin + w, plane, (w * planes + plane) * piece.columns.size());
-      },
-      4);
-}
-
-// Calls move(numbers, at, count) for all numbers of a piece, some columns of one plane at a time.
-template<class Move> void visit(HalfSpectrum& half, const Piece& piece, const Move& move) {
-  for_each_row(piece, half.planes(), [&](std::size_t wave, std::size_t plane, std::size_t at) {
-    for (std::size_t column = piece.columns.begin; column < piece.columns.end;) {
-      const Run run = run_at(half, wave, plane, column);
-      const std::size_t count = std::min(run.count, piece.columns.end - column);
-      move(run.numbers, at, count);
-      column += count;
-      at += count;
-    }
-  });
-}
-
-// The piece that stays on this rank.
-void copy(HalfSpectrum& from, HalfSpectrum& to, const Piece& piece) {
-  for_each_row(piece, from.planes(), [&](std::size_t wave, std::size_t plane, std::size_t) {
-    for (std::size_t column = piece.columns.begin; column < piece.columns.end;) {
-      const Run old = run_at(from, wave, plane, column), its = run_at(to, wave, plane, column);
-      const std::size_t count = std::min({old.count, its.count, piece.columns.end - column});
-      std::copy_n(old.numbers, count, its.numbers);
-      column += count;
-    }
-  });
-}
-
-// Collective: hands the pieces of `from` to the ranks and gets those of `to`.
-void turn_over(const Ranks& ranks, HalfSpectrum& from, std::span<const Piece> sent, HalfSpectrum& to,
-               std::span<const Piece> received) {
-  constexpr std::size_t size = sizeof(HalfSpectrum::Complex);
-  Parcels parcels(ranks.count());
-  for (std::size_t rank = 0; rank < ranks.count(); ++rank) {
-    if (rank == ranks.own())
-      continue;
-    parcels[rank].resize(size * sent[rank].count(from.planes()));
-    std::byte* const bytes = parcels[rank].data();
-    visit(from, sent[rank], [&](const HalfSpectrum::Complex* numbers, std::size_t at, std::size_t count) {
-      std::memcpy(bytes + size * at, numbers, size * count);
-    });
+SpectrumOfAll spectrum_of_all(std::span<const MeshShare> shares) {
+  std::vector<std::size_t> order(shares.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return shares[a].pulled.begin < shares[b].pulled.begin; });
+  SpectrumOfAll all{{}, std::vector<IndexRange>(shares.size())};
+  std::size_t next = 0;
+  for (const std::size_t rank : order) {
+    const IndexRange& its = shares[rank].pulled;
+    const std::size_t count = (its.size() + HalfSpectrum::block - 1) / HalfSpectrum::block;
+    all.columns.push_back(its);
+    all.blocks[rank] = {next, next + count};
+    next += count;
   }
-  parcels = ranks.exchange(std::move(parcels));
-  copy(from, to, sent[ranks.own()]);
-  for (std::size_t rank = 0; rank < ranks.count(); ++rank) {
-    if (rank == ranks.own())
-      continue;
-    assert(parcels[rank].size() == size * received[rank].count(to.planes()));
-    const std::byte* const bytes = parcels[rank].data();
-    visit(to, received[rank], [&](HalfSpectrum::Complex* numbers, std::size_t at, std::size_t count) {
-      std::memcpy(static_cast<void*>(numbers), bytes + size * at, size * count);
-    });
-  }
-}
-
-// What lies behind the last column is turned with it, so it must be numbers.
-void clear_last_block(HalfSpectrum& half) {
-  for (std::size_t m = half.waves().begin; m < half.waves().end; ++m) {
-    HalfSpectrum::Complex* const last = half.wave(half.blocks() - 1, m);
-    std::fill(last, last + half.planes() * HalfSpectrum::block, 0.0f);
-  }
-}
-
-template<class Of> std::vector<Piece> pieces(std::span<const MeshShare> shares, const Of& of) {
-  std::vector<Piece> result;
-  for (const MeshShare& share : shares)
-    result.push_back(of(share));
-  return result;
+  return all;
 }
 
 } // namespace
@@ -251,6 +182,7 @@ struct FftSolver::Parts::Known {
   double offset_part; // of the box's length
   std::vector<MeshShare> shares;
   MeshShare own;
+  SpectrumOfAll spectrum;
   Guests guests;
 
   std::size_t first_tile(const Tiling& tiling) const { return own.own.begin * tiling.tile_rows(); }
@@ -266,10 +198,10 @@ FftSolver::Parts::Known FftSolver::Parts::know(const GravityProblem& problem, do
   std::vector<InsideParticle> inside = put_inside(problem, offset);
   std::vector<MeshShare> shares = shares_of(inside, shape, tiling, problem.box, with_neighbours ? radius : 0.0, ranks);
   const MeshShare own = shares[ranks.own()];
-  Guests guests(inside, TileFinder(tiling, problem.box), shares, tiling, ranks);
-  std::vector<InsideParticle>().swap(inside);
+  Guests guests(std::move(inside), TileFinder(tiling, problem.box), shares, tiling, ranks);
   places.sort(guests.particles(), problem.box, tiling, own.known, common_mass_unit(problem, count));
-  return {shape, offset / problem.box.size_y, std::move(shares), own, std::move(guests)};
+  SpectrumOfAll spectrum = spectrum_of_all(shares);
+  return {shape, offset / problem.box.size_y, std::move(shares), own, std::move(spectrum), std::move(guests)};
 }
 
 // Spreads the masses on the share's nodes; some waves of the whole mesh are then this rank's.
@@ -281,36 +213,35 @@ void FftSolver::Parts::turn_to_waves(const Ranks& ranks, const Known& known) {
   transform.prepare(shape, known.offset_part, own.waves);
   waves.prepare(shape);
 
-  by_columns.reset(own.nodes, {0, transform.waves()}, shape.planes);
+  by_columns.reset({&own.pulled, 1}, {0, transform.waves()}, shape.planes);
   transform.forward_y(mesh, by_columns);
-  by_waves.reset({0, shape.columns + MeshShape::ghosts}, own.waves, shape.planes);
-  clear_last_block(by_waves);
-  turn_over(ranks, by_columns,
-            pieces(known.shares,
-                   [&](const MeshShare& its) {
-                     return Piece{own.nodes, its.waves};
-                   }),
-            by_waves, pieces(known.shares, [&](const MeshShare& its) {
-              return Piece{its.nodes, own.waves};
-            }));
+  by_waves.reset(known.spectrum.columns, own.waves, shape.planes);
+  ranks.exchange(columns_of_share(known), waves_of_share(known));
+}
+
+// Of its columns, for each rank the waves that are that one's.
+std::vector<Blocks> FftSolver::Parts::columns_of_share(const Known& known) {
+  std::vector<Blocks> parts;
+  for (const MeshShare& its : known.shares)
+    parts.push_back(by_columns.part({0, by_columns.blocks()}, its.waves));
+  return parts;
+}
+
+// Of its waves, for each rank the columns that are that one's.
+std::vector<Blocks> FftSolver::Parts::waves_of_share(const Known& known) {
+  std::vector<Blocks> parts;
+  for (const IndexRange& blocks : known.spectrum.blocks)
+    parts.push_back(by_waves.part(blocks, known.own.waves));
+  return parts;
 }
 
 // Turns the masses into the potential that the share's particles feel.
 void FftSolver::Parts::fill_share(const Ranks& ranks, const Known& known) {
-  const MeshShare& own = known.own;
   turn_to_waves(ranks, known);
   transform.change_waves(by_waves, [&](std::size_t m, const std::complex<float>* from, std::complex<float>* to) {
     waves.apply(known.shape, transform, m, kernels, from, to);
   });
-  by_columns.reset(own.pulled, {0, transform.waves()}, known.shape.planes);
-  turn_over(ranks, by_waves,
-            pieces(known.shares,
-                   [&](const MeshShare& its) {
-                     return Piece{its.pulled, own.waves};
-                   }),
-            by_columns, pieces(known.shares, [&](const MeshShare& its) {
-              return Piece{own.pulled, its.waves};
-            }));
+  ranks.exchange(waves_of_share(known), columns_of_share(known));
   transform.backward_y(by_columns, mesh);
 }
 

@@ -58,9 +58,6 @@ std::vector<MeshShare> share_mesh(const MeshShape& shape, const Tiling& tiling, 
                                   std::span<const std::uint64_t> particles, std::size_t ranks) {
   const std::size_t slab = Mesh::slab(tiling), waves = ShearedTransform::waves(shape);
   const std::vector<std::size_t> first = first_slabs(particles, slab, ranks);
-  const auto first_node = [&](std::size_t tile_column) { // the ghosts are the last column's
-    return tile_column < tiling.tile_columns() ? tile_column * tiling.side : shape.columns + MeshShape::ghosts;
-  };
   std::vector<MeshShare> shares(ranks);
   for (std::size_t r = 0; r < ranks; ++r) {
     MeshShare& share = shares[r];
@@ -70,8 +67,8 @@ std::vector<MeshShare> share_mesh(const MeshShape& shape, const Tiling& tiling, 
     share.own = {first[r] * slab, std::min(first[r + 1] * slab, tiling.tile_columns())};
     share.spread = {share.own.begin - (first[r] > 0 ? slab : 0), share.own.end};
     share.known = known_columns(share, tiling, box.size_x, reach);
-    share.nodes = {first_node(share.own.begin), first_node(share.own.end)};
-    share.pulled = {share.nodes.begin, std::min(share.own.end * tiling.side, shape.columns) + MeshShape::ghosts};
+    share.pulled = {share.own.begin * tiling.side,
+                    std::min(share.own.end * tiling.side, shape.columns) + MeshShape::ghosts};
     share.stored = {share.spread.begin * tiling.side, share.pulled.end};
   }
   return shares;

@@ -23,9 +23,8 @@ struct MeshShare {
   IndexRange own;    ///< columns of tiles
   IndexRange spread; ///< those whose particles spread into own nodes: the own ones and the slab below
   TileColumns known; ///< those whose particles it must know: these and all that neighbours are in
-  IndexRange nodes;  ///< its columns of nodes: each has one owner, the ghosts behind the box too
+  IndexRange pulled; ///< columns of nodes that its own particles feel: its own ones and three more, the next owner's
   IndexRange stored; ///< columns of nodes that its mesh must hold
-  IndexRange pulled; ///< columns of nodes that its own particles feel: three more than own ones
   IndexRange waves;  ///< along y
 };
 

@@ -8,10 +8,11 @@
 namespace keeler {
 namespace {
 
-typedef float Two __attribute__((vector_size(16), may_alias)); // complex numbers
-typedef double Whole __attribute__((may_alias));               // one complex number, to be moved in one go
+// Complex numbers, from any of them on. (A deduced type would forget its alignment.)
+typedef float Two __attribute__((vector_size(16), aligned(8), may_alias));
+typedef double Whole __attribute__((may_alias)); // one complex number, to be moved in one go
 
-Two exchanged(const Two& numbers) {
+Two exchanged(Two numbers) {
   return __builtin_shufflevector(numbers, numbers, 1, 0, 3, 2);
 }
 
@@ -21,8 +22,11 @@ fftwf_complex* fftw(std::complex<float>* numbers) {
 
 } // namespace
 
-void HalfSpectrum::reset(const IndexRange& columns, const IndexRange& waves, std::size_t planes) {
-  columns_ = columns;
+void HalfSpectrum::reset(std::span<const IndexRange> columns, const IndexRange& waves, std::size_t planes) {
+  columns_.clear();
+  for (const IndexRange& range : columns)
+    for (std::size_t begin = range.begin; begin < range.end; begin += block)
+      columns_.push_back({begin, std::min(begin + block, range.end)});
   waves_ = waves;
   planes_ = planes;
   numbers_.resize_at_least(blocks() * waves.size() * planes * block);
@@ -99,7 +103,7 @@ void ShearedTransform::forward_y(Mesh& mesh, HalfSpectrum& half) {
   parallel_for(
       half.blocks(),
       [&](std::size_t b) {
-        const std::size_t begin = half.columns().begin + b * block, count = std::min(block, half.columns().end - begin);
+        const std::size_t begin = half.columns(b).begin, count = half.columns(b).size();
         Complex* const spectra = own_scratch();
         for (std::size_t c = 0; c < block; ++c)
           for (std::size_t k = 0; k < planes; ++k) {
@@ -127,11 +131,12 @@ void ShearedTransform::forward_y(Mesh& mesh, HalfSpectrum& half) {
 void ShearedTransform::forward_x(std::size_t m, HalfSpectrum& half, Complex* rows, Complex* spectra) {
   const std::size_t columns = shape_.columns, planes = shape_.planes;
   for (std::size_t b = 0; b < half.blocks(); ++b) {
-    const auto* const cosine = reinterpret_cast<const Two*>(cosines(m) + b * block);
-    const auto* const sine = reinterpret_cast<const Two*>(sines(m) + b * block);
-    const auto* const from = reinterpret_cast<const Two*>(half.wave(b, m));
+    const std::size_t begin = half.columns(b).begin;
+    const Two* const cosine = reinterpret_cast<const Two*>(cosines(m) + begin);
+    const Two* const sine = reinterpret_cast<const Two*>(sines(m) + begin);
+    const Two* const from = reinterpret_cast<const Two*>(half.wave(b, m));
     for (std::size_t k = 0; k < planes; ++k) {
-      auto* const to = reinterpret_cast<Two*>(rows + k * row_length() + b * block);
+      Two* const to = reinterpret_cast<Two*>(rows + k * row_length() + begin); // later blocks write over the rest
       for (std::size_t c = 0; c < block / 2; ++c) {
         const Two value = from[k * (block / 2) + c];
         to[c] = value * cosine[c] + exchanged(value) * sine[c];
@@ -155,11 +160,12 @@ void ShearedTransform::backward_x(std::size_t m, Complex* spectra, Complex* rows
       row[i] = row[i % columns];
   }
   for (std::size_t b = 0; b < half.blocks(); ++b) {
-    const auto* const cosine = reinterpret_cast<const Two*>(cosines(m) + b * block);
-    const auto* const sine = reinterpret_cast<const Two*>(sines(m) + b * block);
-    auto* const to = reinterpret_cast<Two*>(half.wave(b, m));
+    const std::size_t begin = half.columns(b).begin;
+    const Two* const cosine = reinterpret_cast<const Two*>(cosines(m) + begin);
+    const Two* const sine = reinterpret_cast<const Two*>(sines(m) + begin);
+    Two* const to = reinterpret_cast<Two*>(half.wave(b, m));
     for (std::size_t k = 0; k < planes; ++k) {
-      const auto* const from = reinterpret_cast<const Two*>(rows + k * row_length() + b * block);
+      const Two* const from = reinterpret_cast<const Two*>(rows + k * row_length() + begin);
       for (std::size_t c = 0; c < block / 2; ++c) // back by the same turn
         to[k * (block / 2) + c] = from[c] * cosine[c] - exchanged(from[c]) * sine[c];
     }
@@ -171,7 +177,7 @@ void ShearedTransform::backward_y(HalfSpectrum& half, Mesh& mesh) {
   parallel_for(
       half.blocks(),
       [&](std::size_t b) {
-        const std::size_t begin = half.columns().begin + b * block, count = std::min(block, half.columns().end - begin);
+        const std::size_t begin = half.columns(b).begin, count = half.columns(b).size();
         Complex* const spectra = own_scratch();
         auto* const to = reinterpret_cast<Whole*>(spectra);
         for (std::size_t m = 0; m < waves(); ++m) {

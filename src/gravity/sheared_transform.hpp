@@ -17,17 +17,19 @@
 #include "mesh.hpp"
 
 #include <keeler/core/threads.hpp>
+#include <keeler/ranks/ranks.hpp>
 
 #include <fftw3.h>
 
 #include <complex>
+#include <span>
 #include <vector>
 
 namespace keeler {
 
-/// What stands between the transforms along y and x: waves m along y of a range of columns (ghosts too), all planes.
+/// What stands between the transforms along y and x: waves m along y of ranges of columns (ghosts too), all planes.
 /// The numbers lie block by block of columns, in a block wave by wave, in a wave plane by plane: a cache line of eight
-/// columns each.
+/// columns each. Each range begins a block.
 class HalfSpectrum {
 public:
   using Complex = std::complex<float>;
@@ -35,21 +37,33 @@ public:
   /// Columns that are turned over together.
   static constexpr std::size_t block = 8;
 
-  /// Forgets what there was.
-  void reset(const IndexRange& columns, const IndexRange& waves, std::size_t planes);
+  /// Forgets what there was. Ranges stand in the order of their columns; where they overlap the later one counts.
+  void reset(std::span<const IndexRange> columns, const IndexRange& waves, std::size_t planes);
 
-  const IndexRange& columns() const { return columns_; }
   const IndexRange& waves() const { return waves_; }
-  std::size_t planes() const { return planes_; }
-  std::size_t blocks() const { return (columns_.size() + block - 1) / block; }
+  std::size_t blocks() const { return columns_.size(); }
+  /// Of block b.
+  const IndexRange& columns(std::size_t b) const { return columns_[b]; }
 
-  /// Wave m of block b, plane by plane; what the last block has behind the last column means nothing.
-  Complex* wave(std::size_t b, std::size_t m) {
-    return numbers_.data() + (b * waves_.size() + (m - waves_.begin)) * planes_ * block;
+  /// Wave m of block b, plane by plane; what the block has behind its last column means nothing.
+  Complex* wave(std::size_t b, std::size_t m) { return numbers_.data() + place(b, m); }
+
+  /// All of these waves in some blocks.
+  Blocks part(const IndexRange& blocks, const IndexRange& waves) {
+    const std::size_t size = sizeof(Complex);
+    if (blocks.size() == 0)
+      return {};
+    return {reinterpret_cast<std::byte*>(numbers_.data() + place(blocks.begin, waves.begin)), blocks.size(),
+            size * waves.size() * planes_ * block, size * waves_.size() * planes_ * block};
   }
 
 private:
-  IndexRange columns_, waves_;
+  std::size_t place(std::size_t b, std::size_t m) const {
+    return (b * waves_.size() + (m - waves_.begin)) * planes_ * block;
+  }
+
+  std::vector<IndexRange> columns_;
+  IndexRange waves_;
   std::size_t planes_ = 0;
   AlignedArray<Complex> numbers_;
 };
@@ -72,8 +86,8 @@ public:
   /// n + m d / L_y, which times 2π / L_x is k_x, of entry n of the transform along x: the alias nearest to 0.
   double turns_x(std::size_t m, std::size_t n) const;
 
-  /// Numbers of one wave m: planes × row_length().
-  std::size_t row_length() const { return (shape_.columns + MeshShape::ghosts + 7) / 8 * 8; }
+  /// Numbers of one wave m: planes × row_length(). A whole block may begin at the last column.
+  std::size_t row_length() const { return (shape_.columns + MeshShape::ghosts + block + 7) / 8 * 8; }
 
   /// Replaces the mesh by the transform back of what change(m, from, to) makes of its waves. Both hold one wave m of
   /// every plane, with n along a row. Unscaled: without a change the mesh returns columns × rows times as large.
@@ -120,7 +134,10 @@ private:
   using Complex = std::complex<float>;
   static constexpr std::size_t block = HalfSpectrum::block;
 
-  void reset_whole() { whole_.reset({0, shape_.columns + MeshShape::ghosts}, {0, waves()}, shape_.planes); }
+  void reset_whole() {
+    const IndexRange all{0, shape_.columns + MeshShape::ghosts};
+    whole_.reset({&all, 1}, {0, waves()}, shape_.planes);
+  }
   /// Of the turn of each column: (cosine, cosine) and (−sine, sine).
   Complex* cosines(std::size_t m) { return turns_.data() + 2 * (m - first_wave_) * row_length(); }
   Complex* sines(std::size_t m) { return cosines(m) + row_length(); }

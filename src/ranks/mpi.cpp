@@ -10,6 +10,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -40,6 +41,30 @@ void note(std::size_t bytes) {
 int as_int(std::size_t number) {
   assert(number <= static_cast<std::size_t>(std::numeric_limits<int>::max()));
   return static_cast<int>(number);
+}
+
+// Blocks as MPI has them.
+class BlockType {
+public:
+  explicit BlockType(const Blocks& blocks) {
+    MPI_Type_create_hvector(as_int(blocks.count), as_int(blocks.size), static_cast<MPI_Aint>(blocks.stride), MPI_BYTE,
+                            &type_);
+    MPI_Type_commit(&type_);
+  }
+  BlockType(const BlockType&) = delete;
+  BlockType& operator=(const BlockType&) = delete;
+  ~BlockType() { MPI_Type_free(&type_); } // what goes on with it ends as it would have
+
+  MPI_Datatype operator*() const { return type_; }
+
+private:
+  MPI_Datatype type_ = MPI_DATATYPE_NULL;
+};
+
+void copy(const Blocks& from, const Blocks& to) {
+  assert(from.count == to.count && from.size == to.size);
+  for (std::size_t k = 0; k < from.count; ++k)
+    std::memcpy(to.first + k * to.stride, from.first + k * from.stride, from.size);
 }
 
 // Whatever must be the same in all for the same bits.
@@ -129,6 +154,33 @@ Parcels Ranks::exchange(Parcels parcels) const {
   }
   MPI_Waitall(as_int(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
   return received;
+}
+
+void Ranks::exchange(std::span<const Blocks> sent, std::span<const Blocks> received) const {
+  assert(sent.size() == count_ && received.size() == count_);
+  const Stopwatch watch(costs.seconds);
+  std::vector<MPI_Request> requests;
+  std::uint64_t bytes_sent = 0, bytes_received = 0;
+  for (std::size_t step = 1; step < count_; ++step) {
+    const std::size_t other = (own_ + count_ - step) % count_;
+    const Blocks& blocks = received[other];
+    bytes_received += blocks.count * blocks.size;
+    if (blocks.count * blocks.size > 0)
+      MPI_Irecv(blocks.first, 1, *BlockType(blocks), as_int(other), 0, MPI_COMM_WORLD, &requests.emplace_back());
+  }
+  for (std::size_t step = 1; step < count_; ++step) {
+    const std::size_t other = (own_ + step) % count_;
+    const Blocks& blocks = sent[other];
+    bytes_sent += blocks.count * blocks.size;
+    if (blocks.count * blocks.size == 0)
+      continue;
+    ++costs.messages;
+    MPI_Isend(blocks.first, 1, *BlockType(blocks), as_int(other), 0, MPI_COMM_WORLD, &requests.emplace_back());
+  }
+  costs.bytes += bytes_sent;
+  note(std::max(bytes_sent, bytes_received));
+  copy(sent[own_], received[own_]);
+  MPI_Waitall(as_int(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
 }
 
 std::vector<std::byte> Ranks::gather(std::vector<std::byte> bytes) const {

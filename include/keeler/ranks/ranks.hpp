@@ -22,6 +22,12 @@ namespace keeler {
 /// Bytes for each rank, or from each, by its number.
 using Parcels = std::vector<std::vector<std::byte>>;
 
+/// Equal blocks of bytes at equal distances: sent from where they stand, or received there.
+struct Blocks {
+  std::byte* first = nullptr;
+  std::size_t count = 0, size = 0, stride = 0; ///< stride: bytes from one block's begin to the next one's
+};
+
 class Ranks {
 public:
 #ifdef KEELER_MPI
@@ -53,6 +59,9 @@ public:
   Parcels exchange(Parcels parcels) const;
   /// The same of rows.
   template<class Row> std::vector<std::vector<Row>> exchange(const std::vector<std::vector<Row>>& rows) const;
+
+  /// The same of blocks in place, as many and as large where they are sent as where they are received.
+  void exchange(std::span<const Blocks> sent, std::span<const Blocks> received) const;
 
   /// On the first rank what all have, in the order of the ranks, less than 2 GiB in all; nothing on the others.
   std::vector<std::byte> gather(std::vector<std::byte> bytes) const;
