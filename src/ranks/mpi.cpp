@@ -69,7 +69,7 @@ void copy(const Blocks& from, const Blocks& to) {
 
 // Whatever must be the same in all for the same bits.
 std::string build() {
-  return program_version() + " " + build_flags();
+  return fmt::format("{} of {} by {} {}", program_version(), source_commit(), build_compiler(), build_flags());
 }
 
 void require_one_build(const Ranks& ranks) {

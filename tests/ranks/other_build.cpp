@@ -1,0 +1,28 @@
+// A rank of another build of Keeler, as far as it can tell.
+#include <keeler/core/version.hpp>
+#include <keeler/ranks/ranks.hpp>
+
+// in place of those of keeler_core
+std::string keeler::program_version() {
+  return "0.0.0";
+}
+std::string keeler::source_commit() {
+  return "0000000";
+}
+std::string keeler::build_compiler() {
+  return "another one";
+}
+std::string keeler::build_flags() {
+  return "others";
+}
+
+int main() {
+  try {
+    keeler::Ranks::launched();
+  } catch (const keeler::Error& error) {
+    keeler::fail_ranks(error.code());
+    return static_cast<int>(error.code());
+  }
+  keeler::finish_ranks();
+  return 0;
+}
