@@ -64,7 +64,7 @@ StepBench bench_step(const StepBenchSettings& settings) {
   const int kick_every = bench.choice.settings.kick_every;
   const int steps = whole_intervals(steps_worth_timing(state.patch.size(), bench.step_orbits, most_steps), kick_every);
 
-  Simulation simulation(state.scene, state.patch, settings.ranks);
+  Simulation simulation(state.scene, settings.ranks.is_first() ? state.patch : Patch(), settings.ranks);
   std::optional<Simulation> alone;
   if (settings.ranks.many() && settings.ranks.is_first())
     alone.emplace(state.scene, state.patch);

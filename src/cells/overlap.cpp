@@ -12,13 +12,6 @@
 namespace keeler {
 namespace {
 
-// Of equal depths the lowest ids win, so that the answer does not depend on the order of the search.
-bool deeper(const Overlap& a, const Overlap& b) {
-  if (a.depth != b.depth)
-    return a.depth > b.depth;
-  return std::pair(a.id_i, a.id_j) < std::pair(b.id_i, b.id_j);
-}
-
 // From the one with the lower id, so that the bits do not depend on who found whom.
 Overlap overlap_of(const Patch& patch, std::size_t low, std::size_t high, const Image& image_of_high) {
   const Vec3 d = patch.positions[high] + patch.box.displacement(image_of_high, patch.offset) - patch.positions[low];
@@ -50,6 +43,12 @@ template<class Visit> void for_each_overlap(const Patch& patch, const Visit& vis
 
 } // namespace
 
+bool deeper(const Overlap& a, const Overlap& b) {
+  if (a.depth != b.depth)
+    return a.depth > b.depth;
+  return std::pair(a.id_i, a.id_j) < std::pair(b.id_i, b.id_j);
+}
+
 Overlap largest_overlap(const Patch& patch) {
   std::vector<Overlap> worst(patch.size());
   for_each_overlap(patch, [&](std::size_t i, const Overlap& here) {
@@ -70,11 +69,14 @@ std::size_t count_overlaps(const Patch& patch, double depth) {
 }
 
 void require_apart(const Patch& patch, const std::string& state) {
-  const Overlap overlap = largest_overlap(patch);
-  if (overlap.depth > allowed_overlap)
+  require_apart(largest_overlap(patch), state);
+}
+
+void require_apart(const Overlap& largest, const std::string& state) {
+  if (largest.depth > allowed_overlap)
     throw InvariantError(fmt::format("particles {} and {} of {} overlap by {:.2e} of their radius sum; start from a "
                                      "state without overlaps",
-                                     overlap.id_i, overlap.id_j, state, overlap.depth));
+                                     largest.id_i, largest.id_j, state, largest.depth));
 }
 
 } // namespace keeler

@@ -12,7 +12,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace keeler {
 namespace {
@@ -24,6 +27,14 @@ struct TileOptions {
   ThreadOption threads;
 };
 
+void write(const TiledPatch& tiled, const std::string& file, const SnapshotMeta& meta) {
+  const Patch frame = tiled.some(0, 0);
+  SnapshotFile snapshot(file, frame, tiled.size(), tiled.rough(), meta);
+  for (std::size_t first = 0; first < tiled.size(); first += SnapshotFile::piece)
+    snapshot.add(tiled.some(first, std::min(SnapshotFile::piece, tiled.size() - first)));
+  snapshot.finish();
+}
+
 ExitCode tile(const TileOptions& options, const std::vector<std::string>& arguments) {
   options.threads.apply();
   require_new_file(options.output, options.force, "a state");
@@ -32,11 +43,11 @@ ExitCode tile(const TileOptions& options, const std::vector<std::string>& argume
   const Scene scene = parse_scene(snapshot.meta.scene, options.file, {"start.keep=1.0"}, options.output);
   const Patch patch = patch_from_snapshot(std::move(snapshot.patch), options.file, scene);
   require_apart(patch, "'" + options.file + "'");
-  const Patch tiled = tiled_patch(patch, options.nx, options.ny);
-  write_snapshot(options.output, tiled, {scene.resolved, collect_provenance(arguments)});
-  fmt::print("{} in {} m x {} m, {} x {} copies of {}: {}\n", counted(tiled.size(), "particle"),
-             figures(tiled.box.size_x, 5), figures(tiled.box.size_y, 5), options.nx, options.ny, options.file,
-             options.output);
+  const TiledPatch tiled(patch, options.nx, options.ny);
+  write(tiled, options.output, {scene.resolved, collect_provenance(arguments)});
+  const ShearingBox box = tiled.some(0, 0).box;
+  fmt::print("{} in {} m x {} m, {} x {} copies of {}: {}\n", counted(tiled.size(), "particle"), figures(box.size_x, 5),
+             figures(box.size_y, 5), options.nx, options.ny, options.file, options.output);
   return ExitCode::done;
 }
 

@@ -33,11 +33,17 @@ void require_match(const std::filesystem::path& file, const std::string& seal, c
     damaged(file, "its content does not match its checksum");
 }
 
-std::string seal_at_end(const std::filesystem::path& file, const Descriptor& descriptor) {
+// Where a seal would be.
+std::string end_of(const Descriptor& descriptor) {
   const std::size_t size = descriptor.size();
-  std::string seal(seal_size, '\0');
+  std::string end(seal_size, '\0');
   if (size >= seal_size)
-    descriptor.read_at(size - seal_size, std::as_writable_bytes(std::span(seal)));
+    descriptor.read_at(size - seal_size, std::as_writable_bytes(std::span(end)));
+  return end;
+}
+
+std::string seal_at_end(const std::filesystem::path& file, const Descriptor& descriptor) {
+  std::string seal = end_of(descriptor);
   if (!seal.starts_with(mark))
     damaged(file, "its end is missing or it is not a Keeler file");
   return seal;
@@ -101,6 +107,10 @@ hdf5::Handle open_sealed(const std::filesystem::path& file) {
   const std::size_t content = descriptor.size() - seal_size;
   require_match(file, seal, seal_of(content, hash_of(file, descriptor, content)));
   return hdf5::open_on(std::make_shared<hdf5::Disk>(std::move(descriptor), content));
+}
+
+bool has_seal(const std::filesystem::path& file) {
+  return end_of(Descriptor(file, O_RDONLY)).starts_with(mark);
 }
 
 std::string seal_in(const std::filesystem::path& file) {

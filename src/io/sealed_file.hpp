@@ -43,6 +43,8 @@ private:
 /// it.
 hdf5::Handle open_sealed(const std::filesystem::path& file);
 
+/// Whether there is a seal at its end, right or wrong. Throws IoError.
+bool has_seal(const std::filesystem::path& file);
 /// The seal at the end of a file. Throws IoError where there is none.
 std::string seal_in(const std::filesystem::path& file);
 /// The same file, of which somebody else has found that it is whole and has this seal.
@@ -63,12 +65,9 @@ hdf5::Handle open_unsealed(const std::filesystem::path& file, const std::vector<
 /// What `read` makes of the HDF5 content of a file: here where a seal vouches for it, else in a child process, whence
 /// Result comes as a parcel. Throws IoError naming the file, and what `read` throws.
 template<class Result, class Read> Result read_content(const std::filesystem::path& file, const Read& read) {
-  FileContent content = load_content(file);
-  if (content.sealed) {
-    const hdf5::Handle image = hdf5::open_image(content.bytes);
-    content = FileContent(); // the library has a copy
-    return read(image);
-  }
+  if (has_seal(file))
+    return read(open_sealed(file));
+  const FileContent content = load_content(file);
   return read_apart<Result>("read '" + file.string() + "' as HDF5", limits_for(content.bytes.size()),
                             [&] { return read(open_unsealed(file, content.bytes)); });
 }

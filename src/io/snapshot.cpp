@@ -32,6 +32,7 @@ static_assert(sizeof(Vec3) == 3 * sizeof(double), "arrays of vectors are written
 
 // What GADGET calls its particles of type 1 (all arrays of six have one entry a type).
 constexpr char particles_group[] = "PartType1";
+constexpr char not_sorted[] = "its ParticleIDs do not increase; sort the particles by them, each once";
 
 void write_header(const hdf5::Handle& root, const Patch& frame, std::size_t particles) {
   const auto count = static_cast<std::uint32_t>(particles);
@@ -220,41 +221,52 @@ void read_clumping(const hdf5::Handle& image, SnapshotMeta& meta) {
       meta.clumping[name] = hdf5::read_attribute_values<double>(group, name);
 }
 
-// An array of rows whose shape must be `shape`.
+// Part `number` of so many equal ones of all rows.
+struct Part {
+  std::size_t number = 0, of = 1;
+
+  std::size_t begin(std::size_t rows) const { return rows * number / of; }
+  std::size_t end(std::size_t rows) const { return rows * (number + 1) / of; }
+};
+
+// A part of an array of rows whose shape must be `shape`.
 template<class T, class Row>
-std::vector<Row> read_array(const hdf5::Handle& group, const std::string& name, const hdf5::Shape& shape) {
+std::vector<Row> read_array(const hdf5::Handle& group, const std::string& name, const hdf5::Shape& shape,
+                            const Part& part) {
   const hdf5::Handle dataset = hdf5::open_dataset(group, name);
   const hdf5::Shape found = hdf5::layout_of_dataset(dataset).shape;
   if (found != shape)
     throw IoError(fmt::format("{} has the shape [{}], not [{}]", name, fmt::join(found, ", "), fmt::join(shape, ", ")));
-  std::vector<Row> rows(shape[0]);
-  hdf5::read_dataset(dataset, hdf5::native_type<T>(), rows.data());
+  const std::size_t first = part.begin(shape[0]);
+  std::vector<Row> rows(part.end(shape[0]) - first);
+  if (!rows.empty())
+    hdf5::read_rows(dataset, hdf5::native_type<T>(), first, rows.size(), rows.data());
   return rows;
 }
 
-void read_particles(const hdf5::Handle& image, Patch& patch) {
+void read_particles(const hdf5::Handle& image, const Part& part, Patch& patch) {
   const hdf5::Handle group = hdf5::open_group(image, particles_group);
   const hsize_t count = hdf5::layout_of_dataset(hdf5::open_dataset(group, "ParticleIDs")).count();
-  patch.positions = read_array<double, Vec3>(group, "Coordinates", {count, 3});
-  patch.velocities = read_array<double, Vec3>(group, "Velocities", {count, 3});
-  patch.masses = read_array<double, double>(group, "Masses", {count});
-  patch.ids = read_array<std::uint64_t, std::uint64_t>(group, "ParticleIDs", {count});
-  patch.radii = read_array<double, double>(group, "Radius", {count});
+  patch.positions = read_array<double, Vec3>(group, "Coordinates", {count, 3}, part);
+  patch.velocities = read_array<double, Vec3>(group, "Velocities", {count, 3}, part);
+  patch.masses = read_array<double, double>(group, "Masses", {count}, part);
+  patch.ids = read_array<std::uint64_t, std::uint64_t>(group, "ParticleIDs", {count}, part);
+  patch.radii = read_array<double, double>(group, "Radius", {count}, part);
   if (hdf5::exists(group, "Spins"))
-    patch.spins = read_array<double, Vec3>(group, "Spins", {count, 3});
+    patch.spins = read_array<double, Vec3>(group, "Spins", {count, 3}, part);
   for (std::vector<Vec3>* const rates : {&patch.velocities, &patch.spins})
     for (Vec3& rate : *rates)
       rate /= patch.orbital_frequency;
 }
 
-Snapshot snapshot_in(const hdf5::Handle& image) {
+Snapshot snapshot_in(const hdf5::Handle& image, const Part& part = {}) {
   if (!hdf5::exists(image, "Code"))
     throw IoError("it is not a Keeler snapshot");
   const hdf5::Handle code = hdf5::open_group(image, "Code");
   check_format(code);
   Snapshot snapshot;
   read_ring_box(image, snapshot.patch);
-  read_particles(image, snapshot.patch);
+  read_particles(image, part, snapshot.patch);
   snapshot.meta.scene = hdf5::read_text_attribute(hdf5::open_group(image, "Parameters"), "scene");
   snapshot.meta.provenance = read_provenance(code);
   snapshot.meta.provenance.erase("format");
@@ -270,7 +282,7 @@ void require_consistent(const Patch& patch) {
       throw IoError("its arrays have different lengths");
   const auto not_increasing = [](std::uint64_t a, std::uint64_t b) { return a >= b; };
   if (std::adjacent_find(patch.ids.begin(), patch.ids.end(), not_increasing) != patch.ids.end())
-    throw IoError("its ParticleIDs do not increase; sort the particles by them, each once");
+    throw IoError(not_sorted);
   if (!(patch.orbital_frequency > 0.0))
     throw IoError("its Omega is not a positive number");
 }
@@ -332,17 +344,82 @@ void write_snapshot(const std::filesystem::path& file, const Patch& patch, const
   snapshot.finish();
 }
 
-Snapshot read_snapshot(const std::filesystem::path& file) {
-  const auto naming = [&](const auto& make) {
-    try {
-      return make();
-    } catch (const IoError& error) {
-      throw IoError(fmt::format("cannot read snapshot '{}': {}", file.string(), error.what()));
-    }
-  };
+namespace {
+
+template<class Make> auto naming(const std::filesystem::path& file, const Make& make) {
+  try {
+    return make();
+  } catch (const IoError& error) {
+    throw IoError(fmt::format("cannot read snapshot '{}': {}", file.string(), error.what()));
+  }
+}
+
+Snapshot read_whole(const std::filesystem::path& file) {
   Snapshot snapshot = read_content<Snapshot>(
-      file, [&](const hdf5::Handle& image) { return naming([&] { return snapshot_in(image); }); });
-  naming([&] { require_consistent(snapshot.patch); });
+      file, [&](const hdf5::Handle& image) { return naming(file, [&] { return snapshot_in(image); }); });
+  naming(file, [&] { require_consistent(snapshot.patch); });
+  return snapshot;
+}
+
+// Collective: whether the ids increase from each rank's part to the next one's.
+bool increase_over_ranks(const std::vector<std::uint64_t>& ids, const Ranks& ranks) {
+  std::vector<std::uint64_t> sizes(ranks.count()), firsts(ranks.count()), lasts(ranks.count());
+  if (!ids.empty()) {
+    sizes[ranks.own()] = ids.size();
+    firsts[ranks.own()] = ids.front();
+    lasts[ranks.own()] = ids.back();
+  }
+  for (auto* const numbers : {&sizes, &firsts, &lasts})
+    ranks.sum(std::span(*numbers));
+  std::optional<std::uint64_t> last;
+  for (std::size_t rank = 0; rank < ranks.count(); ++rank)
+    if (sizes[rank] > 0) {
+      if (last && *last >= firsts[rank])
+        return false;
+      last = lasts[rank];
+    }
+  return true;
+}
+
+// The first rank looks whether the file is whole; then each reads its part.
+Snapshot read_part(const std::filesystem::path& file, const Ranks& ranks) {
+  Snapshot snapshot;
+  std::string seal;
+  std::optional<hdf5::Handle> root;
+  ranks.first_does([&] {
+    root.emplace(open_sealed(file));
+    seal = seal_in(file);
+  });
+  ranks.from_first(seal);
+  ranks.together([&] {
+    if (!root)
+      root.emplace(open_sealed(file, seal));
+    naming(file, [&] {
+      snapshot = snapshot_in(*root, {ranks.own(), ranks.count()});
+      require_consistent(snapshot.patch);
+    });
+  });
+  const bool increase = increase_over_ranks(snapshot.patch.ids, ranks);
+  ranks.together([&] {
+    naming(file, [&] {
+      if (!increase)
+        throw IoError(not_sorted);
+    });
+  });
+  return snapshot;
+}
+
+} // namespace
+
+Snapshot read_snapshot(const std::filesystem::path& file, const Ranks& ranks) {
+  if (!ranks.many())
+    return read_whole(file);
+  bool sealed = false;
+  ranks.first_does([&] { sealed = has_seal(file); });
+  if (ranks.from_first(sealed))
+    return read_part(file, ranks);
+  Snapshot snapshot;
+  ranks.first_does([&] { snapshot = read_whole(file); });
   return snapshot;
 }
 

@@ -157,12 +157,8 @@ struct Begun {
 Begun first_simulation(const Scene& scene, const RunOptions& options, const RunRequests& requests) {
   try {
     const Interruptible start(requests.stop);
-    Patch patch;
-    PatchScale scale;
-    options.ranks.first_does([&] {
-      patch = initial_patch(scene, options.start_progress);
-      scale = scale_of(patch);
-    });
+    const Patch patch = initial_patch(scene, options.start_progress, options.ranks);
+    const PatchScale scale = scale_of(patch, options.ranks);
     return {Simulation(scene, patch, options.ranks), scale};
   } catch (const Interrupted&) {
     throw Error(ExitCode::run_time, "stopped before the first step (on request), so nothing is written; start again");

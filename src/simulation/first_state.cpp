@@ -6,43 +6,28 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace keeler {
 namespace {
 
-SimulationState first_state(const Scene& scene, const Patch& start) {
-  require_sound(start);
-  require_apart(start, "the initial state");
-  const double largest = start.size() ? *std::max_element(start.radii.begin(), start.radii.end()) : 0.0;
-  if (!(std::min(start.box.size_x, start.box.size_y) >= 2.0 * largest))
+void require_room(const ShearingBox& box, double largest) {
+  if (!(std::min(box.size_x, box.size_y) >= 2.0 * largest))
     throw UsageError(
-        fmt::format("the box of the initial state, {:.4g} m x {:.4g} m, is smaller than its largest particle "
-                    "({:.4g} m across); start from another state",
-                    start.box.size_x, start.box.size_y, 2.0 * largest));
-  SimulationState state(scene);
-  if (scene.time.automatic)
-    state.control = StepControl::automatic(!state.forces.empty());
-  state.step_length = static_cast<double>(state.control.step) * scene.step_length();
-  state.box = start.box;
-  state.box.shear = scene.planet.frequencies.shear();
-  state.box.first_offset = start.offset;
-  Patch patch = start;
-  patch.frequencies = scene.planet.frequencies;
-  if (!scene.collisions.friction)
-    patch.spins.clear();
-  else if (patch.spins.empty()) // no spin against the stars
-    patch.spins.assign(patch.size(), Vec3::Zero());
-  state.particles = particles_from(patch, 0.5 * state.step_length);
-  const double offset = state.epoch_offset();
-  for (Body& body : state.particles.bodies) {
-    Elements& el = body.elements;
-    el = state.box.image_of(el, state.box.image_into_cell(el.guiding_x, el.guiding_y, offset), offset);
-  }
-  for (std::size_t k = 0; k < state.moonlets.size(); ++k) // a fresh patch is in the order of the ids
-    state.moonlets[k].start_x = state.particles.bodies[start.size() - state.moonlets.size() + k].elements.guiding_x;
-  const ParticleMeans means = particle_means(state.particles, scene.planet.frequencies, -0.5 * state.step_length);
-  state.energy = {means.epicyclic_energy, means.azimuthal, means.spin.energy};
-  return state;
+        fmt::format("the box of {}, {:.4g} m x {:.4g} m, is smaller than its largest particle ({:.4g} m across); start "
+                    "from another state",
+                    start_name, box.size_x, box.size_y, 2.0 * largest));
+}
+
+// Collective.
+void require_fit(const Patch& start, const Ranks& ranks) {
+  ranks.together([&] {
+    require_sound(start);
+    if (!ranks.many())
+      require_apart(start, start_name);
+  });
+  const double largest = ranks.largest(start.size() ? *std::max_element(start.radii.begin(), start.radii.end()) : 0.0);
+  ranks.first_does([&] { require_room(start.box, largest); });
 }
 
 // Collective: what the first rank has of all but the particles, on the others too.
@@ -55,12 +40,52 @@ void share(SimulationState& state, const Ranks& ranks) {
     }
 }
 
+// In the cell.
+Particles particles_of(const Patch& start, const Scene& scene, const SimulationState& state) {
+  Patch patch = start;
+  patch.frequencies = scene.planet.frequencies;
+  if (!scene.collisions.friction)
+    patch.spins.clear();
+  else if (patch.spins.empty()) // no spin against the stars
+    patch.spins.assign(patch.size(), Vec3::Zero());
+  Particles particles = particles_from(patch, 0.5 * state.step_length);
+  particles.rough = scene.collisions.friction.has_value(); // also where there are none
+  const double offset = state.epoch_offset();
+  for (Body& body : particles.bodies) {
+    Elements& el = body.elements;
+    el = state.box.image_of(el, state.box.image_into_cell(el.guiding_x, el.guiding_y, offset), offset);
+  }
+  return particles;
+}
+
+// Collective: where moonlets start, which only fresh patches have, and these are the first rank's.
+void note_moonlets(SimulationState& state, const Ranks& ranks) {
+  const std::size_t count = state.moonlets.size();
+  if (count == 0)
+    return;
+  assert(!ranks.is_first() || state.particles.size() >= count);
+  for (std::size_t k = 0; k < count && ranks.is_first(); ++k) // in the order of the ids they come last
+    state.moonlets[k].start_x = state.particles.bodies[state.particles.size() - count + k].elements.guiding_x;
+  share(state, ranks);
+}
+
 } // namespace
 
 SimulationState first_state(const Scene& scene, const Patch& start, const Ranks& ranks) {
+  require_fit(start, ranks);
   SimulationState state(scene);
-  ranks.first_does([&] { state = first_state(scene, start); });
+  if (scene.time.automatic)
+    state.control = StepControl::automatic(!state.forces.empty());
+  state.step_length = static_cast<double>(state.control.step) * scene.step_length();
+  state.box = start.box;
+  state.box.shear = scene.planet.frequencies.shear();
+  state.box.first_offset = start.offset;
   share(state, ranks);
+  state.particles = particles_of(start, scene, state);
+  note_moonlets(state, ranks);
+  const ParticleMeans means =
+      particle_means(state.particles, scene.planet.frequencies, -0.5 * state.step_length, ranks);
+  state.energy = {means.epicyclic_energy, means.azimuthal, means.spin.energy};
   return state;
 }
 

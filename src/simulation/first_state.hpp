@@ -5,8 +5,11 @@
 
 namespace keeler {
 
-/// Of a patch that the first rank has, and with it all particles; collective. Throws InvariantError when particles
-/// overlap by more than rounding or a number is not finite, UsageError when the largest does not fit the box.
+inline constexpr char start_name[] = "the initial state";
+
+/// Of a patch of which each rank has some particles and the first one all else; collective. Throws InvariantError when
+/// a number is not finite or, on one rank, particles overlap by more than rounding, UsageError when the largest does
+/// not fit the box.
 SimulationState first_state(const Scene& scene, const Patch& start, const Ranks& ranks);
 
 } // namespace keeler

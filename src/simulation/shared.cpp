@@ -52,12 +52,16 @@ void Simulation::require_borders() {
 }
 
 // Whoever touches an own particle in the step to come has a copy here, and that step begins at this boundary.
-double Simulation::largest_overlap_shared() {
+Overlap Simulation::largest_overlap_shared() {
   require_borders();
   slabs_->add_copies(state_.particles);
-  const double depth = keeler::largest_overlap(patch_of(state_.particles)).depth;
+  const Overlap here = keeler::largest_overlap(patch_of(state_.particles));
   slabs_->drop_copies(state_.particles);
-  return ranks_.largest(depth);
+  Overlap largest;
+  for (const std::vector<Overlap>& its : ranks_.exchange(std::vector(ranks_.count(), std::vector{here})))
+    if (deeper(its.front(), largest))
+      largest = its.front();
+  return largest;
 }
 
 void Simulation::collide_shared() {

@@ -48,6 +48,11 @@ std::vector<std::unique_ptr<Force>> make_forces(const Scene& scene, const Simula
 
 Simulation::Simulation(const Scene& scene, const Patch& start, const Ranks& ranks)
     : Simulation(scene, first_state(scene, start, ranks), ranks) {
+  if constexpr (Ranks::possible)
+    if (ranks_.many()) {
+      const Overlap largest = largest_overlap_shared();
+      ranks_.together([&] { require_apart(largest, start_name); });
+    }
   for (std::size_t f = 0; f < forces_.size(); ++f)
     accelerate(f);
 }
@@ -336,7 +341,7 @@ double Simulation::offset_at_break() const {
 double Simulation::largest_overlap() {
   if constexpr (Ranks::possible)
     if (ranks_.many())
-      return largest_overlap_shared();
+      return largest_overlap_shared().depth;
   return keeler::largest_overlap(patch()).depth;
 }
 

@@ -4,11 +4,12 @@
 #include "placing.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/exact_sum.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/core/words.hpp>
-#include <keeler/diagnostics/surface.hpp>
 #include <keeler/io/snapshot.hpp>
+#include <keeler/orbit/toomre.hpp>
 #include <keeler/scene/derived.hpp>
 #include <keeler/scene/keys.hpp>
 #include <keeler/states/possible.hpp>
@@ -36,15 +37,19 @@ void require_same_planet(const Patch& patch, const Scene& scene, const std::stri
 }
 
 // A particle is kept or not by its id alone: the same of any state that it is in, and fewer of the same at a lower
-// share.
-Patch thinned(Patch patch, const Scene& scene) {
+// share. Collective.
+Patch thinned(Patch patch, const Scene& scene, const Ranks& ranks) {
   std::vector<bool> keeps(patch.size());
   for (std::size_t k = 0; k < keeps.size(); ++k)
     keeps[k] = RandomStream(scene.start_keep_seed, RandomPurpose::thinning, patch.ids[k]).uniform() < scene.start_keep;
-  if (!keeps.empty() && std::find(keeps.begin(), keeps.end(), true) == keeps.end())
-    throw UsageError(
-        fmt::format("start.keep = {} keeps none of the {} of '{}'; raise it, or try another start.keep_seed",
-                    figures(scene.start_keep), counted(patch.size(), "particle"), *scene.start_from));
+  const bool keeps_some = ranks.any(std::find(keeps.begin(), keeps.end(), true) != keeps.end());
+  const std::size_t count = ranks.sum(patch.size());
+  ranks.together([&] {
+    if (!keeps_some)
+      throw UsageError(
+          fmt::format("start.keep = {} keeps none of the {} of '{}'; raise it, or try another start.keep_seed",
+                      figures(scene.start_keep), counted(count, "particle"), *scene.start_from));
+  });
   const auto thin = [&](auto& rows) { // none where there are no spins
     std::size_t kept = 0;
     for (std::size_t k = 0; k < rows.size(); ++k)
@@ -147,9 +152,13 @@ Patch patch_from_snapshot(const std::string& path, const Scene& scene) {
   return patch_from_snapshot(read_snapshot(path).patch, path, scene);
 }
 
-Patch patch_from_snapshot(Patch patch, const std::string& path, const Scene& scene) {
-  require_same_planet(patch, scene, path);
-  require_possible(patch, path);
+Patch patch_from_snapshot(Patch patch, const std::string& path, const Scene& scene, const Ranks& ranks) {
+  const std::size_t count = ranks.sum(patch.size());
+  ranks.first_does([&] {
+    require_same_planet(patch, scene, path);
+    require_possible_frame(patch, count, path);
+  });
+  ranks.together([&] { require_possible_particles(patch, path); });
   // Velocities are stored in m/s; the scene's orbital frequency decides what they are in its own time.
   for (std::vector<Vec3>* const rates : {&patch.velocities, &patch.spins})
     for (Vec3& rate : *rates)
@@ -162,17 +171,36 @@ Patch patch_from_snapshot(Patch patch, const std::string& path, const Scene& sce
   return patch;
 }
 
-PatchScale scale_of(const Patch& patch) {
-  return {patch.size(), patch.box.size_x, patch.box.size_y, critical_wavelength(patch), material_density(patch)};
+PatchScale scale_of(const Patch& patch, const Ranks& ranks) {
+  auto masses = exact_total<ExactSum>(patch.size(), [&](ExactSum& sum, std::size_t k) { sum += patch.masses[k]; });
+  auto cubes =
+      exact_total<ExactSum>(patch.size(), [&](ExactSum& sum, std::size_t k) { sum += std::pow(patch.radii[k], 3); });
+  ranks.merge({&masses, &cubes});
+  const double mass = masses.value();
+  return {ranks.sum(patch.size()), patch.box.size_x, patch.box.size_y,
+          critical_wavelength(newton_g(patch.orbital_frequency), mass / patch.box.area(), patch.frequencies.kappa),
+          mass / (4.0 / 3.0 * pi * cubes.value())};
 }
 
-Patch initial_patch(const Scene& scene, const std::function<void(const StartProgress&)>& progress) {
-  if (scene.start_from)
-    return thinned(patch_from_snapshot(*scene.start_from, scene), scene);
+namespace {
+
+Patch fresh_patch(const Scene& scene, const std::function<void(const StartProgress&)>& progress) {
   Patch patch = uniform_patch(request_of(scene), progress);
   patch.orbital_frequency = scene.planet.orbital_frequency;
   if (scene.collisions.friction && !scene.particles.aggregates.empty())
     spin_aggregates(scene, patch);
+  return patch;
+}
+
+} // namespace
+
+Patch initial_patch(const Scene& scene, const std::function<void(const StartProgress&)>& progress, const Ranks& ranks) {
+  if (scene.start_from) {
+    const std::string& path = *scene.start_from;
+    return thinned(patch_from_snapshot(read_snapshot(path, ranks).patch, path, scene, ranks), scene, ranks);
+  }
+  Patch patch;
+  ranks.first_does([&] { patch = fresh_patch(scene, progress); });
   return patch;
 }
 

@@ -45,9 +45,13 @@ std::string particle_fault(const Patch& patch, std::size_t k) {
 }
 
 void require_possible(const Patch& patch, const std::string& path) {
-  if (patch.size() == 0)
+  require_possible_frame(patch, patch.size(), path);
+  require_possible_particles(patch, path);
+}
+
+void require_possible_frame(const Patch& patch, std::size_t count, const std::string& path) {
+  if (count == 0)
     throw UsageError(fmt::format("'{}' holds no particles; choose another state", path));
-  require_sound(patch);
   const KeyRange& frequencies = find_key("planet.orbital_frequency")->range;
   if (!frequencies.contains(patch.orbital_frequency))
     throw InvariantError(fmt::format("'{}' has an Omega of {} rad/s (possible is {}); take another state", path,
@@ -63,6 +67,10 @@ void require_possible(const Patch& patch, const std::string& path) {
         fmt::format("the box of '{}' is {} m x {} m, more than {:g} times as long as wide; take another "
                     "state",
                     path, figures(patch.box.size_x, 4), figures(patch.box.size_y, 4), most_oblong));
+}
+
+void require_possible_particles(const Patch& patch, const std::string& path) {
+  require_sound(patch);
   for (std::size_t k = 0; k < patch.size(); ++k)
     if (const std::string fault = particle_fault(patch, k); !fault.empty())
       throw InvariantError(

@@ -67,29 +67,28 @@ struct Tiles {
 // under (N_x L_x, −N_x d) and (0, N_y L_y): a shearing box of the offset N_x d, which grows by S N_x L_x as that box's
 // own does. Of each particle the cell holds N_x N_y images. Where the origin moves outward by s, as between two
 // columns, all velocities change by −S s: Hill's equations do not know where x = 0 is.
-Patch tiled_patch(const Patch& patch, std::size_t nx, std::size_t ny) {
-  require_possible(patch, nx, ny);
-  const Tiles tiles(patch, nx, ny);
-  const std::size_t count = patch.size(), copies = nx * ny;
+Patch TiledPatch::some(std::size_t first, std::size_t count) const {
+  const Patch& patch = patch_;
+  const Tiles tiles(patch, nx_, ny_);
   Patch tiled;
   tiled.box = tiles.whole;
   tiled.offset = tiles.whole.first_offset;
   tiled.frequencies = patch.frequencies;
   tiled.orbital_frequency = patch.orbital_frequency;
-  tiled.positions.resize(copies * count);
-  tiled.velocities.resize(copies * count);
-  tiled.radii.resize(copies * count);
-  tiled.masses.resize(copies * count);
-  tiled.ids.resize(copies * count);
-  tiled.spins.resize(copies * patch.spins.size());
-  const std::uint64_t stride = count > 0 ? patch.ids.back() + 1 : 0;
+  tiled.positions.resize(count);
+  tiled.velocities.resize(count);
+  tiled.radii.resize(count);
+  tiled.masses.resize(count);
+  tiled.ids.resize(count);
+  tiled.spins.resize(patch.spins.empty() ? 0 : count);
+  const std::uint64_t stride = patch.ids.empty() ? 0 : patch.ids.back() + 1;
   const double kappa = patch.frequencies.kappa, shear = patch.box.shear;
-  parallel_for(copies * count, [&](std::size_t k) {
-    const std::size_t copy = k / count, particle = k % count;
+  parallel_for(count, [&](std::size_t k) {
+    const std::size_t copy = (first + k) / patch.size(), particle = (first + k) % patch.size();
     const Vec3 &place = patch.positions[particle], &velocity = patch.velocities[particle];
     const double guiding_y = place.y() - 2.0 / (kappa * kappa) * velocity.x();
-    Image image = tiles.first_in(copy / ny, guiding_y);
-    image.ny += static_cast<std::int32_t>(copy % ny);
+    Image image = tiles.first_in(copy / ny_, guiding_y);
+    image.ny += static_cast<std::int32_t>(copy % ny_);
     Vec3 shift = patch.box.displacement(image, patch.offset);
     shift.x() += tiles.shift_x;
     tiled.positions[k] = place + shift;
@@ -101,6 +100,15 @@ Patch tiled_patch(const Patch& patch, std::size_t nx, std::size_t ny) {
     tiled.ids[k] = patch.ids[particle] + copy * stride;
   });
   return tiled;
+}
+
+TiledPatch::TiledPatch(const Patch& patch, std::size_t nx, std::size_t ny) : patch_(patch), nx_(nx), ny_(ny) {
+  require_possible(patch, nx, ny);
+}
+
+Patch tiled_patch(const Patch& patch, std::size_t nx, std::size_t ny) {
+  const TiledPatch tiled(patch, nx, ny);
+  return tiled.some(0, tiled.size());
 }
 
 } // namespace keeler

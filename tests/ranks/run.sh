@@ -1,9 +1,9 @@
 #!/bin/bash
-# run.sh KEELER SOURCE_DIR MPIEXEC: runs that ranks share have the bits of one process, whatever their number, that of
+# run.sh KEELER SOURCE_DIR MPIEXEC OTHER_BUILD: runs that ranks share have the bits of one process, whatever their number, that of
 # threads, and that of ranks after a restart; and errors end all of them with one line of Keeler's and its exit code.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/../cli/helpers.sh"
-mpiexec=$3
+mpiexec=$3 other_build=$4
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 # containers of tests
 
 # without files in memory, which a limit on the size of files would forbid
@@ -156,6 +156,24 @@ same "many, resumed" "$work/many-1" "$work/many-4"
 awk "BEGIN { exit !($(peak "$work/many-4") < 0.85 * $(peak "$work/many-1")) }" ||
   fail "many: the first of 4 ranks took $(peak "$work/many-4") MB, one process $(peak "$work/many-1") MB"
 
+# A snapshot as a start is read in parts.
+last_of() { find "$1" -name 'snap_*.hdf' | sort | tail -n 1; }
+cat >"$work/from.toml" <<END
+[planet]
+preset = "saturn-a-ring"
+[start]
+from = "$(last_of "$work/many-1")"
+keep = 0.9
+[time]
+step = 2e-3
+end = 4e-3
+END
+runs 0 run "$work/from.toml" -o "$work/from-1"
+shared 4 1 0 run "$work/from.toml" -o "$work/from-4"
+same "a snapshot as start" "$work/from-1" "$work/from-4"
+awk "BEGIN { exit !($(peak "$work/from-4") < 0.75 * $(peak "$work/from-1")) }" ||
+  fail "a snapshot as start: the first of 4 ranks took $(peak "$work/from-4") MB, one process $(peak "$work/from-1") MB"
+
 # What cannot be shared yet is refused by name, before anything is written.
 refused() { # WORDS ARGUMENT...
   local words=$1
@@ -174,6 +192,18 @@ refused "'keeler analyze' is for one process" analyze "$work/uniform-1"
 refused "'keeler bench' is for one process" bench drift --count 100
 refused 'particles.count' run "$work/uniform.toml" -o "$work/none" --set particles.count=-1
 refused "is not empty" run "$work/uniform.toml" -o "$work/uniform-1"
+
+# Two builds do not share a run, whichever comes first.
+for programs in "$other_build : $keeler" "$keeler : $other_build"; do
+  first=${programs%% : *} second=${programs##* : } code=0
+  "$mpiexec" --oversubscribe "${transport[@]}" -n 1 "$first" run "$work/uniform.toml" -o "$work/none" : \
+    -n 1 "$second" run "$work/uniform.toml" -o "$work/none" >"$work/all" 2>&1 || code=$?
+  [ "$code" -eq 2 ] || fail "$programs: exit $code instead of 2: $(cat "$work/all")"
+  [ ! -e "$work/none" ] || fail "$programs: something was written"
+  if [ "$first" = "$other_build" ]; then # else the other one speaks, and it has no words
+    grep -qE '^keeler: rank 1 runs another build of Keeler' "$work/all" || fail "$programs: $(cat "$work/all")"
+  fi
+done
 
 # A bench says what ranks gain, and what they tell each other.
 shared 2 1 0 bench step --count 3000 --solver fft --repeats 1 --json

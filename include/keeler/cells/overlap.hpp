@@ -15,6 +15,9 @@ struct Overlap {
   std::uint64_t id_i = 0, id_j = 0;
 };
 
+/// Which of two counts as the larger: of equal depths the one with the lower ids.
+bool deeper(const Overlap& a, const Overlap& b);
+
 /// Over all pairs and images of a patch.
 Overlap largest_overlap(const Patch& patch);
 
@@ -27,5 +30,6 @@ inline constexpr double allowed_overlap = 1e-8;
 /// Throws InvariantError where particles overlap by more than that, naming the worst pair of `state` ("the initial
 /// state").
 void require_apart(const Patch& patch, const std::string& state);
+void require_apart(const Overlap& largest, const std::string& state);
 
 } // namespace keeler

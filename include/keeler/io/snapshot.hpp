@@ -4,6 +4,7 @@
 
 #include <keeler/io/provenance.hpp>
 #include <keeler/particles/patch.hpp>
+#include <keeler/ranks/ranks.hpp>
 
 #include <filesystem>
 #include <map>
@@ -54,6 +55,9 @@ void write_snapshot(const std::filesystem::path& file, const Patch& patch, const
 /// Reads a snapshot, also one that another tool has changed. All comes back bit for bit except velocities, which pass
 /// through m/s and may differ by 2.2e-16 of their value (two roundings). Throws IoError for damage, for another kind of
 /// file, and where an array is missing, is of another length, or the ids do not increase.
-Snapshot read_snapshot(const std::filesystem::path& file);
+///
+/// Collective: each rank gets a part of the particles, and all else; where another tool has changed the file, the first
+/// rank gets all of it and the others nothing.
+Snapshot read_snapshot(const std::filesystem::path& file, const Ranks& ranks = {});
 
 } // namespace keeler

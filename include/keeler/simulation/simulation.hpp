@@ -5,6 +5,7 @@
 // All else of the state is that of the whole run, on each. What is said to be collective all ranks call at once.
 #pragma once
 
+#include <keeler/cells/overlap.hpp>
 #include <keeler/forces/force.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/ranks/ranks.hpp>
@@ -41,8 +42,8 @@ struct TimeSplit {
 class Simulation {
 public:
   /// A new run from a patch; time starts at zero. Throws InvariantError when particles overlap by more than rounding.
-  /// Collective, as all that follows from it: the first rank gives the patch, and hands the particles out. Throws
-  /// UsageError for what the scene asks for and ranks cannot share yet.
+  /// Collective, as all that follows from it: each rank gives a part of the particles, whichever, and the first one all
+  /// else of the patch. Throws UsageError for what the scene asks for and ranks cannot share yet.
   Simulation(const Scene& scene, const Patch& start, const Ranks& ranks = {});
 
   /// A run that goes on from a state, to the bit. Collective: each rank gives a part of the particles, whichever, with
@@ -128,7 +129,7 @@ private:
   void divide();
   void require_borders();
   void collide_shared();
-  double largest_overlap_shared();
+  Overlap largest_overlap_shared();
   Slabs::Holding holding();
 
   void collide();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <keeler/particles/patch.hpp>
+#include <keeler/ranks/ranks.hpp>
 #include <keeler/scene/doubts.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/states/progress.hpp>
@@ -12,16 +13,18 @@
 namespace keeler {
 
 /// A fresh patch on the scene's streamlines, or the snapshot that the scene names. Throws UsageError (too dense),
-/// Interrupted (interrupt.hpp), or what patch_from_snapshot() throws.
-Patch initial_patch(const Scene& scene, const std::function<void(const StartProgress&)>& progress = {});
+/// Interrupted (interrupt.hpp), or what patch_from_snapshot() throws. Collective: each rank gets a part of the
+/// particles, of a fresh patch the first rank all, and the first one all else.
+Patch initial_patch(const Scene& scene, const std::function<void(const StartProgress&)>& progress = {},
+                    const Ranks& ranks = {});
 
 /// The patch of a snapshot, made the start of a run of this scene: the scene's frequencies, its own box, time zero.
 /// Throws IoError; UsageError when it was made at another place; InvariantError for a particle that no ring has, named.
 Patch patch_from_snapshot(const std::string& path, const Scene& scene);
-/// The same of a snapshot that has been read; `path` stands for it in messages.
-Patch patch_from_snapshot(Patch patch, const std::string& path, const Scene& scene);
+/// The same of a snapshot that has been read; `path` stands for it in messages. Collective, of a part of the particles.
+Patch patch_from_snapshot(Patch patch, const std::string& path, const Scene& scene, const Ranks& ranks = {});
 
-/// How large a patch is, for the doubts about it.
-PatchScale scale_of(const Patch& patch);
+/// How large a patch is, for the doubts about it. Collective, of a part of the particles: on the first rank.
+PatchScale scale_of(const Patch& patch, const Ranks& ranks = {});
 
 } // namespace keeler

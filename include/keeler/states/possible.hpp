@@ -15,5 +15,8 @@ std::string particle_fault(const Patch& patch, std::size_t k);
 /// Throws InvariantError that names what is not possible in the patch of this file: the planet, the box or a particle.
 /// UsageError when it has none.
 void require_possible(const Patch& patch, const std::string& path);
+/// The same of a patch of so many particles but for them, and of the particles.
+void require_possible_frame(const Patch& patch, std::size_t count, const std::string& path);
+void require_possible_particles(const Patch& patch, const std::string& path);
 
 } // namespace keeler

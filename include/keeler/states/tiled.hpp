@@ -19,4 +19,19 @@ namespace keeler {
 /// box or its number of particles would be more than a run takes.
 Patch tiled_patch(const Patch& patch, std::size_t nx, std::size_t ny);
 
+/// The same, some particles at a time: of a patch that no memory need hold. It refers to the small one.
+class TiledPatch {
+public:
+  TiledPatch(const Patch& patch, std::size_t nx, std::size_t ny);
+
+  std::size_t size() const { return nx_ * ny_ * patch_.size(); }
+  bool rough() const { return !patch_.spins.empty(); }
+  /// Those from the first one on, in the order of their ids.
+  Patch some(std::size_t first, std::size_t count) const;
+
+private:
+  const Patch& patch_;
+  std::size_t nx_, ny_;
+};
+
 } // namespace keeler

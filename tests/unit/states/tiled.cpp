@@ -144,6 +144,31 @@ TEST_CASE("one copy is the patch") {
   CHECK(same.time_orbits == 0.0);
 }
 
+TEST_CASE("a tiled patch comes the same some particles at a time") {
+  Patch patch = evolved(scene_of(24));
+  for (const bool rough : {false, true}) {
+    if (rough)
+      patch.spins.assign(patch.size(), Vec3(0.1, -1.0, 0.5));
+    const TiledPatch tiled(patch, 3, 2);
+    const Patch whole = tiled_patch(patch, 3, 2);
+    CHECK(tiled.size() == whole.size());
+    CHECK(tiled.rough() == rough);
+    for (std::size_t first = 0; first < tiled.size(); first += 17) { // across copies
+      const std::size_t count = std::min<std::size_t>(17, tiled.size() - first);
+      const Patch some = tiled.some(first, count);
+      REQUIRE(some.size() == count);
+      CHECK(some.offset == whole.offset);
+      CHECK(some.box.size_x == whole.box.size_x);
+      for (std::size_t k = 0; k < count; ++k) {
+        CHECK(some.positions[k] == whole.positions[first + k]);
+        CHECK(some.velocities[k] == whole.velocities[first + k]);
+        CHECK(some.ids[k] == whole.ids[first + k]);
+        CHECK((!rough || some.spins[k] == whole.spins[first + k]));
+      }
+    }
+  }
+}
+
 TEST_CASE("a tiled patch must be one that a run takes") {
   Patch patch = evolved(scene_of(24));
   const auto fault = [&](std::size_t nx, std::size_t ny) {

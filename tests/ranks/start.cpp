@@ -1,0 +1,190 @@
+// Starts that ranks read or are given in parts, against one process that has all: the same bits and the same errors.
+#include "launched.hpp"
+
+#include "unit/files/disk.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/io/snapshot.hpp>
+#include <keeler/runs/state_hash.hpp>
+#include <keeler/simulation/simulation.hpp>
+#include <keeler/states/initial.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+using namespace keeler;
+using keeler_test::launched;
+
+namespace {
+
+Scene scene(const std::vector<std::string>& overrides = {}) {
+  return parse_scene(R"(
+[planet]
+preset = "saturn-a-ring"
+[box]
+size = [80, 50]
+[particles]
+count = 600
+density = 600.0
+sizes = { law = "power", exponent = 3.0, min = 0.4, max = 1.6 }
+[time]
+step = 2e-3
+end = 0.1
+)",
+                     "test scene", overrides);
+}
+
+// A snapshot that the first rank has written.
+class SharedSnapshot {
+public:
+  explicit SharedSnapshot(const Patch& patch) {
+    if (launched().is_first())
+      folder_ = std::make_unique<test::TemporaryFolder>();
+    path_ = folder_ ? (*folder_ / "start.hdf").string() : "";
+    launched().from_first(path_);
+    launched().first_does([&] { write_snapshot(path_, patch, {scene().resolved, {}}); });
+  }
+  ~SharedSnapshot() { launched().any(false); } // when all are here it goes
+  SharedSnapshot(const SharedSnapshot&) = delete;
+  SharedSnapshot& operator=(const SharedSnapshot&) = delete;
+
+  const std::string& path() const { return path_; }
+  void drop_seal() const {
+    launched().first_does([&] { std::filesystem::resize_file(path_, std::filesystem::file_size(path_) - 64); });
+  }
+
+private:
+  std::unique_ptr<test::TemporaryFolder> folder_;
+  std::string path_;
+};
+
+// Those whose id leaves this rank's number: an odd part of the patch.
+Patch part_of(Patch patch) {
+  const auto keep = [&](auto& rows) {
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      if (patch.ids[k] % launched().count() == launched().own())
+        rows[kept++] = rows[k];
+    rows.resize(kept);
+  };
+  keep(patch.positions), keep(patch.velocities), keep(patch.radii), keep(patch.masses), keep(patch.spins);
+  keep(patch.ids); // all others go by them
+  return patch;
+}
+
+template<class Row> std::vector<Row> of_all(const std::vector<Row>& rows) {
+  return launched().gather(rows);
+}
+
+template<class Row> bool same_bytes(const std::vector<Row>& a, const std::vector<Row>& b) {
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(static_cast<const void*>(a.data()), b.data(), a.size() * sizeof(Row)) == 0);
+}
+
+// What an error says, with all ranks' words.
+template<class Work> std::string words_of(const Work& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string hash_after(Simulation& simulation, const Scene& its, int steps) {
+  for (int k = 0; k < steps; ++k)
+    simulation.advance();
+  return state_hash(simulation.state(), its, simulation.ranks());
+}
+
+} // namespace
+
+TEST_CASE("a snapshot is read in parts that follow each other, and without a seal by the first rank") {
+  for (const bool rough : {false, true}) {
+    const Patch patch = initial_patch(rough ? scene({"collisions.friction.tangential_restitution=0.5"}) : scene());
+    const SharedSnapshot file(patch);
+    const Patch whole = read_snapshot(file.path()).patch;
+    for (const bool sealed : {true, false}) {
+      if (!sealed)
+        file.drop_seal();
+      const Patch part = read_snapshot(file.path(), launched()).patch;
+      CHECK((!sealed || part.size() <= whole.size() / launched().count() + 1));
+      CHECK((sealed || part.size() == (launched().is_first() ? whole.size() : 0)));
+      const auto positions = of_all(part.positions), velocities = of_all(part.velocities), spins = of_all(part.spins);
+      const auto radii = of_all(part.radii), masses = of_all(part.masses);
+      const auto ids = of_all(part.ids);
+      if (!launched().is_first())
+        continue;
+      CHECK(same_bytes(positions, whole.positions));
+      CHECK(same_bytes(velocities, whole.velocities));
+      CHECK(same_bytes(spins, whole.spins));
+      CHECK(same_bytes(radii, whole.radii));
+      CHECK(same_bytes(masses, whole.masses));
+      CHECK(ids == whole.ids);
+    }
+  }
+}
+
+TEST_CASE("ids that do not increase from one part to the next are an error on all ranks") {
+  Patch patch = initial_patch(scene());
+  const std::size_t border = patch.size() / launched().count();
+  patch.ids[border] = patch.ids[border - 1];
+  const SharedSnapshot file(patch);
+  CHECK(words_of([&] { read_snapshot(file.path(), launched()); }).find("ParticleIDs do not increase") !=
+        std::string::npos);
+}
+
+TEST_CASE("a run from a snapshot has the bits of one process, whoever reads which particles") {
+  const SharedSnapshot file(initial_patch(scene()));
+  for (const char* keep : {"1.0", "0.6"})
+    for (const bool rough : {false, true}) {
+      std::vector<std::string> overrides{std::string("start.keep=") + keep};
+      if (rough)
+        overrides.emplace_back("collisions.friction.tangential_restitution=0.5");
+      std::string text = "[planet]\npreset = \"saturn-a-ring\"\n[start]\nfrom = \"" + file.path() +
+                         "\"\n[time]\nstep = 2e-3\nend = 0.1\n";
+      const Scene from = parse_scene(text, "test scene", overrides);
+      Simulation alone(from, initial_patch(from)), shared(from, initial_patch(from, {}, launched()), launched()),
+          odd(from, part_of(initial_patch(from)), launched());
+      const std::string expected = hash_after(alone, from, 20);
+      CHECK(hash_after(shared, from, 20) == expected);
+      CHECK(hash_after(odd, from, 20) == expected);
+      CHECK(shared.state().energy.epicyclic == alone.state().energy.epicyclic);
+      CHECK(shared.state().energy.spin == alone.state().energy.spin);
+      CHECK(scale_of(initial_patch(from, {}, launched()), launched()).particle_count == alone.count());
+    }
+}
+
+TEST_CASE("particles of two ranks that overlap are named as one process names them") {
+  Patch patch = initial_patch(scene());
+  patch.positions[7] = patch.positions[320]; // of two parts, whatever the number of ranks
+  patch.positions[401] = patch.positions[122] + Vec3(0.3, 0.0, 0.0);
+  const std::string expected = words_of([&] { Simulation(scene(), patch); });
+  CHECK(expected.find("overlap by") != std::string::npos);
+  CHECK(words_of([&] { Simulation(scene(), part_of(patch), launched()); }) == expected);
+}
+
+TEST_CASE("what no ring has is an error on all ranks, in the words of one process") {
+  const Patch patch = initial_patch(scene());
+  const auto words = [](const Patch& start) {
+    const SharedSnapshot file(start);
+    const Scene from = parse_scene("[planet]\npreset = \"saturn-a-ring\"\n[start]\nfrom = \"" + file.path() +
+                                       "\"\n[time]\nstep = 2e-3\nend = 0.1\n",
+                                   "test scene", {});
+    const std::string expected = words_of([&] { initial_patch(from); });
+    CHECK(words_of([&] { initial_patch(from, {}, launched()); }) == expected);
+    return expected;
+  };
+  Patch negative = patch, elsewhere = patch, none = patch;
+  negative.radii[patch.size() - 1] = -1.0;
+  CHECK(words(negative).find("a radius that is not positive") != std::string::npos);
+  elsewhere.orbital_frequency *= 2.0;
+  CHECK(words(elsewhere).find("was made at another place") != std::string::npos);
+  none.positions.clear(), none.velocities.clear(), none.radii.clear(), none.masses.clear(), none.ids.clear();
+  CHECK(words(none).find("holds no particles") != std::string::npos);
+}
