@@ -19,8 +19,8 @@ Overlap overlap_of(const Patch& patch, std::size_t low, std::size_t high, const 
   return {(sum - d.norm()) / sum, patch.ids[low], patch.ids[high]};
 }
 
-// Calls visit(i, overlap) for each pair that overlaps, from any thread. The larger of two particles, i, looks for the
-// smaller one, so that few look far.
+// Calls visit(overlap) for each pair that overlaps, from any thread. The larger of two particles looks for the smaller
+// one, so that few look far.
 template<class Visit> void for_each_overlap(const Patch& patch, const Visit& visit) {
   if (patch.size() == 0)
     return;
@@ -36,7 +36,7 @@ template<class Visit> void for_each_overlap(const Patch& patch, const Visit& vis
         return;
       const Overlap here = lower ? overlap_of(patch, i, j, image) : overlap_of(patch, j, i, -image);
       if (here.depth > 0.0)
-        visit(i, here);
+        visit(here);
     });
   });
 }
@@ -50,10 +50,11 @@ bool deeper(const Overlap& a, const Overlap& b) {
 }
 
 Overlap largest_overlap(const Patch& patch) {
-  std::vector<Overlap> worst(patch.size());
-  for_each_overlap(patch, [&](std::size_t i, const Overlap& here) {
-    if (deeper(here, worst[i]))
-      worst[i] = here;
+  std::vector<Overlap> worst(static_cast<std::size_t>(threads())); // of each thread
+  for_each_overlap(patch, [&](const Overlap& here) {
+    Overlap& its = worst[static_cast<std::size_t>(omp_get_thread_num()) % worst.size()];
+    if (deeper(here, its))
+      its = here;
   });
   Overlap result;
   for (const Overlap& candidate : worst)
@@ -64,7 +65,7 @@ Overlap largest_overlap(const Patch& patch) {
 
 std::size_t count_overlaps(const Patch& patch, double depth) {
   std::atomic<std::size_t> count = 0;
-  for_each_overlap(patch, [&](std::size_t, const Overlap& here) { count += here.depth > depth ? 1 : 0; });
+  for_each_overlap(patch, [&](const Overlap& here) { count += here.depth > depth ? 1 : 0; });
   return count;
 }
 

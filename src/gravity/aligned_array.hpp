@@ -5,12 +5,27 @@
 #include <cstddef>
 #include <memory>
 #include <new>
+#include <utility>
 
 namespace keeler {
 
 /// Plain numbers, not initialised. Growing forgets them.
 template<class T> class AlignedArray {
 public:
+  AlignedArray() = default;
+  AlignedArray(AlignedArray&& other) noexcept
+      : size_(std::exchange(other.size_, 0)), numbers_(std::move(other.numbers_)) {}
+  AlignedArray& operator=(AlignedArray&& other) noexcept {
+    size_ = std::exchange(other.size_, 0);
+    numbers_ = std::move(other.numbers_);
+    return *this;
+  }
+  /// The memory of numbers of another kind, which are forgotten.
+  template<class Other>
+  explicit AlignedArray(AlignedArray<Other>&& other)
+      : size_(std::exchange(other.size_, 0) * sizeof(Other) / sizeof(T)),
+        numbers_(reinterpret_cast<T*>(other.numbers_.release())) {}
+
   void resize_at_least(std::size_t size) {
     if (size <= size_)
       return;
@@ -27,8 +42,10 @@ private:
     void operator()(T* numbers) const { ::operator delete(numbers, line); }
   };
   static constexpr std::align_val_t line{64};
-  std::unique_ptr<T, Free> numbers_;
+  template<class Other> friend class AlignedArray;
+
   std::size_t size_ = 0;
+  std::unique_ptr<T, Free> numbers_;
 };
 
 } // namespace keeler

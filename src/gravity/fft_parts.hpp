@@ -72,8 +72,11 @@ struct FftSolver::Parts {
   Places places;
   Mesh mesh;
   ShearedTransform transform;
-  HalfSpectrum by_columns, by_waves; // of a rank's share
-  double radius = 0.0;               // of the clouds in this solve, m
+  // of a rank's share
+  HalfSpectrum by_columns, by_waves;
+  std::vector<InsideParticle> inside; // kept for their memory
+  std::vector<Vec3> pulls;
+  double radius = 0.0; // of the clouds in this solve, m
   SelfForce self{};
 };
 

@@ -33,8 +33,8 @@ double common_mass_unit(const GravityProblem& problem, std::uint64_t count) {
   return whole > 0.0 ? whole / static_cast<double>(count) : 1.0;
 }
 
-std::vector<InsideParticle> put_inside(const GravityProblem& problem, double offset) {
-  std::vector<InsideParticle> inside(problem.positions.size());
+void put_inside(const GravityProblem& problem, double offset, std::vector<InsideParticle>& inside) {
+  resize_scratch(inside, problem.positions.size());
   parallel_for(inside.size(), [&](std::size_t k) {
     const Vec3 p = into_cell(problem.box, offset, problem.positions[k]);
     inside[k] = {p.x(), p.y(), p.z(), problem.masses[k], problem.ids[k]};
@@ -44,7 +44,6 @@ std::vector<InsideParticle> put_inside(const GravityProblem& problem, double off
     if (!(farthest <= 0.5 * (1.0 + loose_edge) * problem.box.size_x))
       throw InvariantError("a particle stands too far away to be put into the box; take a shorter time.step");
   });
-  return inside;
 }
 
 std::vector<std::uint64_t> count_in_columns(std::span<const InsideParticle> particles, const Tiling& tiling,
@@ -69,10 +68,9 @@ void deal_out(std::vector<MeshShare>& shares, std::span<const std::uint64_t> her
               shares.end());
 }
 
-// Collective: the share of each rank.
-std::vector<MeshShare> shares_of(std::span<const InsideParticle> particles, const MeshShape& shape,
-                                 const Tiling& tiling, const ShearingBox& box, double reach, const Ranks& ranks) {
-  const std::vector<std::uint64_t> here = count_in_columns(particles, tiling, TileFinder(tiling, box));
+// Collective: the share of each rank. `here` counts this one's particles in the columns of tiles.
+std::vector<MeshShare> shares_of(const std::vector<std::uint64_t>& here, const MeshShape& shape, const Tiling& tiling,
+                                 const ShearingBox& box, double reach, const Ranks& ranks) {
   std::vector<std::uint64_t> all = here;
   ranks.sum(std::span(all));
   std::vector<MeshShare> shares = share_mesh(shape, tiling, box, reach, all, ranks.count());
@@ -87,55 +85,62 @@ bool is_in(const IndexRange& range, std::size_t column) {
 // The particles that a rank must know, and the way home of what becomes of its own ones. Most stay where they are.
 class Guests {
 public:
-  /// Collective: sends particles to all that must know them.
-  Guests(std::vector<InsideParticle> own, const TileFinder& find, std::span<const MeshShare> shares,
-         const Tiling& tiling, const Ranks& ranks)
-      : find_(find), here_(shares[ranks.own()].own), sent_(ranks.count()), particles_(std::move(own)),
-        from_(ranks.count()) {
+  /// Collective: sends particles to all that must know them. The rank's own ones, so many in each column, become those
+  /// that it must know.
+  Guests(std::vector<InsideParticle>& particles, std::span<const std::uint64_t> counts, const TileFinder& find,
+         std::span<const MeshShare> shares, const Tiling& tiling, const Ranks& ranks)
+      : sent_(ranks.count()), owned_(ranks.count()) {
     const auto knowers = who_must_know(shares, tiling);
-    std::vector<std::vector<InsideParticle>> parcels(ranks.count());
+    const IndexRange& here = shares[ranks.own()].own;
+    std::vector<std::vector<InsideParticle>> parcels = room_for_parcels(counts, knowers, ranks);
     std::size_t stay = 0;
-    for (std::size_t k = 0; k < particles_.size(); ++k) {
-      const InsideParticle particle = particles_[k];
+    for (std::size_t k = 0; k < particles.size(); ++k) {
+      const InsideParticle particle = particles[k];
       const std::size_t column = find.column(particle.x);
       for (const std::uint32_t rank : knowers[column]) {
-        if (rank == ranks.own())
-          particles_[stay++] = particle;
-        else
-          parcels[rank].push_back(particle);
-        if (is_in(shares[rank].own, column))
+        const bool owns = is_in(shares[rank].own, column);
+        if (owns)
           sent_[rank].push_back(static_cast<std::uint32_t>(k));
+        if (rank != ranks.own()) {
+          parcels[rank].push_back(particle);
+          continue;
+        }
+        if (owns)
+          owned_[rank].push_back(static_cast<std::uint32_t>(stay));
+        particles[stay++] = particle;
       }
     }
-    particles_.resize(stay);
-    from_[ranks.own()] = {0, stay};
+    particles.resize(stay);
     parcels = ranks.exchange(parcels);
+    std::size_t known = stay;
+    for (const std::vector<InsideParticle>& some : parcels)
+      known += some.size();
+    if (particles.capacity() < known)
+      particles.reserve(known + known / 16);
     for (std::size_t rank = 0; rank < parcels.size(); ++rank) {
-      if (rank == ranks.own())
-        continue;
-      from_[rank] = {particles_.size(), particles_.size() + parcels[rank].size()};
-      particles_.insert(particles_.end(), parcels[rank].begin(), parcels[rank].end());
+      for (const InsideParticle& particle : parcels[rank]) {
+        if (is_in(here, find.column(particle.x)))
+          owned_[rank].push_back(static_cast<std::uint32_t>(particles.size()));
+        particles.push_back(particle);
+      }
       std::vector<InsideParticle>().swap(parcels[rank]);
     }
   }
 
-  std::span<const InsideParticle> particles() const { return particles_; }
-
-  /// Collective: from values of particles(), that of each particle comes home from its owner in the mesh.
+  /// Collective: from values of all that it must know, in their order, that of each particle comes home from its owner
+  /// in the mesh.
   template<class Take> void send_home(std::span<const Vec3> values, const Ranks& ranks, const Take& take) const {
     using Row = std::array<double, 3>;
     std::vector<std::vector<Row>> rows(ranks.count());
-    const auto visit_owned = [&](std::size_t rank, const auto& visit) {
-      for (std::size_t k = from_[rank].begin; k < from_[rank].end; ++k)
-        if (is_in(here_, find_.column(particles_[k].x)))
-          visit(values[k]);
-    };
     for (std::size_t rank = 0; rank < rows.size(); ++rank)
-      if (rank != ranks.own())
-        visit_owned(rank, [&](const Vec3& value) { rows[rank].push_back({value.x(), value.y(), value.z()}); });
+      if (rank != ranks.own()) {
+        rows[rank].reserve(owned_[rank].size());
+        for (const std::uint32_t k : owned_[rank])
+          rows[rank].push_back({values[k].x(), values[k].y(), values[k].z()});
+      }
     rows = ranks.exchange(rows);
-    auto own = sent_[ranks.own()].begin();
-    visit_owned(ranks.own(), [&](const Vec3& value) { take(*own++, value); });
+    for (std::size_t i = 0; i < owned_[ranks.own()].size(); ++i)
+      take(sent_[ranks.own()][i], values[owned_[ranks.own()][i]]);
     for (std::size_t rank = 0; rank < rows.size(); ++rank) {
       assert(rank == ranks.own() || rows[rank].size() == sent_[rank].size());
       for (std::size_t i = 0; i < rows[rank].size(); ++i)
@@ -144,11 +149,21 @@ public:
   }
 
 private:
-  TileFinder find_;
-  IndexRange here_;
-  std::vector<std::vector<std::uint32_t>> sent_; // to owners, in the order sent
-  std::vector<InsideParticle> particles_;        // own ones first
-  std::vector<IndexRange> from_;                 // each rank, these
+  static std::vector<std::vector<InsideParticle>> room_for_parcels(std::span<const std::uint64_t> counts,
+                                                                   std::span<const std::vector<std::uint32_t>> knowers,
+                                                                   const Ranks& ranks) {
+    std::vector<std::size_t> sizes(ranks.count(), 0);
+    for (std::size_t column = 0; column < counts.size(); ++column)
+      for (const std::uint32_t rank : knowers[column])
+        sizes[rank] += rank == ranks.own() ? 0 : counts[column];
+    std::vector<std::vector<InsideParticle>> parcels(ranks.count());
+    for (std::size_t rank = 0; rank < sizes.size(); ++rank)
+      parcels[rank].reserve(sizes[rank]);
+    return parcels;
+  }
+
+  std::vector<std::vector<std::uint32_t>> sent_;  // to owners, own ones in the order sent
+  std::vector<std::vector<std::uint32_t>> owned_; // of each rank's that stand in this one's columns, which ones
 };
 
 // The columns of all ranks in one half spectrum, and which of its blocks are whose. Ranks transform the columns that
@@ -195,11 +210,13 @@ FftSolver::Parts::Known FftSolver::Parts::know(const GravityProblem& problem, do
   const std::uint64_t count = ranks.sum(problem.positions.size());
   const MeshShape shape = choose_mesh(problem.box, common_extent(problem), count);
   const Tiling tiling = tiling_for(shape, count);
-  std::vector<InsideParticle> inside = put_inside(problem, offset);
-  std::vector<MeshShare> shares = shares_of(inside, shape, tiling, problem.box, with_neighbours ? radius : 0.0, ranks);
+  put_inside(problem, offset, inside);
+  const TileFinder find(tiling, problem.box);
+  const std::vector<std::uint64_t> here = count_in_columns(inside, tiling, find);
+  std::vector<MeshShare> shares = shares_of(here, shape, tiling, problem.box, with_neighbours ? radius : 0.0, ranks);
   const MeshShare own = shares[ranks.own()];
-  Guests guests(std::move(inside), TileFinder(tiling, problem.box), shares, tiling, ranks);
-  places.sort(guests.particles(), problem.box, tiling, own.known, common_mass_unit(problem, count));
+  Guests guests(inside, here, find, shares, tiling, ranks);
+  places.sort(inside, problem.box, tiling, own.known, common_mass_unit(problem, count));
   SpectrumOfAll spectrum = spectrum_of_all(shares);
   return {shape, offset / problem.box.size_y, std::move(shares), own, std::move(spectrum), std::move(guests)};
 }
@@ -215,7 +232,9 @@ void FftSolver::Parts::turn_to_waves(const Ranks& ranks, const Known& known) {
 
   by_columns.reset({&own.pulled, 1}, {0, transform.waves()}, shape.planes);
   transform.forward_y(mesh, by_columns);
-  by_waves.reset(known.spectrum.columns, own.waves, shape.planes);
+  // the mesh's values are not needed until there are new ones
+  by_waves.reset(known.spectrum.columns, own.waves, shape.planes,
+                 AlignedArray<std::complex<float>>(mesh.take_memory()));
   ranks.exchange(columns_of_share(known), waves_of_share(known));
 }
 
@@ -242,6 +261,7 @@ void FftSolver::Parts::fill_share(const Ranks& ranks, const Known& known) {
     waves.apply(known.shape, transform, m, kernels, from, to);
   });
   ranks.exchange(waves_of_share(known), columns_of_share(known));
+  mesh.give_memory(AlignedArray<float>(by_waves.take_memory()));
   transform.backward_y(by_columns, mesh);
 }
 
@@ -254,15 +274,15 @@ void FftSolver::Parts::accelerate_share(const GravityProblem& problem, std::span
   const Known known = know(problem, offset, settings.short_range);
   fill_share(ranks, known);
 
-  std::vector<Vec3> here(known.guests.particles().size());
+  resize_scratch(pulls, places.count());
   std::vector<Vec3> sums(known.tiles(places.tiling()));
   const std::size_t first = known.first_tile(places.tiling());
   parallel_for(
-      sums.size(), [&](std::size_t k) { sums[k] = accelerate_tile(problem, offset, first + k, here); }, 4);
+      sums.size(), [&](std::size_t k) { sums[k] = accelerate_tile(problem, offset, first + k, pulls); }, 4);
   auto total = exact_total<ExactVec3>(sums.size(), [&](ExactVec3& all, std::size_t k) { all += sums[k]; });
   ranks.merge({&total.x, &total.y, &total.z});
   const Vec3 mean = total.value() / static_cast<double>(count); // as on one process
-  known.guests.send_home(here, ranks, [&](std::size_t k, const Vec3& a) { accelerations[k] = a - mean; });
+  known.guests.send_home(pulls, ranks, [&](std::size_t k, const Vec3& a) { accelerations[k] = a - mean; });
 }
 
 double FftSolver::Parts::share_of_potential(const GravityProblem& problem, double offset) {
@@ -273,6 +293,7 @@ double FftSolver::Parts::share_of_potential(const GravityProblem& problem, doubl
     waves.apply(known.shape, transform, m, kernels, from, to);
     sums[m - known.own.waves.begin] = wave_potential(m, from, to);
   });
+  mesh.give_memory(AlignedArray<float>(by_waves.take_memory()));
   auto sum = exact_total<ExactSum>(sums.size(), [&](ExactSum& all, std::size_t k) { all += sums[k]; });
   const std::size_t tiles = known.tiles(places.tiling()), first = known.first_tile(places.tiling());
   ExactSum squares;

@@ -15,6 +15,8 @@
 
 #include <keeler/box/shearing_box.hpp>
 
+#include <utility>
+
 namespace keeler {
 
 struct MeshShape {
@@ -45,6 +47,10 @@ public:
   /// All zero, of that shape: all columns, ghosts too, or these.
   void reset(const MeshShape& shape) { reset(shape, {0, shape.columns + MeshShape::ghosts}); }
   void reset(const MeshShape& shape, const IndexRange& columns);
+
+  /// Gives up all values, and the memory that they are in; and takes it back.
+  AlignedArray<float> take_memory() { return std::move(values_); }
+  void give_memory(AlignedArray<float> memory) { values_ = std::move(memory); }
 
   const MeshShape& shape() const { return shape_; }
   float* column(std::size_t i) { return values_.data() + (i - first_column_) * shape_.column_length(); }

@@ -56,9 +56,9 @@ void Places::put_in_order(const Source& source, const ShearingBox& box, const Ti
   first_known_ = known.begin * tiling_.tile_rows();
   behind_ = tiling_.count() - first_known_;
   constexpr std::size_t ahead = 24;
-  found_.resize(count);
-  tile_of_.resize(count);
-  sorted_.resize(count);
+  resize_scratch(found_, count);
+  resize_scratch(tile_of_, count);
+  resize_scratch(sorted_, count);
   parallel_for(count, [&](std::size_t k) {
     // in the order of the last call, where there is one: it is nearly sorted already
     const std::size_t index = same_count ? index_[k] : k;
@@ -72,9 +72,9 @@ void Places::put_in_order(const Source& source, const ShearingBox& box, const Ti
   counting_sort(tile_of_, tiles, first_, [&](std::size_t k, std::size_t place) { sorted_[place] = found_[k]; });
 
   for (auto* const numbers : {&x_, &y_, &z_})
-    numbers->resize(count + NearSources::widest);
-  mass_.resize(count + NearSources::widest);
-  index_.resize(count);
+    resize_scratch(*numbers, count + NearSources::widest);
+  resize_scratch(mass_, count + NearSources::widest);
+  resize_scratch(index_, count);
   parallel_for(
       tiles,
       [&](std::size_t t) {

@@ -55,6 +55,16 @@ struct InsideParticle {
   std::uint64_t id;
 };
 
+/// Makes them so many rows. Where there is no room all are forgotten, and there is a little more room then than is
+/// needed: how many particles a rank knows changes with each solve.
+template<class Row> void resize_scratch(std::vector<Row>& rows, std::size_t count) {
+  if (rows.capacity() < count) {
+    rows = {};
+    rows.reserve(count + count / 16);
+  }
+  rows.resize(count);
+}
+
 class Places {
 public:
   /// The offset must be folded (images.hpp).

@@ -23,6 +23,7 @@
 
 #include <complex>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace keeler {
@@ -39,6 +40,15 @@ public:
 
   /// Forgets what there was. Ranges stand in the order of their columns; where they overlap the later one counts.
   void reset(std::span<const IndexRange> columns, const IndexRange& waves, std::size_t planes);
+
+  /// The same, in memory that nobody else needs now.
+  void reset(std::span<const IndexRange> columns, const IndexRange& waves, std::size_t planes,
+             AlignedArray<Complex> memory) {
+    numbers_ = std::move(memory);
+    reset(columns, waves, planes);
+  }
+  /// Gives up all numbers, and the memory that they are in.
+  AlignedArray<Complex> take_memory() { return std::move(numbers_); }
 
   const IndexRange& waves() const { return waves_; }
   std::size_t blocks() const { return columns_.size(); }

@@ -43,7 +43,7 @@ private:
 /// it.
 hdf5::Handle open_sealed(const std::filesystem::path& file);
 
-/// Whether there is a seal at its end, right or wrong. Throws IoError.
+/// Whether it can be opened and there is a seal at its end, right or wrong.
 bool has_seal(const std::filesystem::path& file);
 /// The seal at the end of a file. Throws IoError where there is none.
 std::string seal_in(const std::filesystem::path& file);

@@ -118,41 +118,47 @@ bool another_rank_speaks() {
 }
 
 // Pairs of ranks at equal distances round a ring, so that none waits for more than one other; long parcels in pieces.
-Parcels Ranks::exchange(Parcels parcels) const {
-  assert(parcels.size() == count_);
+void Ranks::exchange(const std::vector<std::span<const std::byte>>& sent,
+                     const std::function<std::byte*(std::size_t rank, std::size_t size)>& room) const {
+  assert(sent.size() == count_);
   if (!many())
-    return parcels;
+    return;
   const Stopwatch watch(costs.seconds);
   std::vector<std::uint64_t> sizes(count_), from(count_);
-  std::transform(parcels.begin(), parcels.end(), sizes.begin(), [](const auto& parcel) { return parcel.size(); });
+  std::transform(sent.begin(), sent.end(), sizes.begin(), [](const auto& parcel) { return parcel.size(); });
   MPI_Alltoall(sizes.data(), 1, MPI_UINT64_T, from.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD);
   for (const auto& bytes : {sizes, from})
     note(std::accumulate(bytes.begin(), bytes.end(), std::uint64_t{0}) - bytes[own_]);
-  Parcels received(count_);
-  received[own_] = std::move(parcels[own_]);
   std::vector<MPI_Request> requests;
-  const auto in_pieces = [&](std::vector<std::byte>& bytes, const auto& start) {
-    for (std::size_t begin = 0; begin < bytes.size(); begin += longest_message) {
-      requests.emplace_back();
-      start(bytes.data() + begin, as_int(std::min(longest_message, bytes.size() - begin)), &requests.back());
-    }
+  const auto in_pieces = [&](std::size_t size, const auto& start) {
+    for (std::size_t begin = 0; begin < size; begin += longest_message)
+      start(begin, as_int(std::min(longest_message, size - begin)), &requests.emplace_back());
   };
   for (std::size_t step = 1; step < count_; ++step) {
     const std::size_t other = (own_ + count_ - step) % count_;
-    received[other].resize(from[other]);
-    in_pieces(received[other], [&](std::byte* bytes, int size, MPI_Request* request) {
-      MPI_Irecv(bytes, size, MPI_BYTE, as_int(other), 0, MPI_COMM_WORLD, request);
+    std::byte* const bytes = room(other, from[other]);
+    in_pieces(from[other], [&](std::size_t begin, int size, MPI_Request* request) {
+      MPI_Irecv(bytes + begin, size, MPI_BYTE, as_int(other), 0, MPI_COMM_WORLD, request);
     });
   }
   for (std::size_t step = 1; step < count_; ++step) {
     const std::size_t other = (own_ + step) % count_;
-    costs.bytes += parcels[other].size();
-    in_pieces(parcels[other], [&](const std::byte* bytes, int size, MPI_Request* request) {
+    costs.bytes += sent[other].size();
+    in_pieces(sent[other].size(), [&](std::size_t begin, int size, MPI_Request* request) {
       ++costs.messages;
-      MPI_Isend(bytes, size, MPI_BYTE, as_int(other), 0, MPI_COMM_WORLD, request);
+      MPI_Isend(sent[other].data() + begin, size, MPI_BYTE, as_int(other), 0, MPI_COMM_WORLD, request);
     });
   }
   MPI_Waitall(as_int(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+}
+
+Parcels Ranks::exchange(Parcels parcels) const {
+  Parcels received(parcels.size());
+  exchange({parcels.begin(), parcels.end()}, [&](std::size_t rank, std::size_t size) {
+    received[rank].resize(size);
+    return received[rank].data();
+  });
+  received[own_] = std::move(parcels[own_]);
   return received;
 }
 

@@ -339,6 +339,7 @@ double Simulation::offset_at_break() const {
 }
 
 double Simulation::largest_overlap() {
+  drift_.release(); // room for what is looked for
   if constexpr (Ranks::possible)
     if (ranks_.many())
       return largest_overlap_shared().depth;

@@ -101,6 +101,10 @@ public:
 private:
   Ranks(std::size_t own, std::size_t count) : own_(own), count_(count) {}
 
+  /// Sends some bytes to each rank, but oneself, from where they stand. `room` says where so many of a rank's go.
+  void exchange(const std::vector<std::span<const std::byte>>& sent,
+                const std::function<std::byte*(std::size_t rank, std::size_t size)>& room) const;
+
   std::size_t own_ = 0, count_ = 1;
 };
 
@@ -133,18 +137,15 @@ template<class Row> std::vector<Row> Ranks::gather(const std::vector<Row>& rows)
 
 template<class Row> std::vector<std::vector<Row>> Ranks::exchange(const std::vector<std::vector<Row>>& rows) const {
   static_assert(std::is_trivially_destructible_v<Row>); // plain numbers; those of Eigen are not copied trivially
-  Parcels parcels(rows.size());
-  for (std::size_t rank = 0; rank < rows.size(); ++rank) {
-    const auto bytes = std::as_bytes(std::span(rows[rank]));
-    parcels[rank].assign(bytes.begin(), bytes.end());
-  }
-  parcels = exchange(std::move(parcels));
-  std::vector<std::vector<Row>> received(parcels.size());
-  for (std::size_t rank = 0; rank < parcels.size(); ++rank) {
-    received[rank].resize(parcels[rank].size() / sizeof(Row));
-    if (!parcels[rank].empty())
-      std::memcpy(static_cast<void*>(received[rank].data()), parcels[rank].data(), parcels[rank].size());
-  }
+  std::vector<std::vector<Row>> received(rows.size());
+  received[own()] = rows[own()];
+  std::vector<std::span<const std::byte>> sent;
+  for (const std::vector<Row>& its : rows)
+    sent.push_back(std::as_bytes(std::span(its)));
+  exchange(sent, [&](std::size_t rank, std::size_t size) {
+    received[rank].resize(size / sizeof(Row));
+    return reinterpret_cast<std::byte*>(received[rank].data());
+  });
   return received;
 }
 

@@ -101,7 +101,7 @@ public:
   ParticleMeans means() const;
 
   /// How deep two particles stand inside each other at this boundary at most, of the sum of their radii; 0 when none
-  /// do. Collective. The order in memory may change.
+  /// do. Collective. The order in memory may change, and the next step makes its lists anew.
   double largest_overlap();
 
   /// Where the energy of the random motions came from and went. Collective.
