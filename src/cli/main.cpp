@@ -76,14 +76,22 @@ void add_commands(CLI::App& program, Action& action, const std::vector<std::stri
   add_complete(program, action);
 }
 
+std::string subcommands_of(const CLI::App& command) {
+  std::string names;
+  for (const CLI::App* its : command.get_subcommands())
+    names += " " + its->get_name();
+  return names;
+}
+
 // Commands of one process would all do the same.
 void refuse_ranks(const CLI::App& program, const Ranks& ranks) {
   for (const CLI::App* command : program.get_subcommands()) {
     const bool timed = command->get_name() == "bench" && command->got_subcommand("step");
     if (ranks.many() && !timed && command->get_name() != "run" && command->get_name() != "resume")
-      throw UsageError(fmt::format("'keeler {}' is for one process, and a launcher of MPI has started {}; start it by "
-                                   "itself (only run, resume and bench step are shared by ranks)",
-                                   command->get_name(), ranks.count()));
+      throw UsageError(
+          fmt::format("'keeler {}{}' is for one process, and a launcher of MPI has started {}; start it by "
+                      "itself (only run, resume and bench step are shared by ranks)",
+                      command->get_name(), subcommands_of(*command), ranks.count()));
   }
 }
 

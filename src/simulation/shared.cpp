@@ -10,15 +10,24 @@
 
 namespace keeler {
 
+namespace {
+
+const char* solver_words(GravitySettings::Solver solver) {
+  using enum GravitySettings::Solver;
+  return solver == direct ? "gravity by direct sums" : solver == tree ? "gravity by the tree" : "axisymmetric gravity";
+}
+
+} // namespace
+
 // What has an order, a place or a network of all particles still.
 void Simulation::require_shareable(const Scene& scene, std::size_t count) {
   const auto refuse = [](const char* what, const char* instead) {
-    throw UsageError(fmt::format("{} cannot be shared by several ranks; {}, or run on one", what, instead));
+    throw UsageError(fmt::format("{} cannot be shared by several ranks; {}, or take one", what, instead));
   };
   if (scene.gravity) {
     const GravitySettings gravity = chosen_for(count, *scene.gravity);
     if (gravity.solver != GravitySettings::Solver::fft && gravity.solver != GravitySettings::Solver::mesh)
-      refuse("this gravity.solver", "set gravity.solver to \"fft\"");
+      refuse(solver_words(gravity.solver), "take the solver \"fft\" (gravity.solver, of a bench --solver)");
     if (gravity.carries())
       refuse("contacts at rest that carry kicks", "set gravity.resting_contacts to \"bounced\"");
   }

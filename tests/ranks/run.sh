@@ -183,13 +183,13 @@ refused() { # WORDS ARGUMENT...
   grep -qF -- "$words" "$work/err" || fail "no '$words' in: $(cat "$work/err")"
   [ ! -e "$work/none" ] || fail "$words: something was written"
 }
-refused 'set gravity.solver to "fft"' run "$work/wakes.toml" -o "$work/none" --set gravity.solver=tree
+refused 'gravity by the tree cannot be shared by several ranks; take the solver "fft"' run "$work/wakes.toml" -o "$work/none" --set gravity.solver=tree
 refused 'set gravity.resting_contacts to "bounced"' run "$work/wakes.toml" -o "$work/none" \
   --set gravity.resting_contacts=carried
 refused 'set collisions.finder to "certified"' run "$work/uniform.toml" -o "$work/none" --set collisions.finder=original
 refused 'leave it out' run "$work/uniform.toml" -o "$work/none" --check
 refused "'keeler analyze' is for one process" analyze "$work/uniform-1"
-refused "'keeler bench' is for one process" bench drift --count 100
+refused "'keeler bench drift' is for one process" bench drift --count 100
 refused 'particles.count' run "$work/uniform.toml" -o "$work/none" --set particles.count=-1
 refused "is not empty" run "$work/uniform.toml" -o "$work/uniform-1"
 
