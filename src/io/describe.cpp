@@ -121,7 +121,8 @@ FileDescription description_in(const hdf5::Handle& image, const std::filesystem:
     if (hdf5::exists(image, "Code")) {
       const hdf5::Handle code = hdf5::open_group(image, "Code");
       if (has_format(code, snapshot_format))
-        return describe_table(image, FileKind::snapshot, "PartType1", {"Header", "RingBox", "Code", clumping_group});
+        return describe_table(image, FileKind::snapshot, particles_group,
+                              {"Header", "RingBox", "Code", clumping_group});
       if (has_format(code, contacts_format))
         return describe_table(image, FileKind::contacts, "Contacts", {"Contacts", "Code"});
     }

@@ -128,13 +128,12 @@ runs 0 resume "$work/cut" --until 0.2
 [ "$(state_hash "$work/cut")" = "$(state_hash "$work/wakes-1")" ] || fail "4, 3, 1 ranks: state_hash differs"
 same_series "4, 3, 1 ranks" "$work/wakes-1" "$work/cut"
 
-# More particles than come at once: the same files, and resumed, the first rank takes less than one process. (It writes,
-# with some 40 MB for pieces of files and messages, however few particles it has, give or take 15. With all of them it
-# would take more than one.)
+# More particles than come at once: the same files, and resumed, the first rank keeps far from what one process takes.
+# (It writes, with some 40 MB for pieces of files and messages, however few particles it has: so there are many here.)
 scene many '[box]
-size = [3000, 600]
+size = [6000, 600]
 [particles]
-count = 300000
+count = 600000
 density = 600.0
 sizes = { law = "equal", radius = 1.0 }
 [time]
@@ -155,7 +154,7 @@ same "many" "$work/many-1" "$work/many-4"
 shared 4 1 0 resume "$work/many-4" --until 8e-3
 runs 0 resume "$work/many-1" --until 8e-3
 same "many, resumed" "$work/many-1" "$work/many-4"
-awk "BEGIN { exit !($(peak "$work/many-4") < $(peak "$work/many-1")) }" ||
+awk "BEGIN { exit !($(peak "$work/many-4") < 0.85 * $(peak "$work/many-1")) }" ||
   fail "many: the first of 4 ranks took $(peak "$work/many-4") MB, one process $(peak "$work/many-1") MB"
 
 # A snapshot as a start is read in parts.
@@ -173,7 +172,7 @@ END
 runs 0 run "$work/from.toml" -o "$work/from-1"
 shared 4 1 0 run "$work/from.toml" -o "$work/from-4"
 same "a snapshot as start" "$work/from-1" "$work/from-4"
-awk "BEGIN { exit !($(peak "$work/from-4") < $(peak "$work/from-1")) }" ||
+awk "BEGIN { exit !($(peak "$work/from-4") < 0.75 * $(peak "$work/from-1")) }" ||
   fail "a snapshot as start: the first of 4 ranks took $(peak "$work/from-4") MB, one process $(peak "$work/from-1") MB"
 
 # What cannot be shared yet is refused by name, before anything is written.
