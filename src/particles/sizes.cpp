@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace keeler {
@@ -147,31 +148,49 @@ SizeLaw populations(const NumberRows& table) {
 
 namespace {
 
-// One value a particle, in an order that the seed shuffles: the same order for all values of one seed.
-std::vector<double> draw(const std::function<double(double u, std::size_t k)>& value, std::size_t count,
-                         std::uint64_t seed) {
-  std::vector<double> values(count);
-  for (std::size_t k = 0; k < count; ++k) {
-    RandomStream random(seed, RandomPurpose::size, k);
-    values[k] = value((static_cast<double>(k) + random.uniform()) / static_cast<double>(count), k);
-  }
-  for (std::size_t k = count; k > 1; --k) { // Fisher–Yates
-    RandomStream random(seed, RandomPurpose::size, count + k);
-    std::swap(values[k - 1], values[static_cast<std::size_t>(random.uniform() * static_cast<double>(k))]);
-  }
-  return values;
+// Where k stands in a shuffled order of `count`, found for each k by itself: a Feistel network over as many bits as
+// count has, whose halves take turns, walked on from numbers that are too large (Black & Rogaway 2002). Eight rounds,
+// since the halves of a small count have few bits.
+std::size_t shuffled(std::size_t k, std::size_t count, std::uint64_t seed) {
+  const auto bits = static_cast<unsigned>(std::bit_width(count - 1));
+  const unsigned low_bits = bits - bits / 2;
+  const std::size_t low_mask = (std::size_t{1} << low_bits) - 1, high_mask = (std::size_t{1} << (bits / 2)) - 1;
+  const auto noise = [&](std::size_t round, std::size_t half) {
+    return static_cast<std::size_t>(0x1p32 * RandomStream(seed, RandomPurpose::shuffle, round << 32 | half).uniform());
+  };
+  do {
+    std::size_t high = k >> low_bits, low = k & low_mask;
+    for (std::size_t round = 0; round < 8; round += 2) {
+      high ^= noise(round, low) & high_mask;
+      low ^= noise(round + 1, high) & low_mask;
+    }
+    k = high << low_bits | low;
+  } while (k >= count);
+  return k;
 }
 
 } // namespace
 
-std::vector<double> draw_radii(const SizeLaw& law, std::size_t count, std::uint64_t seed) {
-  if (law.smallest == law.largest)
-    return std::vector<double>(count, law.smallest);
-  return draw(law.radius, count, seed);
+double DrawnSizes::value(const std::function<double(double u, std::size_t k)>& quantile, std::size_t particle) const {
+  const std::size_t k = shuffled(particle, count_, seed_);
+  RandomStream random(seed_, RandomPurpose::size, k);
+  return quantile((static_cast<double>(k) + random.uniform()) / static_cast<double>(count_), k);
 }
 
-std::vector<double> draw_densities(const SizeLaw& law, std::size_t count, std::uint64_t seed) {
-  return law.density ? draw(law.density, count, seed) : std::vector<double>();
+double DrawnSizes::radius(std::size_t particle) const {
+  return law_.smallest == law_.largest ? law_.smallest : value(law_.radius, particle);
+}
+
+double DrawnSizes::density(std::size_t particle) const {
+  return value(law_.density, particle);
+}
+
+std::vector<double> draw_radii(const SizeLaw& law, std::size_t count, std::uint64_t seed) {
+  const DrawnSizes sizes(law, count, seed);
+  std::vector<double> radii(count);
+  for (std::size_t k = 0; k < count; ++k)
+    radii[k] = sizes.radius(k);
+  return radii;
 }
 
 const std::vector<SizeEntry>& size_laws() {

@@ -153,15 +153,27 @@ struct Begun {
   PatchScale scale; // the first rank's
 };
 
-// Until there is a run, a stop is heeded at once: there is nothing that could be kept.
+// Until there is a run, a stop is heeded at once: there is nothing that could be kept. Ranks heed it together, between
+// two sweeps of a fresh start.
 Begun first_simulation(const Scene& scene, const RunOptions& options, const RunRequests& requests) {
+  const Ranks& ranks = options.ranks;
+  const std::atomic<bool> never = false;
+  const auto progress = [&](const StartProgress& now) {
+    if (ranks.any(requests.stop))
+      throw Interrupted();
+    if (options.start_progress)
+      options.start_progress(now);
+  };
   try {
-    const Interruptible start(requests.stop);
-    const Patch patch = initial_patch(scene, options.start_progress, options.ranks);
-    const PatchScale scale = scale_of(patch, options.ranks);
-    return {Simulation(scene, patch, options.ranks), scale};
+    const Interruptible start(ranks.many() ? never : requests.stop);
+    const Patch patch = initial_patch(scene, progress, ranks);
+    const PatchScale scale = scale_of(patch, ranks);
+    return {Simulation(scene, patch, ranks), scale};
   } catch (const Interrupted&) {
-    throw Error(ExitCode::run_time, "stopped before the first step (on request), so nothing is written; start again");
+    const Error stopped(ExitCode::run_time,
+                        "stopped before the first step (on request), so nothing is written; start again");
+    ranks.together([&] { throw stopped; });
+    throw stopped;
   }
 }
 

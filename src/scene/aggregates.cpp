@@ -14,14 +14,13 @@ namespace {
 void find_balls(std::vector<AggregateSettings>& aggregates, const ParticleSettings& particles) {
   if (aggregates.empty())
     return;
-  const std::vector<double> radii = draw_radii(particles.sizes, particles.count, particles.seed),
-                            densities = draw_densities(particles.sizes, particles.count, particles.seed);
+  const DrawnSizes sizes(particles.sizes, particles.count, particles.seed);
   for (AggregateSettings& a : aggregates) {
     double cubes = 0.0;
     for (std::size_t k = a.first; k < a.first + a.count; ++k) {
-      const double cube = radii[k] * radii[k] * radii[k];
+      const double cube = std::pow(sizes.radius(k), 3);
       cubes += cube;
-      a.mass += 4.0 / 3.0 * pi * (densities.empty() ? particles.density : densities[k]) * cube;
+      a.mass += 4.0 / 3.0 * pi * (sizes.has_densities() ? sizes.density(k) : particles.density) * cube;
     }
     a.radius = std::cbrt(cubes / a.filling);
   }

@@ -91,7 +91,8 @@ Relaxation relax(Patch& patch) {
   for (std::size_t k = 0; k < patch.size(); ++k)
     spheres[k] = {patch.positions[k], patch.radii[k], patch.positions[k].z(), static_cast<std::uint32_t>(k)};
   sort_by_place(spheres, patch.box);
-  if (!separate(spheres, patch.box, patch.offset, most_sweeps, [](int) {}))
+  SphereSlabs alone({}, patch.box);
+  if (!separate(spheres, patch.box, patch.offset, alone, most_sweeps, [](int) {}))
     throw InvariantError(
         fmt::format("particles still overlap after {} sweeps of moving them apart (the patch is too dense "
                     "somewhere); thin it out there or take smaller radii",

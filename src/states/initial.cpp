@@ -6,6 +6,7 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/exact_sum.hpp>
 #include <keeler/core/random.hpp>
+#include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/io/snapshot.hpp>
@@ -67,13 +68,15 @@ Patch thinned(Patch patch, const Scene& scene, const Ranks& ranks) {
 }
 
 // What the radii that were drawn add to the layer's height²: 1.7 τ R², with the R of the crowd.
-double own_room(const UniformRequest& request) {
-  if (request.radii.empty())
-    return 0.0;
-  double area = 0.0;
+double own_room(const UniformRequest& request, const Ranks& ranks) {
+  ExactSum squares;
   for (const double r : request.radii)
-    area += pi * r * r;
-  const double radius = crowd_volume(request.radii) / (4.0 / 3.0 * area);
+    squares += r * r;
+  ranks.merge({&squares});
+  const double area = pi * squares.value();
+  if (area == 0.0)
+    return 0.0;
+  const double radius = crowd_volume(request.radii, ranks) / (4.0 / 3.0 * area);
   const double height_in_radii = layer_height(area / request.box.area(), {1.0, 1.0}, 0.0, request.frequencies.nu);
   return std::pow(radius * height_in_radii, 2);
 }
@@ -91,50 +94,65 @@ Streamlines streamlines_of(const Scene& scene) {
   return streamlines;
 }
 
-// The last particles are those of aggregates; they leave the crowd, which is placed around their balls.
-void take_aggregates(const Scene& scene, UniformRequest& request) {
-  std::vector<double> densities = request.densities;
-  if (densities.empty())
-    densities.assign(request.radii.size(), request.density);
+// The last particles are those of aggregates; they are no crowd, which is placed around their balls.
+void hold_aggregates(const Scene& scene, const DrawnSizes& sizes, UniformRequest& request) {
   std::size_t number = 0;
   for (const AggregateSettings& aggregate : scene.particles.aggregates) {
-    const Material material{std::span(request.radii).subspan(aggregate.first, aggregate.count),
-                            std::span(densities).subspan(aggregate.first, aggregate.count)};
+    std::vector<double> radii, densities;
+    for (std::size_t k = aggregate.first; k < aggregate.first + aggregate.count; ++k) {
+      radii.push_back(sizes.radius(k));
+      densities.push_back(sizes.has_densities() ? sizes.density(k) : request.density);
+    }
     const std::vector<HeldBody> bodies =
-        aggregate_bodies(aggregate, ++number, material, request.frequencies, request.seed);
+        aggregate_bodies(aggregate, ++number, {radii, densities}, request.frequencies, request.seed);
     request.held.insert(request.held.end(), bodies.begin(), bodies.end());
-    request.closed.push_back({aggregate.place, aggregate.radius});
   }
-  request.radii.resize(scene.particles.free_count());
-  if (!request.densities.empty())
-    request.densities.resize(request.radii.size());
 }
 
-void add_moonlets(const Scene& scene, UniformRequest& request) {
+void hold_moonlets(const Scene& scene, UniformRequest& request) {
   for (const MoonletSettings& m : scene.moonlets) {
     const Vec3 circular(0.0, -scene.planet.frequencies.shear() * m.place.x(), 0.0);
     request.held.push_back({m.place, circular + m.velocity / scene.planet.orbital_frequency, m.radius, m.mass});
-    request.closed.push_back({m.place, m.radius});
   }
 }
 
-UniformRequest request_of(const Scene& scene) {
+std::vector<ClosedBall> closed_balls(const Scene& scene) {
+  std::vector<ClosedBall> balls;
+  for (const AggregateSettings& aggregate : scene.particles.aggregates)
+    balls.push_back({aggregate.place, aggregate.radius});
+  for (const MoonletSettings& moonlet : scene.moonlets)
+    balls.push_back({moonlet.place, moonlet.radius});
+  return balls;
+}
+
+// The rank's share of the radii.
+void take_radii(const DrawnSizes& sizes, std::size_t count, const Ranks& ranks, UniformRequest& request) {
+  request.first = count * ranks.own() / ranks.count();
+  request.radii.resize(count * (ranks.own() + 1) / ranks.count() - request.first);
+  parallel_for(request.radii.size(), [&](std::size_t k) { request.radii[k] = sizes.radius(request.first + k); });
+}
+
+UniformRequest request_of(const Scene& scene, const Ranks& ranks) {
+  const DrawnSizes sizes(scene.particles.sizes, scene.particles.count, scene.particles.seed);
   const double mean_radius = scene.particles.sizes.mean_power(1);
   UniformRequest request;
   request.box = {scene.size_x, scene.size_y, scene.planet.frequencies.shear(), 0.0};
   request.frequencies = scene.planet.frequencies;
-  request.radii = draw_radii(scene.particles.sizes, scene.particles.count, scene.particles.seed);
+  take_radii(sizes, scene.particles.free_count(), ranks, request);
   request.density = scene.particles.density;
-  request.densities = draw_densities(scene.particles.sizes, scene.particles.count, scene.particles.seed);
+  if (sizes.has_densities())
+    request.density_of = [sizes](std::uint64_t id) { return sizes.density(id); };
   request.dispersion_x = scene.particles.velocity_dispersion * mean_radius;
   request.dispersion_z = vertical_share * request.dispersion_x;
   request.streamlines = streamlines_of(scene);
   request.pattern = scene.particles.pattern;
   request.seed = scene.particles.seed;
-  if (!scene.particles.aggregates.empty())
-    take_aggregates(scene, request);
-  add_moonlets(scene, request);
-  request.own_room = own_room(request);
+  request.closed = closed_balls(scene);
+  ranks.first_does([&] {
+    hold_aggregates(scene, sizes, request);
+    hold_moonlets(scene, request);
+  });
+  request.own_room = own_room(request, ranks);
   return request;
 }
 
@@ -142,8 +160,9 @@ UniformRequest request_of(const Scene& scene) {
 void spin_aggregates(const Scene& scene, Patch& patch) {
   patch.spins.assign(patch.size(), Vec3::Zero());
   for (const AggregateSettings& a : scene.particles.aggregates)
-    for (std::size_t k = a.first; k < a.first + a.count; ++k)
-      patch.spins[k].z() = a.spin;
+    for (std::size_t k = 0; k < patch.size(); ++k)
+      if (patch.ids[k] >= a.first && patch.ids[k] < a.first + a.count)
+        patch.spins[k].z() = a.spin;
 }
 
 } // namespace
@@ -184,8 +203,8 @@ PatchScale scale_of(const Patch& patch, const Ranks& ranks) {
 
 namespace {
 
-Patch fresh_patch(const Scene& scene, const std::function<void(const StartProgress&)>& progress) {
-  Patch patch = uniform_patch(request_of(scene), progress);
+Patch fresh_patch(const Scene& scene, const std::function<void(const StartProgress&)>& progress, const Ranks& ranks) {
+  Patch patch = uniform_patch(request_of(scene, ranks), progress, ranks);
   patch.orbital_frequency = scene.planet.orbital_frequency;
   if (scene.collisions.friction && !scene.particles.aggregates.empty())
     spin_aggregates(scene, patch);
@@ -199,9 +218,7 @@ Patch initial_patch(const Scene& scene, const std::function<void(const StartProg
     const std::string& path = *scene.start_from;
     return thinned(patch_from_snapshot(read_snapshot(path, ranks).patch, path, scene, ranks), scene, ranks);
   }
-  Patch patch;
-  ranks.first_does([&] { patch = fresh_patch(scene, progress); });
-  return patch;
+  return fresh_patch(scene, progress, ranks);
 }
 
 } // namespace keeler

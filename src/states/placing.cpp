@@ -1,6 +1,7 @@
 #include "placing.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/exact_sum.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
@@ -26,32 +27,39 @@ constexpr int usual_sweeps = 120, sweeps_a_round = 400, most_rounds = 12;
 
 } // namespace
 
-double crowd_volume(const std::vector<double>& radii) {
-  if (radii.empty())
-    return 0.0;
-  double cubes = 0.0, squares_of_cubes = 0.0;
+double crowd_volume(const std::vector<double>& radii, const Ranks& ranks) {
+  ExactSum cubes, squares_of_cubes;
   for (const double r : radii) {
     cubes += r * r * r;
     squares_of_cubes += r * r * r * r * r * r;
   }
-  return 4.0 / 3.0 * pi * (cubes - squares_of_cubes / cubes);
+  ranks.merge({&cubes, &squares_of_cubes});
+  const double all = cubes.value();
+  return all > 0.0 ? 4.0 / 3.0 * pi * (all - squares_of_cubes.value() / all) : 0.0;
 }
 
-Placing::Placing(const UniformRequest& request)
-    : request_(request), crowd_volume_(crowd_volume(request.radii)), order_(request.radii.size()) {
-  const std::vector<double>& radii = request.radii;
-  std::iota(order_.begin(), order_.end(), 0u);
-  std::stable_sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) { return radii[a] > radii[b]; });
-  for (std::size_t first = 0, last; first < order_.size(); first = last) {
-    const double smallest = 0.5 * radii[order_[first]];
-    for (last = first; last < order_.size() && radii[order_[last]] >= smallest;)
-      ++last;
-    octaves_.push_back({first, last});
-  }
+Placing::Placing(const UniformRequest& request, const Ranks& ranks)
+    : request_(request), slabs_(ranks, request.box), crowd_volume_(crowd_volume(request.radii, ranks)),
+      order_(request.radii.size()) {
+  find_octaves();
+  const std::uint64_t count = octaves_.empty() ? 0 : octaves_.back().placed;
   for (std::size_t k = 0; k < request.closed.size(); ++k) {
     const auto& [centre, radius] = request.closed[k];
-    const auto number = static_cast<std::uint32_t>(radii.size() + k);
-    spheres_.push_back({centre, radius, centre.z(), number, true});
+    spheres_.push_back({centre, radius, centre.z(), static_cast<std::uint32_t>(count + k), true});
+  }
+}
+
+void Placing::find_octaves() {
+  const std::vector<double>& radii = request_.radii;
+  std::iota(order_.begin(), order_.end(), 0u);
+  std::stable_sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) { return radii[a] > radii[b]; });
+  for (std::size_t first = 0, last;; first = last) {
+    const double largest = slabs_.ranks().largest(first < order_.size() ? radii[order_[first]] : 0.0);
+    if (largest == 0.0)
+      return;
+    for (last = first; last < order_.size() && radii[order_[last]] >= 0.5 * largest;)
+      ++last;
+    octaves_.push_back({first, last, slabs_.ranks().sum(last)});
   }
 }
 
@@ -59,19 +67,19 @@ void Placing::run(const std::function<void(double)>& progress) {
   const ShearingBox& box = request_.box;
   double work = 0.0, done = 0.0; // an octave's goes with all that are placed so far
   for (const Octave& octave : octaves_)
-    work += static_cast<double>(octave.last);
+    work += static_cast<double>(octave.placed);
   for (const Octave& octave : octaves_) {
     draw(octave);
     sort_by_place(spheres_, box);
-    const double part = static_cast<double>(octave.last) / work;
+    const double part = static_cast<double>(octave.placed) / work;
     int round = 0;
     const auto after_sweep = [&](int sweeps) { // nobody knows how many there will be
       const int all = round * sweeps_a_round + sweeps;
       progress(done + part * all / (all + 0.5 * usual_sweeps));
     };
-    while (!separate(spheres_, box, box.first_offset, sweeps_a_round, after_sweep)) {
+    while (!separate(spheres_, box, box.first_offset, slabs_, sweeps_a_round, after_sweep)) {
       if (++round == most_rounds)
-        fail_too_dense();
+        slabs_.ranks().together(fail_too_dense);
       redraw_caught(round);
     }
     done += part;
@@ -80,11 +88,11 @@ void Placing::run(const std::function<void(double)>& progress) {
   }
 }
 
-bool Placing::is_free(const Vec3& place, double radius, const SizeLevels& larger) const {
+bool Placing::is_free(const Trial& trial, const SizeLevels& larger) const {
   bool free = true;
-  larger.visit_near(place, radius, 1.0, 0, [&](std::size_t k, const Image& image) {
-    const double sum = radius + spheres_[k].radius;
-    const Vec3 d = place - spheres_[k].place - request_.box.displacement(image, request_.box.first_offset);
+  larger.visit_near(trial.place, trial.radius, 1.0, 0, [&](std::size_t k, const Image& image) {
+    const double sum = trial.radius + spheres_[k].radius;
+    const Vec3 d = trial.place - spheres_[k].place - request_.box.displacement(image, request_.box.first_offset);
     free = free && d.squaredNorm() >= sum * sum;
   });
   return free;
@@ -100,85 +108,134 @@ std::pair<double, double> Placing::draw_guiding_centre(RandomStream& random) con
   }
 }
 
-// Tries places until one is free of all that is larger; from time to time farther from the mid-plane.
-Vec3 Placing::draw_place(RandomStream random, double radius, const SizeLevels& larger) const {
-  constexpr int tries_a_height = 50, most_tries = 1000;
+// From time to time farther from the mid-plane.
+void Placing::try_another_place(Trial& trial) const {
+  constexpr int tries_a_height = 50;
   const Frequencies& f = request_.frequencies;
   const Streamlines& streamlines = request_.streamlines;
-  double flat = 0.0, normal = 0.0;
-  for (int tries = 0;; ++tries) {
-    if (tries % tries_a_height == 0) {
-      flat = 2.0 * random.uniform() - 1.0;
-      normal = random.normal();
-    }
-    const auto [guiding_x, guiding_y] = draw_guiding_centre(random);
-    const Elements streamline = streamlines.elements(guiding_x);
-    const double crowding = request_.pattern.relative(guiding_x, guiding_y) / streamlines.spacing(guiding_x),
-                 motion = request_.dispersion_z / f.nu;
-    const double height = std::sqrt(motion * motion + request_.own_room * crowding);
-    const double filling = crowding * crowd_volume_ / request_.box.area() / (std::sqrt(two_pi) * height);
-    const LayerProfile profile = LayerProfile::of_height(height, filling, largest_filling);
-    const int heights = tries / tries_a_height; // drawn so far
-    const double stretch = 1.0 + heights;
-    const Vec3 place(guiding_x - streamline.e_cos, guiding_y + 2.0 / f.kappa * streamline.e_sin,
-                     stretch * (profile.slab * flat + profile.sigma * normal));
-    if (tries == most_tries || is_free(place, radius, larger))
-      return place;
+  const int heights = trial.tries / tries_a_height; // drawn before
+  if (trial.tries++ % tries_a_height == 0) {
+    trial.flat = 2.0 * trial.random.uniform() - 1.0;
+    trial.normal = trial.random.normal();
   }
+  const auto [guiding_x, guiding_y] = draw_guiding_centre(trial.random);
+  const Elements streamline = streamlines.elements(guiding_x);
+  const double crowding = request_.pattern.relative(guiding_x, guiding_y) / streamlines.spacing(guiding_x),
+               motion = request_.dispersion_z / f.nu;
+  const double height = std::sqrt(motion * motion + request_.own_room * crowding);
+  const double filling = crowding * crowd_volume_ / request_.box.area() / (std::sqrt(two_pi) * height);
+  const LayerProfile profile = LayerProfile::of_height(height, filling, largest_filling);
+  const double stretch = 1.0 + heights;
+  trial.place = Vec3(guiding_x - streamline.e_cos, guiding_y + 2.0 / f.kappa * streamline.e_sin,
+                     stretch * (profile.slab * trial.flat + profile.sigma * trial.normal));
+}
+
+// Each until it is free of all that is larger, or has tried often enough. A try in another slab is for its rank to
+// judge.
+std::vector<Sphere> Placing::place(std::vector<Trial> trials, const SizeLevels& larger) const {
+  constexpr int most_tries = 1000;
+  std::vector<Sphere> placed;
+  parallel_for(trials.size(), [&](std::size_t k) { try_another_place(trials[k]); });
+  do {
+    trials = in_their_slabs(std::move(trials));
+    parallel_for(trials.size(), [&](std::size_t k) {
+      Trial& trial = trials[k];
+      while (slabs_.has(trial.place) && trial.tries <= most_tries && !is_free(trial, larger))
+        try_another_place(trial);
+    });
+    const auto elsewhere = std::stable_partition(trials.begin(), trials.end(),
+                                                 [&](const Trial& trial) { return slabs_.has(trial.place); });
+    placed.reserve(placed.size() + static_cast<std::size_t>(elsewhere - trials.begin()));
+    for (auto trial = trials.begin(); trial != elsewhere; ++trial)
+      placed.push_back({trial->place, trial->radius, trial->place.z(), trial->particle});
+    trials.erase(trials.begin(), elsewhere);
+  } while (slabs_.ranks().any(!trials.empty()));
+  return placed;
+}
+
+std::vector<Placing::Trial> Placing::in_their_slabs(std::vector<Trial> trials) const {
+  const Ranks& ranks = slabs_.ranks();
+  if (!ranks.many())
+    return trials;
+  std::vector<std::vector<Trial>> parcels(ranks.count());
+  for (const Trial& trial : trials)
+    parcels[slabs_.owner(trial.place)].push_back(trial);
+  trials.clear();
+  for (const std::vector<Trial>& its : ranks.exchange(parcels))
+    trials.insert(trials.end(), its.begin(), its.end());
+  return trials;
 }
 
 void Placing::draw(const Octave& octave) {
+  const std::size_t own = spheres_.size();
+  slabs_.add_copies(spheres_, 1.0);
   const SizeLevels larger(spheres_, request_.box, request_.box.first_offset);
-  std::vector<Sphere> drawn(octave.last - octave.first);
-  parallel_for(drawn.size(), [&](std::size_t k) {
-    const std::uint32_t particle = order_[octave.first + k];
-    drawn[k] = {
-        draw_place(RandomStream(request_.seed, RandomPurpose::position, particle), request_.radii[particle], larger),
-        request_.radii[particle], 0.0, particle};
+  std::vector<Trial> trials(octave.last - octave.first);
+  parallel_for(trials.size(), [&](std::size_t k) {
+    const std::uint32_t number = order_[octave.first + k];
+    const std::uint64_t particle = request_.first + number;
+    trials[k].random = RandomStream(request_.seed, RandomPurpose::position, particle);
+    trials[k].radius = request_.radii[number];
+    trials[k].particle = static_cast<std::uint32_t>(particle);
   });
-  double moment = 0.0, squares = 0.0; // the least change that leaves no mean height by mass
+  std::vector<Sphere> drawn = place(std::move(trials), larger);
+  spheres_.resize(own);
+  ExactSum moment, squares; // the least change that leaves no mean height by mass
   for (const Sphere& sphere : drawn) {
     moment += sphere.mass() * sphere.place.z();
     squares += sphere.mass() * sphere.mass();
   }
+  slabs_.ranks().merge({&moment, &squares});
+  const double shift = moment.value() / squares.value();
   for (Sphere& sphere : drawn)
-    sphere.height = sphere.place.z() -= sphere.mass() * moment / squares;
+    sphere.height = sphere.place.z() -= sphere.mass() * shift;
   spheres_.insert(spheres_.end(), drawn.begin(), drawn.end());
 }
 
-// The smaller of a pair that still overlaps is caught, mostly in the wedge between two large ones: it gets another
-// place.
-void Placing::redraw_caught(int round) {
-  const SizeLevels levels(spheres_, request_.box, request_.box.first_offset);
-  std::vector<Vec3> places(spheres_.size());
-  parallel_for(spheres_.size(), [&](std::size_t k) {
-    const Sphere& sphere = spheres_[k];
-    bool caught = false;
-    places[k] = sphere.place;
-    if (sphere.held)
+// The smaller of a pair that still overlaps, mostly in the wedge between two large ones.
+bool Placing::is_caught(std::size_t k, const SizeLevels& levels) const {
+  const Sphere& sphere = spheres_[k];
+  bool caught = false;
+  levels.visit_near(sphere.place, sphere.radius, 1.0, 0, [&](std::size_t j, const Image& image) {
+    const Sphere& other = spheres_[j];
+    if (j == k || (!other.held && (other.radius < sphere.radius ||
+                                   (other.radius == sphere.radius && other.particle > sphere.particle))))
       return;
-    levels.visit_near(sphere.place, sphere.radius, 1.0, 0, [&](std::size_t j, const Image& image) {
-      const Sphere& other = spheres_[j];
-      if (j == k || (!other.held && (other.radius < sphere.radius || (other.radius == sphere.radius && j > k))))
-        return;
-      const Vec3 d = sphere.place - other.place - request_.box.displacement(image, request_.box.first_offset);
-      caught = caught || d.norm() < sphere.radius + other.radius;
-    });
-    const std::uint64_t stream = static_cast<std::uint64_t>(round) << 32 | sphere.particle;
-    if (caught)
-      places[k] = draw_place(RandomStream(request_.seed, RandomPurpose::relaxation, stream), sphere.radius, levels);
+    const Vec3 d = sphere.place - other.place - request_.box.displacement(image, request_.box.first_offset);
+    caught = caught || d.norm() < sphere.radius + other.radius;
   });
-  for (std::size_t k = 0; k < spheres_.size(); ++k) {
-    spheres_[k].place = places[k];
-    spheres_[k].height = places[k].z();
-  }
+  return caught;
 }
 
-std::vector<Vec3> Placing::places() const {
-  std::vector<Vec3> by_particle(spheres_.size());
-  for (const Sphere& sphere : spheres_)
-    by_particle[sphere.particle] = sphere.place;
-  return by_particle;
+// Those that are caught get other places.
+void Placing::redraw_caught(int round) {
+  const std::size_t own = spheres_.size();
+  slabs_.add_copies(spheres_, 1.0);
+  const SizeLevels levels(spheres_, request_.box, request_.box.first_offset);
+  std::vector<std::uint8_t> caught(own);
+  parallel_for(own, [&](std::size_t k) { caught[k] = !spheres_[k].held && is_caught(k, levels); });
+  std::vector<Trial> trials;
+  std::vector<Sphere> others;
+  for (std::size_t k = 0; k < own; ++k) {
+    const Sphere& sphere = spheres_[k];
+    if (caught[k]) {
+      const std::uint64_t stream = static_cast<std::uint64_t>(round) << 32 | sphere.particle;
+      trials.push_back(
+          {RandomStream(request_.seed, RandomPurpose::relaxation, stream), sphere.radius, sphere.particle});
+    } else {
+      others.push_back(sphere);
+      others.back().height = sphere.place.z();
+    }
+  }
+  const std::vector<Sphere> placed = place(std::move(trials), levels);
+  spheres_ = std::move(others);
+  spheres_.insert(spheres_.end(), placed.begin(), placed.end());
+}
+
+std::vector<Sphere> Placing::take_particles() {
+  std::erase_if(spheres_, [](const Sphere& sphere) { return sphere.held; });
+  std::sort(spheres_.begin(), spheres_.end(), [](const Sphere& a, const Sphere& b) { return a.particle < b.particle; });
+  return std::move(spheres_);
 }
 
 } // namespace keeler

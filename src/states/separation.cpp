@@ -23,9 +23,12 @@ constexpr int sweeps_a_list = 8; // at least: a few spheres that would go far wa
 
 class Separation {
 public:
-  Separation(std::vector<Sphere>& spheres, const ShearingBox& box, double offset)
-      : spheres_(spheres), box_(box), offset_(offset), moves_(spheres.size(), Vec3::Zero()),
-        listed_places_(spheres.size()) {}
+  Separation(std::vector<Sphere>& spheres, const ShearingBox& box, double offset, SphereSlabs& slabs)
+      : spheres_(spheres), box_(box), offset_(offset), slabs_(slabs), own_(spheres.size()), moves_(own_, Vec3::Zero()),
+        listed_places_(own_) {}
+  ~Separation() { spheres_.resize(own_); }
+  Separation(const Separation&) = delete;
+  Separation& operator=(const Separation&) = delete;
 
   // In a ball about the origin; nothing has a height to go back to.
   void enclose(double ball_radius) {
@@ -36,14 +39,16 @@ public:
   bool run(int most_sweeps, const std::function<void(int)>& after_sweep) {
     int list_age = sweeps_a_list;
     bool held = true; // by its skin, at least one sphere
+    const Ranks& ranks = slabs_.ranks();
     for (int sweeps = 0; sweeps < most_sweeps; after_sweep(++sweeps)) {
-      if (held && list_age >= sweeps_a_list) {
+      if (list_age >= sweeps_a_list && ranks.any(held)) {
         make_lists();
         list_age = 0;
       }
-      if (!push())
+      if (!ranks.any(push()))
         return true;
       held = move();
+      slabs_.update_copies(spheres_);
       ++list_age;
       tether_ = tether_ > last_tether ? tether_ * tether_decay : 0.0;
     }
@@ -52,14 +57,16 @@ public:
 
 private:
   void make_lists() {
-    lists_.build(spheres_, box_, offset_, skin);
-    parallel_for(spheres_.size(), [&](std::size_t i) { listed_places_[i] = spheres_[i].place; });
+    spheres_.resize(own_);
+    slabs_.add_copies(spheres_, 1.0 + skin);
+    lists_.build(spheres_, own_, box_, offset_, skin);
+    parallel_for(own_, [&](std::size_t i) { listed_places_[i] = spheres_[i].place; });
   }
 
   // Sets the next move of each sphere; false when nothing overlaps any more.
   bool push() {
     std::atomic<bool> overlaps = false;
-    parallel_for(spheres_.size(), [&](std::size_t i) {
+    parallel_for(own_, [&](std::size_t i) {
       if (spheres_[i].held)
         return;
       bool overlapping = false;
@@ -85,7 +92,8 @@ private:
       if (square >= wanted * wanted)
         continue;
       const double distance = std::sqrt(square), mass = sphere.mass(), its_mass = other.mass();
-      const Vec3 direction = distance > 0.0 ? Vec3(d / distance) : Vec3(0.0, 0.0, i < neighbour.sphere ? -1.0 : 1.0);
+      const Vec3 direction =
+          distance > 0.0 ? Vec3(d / distance) : Vec3(0.0, 0.0, sphere.particle < other.particle ? -1.0 : 1.0);
       shift += direction * ((wanted - distance) * its_mass / (mass + its_mass));
       overlapping = overlapping || distance < sum + enough * smaller;
     }
@@ -106,7 +114,7 @@ private:
   // Nobody leaves its skin, so that the lists stay complete; true when a sphere would have.
   bool move() {
     std::atomic<bool> held = false;
-    parallel_for(spheres_.size(), [&](std::size_t i) {
+    parallel_for(own_, [&](std::size_t i) {
       Sphere& sphere = spheres_[i];
       const Vec3 moved = sphere.place + moves_[i] - listed_places_[i];
       const double square = moved.squaredNorm(), allowed = 0.999 * skin * sphere.radius;
@@ -123,6 +131,8 @@ private:
   std::vector<Sphere>& spheres_;
   const ShearingBox& box_;
   double offset_;
+  SphereSlabs& slabs_;
+  std::size_t own_; // spheres; copies of other ranks' stand behind them
   double ball_radius_ = std::numeric_limits<double>::infinity();
   std::vector<Vec3> moves_, listed_places_;
   SphereNeighbours lists_;
@@ -139,15 +149,16 @@ void sort_by_place(std::vector<Sphere>& spheres, const ShearingBox& box) {
   });
 }
 
-bool separate(std::vector<Sphere>& spheres, const ShearingBox& box, double offset, int most_sweeps,
+bool separate(std::vector<Sphere>& spheres, const ShearingBox& box, double offset, SphereSlabs& slabs, int most_sweeps,
               const std::function<void(int)>& after_sweep) {
-  return Separation(spheres, box, offset).run(most_sweeps, after_sweep);
+  return Separation(spheres, box, offset, slabs).run(most_sweeps, after_sweep);
 }
 
 bool separate_in_ball(std::vector<Sphere>& spheres, double ball_radius, int most_sweeps) {
   const double side = 8.0 * ball_radius; // images are out of reach
   const ShearingBox box{side, side, 0.0, 0.0};
-  Separation separation(spheres, box, 0.0);
+  SphereSlabs slabs({}, box);
+  Separation separation(spheres, box, 0.0, slabs);
   separation.enclose(ball_radius);
   return separation.run(most_sweeps, [](int) {});
 }

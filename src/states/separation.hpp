@@ -6,6 +6,7 @@
 #pragma once
 
 #include "sphere.hpp"
+#include "sphere_slabs.hpp"
 
 #include <keeler/box/shearing_box.hpp>
 
@@ -20,8 +21,8 @@ void sort_by_place(std::vector<Sphere>& spheres, const ShearingBox& box);
 /// Moves the spheres until each pair is farther apart than contact by at least 2 × 10⁻⁵ of the smaller radius, in about
 /// a hundred sweeps over all of them. Those that are held stay, and may touch each other. Spheres should be sorted by
 /// place. Calls after_sweep(number of sweeps so far). False when overlaps are left after so many sweeps. Throws
-/// Interrupted. The bits do not depend on the number of threads.
-bool separate(std::vector<Sphere>& spheres, const ShearingBox& box, double offset, int most_sweeps,
+/// Interrupted. The bits depend neither on the number of threads nor on which spheres each rank has. Collective.
+bool separate(std::vector<Sphere>& spheres, const ShearingBox& box, double offset, SphereSlabs& slabs, int most_sweeps,
               const std::function<void(int)>& after_sweep);
 
 /// The same inside a ball about the origin, in which all of each sphere comes to lie; heights do not matter.

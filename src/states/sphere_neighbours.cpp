@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
 namespace keeler {
 namespace {
@@ -17,7 +18,8 @@ struct Pair {
 using Blocks = std::vector<std::vector<Pair>>; // a block of larger partners each
 
 // Each sphere looks for smaller ones: it meets of the order of r² N / area of them, τ N in all, whatever the sizes.
-Blocks find_pairs(const std::vector<Sphere>& spheres, const ShearingBox& box, double offset, double skin) {
+Blocks find_pairs(const std::vector<Sphere>& spheres, std::size_t own, const ShearingBox& box, double offset,
+                  double skin) {
   constexpr std::size_t block = 1024;
   const std::size_t count = spheres.size();
   const SizeLevels levels(spheres, box, offset);
@@ -25,7 +27,7 @@ Blocks find_pairs(const std::vector<Sphere>& spheres, const ShearingBox& box, do
     const Sphere& sphere = spheres[i];
     const auto consider = [&](std::size_t j, const Image& image) {
       const Sphere& other = spheres[j];
-      if (j == i || other.radius > sphere.radius || (other.radius == sphere.radius && j > i))
+      if (j == i || other.radius > sphere.radius || (other.radius == sphere.radius && j > i) || std::min(i, j) >= own)
         return;
       const double range = (sphere.radius + other.radius) * (1.0 + skin);
       const Vec3 d = sphere.place - other.place - box.displacement(image, offset);
@@ -47,8 +49,9 @@ Blocks find_pairs(const std::vector<Sphere>& spheres, const ShearingBox& box, do
 
 } // namespace
 
-void SphereNeighbours::build(const std::vector<Sphere>& spheres, const ShearingBox& box, double offset, double skin) {
-  Blocks blocks = find_pairs(spheres, box, offset, skin);
+void SphereNeighbours::build(const std::vector<Sphere>& spheres, std::size_t own, const ShearingBox& box, double offset,
+                             double skin) {
+  Blocks blocks = find_pairs(spheres, own, box, offset, skin);
   first_.assign(spheres.size() + 2, 0); // a counting sort: first_[i + 1] is where the next neighbour of i goes
   for (const std::vector<Pair>& block : blocks)
     for (const Pair& pair : block) {
@@ -64,6 +67,14 @@ void SphereNeighbours::build(const std::vector<Sphere>& spheres, const ShearingB
     }
     block = {};
   }
+  parallel_for(own, [&](std::size_t i) {
+    std::sort(entries_.begin() + static_cast<std::ptrdiff_t>(first_[i]),
+              entries_.begin() + static_cast<std::ptrdiff_t>(first_[i + 1]),
+              [&](const Neighbour& a, const Neighbour& b) {
+                return std::tuple(spheres[a.sphere].particle, a.image.nx, a.image.ny) <
+                       std::tuple(spheres[b.sphere].particle, b.image.nx, b.image.ny);
+              });
+  });
 }
 
 } // namespace keeler

@@ -2,13 +2,13 @@
 
 #include "placing.hpp"
 
+#include <keeler/core/exact_sum.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 
 #include <cmath>
-#include <numeric>
 
 namespace keeler {
 namespace {
@@ -23,20 +23,23 @@ Vec3 random_velocity(const UniformRequest& request, std::size_t k) {
 
 // The least change, by the sum of squares, that leaves no momentum: in proportion to the mass, so that one heavy
 // particle does not set the light ones drifting.
-void remove_momentum(Patch& patch) {
-  const auto sum = [&](const auto& term) { return ordered_sum(patch.size(), term); };
-  const double squares = sum([&](std::size_t k) { return patch.masses[k] * patch.masses[k]; });
-  Vec3 momentum;
-  for (int axis = 0; axis < 3; ++axis)
-    momentum[axis] = sum([&](std::size_t k) { return patch.masses[k] * patch.velocities[k][axis]; });
-  parallel_for(patch.size(), [&](std::size_t k) { patch.velocities[k] -= patch.masses[k] / squares * momentum; });
+void remove_momentum(Patch& patch, const Ranks& ranks) {
+  auto squares = exact_total<ExactSum>(patch.size(),
+                                       [&](ExactSum& sum, std::size_t k) { sum += patch.masses[k] * patch.masses[k]; });
+  auto momentum = exact_total<ExactVec3>(
+      patch.size(), [&](ExactVec3& sum, std::size_t k) { sum += patch.masses[k] * patch.velocities[k]; });
+  ranks.merge({&squares, &momentum.x, &momentum.y, &momentum.z});
+  const Vec3 change = momentum.value() / squares.value();
+  parallel_for(patch.size(), [&](std::size_t k) { patch.velocities[k] -= patch.masses[k] * change; });
 }
 
-void centre_heights(Patch& patch) {
-  const double mass = ordered_sum(patch.size(), [&](std::size_t k) { return patch.masses[k]; });
-  const double moment =
-      ordered_sum(patch.size(), [&](std::size_t k) { return patch.masses[k] * patch.positions[k].z(); });
-  parallel_for(patch.size(), [&](std::size_t k) { patch.positions[k].z() -= moment / mass; });
+void centre_heights(Patch& patch, const Ranks& ranks) {
+  auto mass = exact_total<ExactSum>(patch.size(), [&](ExactSum& sum, std::size_t k) { sum += patch.masses[k]; });
+  auto moment = exact_total<ExactSum>(
+      patch.size(), [&](ExactSum& sum, std::size_t k) { sum += patch.masses[k] * patch.positions[k].z(); });
+  ranks.merge({&mass, &moment});
+  const double height = moment.value() / mass.value();
+  parallel_for(patch.size(), [&](std::size_t k) { patch.positions[k].z() -= height; });
 }
 
 void follow_streamlines(const UniformRequest& request, Patch& patch) {
@@ -46,45 +49,49 @@ void follow_streamlines(const UniformRequest& request, Patch& patch) {
   });
 }
 
-void add(const HeldBody& body, Patch& patch) {
+void add(const HeldBody& body, std::uint64_t id, Patch& patch) {
   patch.positions.push_back(body.place);
   patch.velocities.push_back(body.velocity);
   patch.radii.push_back(body.radius);
   patch.masses.push_back(body.mass);
-  patch.ids.push_back(patch.ids.size());
+  patch.ids.push_back(id);
 }
 
-Patch patch_at(const UniformRequest& request, std::vector<Vec3> places) {
+Patch patch_of(const UniformRequest& request, const std::vector<Sphere>& particles, const Ranks& ranks) {
   Patch patch;
   patch.box = request.box;
   patch.offset = request.box.first_offset;
   patch.frequencies = request.frequencies;
-  patch.radii = request.radii;
-  patch.positions = std::move(places);
-  patch.positions.resize(request.radii.size()); // without the closed balls, which come last
-  patch.velocities.resize(patch.size());
-  patch.masses.resize(patch.size());
-  patch.ids.resize(patch.size());
-  std::iota(patch.ids.begin(), patch.ids.end(), std::uint64_t{0});
-  parallel_for(patch.size(), [&](std::size_t k) {
-    patch.velocities[k] = random_velocity(request, k);
-    const double density = request.densities.empty() ? request.density : request.densities[k];
-    patch.masses[k] = 4.0 / 3.0 * pi * density * std::pow(request.radii[k], 3);
+  patch.positions.resize(particles.size());
+  patch.velocities.resize(particles.size());
+  patch.radii.resize(particles.size());
+  patch.masses.resize(particles.size());
+  patch.ids.resize(particles.size());
+  parallel_for(particles.size(), [&](std::size_t k) {
+    const Sphere& sphere = particles[k];
+    patch.ids[k] = sphere.particle;
+    patch.positions[k] = sphere.place;
+    patch.velocities[k] = random_velocity(request, sphere.particle);
+    patch.radii[k] = sphere.radius;
+    const double density = request.density_of ? request.density_of(sphere.particle) : request.density;
+    patch.masses[k] = 4.0 / 3.0 * pi * density * std::pow(sphere.radius, 3);
   });
-  if (patch.size() > 0) {
-    remove_momentum(patch);
-    if (request.held.empty()) // particles could be shifted into a held body
-      centre_heights(patch);
+  std::uint64_t next_id = ranks.sum(patch.size());
+  if (next_id > 0) {
+    remove_momentum(patch, ranks);
+    if (request.closed.empty()) // particles could be shifted into a held body
+      centre_heights(patch, ranks);
   }
   follow_streamlines(request, patch);
   for (const HeldBody& body : request.held)
-    add(body, patch);
+    add(body, next_id++, patch);
   return patch;
 }
 
 } // namespace
 
-Patch uniform_patch(const UniformRequest& request, const std::function<void(const StartProgress&)>& progress) {
+Patch uniform_patch(const UniformRequest& request, const std::function<void(const StartProgress&)>& progress,
+                    const Ranks& ranks) {
   double seconds = 0.0;
   const Stopwatch watch(seconds);
   const auto show = [&](double share) {
@@ -92,9 +99,9 @@ Patch uniform_patch(const UniformRequest& request, const std::function<void(cons
     if (progress)
       progress({share, elapsed, elapsed * (1.0 - share) / share});
   };
-  Placing placing(request);
+  Placing placing(request, ranks);
   placing.run(show);
-  Patch patch = patch_at(request, placing.places());
+  Patch patch = patch_of(request, placing.take_particles(), ranks);
   show(1.0);
   return patch;
 }

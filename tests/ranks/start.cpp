@@ -5,6 +5,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/io/snapshot.hpp>
+#include <keeler/runs/run.hpp>
 #include <keeler/runs/state_hash.hpp>
 #include <keeler/simulation/simulation.hpp>
 #include <keeler/states/initial.hpp>
@@ -187,4 +188,18 @@ TEST_CASE("what no ring has is an error on all ranks, in the words of one proces
   CHECK(words(elsewhere).find("was made at another place") != std::string::npos);
   none.positions.clear(), none.velocities.clear(), none.radii.clear(), none.masses.clear(), none.ids.clear();
   CHECK(words(none).find("holds no particles") != std::string::npos);
+}
+
+TEST_CASE("a stop that one rank is asked for while a start is made ends all in the same words") {
+  const test::TemporaryFolder folder;
+  RunOptions options;
+  options.folder = folder / "run";
+  options.ranks = launched();
+  RunRequests requests;
+  int calls = 0;
+  options.start_progress = [&](const StartProgress&) { requests.stop = ++calls == 3 && launched().is_first(); };
+  const std::string words = words_of([&] { start_run(scene(), options, requests); });
+  CHECK(words.find("stopped before the first step (on request)") == 0);
+  CHECK(calls == 3);
+  CHECK_FALSE(std::filesystem::exists(options.folder));
 }

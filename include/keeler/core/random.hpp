@@ -17,7 +17,8 @@ enum class RandomPurpose : std::uint32_t {
   sample = 6,
   contact = 7,
   thinning = 8,
-  aggregate = 9
+  aggregate = 9,
+  shuffle = 10
 };
 
 /// Philox4x64-10 (Salmon et al. 2011) keyed by seed and purpose, counting draws of one id.

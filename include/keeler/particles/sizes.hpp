@@ -36,12 +36,27 @@ SizeLaw tabulated_sizes(NumberRows table);
 /// A table of radii, each with a number as above and with the density (kg/m³) of its particles.
 SizeLaw populations(const NumberRows& table);
 
-/// Radii (m) of particles 0 … count−1: the quantiles of the law at jittered even spacing, in an order shuffled by id,
-/// so that even a small sample has the law's moments. Same seed, same radii.
-std::vector<double> draw_radii(const SizeLaw& law, std::size_t count, std::uint64_t seed);
+/// The sizes of particles 0 … count−1: the quantiles of the law at jittered even spacing, in a shuffled order, so that
+/// even a small sample has the law's moments. Each particle's is found by itself, whatever the others'. Same seed, same
+/// sizes.
+class DrawnSizes {
+public:
+  DrawnSizes(const SizeLaw& law, std::size_t count, std::uint64_t seed) : law_(law), count_(count), seed_(seed) {}
 
-/// The densities of the same particles, kg/m³; empty where the law has none.
-std::vector<double> draw_densities(const SizeLaw& law, std::size_t count, std::uint64_t seed);
+  double radius(std::size_t particle) const; ///< m
+  bool has_densities() const { return static_cast<bool>(law_.density); }
+  double density(std::size_t particle) const; ///< kg/m³; only where the law has densities
+
+private:
+  double value(const std::function<double(double u, std::size_t k)>& quantile, std::size_t particle) const;
+
+  SizeLaw law_;
+  std::size_t count_;
+  std::uint64_t seed_;
+};
+
+/// The radii of all of them, m.
+std::vector<double> draw_radii(const SizeLaw& law, std::size_t count, std::uint64_t seed);
 
 /// A law that a scene can choose: its name, its keys, and how it is made from their values. `make` throws UsageError
 /// when the values do not fit together.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <keeler/particles/patch.hpp>
+#include <keeler/ranks/ranks.hpp>
 #include <keeler/scene/density_pattern.hpp>
 #include <keeler/states/progress.hpp>
 #include <keeler/states/streamlines.hpp>
@@ -24,19 +25,21 @@ struct ClosedBall {
   double radius;
 };
 
-/// What a uniform patch is made of. Internal units.
+/// What a uniform patch is made of. Internal units. Of several ranks each gives the radii of some particles, whose ids
+/// follow those of the rank before, the first rank the held bodies, and all of them all else.
 struct UniformRequest {
   ShearingBox box;
   Frequencies frequencies;
-  std::vector<double> radii;      ///< m, one a particle; particle k gets id k
-  double density = 900.0;         ///< kg m⁻³
-  std::vector<double> densities;  ///< one a particle in its place; empty: all have the same
-  double dispersion_x = 1.0;      ///< c_x, m rad⁻¹
-  double dispersion_z = 0.65;     ///< c_z, m rad⁻¹
-  double own_room = 0.0;          ///< m²: the layer's height is √(c_z²/ν² + own_room)
-  Streamlines streamlines;        ///< that the mean motion follows; circles unless given
-  std::vector<HeldBody> held;     ///< they come after the particles, with the ids that follow
-  std::vector<ClosedBall> closed; ///< they hold all the held bodies; no two may overlap
+  std::vector<double> radii; ///< m, of particles first, first + 1, …; particle k gets id k
+  std::uint64_t first = 0;
+  double density = 900.0;                               ///< kg m⁻³
+  std::function<double(std::uint64_t id)> density_of{}; ///< that of each in its place; empty: all have the same
+  double dispersion_x = 1.0;                            ///< c_x, m rad⁻¹
+  double dispersion_z = 0.65;                           ///< c_z, m rad⁻¹
+  double own_room = 0.0;                                ///< m²: the layer's height is √(c_z²/ν² + own_room)
+  Streamlines streamlines;                              ///< that the mean motion follows; circles unless given
+  std::vector<HeldBody> held;                           ///< they come after the particles, with the ids that follow
+  std::vector<ClosedBall> closed; ///< each holds some of the held bodies, and all of them are held; no two overlap
   DensityPattern pattern;         ///< of the guiding centres on them
   std::uint64_t seed = 1;
 };
@@ -46,8 +49,10 @@ struct UniformRequest {
 /// Gaussian about those of the streamlines, so that c_y = c_x κ/2, and so are vertical velocities; their random parts
 /// have no mean by mass, nor have the heights (of the particles alone where bodies are held, but for what these push
 /// aside). Each pair is apart by at least 2 × 10⁻⁵ of the smaller radius. Sizes may differ by 10⁴ and more; time and
-/// memory go with the number of particles. Same request, same state, for any number of threads. Throws UsageError when
-/// there is no room without overlap, Interrupted (interrupt.hpp).
-Patch uniform_patch(const UniformRequest& request, const std::function<void(const StartProgress&)>& progress = {});
+/// memory go with the number of particles. Same request, same state, for any number of threads and ranks, of which each
+/// gets some of the particles. Throws UsageError when there is no room without overlap, Interrupted (interrupt.hpp).
+/// Collective.
+Patch uniform_patch(const UniformRequest& request, const std::function<void(const StartProgress&)>& progress = {},
+                    const Ranks& ranks = {});
 
 } // namespace keeler

@@ -90,7 +90,7 @@ TEST_CASE("the same bits any way: uniform states, with and without kicks") {
   s.smallest = 0.4;
   s.step = two_pi * 2e-3;
   const Patch patch = test::make_patch(s, 1);
-  CHECK(same_any_way(patch, {}, {s.step, 100}).collisions > 4000);
+  CHECK(same_any_way(patch, {}, {s.step, 110}).collisions > 4000);
   CHECK(same_any_way(patch, {}, {s.step, 60, 0.2}).collisions > 2000);
 }
 

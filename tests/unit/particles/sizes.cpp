@@ -10,24 +10,28 @@ using namespace keeler;
 TEST_CASE("each row of populations has its number of particles, its radius and its density") {
   const SizeLaw law = populations({{2.0, 30, 450.0}, {2.0, 50, 900.0}, {5.0, 20, 1200.0}});
   CHECK(law.listed == 3);
-  const std::vector<double> radii = draw_radii(law, 100, 3), densities = draw_densities(law, 100, 3);
+  const DrawnSizes sizes(law, 100, 3);
   int light = 0, heavy = 0, large = 0;
   double mass = 0.0, volume = 0.0;
   for (std::size_t k = 0; k < 100; ++k) {
-    light += radii[k] == 2.0 && densities[k] == 450.0;
-    heavy += radii[k] == 2.0 && densities[k] == 900.0;
-    large += radii[k] == 5.0 && densities[k] == 1200.0;
-    volume += std::pow(radii[k], 3);
-    mass += std::pow(radii[k], 3) * densities[k];
+    const double radius = sizes.radius(k), density = sizes.density(k);
+    light += radius == 2.0 && density == 450.0;
+    heavy += radius == 2.0 && density == 900.0;
+    large += radius == 5.0 && density == 1200.0;
+    volume += std::pow(radius, 3);
+    mass += std::pow(radius, 3) * density;
   }
   CHECK(light == 30);
   CHECK(heavy == 50);
   CHECK(large == 20);
   CHECK(law.mean_density == doctest::Approx(mass / volume).epsilon(1e-14));
-  CHECK(draw_densities(equal_sizes(1.0), 100, 3).empty());
+  CHECK_FALSE(DrawnSizes(equal_sizes(1.0), 100, 3).has_densities());
   const SizeLaw alike = populations({{1.0, 1, 300.0}, {1.0, 3, 600.0}}); // one radius, two densities
-  const std::vector<double> of_alike = draw_densities(alike, 80, 1);
-  CHECK(std::count(of_alike.begin(), of_alike.end(), 300.0) == 20);
+  const DrawnSizes of_alike(alike, 80, 1);
+  int lightest = 0;
+  for (std::size_t k = 0; k < 80; ++k)
+    lightest += of_alike.density(k) == 300.0;
+  CHECK(lightest == 20);
 }
 
 TEST_CASE("drawn radii have the moments of the law and depend on the seed alone") {
@@ -90,5 +94,31 @@ TEST_CASE("of tabulated sizes each has its number, and its share of any other nu
     CHECK(number_of(2.0, 20000, seed) == 10);
     CHECK(number_of(30.0, 80000, seed) == 4);
     CHECK(number_of(2.0, 10000, seed) == 5);
+  }
+}
+
+TEST_CASE("whatever the count, each size of a list goes to one particle, and to any one as often") {
+  std::vector<double> numbers;
+  for (std::size_t count = 1; count <= 300; ++count) {
+    numbers.push_back(static_cast<double>(count));
+    std::vector<double> radii = draw_radii(listed_sizes(numbers), count, 11);
+    std::sort(radii.begin(), radii.end());
+    CHECK(radii == numbers);
+  }
+  for (const std::size_t count : {2, 3, 5, 16, 17}) {
+    CAPTURE(count);
+    constexpr int seeds = 8000;
+    std::vector<std::vector<int>> times(count, std::vector<int>(count, 0)); // particle, place in the list
+    for (int seed = 0; seed < seeds; ++seed) {
+      const std::vector<double> radii =
+          draw_radii(listed_sizes({numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(count)}), count,
+                     static_cast<std::uint64_t>(seed));
+      for (std::size_t k = 0; k < count; ++k)
+        ++times[k][static_cast<std::size_t>(radii[k]) - 1];
+    }
+    const double share = 1.0 / static_cast<double>(count);
+    for (const std::vector<int>& of_particle : times)
+      for (const int its : of_particle) // 4.5 standard errors
+        CHECK(std::fabs(its - seeds * share) < 4.5 * std::sqrt(seeds * share * (1.0 - share)));
   }
 }

@@ -10,7 +10,7 @@ inline Scene small_scene(const std::vector<std::string>& overrides = {}) {
 [planet]
 orbital_frequency = 1.9565e-4
 [box]
-size = [30.0, 30.0]
+size = [30.0, 25.0]
 [particles]
 count = 100
 density = 500.0

@@ -104,7 +104,7 @@ TEST_CASE("each copy keeps the motion of the patch until rounding grows") {
   for (const auto& tiling : tilings) {
     const Patch large = tiled_patch(patch, tiling.first, tiling.second);
     Simulation one(scene, patch), many(scene, large);
-    for (int k = 0; k < 80; ++k) {
+    for (int k = 0; k < 110; ++k) {
       one.advance();
       many.advance();
     }
