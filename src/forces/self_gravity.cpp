@@ -27,6 +27,15 @@ public:
     solver_->accelerate(problem, accelerations);
   }
 
+  std::optional<GravityEnergy> energy(const Boundary& boundary) override {
+    if (!has_energy_meter(settings_))
+      return std::nullopt;
+    const GravityProblem problem = gravity_problem(boundary, orbital_frequency_, positions_, masses_);
+    if (auto* const solver = dynamic_cast<EnergyMeter*>(solver_.get())) // one mesh for both
+      return solver->energy(problem);
+    return make_energy_meter(settings_, masses_, problem.box.area(), problem.ranks)->energy(problem);
+  }
+
 private:
   Vec3 random_origin(const Boundary& boundary) const {
     RandomStream random(seed_, RandomPurpose::gravity_origin, static_cast<std::uint64_t>(boundary.step));
@@ -58,17 +67,6 @@ GravityProblem gravity_problem(const Boundary& boundary, double orbital_frequenc
     masses[k] = body.mass;
   });
   return {positions, masses, particles.ids, boundary.box, boundary.offset, newton_g(orbital_frequency), boundary.ranks};
-}
-
-std::optional<GravityEnergy> GravityMeter::measure(const Boundary& boundary) {
-  if (!has_energy_meter(settings_))
-    return std::nullopt;
-  std::vector<Vec3> positions;
-  std::vector<double> masses;
-  const GravityProblem problem = gravity_problem(boundary, orbital_frequency_, positions, masses);
-  if (!solver_)
-    solver_ = make_energy_meter(settings_, masses, problem.box.area(), boundary.ranks);
-  return solver_->energy(problem);
 }
 
 std::unique_ptr<Force> make_self_gravity(const GravitySettings& settings, const ForceContext& context) {

@@ -56,8 +56,6 @@ Recorder::Recorder(const RunFolder& folder, const FolderLock* lock, const Scene&
     : folder_(folder), lock_(lock), ranks_(ranks), scene_(scene), provenance_(collect_provenance(arguments)),
       counters_(std::move(counters)), notice_(std::move(notice)), columns_(series_columns_of(scene)),
       moonlet_columns_(moonlet_columns_of(scene)) {
-  if (measures_gravity(scene_))
-    gravity_meter_.emplace(*scene_.gravity, scene_.planet.orbital_frequency);
   ranks_.first_does([&] { open(resumed_at); });
 }
 
@@ -228,13 +226,10 @@ void Recorder::append(const SeriesSample& row, const std::vector<std::vector<dou
 // In the first row at or after each multiple of its interval: what is due follows from the step alone.
 std::optional<GravityEnergy> Recorder::measure_gravity(const Simulation& simulation) {
   const std::int64_t step = simulation.state().step, every = scene_.output.stress_every;
-  if (!gravity_meter_ || (step > 0 && step / every == (step - scene_.output.series_every) / every))
+  if (!measures_gravity(scene_) || (step > 0 && step / every == (step - scene_.output.series_every) / every))
     return std::nullopt;
   const Stopwatch watch(costs_.stresses);
-  const std::optional<GravityEnergy> gravity = simulation.measure(*gravity_meter_);
-  if (scene_.output.series_every == 0)
-    gravity_meter_.reset(); // there will be no other row
-  return gravity;
+  return simulation.gravity_energy();
 }
 
 void Recorder::check_forces(const Simulation& simulation) {

@@ -8,7 +8,6 @@
 #include "run_folder.hpp"
 
 #include <keeler/files/naming_guard.hpp>
-#include <keeler/forces/self_gravity.hpp>
 #include <keeler/io/provenance.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/runs/folder_lock.hpp>
@@ -115,8 +114,7 @@ private:
     bool looks_on() const override { return false; }
     bool wants_records() const override { return true; }
   } for_first_;
-  std::optional<GravityMeter> gravity_meter_; // only where the series has it
-  std::int64_t sound_step_ = -1;              // whose state was sound
+  std::int64_t sound_step_ = -1; // whose state was sound
   ForceChecks force_checks_;
   OutputCosts costs_;
 };

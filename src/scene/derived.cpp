@@ -15,8 +15,7 @@ namespace {
 // Peak memory of `keeler run` of examples/a-ring-wakes and examples/equilibrium, measured at N = 10⁵ and 4 × 10⁵.
 namespace cost {
 constexpr double program_bytes = 33e6;  // code, libraries, buffers that do not grow with N
-constexpr double file_bytes = 260.0;    // files are built in memory before they are written
-constexpr double drift_bytes = 580.0;   // lines, cells, lists, stamps, what threads note: at most 660 with state
+constexpr double drift_bytes = 590.0;   // lines, cells, lists, stamps, what threads note: at most 660 with state
 constexpr double tree_node_bytes = 120; // box, mass, centre, quadrupole, links
 constexpr double nodes_per_particle = 0.5;
 constexpr double mesh_bytes = 150.0; // some ten nodes a particle in a layer of ten radii, and the places
@@ -25,8 +24,8 @@ constexpr double mesh_bytes = 150.0; // some ten nodes a particle in a layer of 
 double bytes_per_particle(const Scene& scene) {
   const double state = sizeof(Body) + sizeof(std::uint64_t);
   const double output_copy = 2 * sizeof(Vec3) + 2 * sizeof(double) + sizeof(std::uint64_t); // a Patch
-  const double spins = scene.collisions.friction ? 3.0 * sizeof(Vec3) : 0.0; // in the state, a Patch and a file
-  double total = state + spins + output_copy + cost::file_bytes + cost::drift_bytes;
+  const double spins = scene.collisions.friction ? 2.0 * sizeof(Vec3) : 0.0;                // in the state and a Patch
+  double total = state + spins + output_copy + cost::drift_bytes;
   if (scene.gravity) {
     total += 2 * sizeof(Vec3) + sizeof(double) + sizeof(std::uint64_t); // a GravityProblem and its answer
     const auto solver = chosen_for(scene.particles.count, *scene.gravity).solver;

@@ -224,8 +224,8 @@ Boundary Simulation::boundary() const {
           two_pi * orbits(),        ranks_};
 }
 
-std::optional<GravityEnergy> Simulation::measure(GravityMeter& meter) const {
-  return meter.measure(boundary());
+std::optional<GravityEnergy> Simulation::gravity_energy() const {
+  return scene_.gravity ? forces_.front()->energy(boundary()) : std::nullopt;
 }
 
 void Simulation::accelerate(std::size_t f) {

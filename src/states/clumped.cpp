@@ -4,7 +4,6 @@
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/diagnostics/viscosity.hpp>
-#include <keeler/forces/self_gravity.hpp>
 #include <keeler/simulation/simulation.hpp>
 #include <keeler/states/broken.hpp>
 #include <keeler/states/initial.hpp>
@@ -46,23 +45,15 @@ std::int64_t steps_between_samples(const Scene& scene, const SettleCriterion& cr
   return kicks * std::max(1L, std::lround(1.0 / (criterion.samples_per_orbit * interval)));
 }
 
-class Sampler {
-public:
-  explicit Sampler(const Scene& scene) : meter_(*scene.gravity, scene.planet.orbital_frequency) {}
-
-  SettleSample measure(const Simulation& simulation) {
-    const ParticleMeans means = simulation.means();
-    const EnergyBalance balance = simulation.balance(means);
-    const std::optional<GravityEnergy> gravity = meter_.measure(simulation.boundary());
-    const Patch patch = simulation.patch();
-    const double work = balance.lost + balance.energy + (gravity ? gravity->potential : 0.0);
-    return {simulation.orbits(), loss_viscosity(work, means.mass, patch.box.shear, 1.0),
-            wake_power(patch, critical_wavelength(patch))};
-  }
-
-private:
-  GravityMeter meter_;
-};
+SettleSample sample_of(const Simulation& simulation) {
+  const ParticleMeans means = simulation.means();
+  const EnergyBalance balance = simulation.balance(means);
+  const std::optional<GravityEnergy> gravity = simulation.gravity_energy();
+  const Patch patch = simulation.patch();
+  const double work = balance.lost + balance.energy + (gravity ? gravity->potential : 0.0);
+  return {simulation.orbits(), loss_viscosity(work, means.mass, patch.box.shear, 1.0),
+          wake_power(patch, critical_wavelength(patch))};
+}
 
 void advance(Simulation& simulation) {
   try {
@@ -113,7 +104,6 @@ ClumpedState clumped_state(const Scene& scene, const SettleCriterion& criterion,
   const std::int64_t every = steps_between_samples(scene, criterion);
   clumping.sample_every_orbits = static_cast<double>(every) * scene.time.step;
   const auto orbit = static_cast<std::size_t>(std::max(1L, std::lround(1.0 / clumping.sample_every_orbits)));
-  Sampler sampler(scene);
   ClumpingProgress p;
   p.criterion = criterion;
   for (;;) {
@@ -121,7 +111,7 @@ ClumpedState clumped_state(const Scene& scene, const SettleCriterion& criterion,
     p.orbits = clumping.orbits = simulation.orbits();
     const bool sample = simulation.state().step % every == 0;
     if (sample) {
-      clumping.history.push_back(sampler.measure(simulation));
+      clumping.history.push_back(sample_of(simulation));
       p.contrast = wake_waves(clumping.history.back().waves).contrast;
       p.settling = compare_windows(clumping.history, orbit, criterion);
       p.settled = p.settling && settled(*p.settling, criterion);

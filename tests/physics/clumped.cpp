@@ -46,10 +46,9 @@ void clump(const char* name, const Range& contrast, const Range& wavelength) {
 // Of the orbits to come, m² rad⁻¹.
 double viscosity_after(const Scene& scene, const Patch& patch, double orbits) {
   Simulation simulation(scene, patch);
-  GravityMeter meter(*scene.gravity, scene.planet.orbital_frequency);
   const auto work = [&] {
     const EnergyBalance balance = simulation.balance();
-    return balance.lost + balance.energy + meter.measure(simulation.boundary())->potential;
+    return balance.lost + balance.energy + simulation.gravity_energy()->potential;
   };
   const double before = work();
   const long steps = std::lround(orbits / scene.time.step);

@@ -5,11 +5,13 @@
 
 #include <keeler/box/shearing_box.hpp>
 #include <keeler/core/key.hpp>
+#include <keeler/gravity/solver.hpp>
 #include <keeler/particles/store.hpp>
 #include <keeler/ranks/ranks.hpp>
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -45,6 +47,10 @@ public:
   /// Writes each particle's acceleration (m rad⁻²), in the order of the particles. Collective. The bits must depend on
   /// the particles and the step alone, never on threads or memory order, or a restart would not go on as the run did.
   virtual void accelerate(const Boundary& boundary, std::span<Vec3> accelerations) = 0;
+
+  /// The energy and the stress of the particles in their own field; none of a force that has none, or no measure of
+  /// it. Collective, and changes no bit of what comes.
+  virtual std::optional<GravityEnergy> energy(const Boundary&) { return std::nullopt; }
 };
 
 /// What a force may need to know when a run begins or goes on. It is gone when the force has been made.

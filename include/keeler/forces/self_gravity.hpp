@@ -5,7 +5,6 @@
 #include <keeler/gravity/solver.hpp>
 
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace keeler {
@@ -19,25 +18,10 @@ GravitySettings gravity_settings(const Parameters& parameters);
 GravityProblem gravity_problem(const Boundary& boundary, double orbital_frequency, std::vector<Vec3>& positions,
                                std::vector<double>& masses);
 
-/// Measures the energy and the stress of the particles in their own gravity, along a run of always the same particles.
-/// Collective.
-class GravityMeter {
-public:
-  GravityMeter(const GravitySettings& settings, double orbital_frequency)
-      : settings_(settings), orbital_frequency_(orbital_frequency) {}
-
-  /// None where only some rings of images act (has_energy_meter).
-  std::optional<GravityEnergy> measure(const Boundary& boundary);
-
-private:
-  GravitySettings settings_;
-  double orbital_frequency_;
-  std::unique_ptr<EnergyMeter> solver_; // null: not yet, or there is none
-};
-
 /// The solver sees the patch from another origin at each kick, drawn from the seed and the step: where cells and meshes
 /// fall among the particles changes, and their errors do not add up from kick to kick. In a periodic box nothing else
-/// changes. Throws what make_gravity_solver throws.
+/// changes. It has no energy where only some rings of images act (has_energy_meter). Throws what make_gravity_solver
+/// throws.
 std::unique_ptr<Force> make_self_gravity(const GravitySettings& settings, const ForceContext& context);
 
 } // namespace keeler

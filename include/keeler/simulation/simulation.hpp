@@ -7,7 +7,6 @@
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/forces/force.hpp>
-#include <keeler/forces/self_gravity.hpp>
 #include <keeler/ranks/ranks.hpp>
 #include <keeler/resting/resting_contacts.hpp>
 #include <keeler/scene/scene.hpp>
@@ -94,8 +93,8 @@ public:
   /// The particles at this boundary between steps, as forces see them; not to be kept beyond the next step.
   Boundary boundary() const;
 
-  /// The energy of self-gravity at this boundary. Collective.
-  std::optional<GravityEnergy> measure(GravityMeter& meter) const;
+  /// The energy and the stress of self-gravity at this boundary, where it acts and has them. Collective.
+  std::optional<GravityEnergy> gravity_energy() const;
 
   /// Means over all particles now, at this boundary. Collective.
   ParticleMeans means() const;

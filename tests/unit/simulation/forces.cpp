@@ -1,5 +1,7 @@
 #include <keeler/core/units.hpp>
+#include <keeler/forces/self_gravity.hpp>
 #include <keeler/simulation/simulation.hpp>
+#include <keeler/states/initial.hpp>
 
 #include <doctest/doctest.h>
 
@@ -126,4 +128,41 @@ TEST_CASE("a run with two forces goes on from its fields to the bit") {
   CHECK(a.elements.guiding_y == b.elements.guiding_y);
   CHECK(a.elements.e_cos == b.elements.e_cos);
   CHECK(resumed.state().kick_work() == straight.simulation.state().kick_work());
+}
+
+TEST_CASE("the energy of self-gravity is what a meter of its own says, and to measure it changes no bit") {
+  for (const char* solver : {"direct", "tree", "fft", "mesh", "auto"}) {
+    CAPTURE(solver);
+    const Scene scene = parse_scene("planet.preset = \"saturn-a-ring\"\nbox.size = [40, 30]\ntime.end = 1.0\n"
+                                    "particles = { count = 200, density = 600.0, sizes = { law = \"power\", exponent = "
+                                    "3.0, min = 0.4, max = 1.5 } }\n[gravity]\nresting_contacts = \"bounced\"\n",
+                                    "test scene", {std::string("gravity.solver=") + solver});
+    Simulation measured(scene, initial_patch(scene)), plain(scene, initial_patch(scene));
+    for (int k = 0; k < 6; ++k) {
+      measured.gravity_energy();
+      measured.advance();
+      plain.advance();
+    }
+    const std::optional<GravityEnergy> energy = measured.gravity_energy();
+    REQUIRE(energy.has_value());
+    for (std::size_t k = 0; k < 200; ++k) {
+      const Elements &a = measured.state().particles.bodies[k].elements,
+                     &b = plain.state().particles.bodies[k].elements;
+      CHECK((a.e_cos == b.e_cos && a.i_sin == b.i_sin && a.guiding_y == b.guiding_y));
+    }
+    std::vector<Vec3> positions;
+    std::vector<double> masses;
+    const GravityProblem problem = gravity_problem(plain.boundary(), scene.planet.orbital_frequency, positions, masses);
+    const GravityEnergy own = make_energy_meter(*scene.gravity, masses, problem.box.area())->energy(problem);
+    CHECK(energy->potential == own.potential);
+    CHECK(energy->stress == own.stress);
+    CHECK(energy->potential != 0.0);
+  }
+}
+
+TEST_CASE("a scene has no energy of gravity without it, nor with some rings of images") {
+  for (const char* gravity : {"", "[gravity]\nsolver = \"direct\"\nimages = \"rings\"\n"}) {
+    Pushed pushed("vertical", 0.1, 1e-3, gravity);
+    CHECK_FALSE(pushed.simulation.gravity_energy().has_value());
+  }
 }
