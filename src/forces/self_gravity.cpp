@@ -33,7 +33,9 @@ public:
     const GravityProblem problem = gravity_problem(boundary, orbital_frequency_, positions_, masses_);
     if (auto* const solver = dynamic_cast<EnergyMeter*>(solver_.get())) // one mesh for both
       return solver->energy(problem);
-    return make_energy_meter(settings_, masses_, problem.box.area(), problem.ranks)->energy(problem);
+    if (!meter_)
+      meter_ = make_energy_meter(settings_, masses_, problem.box.area(), problem.ranks);
+    return meter_->energy(problem);
   }
 
 private:
@@ -47,6 +49,7 @@ private:
   double orbital_frequency_;
   std::uint64_t seed_;
   std::unique_ptr<GravitySolver> solver_;
+  std::unique_ptr<EnergyMeter> meter_; // where the solver is none; null: not yet
   // scratch
   std::vector<Vec3> positions_;
   std::vector<double> masses_;

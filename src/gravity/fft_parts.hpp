@@ -74,9 +74,8 @@ struct FftSolver::Parts {
   ShearedTransform transform;
   // of a rank's share
   HalfSpectrum by_columns, by_waves;
-  std::vector<InsideParticle> inside; // kept for their memory
-  std::vector<Vec3> pulls;
-  double radius = 0.0; // of the clouds in this solve, m
+  std::vector<InsideParticle> inside; // kept for its memory
+  double radius = 0.0;                // of the clouds in this solve, m
   SelfForce self{};
 };
 

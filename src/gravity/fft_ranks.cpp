@@ -93,6 +93,11 @@ public:
     const auto knowers = who_must_know(shares, tiling);
     const IndexRange& here = shares[ranks.own()].own;
     std::vector<std::vector<InsideParticle>> parcels = room_for_parcels(counts, knowers, ranks);
+    for (std::size_t rank = 0; rank < shares.size(); ++rank) {
+      const auto its = counts.subspan(shares[rank].own.begin, shares[rank].own.size());
+      sent_[rank].reserve(std::accumulate(its.begin(), its.end(), std::uint64_t{0}));
+    }
+    owned_[ranks.own()].reserve(sent_[ranks.own()].capacity());
     std::size_t stay = 0;
     for (std::size_t k = 0; k < particles.size(); ++k) {
       const InsideParticle particle = particles[k];
@@ -274,7 +279,10 @@ void FftSolver::Parts::accelerate_share(const GravityProblem& problem, std::span
   const Known known = know(problem, offset, settings.short_range);
   fill_share(ranks, known);
 
-  resize_scratch(pulls, places.count());
+  // what the transforms had there is not needed until the next solve
+  AlignedArray<Vec3> memory(by_columns.take_memory());
+  memory.resize_at_least(places.count());
+  const std::span<Vec3> pulls(memory.data(), places.count());
   std::vector<Vec3> sums(known.tiles(places.tiling()));
   const std::size_t first = known.first_tile(places.tiling());
   parallel_for(
@@ -283,6 +291,7 @@ void FftSolver::Parts::accelerate_share(const GravityProblem& problem, std::span
   ranks.merge({&total.x, &total.y, &total.z});
   const Vec3 mean = total.value() / static_cast<double>(count); // as on one process
   known.guests.send_home(pulls, ranks, [&](std::size_t k, const Vec3& a) { accelerations[k] = a - mean; });
+  by_columns.give_memory(AlignedArray<std::complex<float>>(std::move(memory)));
 }
 
 double FftSolver::Parts::share_of_potential(const GravityProblem& problem, double offset) {

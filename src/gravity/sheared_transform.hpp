@@ -47,8 +47,9 @@ public:
     numbers_ = std::move(memory);
     reset(columns, waves, planes);
   }
-  /// Gives up all numbers, and the memory that they are in.
+  /// Gives up all numbers, and the memory that they are in; and takes it back.
   AlignedArray<Complex> take_memory() { return std::move(numbers_); }
+  void give_memory(AlignedArray<Complex> memory) { numbers_ = std::move(memory); }
 
   const IndexRange& waves() const { return waves_; }
   std::size_t blocks() const { return columns_.size(); }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
@@ -152,6 +153,7 @@ namespace {
 // count has, whose halves take turns, walked on from numbers that are too large (Black & Rogaway 2002). Eight rounds,
 // since the halves of a small count have few bits.
 std::size_t shuffled(std::size_t k, std::size_t count, std::uint64_t seed) {
+  assert(k < count);
   const auto bits = static_cast<unsigned>(std::bit_width(count - 1));
   const unsigned low_bits = bits - bits / 2;
   const std::size_t low_mask = (std::size_t{1} << low_bits) - 1, high_mask = (std::size_t{1} << (bits / 2)) - 1;

@@ -153,8 +153,8 @@ struct Begun {
   PatchScale scale; // the first rank's
 };
 
-// Until there is a run, a stop is heeded at once: there is nothing that could be kept. Ranks heed it together, between
-// two sweeps of a fresh start.
+// Until there is a run, a stop is heeded at once: there is nothing that could be kept. Ranks heed it together, after
+// a sweep of a fresh start.
 Begun first_simulation(const Scene& scene, const RunOptions& options, const RunRequests& requests) {
   const Ranks& ranks = options.ranks;
   const std::atomic<bool> never = false;

@@ -33,6 +33,9 @@ double bytes_per_particle(const Scene& scene) {
       total += cost::mesh_bytes * std::max(1.0, std::pow(1.6 / scene.gravity->mesh_spacing, 3));
     if (solver == GravitySettings::Solver::tree)
       total += cost::nodes_per_particle * cost::tree_node_bytes + 4 * sizeof(double);
+    const bool pairwise = solver == GravitySettings::Solver::tree || solver == GravitySettings::Solver::direct;
+    if (pairwise && scene.output.stress_every > 0)
+      total += cost::mesh_bytes; // that measures their energy
   }
   return total;
 }

@@ -225,7 +225,7 @@ Boundary Simulation::boundary() const {
 }
 
 std::optional<GravityEnergy> Simulation::gravity_energy() const {
-  return scene_.gravity ? forces_.front()->energy(boundary()) : std::nullopt;
+  return scene_.gravity ? forces_.front()->energy(boundary()) : std::nullopt; // self-gravity comes first
 }
 
 void Simulation::accelerate(std::size_t f) {

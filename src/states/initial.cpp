@@ -159,10 +159,11 @@ UniformRequest request_of(const Scene& scene, const Ranks& ranks) {
 // An aggregate turns as one body, so its rough particles spin as it does.
 void spin_aggregates(const Scene& scene, Patch& patch) {
   patch.spins.assign(patch.size(), Vec3::Zero());
-  for (const AggregateSettings& a : scene.particles.aggregates)
-    for (std::size_t k = 0; k < patch.size(); ++k)
-      if (patch.ids[k] >= a.first && patch.ids[k] < a.first + a.count)
-        patch.spins[k].z() = a.spin;
+  for (const AggregateSettings& a : scene.particles.aggregates) {
+    const auto first = std::lower_bound(patch.ids.begin(), patch.ids.end(), a.first);
+    for (auto id = first; id != patch.ids.end() && *id < a.first + a.count; ++id)
+      patch.spins[static_cast<std::size_t>(id - patch.ids.begin())].z() = a.spin;
+  }
 }
 
 } // namespace

@@ -135,6 +135,7 @@ void Placing::try_another_place(Trial& trial) const {
 std::vector<Sphere> Placing::place(std::vector<Trial> trials, const SizeLevels& larger) const {
   constexpr int most_tries = 1000;
   std::vector<Sphere> placed;
+  placed.reserve(trials.size());
   parallel_for(trials.size(), [&](std::size_t k) { try_another_place(trials[k]); });
   do {
     trials = in_their_slabs(std::move(trials));
@@ -145,7 +146,6 @@ std::vector<Sphere> Placing::place(std::vector<Trial> trials, const SizeLevels& 
     });
     const auto elsewhere = std::stable_partition(trials.begin(), trials.end(),
                                                  [&](const Trial& trial) { return slabs_.has(trial.place); });
-    placed.reserve(placed.size() + static_cast<std::size_t>(elsewhere - trials.begin()));
     for (auto trial = trials.begin(); trial != elsewhere; ++trial)
       placed.push_back({trial->place, trial->radius, trial->place.z(), trial->particle});
     trials.erase(trials.begin(), elsewhere);
@@ -160,9 +160,13 @@ std::vector<Placing::Trial> Placing::in_their_slabs(std::vector<Trial> trials) c
   std::vector<std::vector<Trial>> parcels(ranks.count());
   for (const Trial& trial : trials)
     parcels[slabs_.owner(trial.place)].push_back(trial);
-  trials.clear();
-  for (const std::vector<Trial>& its : ranks.exchange(parcels))
+  trials = {};
+  std::vector<std::vector<Trial>> received = ranks.exchange(parcels);
+  parcels = {};
+  for (std::vector<Trial>& its : received) {
     trials.insert(trials.end(), its.begin(), its.end());
+    its = {};
+  }
   return trials;
 }
 

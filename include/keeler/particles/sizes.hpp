@@ -14,9 +14,9 @@ struct SizeLaw {
   double smallest = 0.0, largest = 0.0;
   std::size_t listed = 0;                  ///< radii in a list or a table; 0 for a continuous law
   std::function<double(int k)> mean_power; ///< ⟨r^k⟩
-  /// Radius of particle k, at the quantile u in (0, 1).
+  /// The k-th radius, at the quantile u in (0, 1).
   std::function<double(double u, std::size_t k)> radius;
-  /// Density of the material of that particle, kg/m³; empty where sizes say nothing about it.
+  /// Density of its material, kg/m³; empty where sizes say nothing about it.
   std::function<double(double u, std::size_t k)> density{};
   double mean_density = 0.0; ///< by volume, where they do
 };
@@ -26,7 +26,7 @@ SizeLaw equal_sizes(double radius);
 /// n(r) dr ∝ r^−q between two radii, min < max.
 SizeLaw power_sizes(double exponent, double min, double max);
 
-/// The radii of a list, drawn in turn: particle k has the (k mod length)-th one.
+/// The radii of a list in turn: k stands for the (k mod length)-th one.
 SizeLaw listed_sizes(std::vector<double> radii);
 
 /// A table of radii, each with the number of particles that have it, above 0, in proportion: of as many particles as
@@ -43,7 +43,7 @@ class DrawnSizes {
 public:
   DrawnSizes(const SizeLaw& law, std::size_t count, std::uint64_t seed) : law_(law), count_(count), seed_(seed) {}
 
-  double radius(std::size_t particle) const; ///< m
+  double radius(std::size_t particle) const; ///< m; of one below count
   bool has_densities() const { return static_cast<bool>(law_.density); }
   double density(std::size_t particle) const; ///< kg/m³; only where the law has densities
 

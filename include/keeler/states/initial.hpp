@@ -14,7 +14,7 @@ namespace keeler {
 
 /// A fresh patch on the scene's streamlines, or the snapshot that the scene names. Throws UsageError (too dense),
 /// Interrupted (interrupt.hpp), or what patch_from_snapshot() throws. Collective: each rank gets a part of the
-/// particles.
+/// particles, and the first one all else. `progress` may throw where it throws on all ranks.
 Patch initial_patch(const Scene& scene, const std::function<void(const StartProgress&)>& progress = {},
                     const Ranks& ranks = {});
 

@@ -39,8 +39,8 @@ struct UniformRequest {
   double own_room = 0.0;                                ///< m²: the layer's height is √(c_z²/ν² + own_room)
   Streamlines streamlines;                              ///< that the mean motion follows; circles unless given
   std::vector<HeldBody> held;                           ///< they come after the particles, with the ids that follow
-  std::vector<ClosedBall> closed; ///< each holds some of the held bodies, and all of them are held; no two overlap
-  DensityPattern pattern;         ///< of the guiding centres on them
+  std::vector<ClosedBall> closed;                       ///< each held body is inside one of them; no two may overlap
+  DensityPattern pattern;                               ///< of the guiding centres on them
   std::uint64_t seed = 1;
 };
 
@@ -51,7 +51,7 @@ struct UniformRequest {
 /// aside). Each pair is apart by at least 2 × 10⁻⁵ of the smaller radius. Sizes may differ by 10⁴ and more; time and
 /// memory go with the number of particles. Same request, same state, for any number of threads and ranks, of which each
 /// gets some of the particles. Throws UsageError when there is no room without overlap, Interrupted (interrupt.hpp).
-/// Collective.
+/// Collective: `progress` is called on all ranks at the same points, and may throw where it throws on all.
 Patch uniform_patch(const UniformRequest& request, const std::function<void(const StartProgress&)>& progress = {},
                     const Ranks& ranks = {});
 
