@@ -22,7 +22,7 @@ const char* solver_words(GravitySettings::Solver solver) {
 // What has an order, a place or a network of all particles still.
 void Simulation::require_shareable(const Scene& scene, std::size_t count) {
   const auto refuse = [](const char* what, const char* instead) {
-    throw UsageError(fmt::format("{} cannot be shared by several ranks; {}, or take one", what, instead));
+    throw UsageError(fmt::format("{} cannot be shared by several ranks; {}, or run on one rank", what, instead));
   };
   if (scene.gravity) {
     const GravitySettings gravity = chosen_for(count, *scene.gravity);
