@@ -1,6 +1,6 @@
 // Self-gravity wakes in the demo's A-ring patch: trailing at 15–30°, spaced by about λ_cr (Salo 1995; Daisaka, Tanaka &
 // Ida 2001), over the third orbit, for each of three seeds. The box holds two or three wakes, so the spacing of a
-// single run scatters: ten runs gave 0.8–1.4 λ_cr. Minutes of processor time.
+// single run scatters: single runs gave 0.8–1.7 λ_cr. Minutes of processor time.
 #include "physics/scenes.hpp"
 
 #include <keeler/cells/overlap.hpp>
@@ -37,7 +37,7 @@ void check_structure(const std::vector<Patch>& patches, const Analysis& a) {
                     << "; inner pitch " << *a.wakes.inner_pitch_degrees.value << ", outer "
                     << a.wakes.outer_pitch_degrees.value.value_or(0.0) << "; local Q " << a.local.toomre_q
                     << ", thin area " << a.local.thin_area_share);
-  CHECK(across > 0.9); // 1.08, 1.11, 1.07 for seeds 1, 2, 3
+  CHECK(across > 0.9); // 1.06, 1.09, 1.00 for seeds 1, 2, 3
   CHECK(across < 1.5);
   CHECK(*a.wakes.wavelength.scatter < 0.1 * *a.wakes.wavelength.value);
   CHECK(*a.wakes.inner_pitch_degrees.value > 15.0);
@@ -57,7 +57,7 @@ void check_structure(const std::vector<Patch>& patches, const Analysis& a) {
     most = std::max(most, *look.transmission.value);
   MESSAGE("at B 3.45 degrees " << most << " passes at most, at azimuth " << brightest);
   CHECK(std::fabs(brightest - 90.0 - *a.wake_pitch_degrees) < 20.0);
-  CHECK(most > 0.03); // 0.084, 0.092, 0.087
+  CHECK(most > 0.03); // 0.090, 0.095, 0.071
   CHECK(most < 0.16);
 }
 
