@@ -26,7 +26,7 @@ namespace {
 struct TuneOptions {
   SceneArguments scene;
   TuneSettings settings;
-  std::string quality = "balanced";
+  std::string quality = default_quality;
   std::optional<double> force_error, physics_error;
   std::optional<std::string> output;
   bool force = false, json = false;

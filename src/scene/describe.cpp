@@ -1,6 +1,7 @@
 #include <keeler/scene/scene.hpp>
 
 #include <keeler/scene/keys.hpp>
+#include <keeler/scene/quality.hpp>
 
 #include <fmt/format.h>
 
@@ -21,14 +22,19 @@ std::string meaning_words(const Key& key) {
   return words;
 }
 
+std::string default_words(const Key& key, const std::string& code) {
+  if (std::find(keys_of_quality.begin(), keys_of_quality.end(), key.path) != keys_of_quality.end())
+    return "by " + code + "quality" + code;
+  return key.fallback.empty() ? "none" : code + key.fallback + code;
+}
+
 std::vector<Row> make_rows(bool markdown) {
   std::vector<Row> rows = {{"key", "default", "unit", "meaning; what it must be"}};
   if (markdown)
     rows.push_back({"---", "---", "---", "---"});
   for (const Key& key : scene_keys()) {
     const std::string code = markdown ? "`" : "";
-    const std::string fallback = key.fallback.empty() ? "none" : code + key.fallback + code;
-    rows.push_back({code + key.path + code, fallback, key.unit, meaning_words(key)});
+    rows.push_back({code + key.path + code, default_words(key, code), key.unit, meaning_words(key)});
   }
   return rows;
 }

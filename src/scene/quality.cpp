@@ -55,11 +55,18 @@ const std::string* word_in(const Document& document, const std::string& path) {
   return entry ? std::get_if<std::string>(&entry->value) : nullptr;
 }
 
+// Returns null for "custom", and for what check_document() will refuse.
+const Quality* quality_in(const Document& document) {
+  if (!find_entry(document, "quality"))
+    return quality_of(default_quality);
+  const std::string* const name = word_in(document, "quality");
+  return name ? quality_of(*name) : nullptr;
+}
+
 } // namespace
 
 void add_gravity_of_quality(Document& document) {
-  const std::string* const name = word_in(document, "quality");
-  const Quality* const quality = name ? quality_of(*name) : nullptr;
+  const Quality* const quality = quality_in(document);
   if (!quality || !find_entry(document, "gravity"))
     return;
   const auto add = [&](const std::string& path, Value value) {

@@ -1,5 +1,6 @@
-// quality = "fast", "balanced" or "strict": numbers for the keys of accuracy that a scene does not give. They come from
-// a table (docs/manual/scene.md) and from the scene's own keys, never from a clock, and stand in the resolved scene.
+// quality = "fast", "balanced" or "strict": numbers for the keys of accuracy that a scene does not give; a scene that
+// names no quality is "balanced". The numbers come from a table (docs/manual/scene.md) and from the scene's own keys,
+// never from a clock, and are part of the resolved scene.
 #pragma once
 
 #include "settings.hpp"

@@ -47,7 +47,8 @@ std::vector<Row> without_g() {
   for (int k = 0; k < 100; ++k)
     expected.advance();
   for (const std::string solver : {"direct", "tree", "fft", "mesh"}) {
-    const Example e = example("G = 0, " + solver, "equilibrium", with(small_ring, {"gravity.solver=" + solver}));
+    const Example e = example("G = 0, " + solver, "equilibrium",
+                              with(small_ring, {"gravity.solver=" + solver, "gravity.kick_every=1"}));
     const Patch patch = initial_patch(e.scene);
     std::vector<Vec3> accelerations(patch.size(), Vec3(1.0, 1.0, 1.0));
     solver_of(e.scene, patch)->accelerate(problem_of(patch, 0.0), accelerations);
@@ -111,7 +112,8 @@ std::vector<Row> moonlet() {
                                          "particles.sizes={law=\"table\", table=[[15.0, 1], [0.7, 3000]]}"};
   const std::string name = "a moonlet of 3.3 times the mass of all others";
   std::vector<Row> rows = force_rows(name, keys);
-  const Example e = example(name, "a-ring-wakes", keys);
+  const Example e =
+      example(name, "a-ring-wakes", with(keys, {"gravity.solver=tree", "gravity.kick_every=1", "time.step=1e-3"}));
   for (const Row& row : rows_of(e.state, follow(e.scene, 500), 1e3))
     rows.push_back(row);
   return rows;
@@ -119,9 +121,10 @@ std::vector<Row> moonlet() {
 
 // Denser than the tide can pull apart: all gather in one heap, which must neither storm nor sink into itself.
 std::vector<Row> aggregate() {
-  const Example e = example("collapse to one aggregate", "a-ring-wakes",
-                            {"particles.count=100", "box.size=[28,28]", "particles.density=3000",
-                             "particles.velocity_dispersion=1", "gravity.solver=direct", "time.end=5"});
+  const Example e =
+      example("collapse to one aggregate", "a-ring-wakes",
+              {"particles.count=100", "box.size=[28,28]", "particles.density=3000", "particles.velocity_dispersion=1",
+               "gravity.solver=direct", "gravity.kick_every=1", "time.step=1e-3", "time.end=5"});
   Simulation simulation(e.scene, initial_patch(e.scene));
   const Course course = follow(simulation, 5000, 100);
   const Patch patch = simulation.patch();

@@ -105,8 +105,8 @@ double exact_potential(const Patch& patch, double strain) {
 }
 
 std::vector<Row> gravitational_stress() {
-  const Ran ran =
-      run_example("a-ring-wakes", {"gravity={solver=\"fft\"}", "box.size_in_wavelengths=[1.5,1.5]", "time.end=3"});
+  const Ran ran = run_example("a-ring-wakes", {"gravity={solver=\"fft\",force_error=2e-3,kick_every=1}",
+                                               "time.step=1e-3", "box.size_in_wavelengths=[1.5,1.5]", "time.end=3"});
   const Patch& patch = ran.snapshots.back();
   constexpr double strain = 2e-3;
   const double g = newton_g(patch.orbital_frequency);

@@ -22,8 +22,8 @@ namespace keeler::validation {
 std::vector<std::string> wakes(double hill, int seed, double orbits) {
   constexpr double omega = 1.3175e-4;
   const double density = 9.0 * omega * omega * hill * hill * hill / (pi * newton_g_si);
-  return {"gravity={solver=\"fft\"}",
-          "gravity.kick_every=2",
+  return {"gravity={solver=\"fft\",force_error=2e-3,kick_every=2}",
+          "time.step=1e-3",
           "box.size_in_wavelengths=[8,8]",
           fmt::format("particles.density={:.1f}", density),
           fmt::format("particles.seed={}", seed),

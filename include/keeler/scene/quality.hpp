@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string_view>
 
 namespace keeler {
 
@@ -13,6 +14,13 @@ struct Quality {
   double kick_interval; ///< orbits, up to the Hill parameter 0.94, beyond that with its inverse cube
   double physics_error; ///< share of contacts that kicks of this interval make: what the loss exceeds the work by
 };
+
+/// The quality of a scene that names none.
+inline constexpr const char* default_quality = "balanced";
+
+/// The keys whose numbers a quality gives; a scene that says `quality = "custom"` gets the keys' own defaults.
+inline constexpr std::array<std::string_view, 5> keys_of_quality = {
+    "time.step", "gravity.solver", "gravity.force_error", "gravity.opening_angle", "gravity.kick_every"};
 
 /// Measured in wakes of the A ring (docs/dev/step.md), the cheapest first.
 inline constexpr std::array<Quality, 3> qualities = {
