@@ -35,6 +35,12 @@ bool is_stop(const ChildEnd& end) {
   return end.code == static_cast<int>(ExitCode::stopped);
 }
 
+// A path as an argument: one that begins with a dash must not be taken for an option.
+std::string argument_of(const fs::path& path) {
+  const std::string text = path.string();
+  return text.starts_with('-') ? "./" + text : text;
+}
+
 // The first run of each point, then the second of each: a figure of all points is there early.
 std::vector<std::size_t> seed_by_seed(std::span<const PlannedRun> runs) {
   std::map<std::size_t, std::size_t> before; // of the same point
@@ -142,11 +148,11 @@ private:
     states_[k].former_failure.reset();
     std::vector<std::string> words;
     if (stage == RunStage::resumable) {
-      words = {"resume", path(k).string()};
+      words = {"resume", argument_of(path(k))};
     } else {
       const fs::path scene = folders_.scene(run(k).name);
       write_text(scene, run(k).scene.resolved);
-      words = {"run", scene.string(), "-o", path(k).string()};
+      words = {"run", argument_of(scene), "-o", argument_of(path(k))};
       if (stage == RunStage::begun)
         words.emplace_back("--force");
     }

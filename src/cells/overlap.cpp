@@ -3,11 +3,16 @@
 #include <keeler/cells/grid.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
+#include <keeler/core/words.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 namespace keeler {
 namespace {
@@ -69,7 +74,29 @@ std::size_t count_overlaps(const Patch& patch, double depth) {
   return count;
 }
 
+void require_no_heap(const Patch& patch, const std::string& state) {
+  const std::size_t count = patch.size();
+  const double width = 2.0 * std::accumulate(patch.radii.begin(), patch.radii.end(), 0.0) / static_cast<double>(count);
+  std::vector<std::pair<double, double>> cells(count);
+  for (std::size_t k = 0; k < count; ++k)
+    cells[k] = {std::floor(patch.positions[k].x() / width), std::floor(patch.positions[k].y() / width)};
+  std::sort(cells.begin(), cells.end());
+  double pairs = 0.0;
+  for (std::size_t first = 0, next = 0; first < count; first = next) {
+    while (next < count && cells[next] == cells[first])
+      ++next;
+    pairs += std::pow(static_cast<double>(next - first), 2);
+  }
+  constexpr double always_allowed = 1e7, allowed_each = 1000.0; // a layer has some tens
+  if (pairs > always_allowed + allowed_each * static_cast<double>(count))
+    throw InvariantError(
+        fmt::format("the {} of {} lie on each other in heaps (a column as wide as a particle holds {} on "
+                    "the mean); spread them out",
+                    counted(count, "particle"), state, figures(pairs / static_cast<double>(count), 3)));
+}
+
 void require_apart(const Patch& patch, const std::string& state) {
+  require_no_heap(patch, state);
   require_apart(largest_overlap(patch), state);
 }
 

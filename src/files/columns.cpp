@@ -1,6 +1,7 @@
 #include <keeler/files/columns.hpp>
 
 #include <keeler/core/error.hpp>
+#include <keeler/files/input.hpp>
 
 #include <fmt/format.h>
 
@@ -50,11 +51,7 @@ template<class Visit> void for_each_field(std::string_view line, char separator,
 
 class Parser {
 public:
-  Parser(std::string_view text, const std::string& name) : rest_(text), name_(name) {
-    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-    if (rest_.starts_with(byte_order_mark))
-      rest_.remove_prefix(byte_order_mark.size());
-  }
+  Parser(std::string_view text, const std::string& name) : rest_(without_byte_order_mark(text)), name_(name) {}
 
   Columns run() {
     while (next_line()) {

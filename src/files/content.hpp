@@ -2,15 +2,21 @@
 #pragma once
 
 #include <algorithm>
+#include <cerrno>
+#include <cstddef>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 
 namespace keeler {
 
-/// Bytes is a string or a vector of bytes. Nothing where the file cannot be read; errno says why.
-template<class Bytes> std::optional<Bytes> content_of(const std::filesystem::path& path) {
+/// Bytes is a string or a vector of bytes. Nothing where the file cannot be read or has more than `most` bytes; errno
+/// says why.
+template<class Bytes>
+std::optional<Bytes> content_of(const std::filesystem::path& path,
+                                std::size_t most = std::numeric_limits<std::size_t>::max()) {
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
@@ -19,11 +25,19 @@ template<class Bytes> std::optional<Bytes> content_of(const std::filesystem::pat
     return {};
   std::error_code no_size;
   const std::size_t size = std::filesystem::file_size(path, no_size);
+  if (!no_size && size > most) {
+    errno = EFBIG;
+    return {};
+  }
   Bytes content;
   content.resize(std::max<std::size_t>(no_size ? 0 : size + 1, 4096)); // one more: to see the end
   std::size_t have = 0;
   while (const std::size_t got = std::fread(content.data() + have, 1, content.size() - have, file.get())) {
     have += got;
+    if (have > most) {
+      errno = EFBIG;
+      return {};
+    }
     if (have == content.size())
       content.resize(2 * have);
   }

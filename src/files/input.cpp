@@ -26,13 +26,22 @@ double number_of(const std::string& word) {
 
 } // namespace
 
+std::string_view without_byte_order_mark(std::string_view text) {
+  constexpr std::string_view mark = "\xef\xbb\xbf";
+  return text.starts_with(mark) ? text.substr(mark.size()) : text;
+}
+
 std::string read_input(const std::filesystem::path& file, const std::string& place) {
-  std::optional<std::string> text = content_of<std::string>(file);
-  if (!text) {
-    const std::string what = file == place ? "" : file.string() + " ";
+  constexpr std::size_t most_bytes = std::size_t{1} << 30;
+  std::optional<std::string> text = content_of<std::string>(file, most_bytes);
+  const std::string what = file == place ? "" : file.string() + " ";
+  if (!text)
     throw UsageError(fmt::format("{}: {}cannot be read ({}); check the path and its permissions", place, what,
                                  std::strerror(errno)));
-  }
+  if (text->starts_with("\xff\xfe") || text->starts_with("\xfe\xff"))
+    throw UsageError(
+        fmt::format("{}: {}is a text in UTF-16 (its byte order mark says so); save it as UTF-8", place, what));
+  text->erase(0, text->size() - without_byte_order_mark(*text).size());
   return *std::move(text);
 }
 

@@ -84,7 +84,12 @@ private:
   SatelliteOrbit orbit_;
 };
 
-void check(const Parameters& p, double size_x) {
+// G m of internal units.
+double pull_of(const Parameters& p, double orbital_frequency) {
+  return newton_g(orbital_frequency) * p.number("mass");
+}
+
+void require_outside(const Parameters& p, double size_x) {
   const double distance = p.number("distance"), eccentricity = p.number("eccentricity");
   if (!(std::fabs(distance) - eccentricity > 0.5 * size_x))
     throw UsageError(
@@ -93,11 +98,45 @@ void check(const Parameters& p, double size_x) {
                     figures(distance, 4), figures(eccentricity, 4), figures(0.5 * size_x, 4)));
 }
 
+// An encounter at d moves a particle by about 2.24 G m/(Ω² d²): at two Hill radii by as much as it is away.
+void require_weak(const Parameters& p, const ForceContext& context) {
+  const double hill_radius = std::cbrt(pull_of(p, context.orbital_frequency) / 3.0);
+  const double apart = std::fabs(p.number("distance")) - p.number("eccentricity") - 0.5 * context.box.size_x;
+  if (!(apart >= 2.0 * hill_radius))
+    throw UsageError(
+        fmt::format("satellite.mass = {} kg is too much (its Hill radius is {} m, and it comes within {} m of "
+                    "the box; nearer than two Hill radii it throws particles out of the ring); lower it, or "
+                    "move the satellite out",
+                    figures(p.number("mass"), 4), figures(hill_radius, 4), figures(apart, 4)));
+}
+
+// Where the run begins; a run that goes on may have passed it.
+void require_passages(const Parameters& p) {
+  constexpr double shortest = 0.1; // orbits; a / (S |d|) is above 1 / (3 π), for a is above |d|
+  const double every = p.number("every"), passage = p.number("passage");
+  if (every > 0.0 && every < shortest)
+    throw UsageError(
+        fmt::format("satellite.every = {} orbits is too short (no satellite comes back before {}); raise it, or "
+                    "give 0 for one passage alone",
+                    figures(every, 4), shortest));
+  if (every == 0.0 && passage < 0.0)
+    throw UsageError(
+        fmt::format("satellite.passage = {} orbits is before the run begins, and every = 0 lets it pass only "
+                    "once (the run would not see it); give a passage from 0 up, or every",
+                    figures(passage, 4)));
+}
+
+void check(const Parameters& p, double size_x) {
+  require_outside(p, size_x);
+  require_passages(p);
+}
+
 std::unique_ptr<Force> make(const Parameters& p, const ForceContext& context) {
-  check(p, context.box.size_x);
+  require_outside(p, context.box.size_x);
+  require_weak(p, context);
   const double degree = pi / 180.0;
   SatelliteOrbit orbit;
-  orbit.pull = newton_g(context.orbital_frequency) * p.number("mass");
+  orbit.pull = pull_of(p, context.orbital_frequency);
   orbit.guiding_x = p.number("distance");
   orbit.passage = two_pi * p.number("passage");
   orbit.every = two_pi * p.number("every");
@@ -123,23 +162,25 @@ Key needed(Key key) {
 } // namespace
 
 ForceEntry satellite_entry() {
-  const KeyRange turn = {.low = -360, .high = 360};
+  const KeyRange turn = {.low = -360, .high = 360}, lengths = {.low = 0, .high = 1e7};
   return {
       "satellite",
-      {needed(number("mass", "1.6e17", "kg", "mass of a satellite that passes outside the box", KeyRange::above(0))),
+      {needed(number("mass", "1.6e17", "kg", "mass of a satellite that passes outside the box",
+                     {.low = 0, .high = 1e24, .low_open = true})),
        needed(number("distance", "1e6", "m", "of its guiding centre from the middle of the box, outward",
                      {.low = -1e7, .high = 1e7})),
-       needed(number("passage", "2.0", "orbits", "when it passes the middle of the box")),
+       needed(number("passage", "2.0", "orbits", "when it passes the middle of the box", {.low = -1e6, .high = 1e6})),
        number("every", "0.0", "orbits",
               "its synodic period, a / (S |distance|): from passage to passage; 0: one passage alone",
-              KeyRange::at_least(0)),
+              {.low = 0, .high = 1e6}),
        number("upright_after", "0.0", "orbits",
               "how long after the passage neighbouring streamlines have the phases that they have side by side in a "
-              "ring"),
-       number("eccentricity", "0.0", "m", "its eccentricity times its distance from the planet", KeyRange::at_least(0)),
+              "ring",
+              {.low = -1e6, .high = 1e6}),
+       number("eccentricity", "0.0", "m", "its eccentricity times its distance from the planet", lengths),
        number("eccentricity_phase", "0.0", "degrees", "of its epicycle at the passage; 0: at its innermost place",
               turn),
-       number("inclination", "0.0", "m", "its inclination times its distance from the planet", KeyRange::at_least(0)),
+       number("inclination", "0.0", "m", "its inclination times its distance from the planet", lengths),
        number("inclination_phase", "0.0", "degrees", "of its vertical motion at the passage; 0: rising", turn)},
       make,
       check};

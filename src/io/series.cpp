@@ -2,6 +2,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/files/input.hpp>
 
 #include <fmt/format.h>
 
@@ -110,11 +111,12 @@ const std::vector<double>& SeriesTable::of(const std::string& name) const {
 }
 
 SeriesTable read_series(const std::filesystem::path& file) {
-  const std::string text = read_text(file);
+  const std::string whole = read_text(file);
+  const std::string_view text = without_byte_order_mark(whole);
   SeriesTable table;
   std::size_t line = 0;
   for (std::size_t begin = 0, end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
-    const std::vector<std::string_view> fields = fields_of(std::string_view(text).substr(begin, end - begin));
+    const std::vector<std::string_view> fields = fields_of(text.substr(begin, end - begin));
     if (++line == 1) {
       table.names.assign(fields.begin(), fields.end());
       table.columns.resize(fields.size());
@@ -153,7 +155,8 @@ Series Series::resume(const std::filesystem::path& file, const std::vector<std::
   std::error_code unknown;
   if (!std::filesystem::exists(file, unknown))
     write_text(file, header_line(columns));
-  const std::string text = read_text(file), header = header_line(columns);
+  const std::string whole = read_text(file), header = header_line(columns);
+  const std::string_view text = without_byte_order_mark(whole);
   if (!text.starts_with(header))
     throw IoError(
         fmt::format("cannot continue '{}': its first line is not the names of its columns ({}); repair it, or "
@@ -161,7 +164,7 @@ Series Series::resume(const std::filesystem::path& file, const std::vector<std::
                     file.string(), header.substr(0, header.size() - 1)));
   RowReader rows(file, text, columns.size(), every);
   const std::string_view kept = rows.rows_up_to(last_step);
-  if (kept.size() != text.size())
+  if (kept.size() != whole.size())
     write_text(file, kept);
   Series series(file, columns.size(), kept);
   series.gaps_ = rows.gaps();

@@ -87,7 +87,10 @@ void check_value(const Key& key, const Entry& entry) {
   const bool right_type = fits_type(key, entry.value);
   if (right_type && fits_value(key, entry.value))
     return;
-  const std::string is = right_type ? to_toml(entry.value) : kind_words(entry.value);
+  const auto* const number = std::get_if<double>(&entry.value);
+  const bool has_fraction = number && std::isfinite(*number) && *number != std::trunc(*number);
+  const bool is_too_large = key.type == KeyType::integer && number && !has_fraction;
+  const std::string is = right_type || is_too_large ? to_toml(entry.value) : kind_words(entry.value);
   std::string advice = "write for example " + sample_of(key);
   if (const auto* word = std::get_if<std::string>(&entry.value); word && !key.choices.empty())
     if (const std::string near = closest(*word, key.choices); !near.empty())
@@ -107,6 +110,11 @@ void check_entry(const Entry& entry) {
     fail_at(entry.value_place, fmt::format("{} is {}, but must be a {} ({}); write {} and its keys below", entry.path,
                                            kind_words(entry.value), list ? "list of tables" : "table",
                                            list ? "there may be several" : "it holds several keys", section->header()));
+  if (const auto* const tables = std::get_if<TableList>(&entry.value); tables && tables->count > section->most)
+    fail_at(entry.value_place,
+            fmt::format("{} tables {} are too many (a scene takes {} at most, for each is held against all "
+                        "others); leave some out",
+                        tables->count, section->header(), section->most));
 }
 
 // The path of another key of the same table.
@@ -176,7 +184,7 @@ bool condition_holds(const Document& document, const std::string& path) {
   if (key.only_with.values.empty())
     return entry != nullptr;
   const Value value =
-      entry ? entry->value : parse_override_value(find_key(key.only_with.key)->fallback, "", "")[0].value;
+      entry ? entry->value : parse_override_value(find_key(key.only_with.key)->fallback, "", "", "").front().value;
   const auto* word = std::get_if<std::string>(&value);
   return word && key.only_with.allows(*word);
 }

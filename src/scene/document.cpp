@@ -1,13 +1,19 @@
 #include "document.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/files/toml_bounds.hpp>
+#include <keeler/scene/keys.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cassert>
+#include <charconv>
+#include <cmath>
 #include <optional>
+#include <string_view>
 #include <tuple>
 
 namespace keeler {
@@ -91,44 +97,62 @@ Value value_of(const toml::node& node) {
   }
 }
 
-void flatten_list(const toml::array& tables, const std::string& path, const std::string& name,
-                  std::vector<Positioned>& entries);
+// A key that takes a whole number has one for 1e9 too.
+Value as_whole_number(Value value, const std::string& path) {
+  constexpr double end = 0x1p63;
+  const auto* const number = std::get_if<double>(&value);
+  if (!number || *number != std::trunc(*number) || !(std::fabs(*number) < end))
+    return value;
+  const Key* const key = find_key(path);
+  return key && key->type == KeyType::integer ? Value(static_cast<std::int64_t>(*number)) : value;
+}
 
-void flatten(const toml::table& table, const std::string& prefix, const std::string& name,
-             std::vector<Positioned>& entries) {
-  for (const auto& [key, node] : table) {
-    const std::string path = prefix + (is_plain(key.str()) ? std::string(key.str()) : quoted(key.str()));
-    const toml::source_position position = key.source().begin;
-    entries.push_back(
-        {position, {path, place_of(name, position), place_of(name, node.source().begin), value_of(node)}});
-    if (const toml::table* inner = node.as_table())
-      flatten(*inner, path + ".", name, entries);
-    if (node.is_array_of_tables())
-      flatten_list(*node.as_array(), path, name, entries);
+// Flattens what a scene may have, so that depth and length of paths are bounded by the table of keys.
+class Flattening {
+public:
+  explicit Flattening(const std::string& name) : name_(name) {}
+
+  void add_table(const toml::table& table, const std::string& prefix) {
+    for (const auto& [key, node] : table)
+      add(prefix + (is_plain(key.str()) ? std::string(key.str()) : quoted(key.str())), key.source().begin, node);
   }
-}
 
-void flatten_list(const toml::array& tables, const std::string& path, const std::string& name,
-                  std::vector<Positioned>& entries) {
-  for (std::size_t n = 0; n < tables.size(); ++n) {
-    const toml::table& table = *tables[n].as_table();
-    const std::string own = fmt::format("{}[{}]", path, n + 1), place = place_of(name, table.source().begin);
-    entries.push_back({table.source().begin, {own, place, place, Table{}}});
-    flatten(table, own + ".", name, entries);
+  void add(const std::string& path, const toml::source_position& position, const toml::node& node) {
+    entries_.push_back(
+        {position, {path, place(position), place(node.source().begin), as_whole_number(value_of(node), path)}});
+    const Section* const section = find_section(path);
+    if (const toml::table* inner = node.as_table(); inner && section)
+      add_table(*inner, path + ".");
+    if (section && section->repeated && node.is_array_of_tables() && node.as_array()->size() <= section->most)
+      add_list(*node.as_array(), path);
   }
-}
 
-Document flattened(const toml::table& table, const std::string& name) {
-  std::vector<Positioned> entries;
-  flatten(table, "", name, entries);
-  std::stable_sort(entries.begin(), entries.end(), [](const Positioned& a, const Positioned& b) {
-    return std::tie(a.position.line, a.position.column) < std::tie(b.position.line, b.position.column);
-  });
-  Document document;
-  for (Positioned& positioned : entries)
-    document.push_back(std::move(positioned.entry));
-  return document;
-}
+  /// In the order of the file.
+  Document document() && {
+    std::stable_sort(entries_.begin(), entries_.end(), [](const Positioned& a, const Positioned& b) {
+      return std::tie(a.position.line, a.position.column) < std::tie(b.position.line, b.position.column);
+    });
+    Document document;
+    for (Positioned& positioned : entries_)
+      document.add(std::move(positioned.entry));
+    return document;
+  }
+
+private:
+  std::string place(const toml::source_position& position) const { return place_of(name_, position); }
+
+  void add_list(const toml::array& tables, const std::string& path) {
+    for (std::size_t n = 0; n < tables.size(); ++n) {
+      const toml::table& table = *tables[n].as_table();
+      const std::string own = fmt::format("{}[{}]", path, n + 1), at = place(table.source().begin);
+      entries_.push_back({table.source().begin, {own, at, at, Table{}}});
+      add_table(table, own + ".");
+    }
+  }
+
+  const std::string& name_;
+  std::vector<Positioned> entries_;
+};
 
 // The TOML library counts lines from 1 and, in a line, characters of UTF-8 from 1.
 std::size_t offset_of(const std::string& text, const toml::source_position& position) {
@@ -143,21 +167,31 @@ std::size_t offset_of(const std::string& text, const toml::source_position& posi
 }
 
 toml::table parsed(const std::string& text, const std::string& name) {
+  require_bounded_toml(text, name);
   try {
     return toml::parse(text, name);
   } catch (const toml::parse_error& error) {
-    std::string reason(error.description());
-    std::replace_if(
-        reason.begin(), reason.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-    throw UsageError(fmt::format("{}: not TOML ({}); correct this line", place_of(name, error.source().begin), reason));
+    fail_at(place_of(name, error.source().begin), toml_fault(error.description()));
   }
 }
 
 } // namespace
 
-const Entry* find_entry(const Document& document, const std::string& path) {
-  const auto found = std::find_if(document.begin(), document.end(), [&](const Entry& e) { return e.path == path; });
-  return found == document.end() ? nullptr : &*found;
+const Entry* Document::find(const std::string& path) const {
+  const auto found = positions_.find(path);
+  return found == positions_.end() ? nullptr : &entries_[found->second];
+}
+
+void Document::add(Entry entry) {
+  [[maybe_unused]] const bool is_new = positions_.emplace(entry.path, entries_.size()).second;
+  assert(is_new);
+  entries_.push_back(std::move(entry));
+}
+
+void Document::number() {
+  positions_.clear();
+  for (const Entry& entry : entries_)
+    positions_.emplace(entry.path, positions_.size());
 }
 
 std::vector<std::string> tables_of(const Document& document, const std::string& section) {
@@ -172,7 +206,10 @@ std::vector<std::string> tables_of(const Document& document, const std::string& 
 }
 
 Document parse_document(const std::string& text, const std::string& name) {
-  return flattened(parsed(text, name), name);
+  const toml::table table = parsed(text, name);
+  Flattening flattening(name);
+  flattening.add_table(table, "");
+  return std::move(flattening).document();
 }
 
 std::optional<TextRange> range_in(const std::string& text, const std::string& name, const std::string& path) {
@@ -183,19 +220,50 @@ std::optional<TextRange> range_in(const std::string& text, const std::string& na
   return TextRange{offset_of(text, node->source().begin), offset_of(text, node->source().end)};
 }
 
-Document parse_override_value(const std::string& text, const std::string& path, const std::string& place) {
-  Document document = {{path, place, place, text, true}};
-  try {
-    const toml::table table = toml::parse("value = " + text);
-    if (table.size() != 1)
-      return document; // a line break in the text: not one value
-    document = flattened(table, "");
-  } catch (const toml::parse_error&) {
-    return document; // a bare word
+namespace {
+
+// Of a key that takes a number the number that a word reads as, though TOML does not: 2^64, .5, 1e400.
+Value value_of_word(const std::string& word, const std::string& path) {
+  const Key* const key = find_key(path);
+  if (!key || (key->type != KeyType::number && key->type != KeyType::integer))
+    return word;
+  const std::string_view digits = std::string_view(word).substr(word.starts_with('+') ? 1 : 0);
+  double number = 0.0;
+  const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (end != digits.data() + digits.size() || fault == std::errc::invalid_argument)
+    return word;
+  if (fault == std::errc::result_out_of_range)
+    return Unusable{"a number too large or too small to compute with"};
+  return as_whole_number(number, path);
+}
+
+} // namespace
+
+Document parse_override_value(const std::string& text, const std::string& path, const std::string& key_place,
+                              const std::string& value_place) {
+  const Document word = {{path, key_place, value_place, value_of_word(text, path), true}};
+  const std::string line = "value = " + text;
+  if (const std::optional<TomlExcess> excess = toml_excess(line)) {
+    const std::size_t begin = text.find_first_not_of(" \t");
+    if (begin != text.npos && (text[begin] == '[' || text[begin] == '{'))
+      fail_at(value_place, excess->what);
+    return word; // ../../a.hdf
   }
-  for (Entry& entry : document)
-    entry = {path + entry.path.substr(std::string("value").size()), place, place, entry.value, true};
-  return document;
+  Document document;
+  try {
+    const toml::table table = toml::parse(line);
+    if (table.size() != 1)
+      return word; // a line break in the text: not one value
+    Flattening flattening(value_place);
+    flattening.add(path, {}, *table.get("value"));
+    document = std::move(flattening).document();
+  } catch (const toml::parse_error&) {
+    return word;
+  }
+  Document overrides;
+  for (const Entry& entry : document)
+    overrides.add({entry.path, entry.path == path ? key_place : value_place, value_place, entry.value, true});
+  return overrides;
 }
 
 void fail_at(const std::string& place, const std::string& message) {

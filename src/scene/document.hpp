@@ -5,8 +5,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <variant>
 #include <vector>
 
@@ -36,13 +38,43 @@ struct Entry {
   bool overridden = false; ///< given by an override
 };
 
-/// In the order of the file, overrides last. No path occurs twice.
-using Document = std::vector<Entry>;
+/// In the order of the file, overrides last. No path occurs twice. What no scene has is not looked into: an unknown
+/// table is an entry, and its keys are none.
+class Document {
+public:
+  Document() = default;
+  Document(std::initializer_list<Entry> entries) {
+    for (const Entry& entry : entries)
+      add(entry);
+  }
+
+  std::vector<Entry>::const_iterator begin() const { return entries_.begin(); }
+  std::vector<Entry>::const_iterator end() const { return entries_.end(); }
+  const Entry& front() const { return entries_.front(); }
+
+  /// Returns null where no entry has the path.
+  const Entry* find(const std::string& path) const;
+  /// Adds an entry at the end. Precondition: no entry has its path.
+  void add(Entry entry);
+  /// Removes the entries for which `gone` is true.
+  template<class Gone> void remove_if(const Gone& gone) {
+    if (std::erase_if(entries_, gone) > 0)
+      number();
+  }
+
+private:
+  void number();
+
+  std::vector<Entry> entries_;
+  std::unordered_map<std::string, std::size_t> positions_; // by path
+};
 
 /// The paths of the tables that a document has of a section: none, its own, or those of its list.
 std::vector<std::string> tables_of(const Document& document, const std::string& section);
 
-const Entry* find_entry(const Document& document, const std::string& path);
+inline const Entry* find_entry(const Document& document, const std::string& path) {
+  return document.find(path);
+}
 
 /// Throws UsageError where the text is not TOML; `name` stands for the file.
 Document parse_document(const std::string& text, const std::string& name);
@@ -56,8 +88,11 @@ struct TextRange {
 /// as parse_document().
 std::optional<TextRange> range_in(const std::string& text, const std::string& name, const std::string& path);
 
-/// The value of an override: TOML, or else the text itself as a string. All entries get the place and are overridden.
-Document parse_override_value(const std::string& text, const std::string& path, const std::string& place);
+/// The value of an override: TOML, or else the text itself as a string (of a key that takes a number as that number,
+/// where the text reads as one). All entries are overridden and have the places. Throws UsageError where the value
+/// nests too deep.
+Document parse_override_value(const std::string& text, const std::string& path, const std::string& key_place,
+                              const std::string& value_place);
 
 /// Throws UsageError "place: message".
 [[noreturn]] void fail_at(const std::string& place, const std::string& message);

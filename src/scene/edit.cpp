@@ -109,7 +109,7 @@ bool stands(const std::string& text, const std::string& name, const KeyChange& c
   const Entry* const entry = find_entry(document, change.path);
   if (!entry || !change.value)
     return !entry && !change.value;
-  return to_toml(entry->value) == to_toml(parse_override_value(*change.value, change.path, name).front().value);
+  return to_toml(entry->value) == to_toml(parse_override_value(*change.value, change.path, name, name).front().value);
 }
 
 } // namespace

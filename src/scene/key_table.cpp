@@ -20,10 +20,21 @@ KeyRange up_to(double high) {
   return {.low = 0, .high = high, .low_open = true};
 }
 
+KeyRange from_0_to(double high) {
+  return {.low = 0, .high = high};
+}
+
 // Ranges are wide, so that only slips of units lie outside: orbits of ten minutes to 20 years, patches up to a tenth of
 // a ring's distance from its planet (1e8 m), materials up to the densest metals, motions up to 1000 times the shear
 // across a particle, v_cut up to where a rebound would heat (it is at least v_cut / 1000), steps up to 0.3 orbit
-// (without forces a drift is exact, however long).
+// (without forces a drift is exact, however long), times up to where the shortest steps have no number any more. Every
+// key has both ends: what is finite and absurd must not become an infinity in the middle of a run.
+
+constexpr double most_orbits = 1e12;
+constexpr double largest_whole = 0x1p63; // that TOML has, but for 1
+
+// Each is held against each other, and a moonlet has columns of its own in series.csv.
+constexpr std::size_t most_placed_bodies = 1000;
 
 std::vector<std::string> finder_names() {
   std::vector<std::string> names;
@@ -170,7 +181,7 @@ std::vector<Key> patch_keys() {
        .fallback = "1",
        .unit = "1",
        .meaning = "seed of all random numbers",
-       .range = KeyRange::at_least(0)},
+       .range = from_0_to(largest_whole)},
   };
 }
 
@@ -220,7 +231,7 @@ std::vector<Key> friction_keys() {
        .fallback = "\"unlimited\"",
        .unit = "1",
        .meaning = "Coulomb's coefficient: the impulse along the surfaces is at most this times the normal one",
-       .range = KeyRange::at_least(0),
+       .range = from_0_to(1e6),
        .choices = {"unlimited"}},
   };
 }
@@ -246,7 +257,7 @@ std::vector<Key> course_keys() {
        .fallback = "1",
        .unit = "1",
        .meaning = "seed of that draw",
-       .range = KeyRange::at_least(0),
+       .range = from_0_to(largest_whole),
        .effect = start},
 
       {.path = "time.step",
@@ -261,7 +272,7 @@ std::vector<Key> course_keys() {
        .example = "3.0",
        .unit = "orbits",
        .meaning = "length of the run, rounded to whole kicks",
-       .range = KeyRange::above(0),
+       .range = up_to(most_orbits),
        .effect = output},
 
       {.path = "output.series_every",
@@ -269,35 +280,35 @@ std::vector<Key> course_keys() {
        .fallback = "0.02",
        .unit = "orbits",
        .meaning = "time between rows of series.csv, rounded to whole kicks; 0: only one at the start",
-       .range = KeyRange::at_least(0),
+       .range = from_0_to(most_orbits),
        .effect = output},
       {.path = "output.stress_every",
        .type = number,
        .fallback = "0.1",
        .unit = "orbits",
        .meaning = "time between rows of series.csv with the potential energy and the gravitational viscosity; 0: none",
-       .range = KeyRange::at_least(0),
+       .range = from_0_to(most_orbits),
        .effect = output},
       {.path = "output.snapshot_every",
        .type = number,
        .fallback = "0.0",
        .unit = "orbits",
        .meaning = "time between snapshots, rounded to whole kicks; 0: only at start and end",
-       .range = KeyRange::at_least(0),
+       .range = from_0_to(most_orbits),
        .effect = output},
       {.path = "output.checkpoint_every",
        .type = number,
        .fallback = "0.0",
        .unit = "orbits",
        .meaning = "time between checkpoints, rounded to whole kicks; 0: only those below, at the end and at a stop",
-       .range = KeyRange::at_least(0),
+       .range = from_0_to(most_orbits),
        .effect = output},
       {.path = "output.checkpoint_every_minutes",
        .type = number,
        .fallback = "10.0",
        .unit = "minutes",
        .meaning = "wall time between checkpoints, besides those by checkpoint_every; 0: none by the clock",
-       .range = KeyRange::at_least(0),
+       .range = from_0_to(1e9),
        .effect = output},
 
       {.path = "output.collisions.min_speed",
@@ -305,14 +316,14 @@ std::vector<Key> course_keys() {
        .fallback = "0.0",
        .unit = "m/s",
        .meaning = "contacts with at least this normal speed are logged",
-       .range = KeyRange::at_least(0),
+       .range = from_0_to(1e6),
        .effect = output},
       {.path = "output.collisions.min_radius_sum",
        .type = number,
        .fallback = "0.0",
        .unit = "m",
        .meaning = "contacts of two particles whose radii sum up to at least this are logged",
-       .range = KeyRange::at_least(0),
+       .range = from_0_to(1e7),
        .effect = output},
       {.path = "output.collisions.share",
        .type = number,
@@ -359,10 +370,10 @@ std::vector<Section> make_sections() {
       {.path = "particles.sizes", .needed = true, .meaning = "it says how large they are", .replaced_by = "start.from"},
       {.path = "particles.streamlines", .replaced_by = "start.from"},
       {.path = "particles.modes", .replaced_by = "start.from"},
-      {.path = "moonlet", .replaced_by = "start.from", .repeated = true},
+      {.path = "moonlet", .replaced_by = "start.from", .repeated = true, .most = most_placed_bodies},
       {.path = "particles.step", .replaced_by = "start.from"},
       {.path = "particles.wake", .replaced_by = "start.from"},
-      {.path = "particles.aggregate", .replaced_by = "start.from", .repeated = true},
+      {.path = "particles.aggregate", .replaced_by = "start.from", .repeated = true, .most = most_placed_bodies},
       {.path = "collisions"},
       {.path = "collisions.restitution"},
       {.path = "collisions.friction"},

@@ -1,6 +1,7 @@
 #include "overrides.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/files/toml_bounds.hpp>
 #include <keeler/scene/keys.hpp>
 
 #include <fmt/format.h>
@@ -24,9 +25,7 @@ bool is_dotted_name(const std::string& path) {
 }
 
 void erase_within(Document& document, const std::string& table) {
-  document.erase(std::remove_if(document.begin(), document.end(),
-                                [&](const Entry& entry) { return is_within(entry.path, table); }),
-                 document.end());
+  document.remove_if([&](const Entry& entry) { return is_within(entry.path, table); });
 }
 
 // Drops what the file (never another override) says at a path.
@@ -59,9 +58,13 @@ void drop_contradictions(Document& document, const Entry& by, std::vector<std::s
 }
 
 void add_parent_tables(Document& document, const std::string& path, const std::string& place) {
+  if (static_cast<std::size_t>(std::count(path.begin(), path.end(), '.')) >= most_toml_depth)
+    fail_at(place, fmt::format("unknown key (it has more than {} parts, and no key has more than a few); "
+                               "\"keeler check --defaults\" lists every key",
+                               most_toml_depth));
   for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1))
     if (!find_entry(document, path.substr(0, dot)))
-      document.push_back({path.substr(0, dot), place, place, Table{}, true});
+      document.add({path.substr(0, dot), place, place, Table{}, true});
 }
 
 void apply(Document& document, const std::string& path, const Document& entries, const std::string& place,
@@ -70,12 +73,18 @@ void apply(Document& document, const std::string& path, const Document& entries,
   add_parent_tables(document, path, place);
   for (const Entry& entry : entries) {
     drop_contradictions(document, entry, notices);
-    document.push_back(entry);
+    document.add(entry);
   }
 }
 
+// What messages show of an override. Each of its entries has it, so a long one is cut.
+std::string place_of(const std::string& text) {
+  constexpr std::size_t longest = 200;
+  return "--set " + (text.size() <= longest ? text : text.substr(0, longest) + " [...]");
+}
+
 Override from_command_line(const std::string& text) {
-  const std::string place = "--set " + text;
+  const std::string place = place_of(text);
   const std::size_t equals = text.find('=');
   const std::string path = text.substr(0, equals);
   if (equals == std::string::npos || !is_dotted_name(path))
@@ -97,13 +106,10 @@ void apply_table(Document& document) {
   if (const Entry* entry = find_entry(document, "box.size_in_wavelengths"))
     fail_at(entry->value_place, "box.size_in_wavelengths cannot stand beside a table of particles (the wavelength "
                                 "follows from a surface density that the scene asks for); give box.size");
-  document.erase(std::remove_if(document.begin(), document.end(),
-                                [](const Entry& entry) {
-                                  return is_within(entry.path, "particles") && entry.path != "particles" &&
-                                         entry.path != "particles.density" &&
-                                         (find_key(entry.path) || find_section(entry.path));
-                                }),
-                 document.end());
+  document.remove_if([](const Entry& entry) {
+    return is_within(entry.path, "particles") && entry.path != "particles" && entry.path != "particles.density" &&
+           (find_key(entry.path) || find_section(entry.path));
+  });
   std::vector<std::string> none;
   const auto set = [&](const char* key, const char* value) { apply_override(document, {key, value, key, key}, none); };
   set("particles.count", "1");
@@ -113,9 +119,8 @@ void apply_table(Document& document) {
 }
 
 void apply_override(Document& document, const Override& by, std::vector<std::string>& notices) {
-  Document entries = parse_override_value(by.value, by.key, by.value_place);
-  entries.front().key_place = by.key_place;
-  apply(document, by.key, entries, by.value_place, notices);
+  apply(document, by.key, parse_override_value(by.value, by.key, by.key_place, by.value_place), by.value_place,
+        notices);
 }
 
 void apply_overrides(Document& document, const std::vector<std::string>& overrides, std::vector<std::string>& notices) {

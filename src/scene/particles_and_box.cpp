@@ -33,6 +33,7 @@ StreamlineSettings read_streamlines(const Settings& settings) {
 
 // Of all modes together: where their amplitudes sum up to 1 streamlines may cross.
 constexpr double most_bunching = 0.9;
+constexpr std::size_t most_modes = 1000; // each particle is placed by all of them
 
 ModeSettings read_mode(const std::vector<double>& row, ModeSettings::Direction direction, const std::string& which) {
   const auto require = [&](const char* what, double value, const KeyRange& range, const char* why) {
@@ -75,6 +76,11 @@ std::vector<ModeSettings> read_modes(Settings& settings, const std::string& name
   read_modes(settings, name, "standing", ModeSettings::Direction::standing, modes);
   if (modes.empty())
     fail_at(place, "[particles.modes] has no mode in it; add for example outward = [[1, 0.1, 0.0]]");
+  if (modes.size() > most_modes)
+    fail_at(place,
+            fmt::format("[particles.modes] has {} modes (a start takes {} at most, for each particle is placed by all "
+                        "of them); leave out the weakest",
+                        modes.size(), most_modes));
   double sum = 0.0;
   for (const ModeSettings& mode : modes)
     sum += mode.amplitude;

@@ -71,7 +71,7 @@ void add_gravity_of_quality(Document& document) {
     return;
   const auto add = [&](const std::string& path, Value value) {
     if (!find_entry(document, path))
-      document.push_back({path, "quality", "quality", std::move(value), false});
+      document.add({path, "quality", "quality", std::move(value), false});
   };
   const auto has = [&](const std::string& path) { return find_entry(document, path) != nullptr; };
   const bool for_tree = has("gravity.opening_angle") || has("gravity.images") || has("gravity.image_rings");

@@ -14,6 +14,7 @@
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/scene/derived.hpp>
 #include <keeler/scene/examples.hpp>
+#include <keeler/scene/keys.hpp>
 
 #include <fmt/format.h>
 
@@ -82,16 +83,21 @@ void choose_resting_contacts(Scene& scene, Settings& settings) {
   settings.resolve(key, std::string(scene.gravity->resting_contacts ? "carried" : "bounced"));
 }
 
-// `size_x`: as above.
-std::vector<ForceSettings> read_external_forces(Settings& settings, const std::string& name, double size_x) {
+// Where the box is known a force is made as a run makes it, to see what it says to its values.
+std::vector<ForceSettings> read_external_forces(const Scene& scene, Settings& settings, const std::string& name) {
+  const ForceContext context{.masses = {},
+                             .box = {scene.size_x, scene.size_y, scene.planet.frequencies.shear(), 0.0},
+                             .orbital_frequency = scene.planet.orbital_frequency};
   std::vector<ForceSettings> forces;
   for (const ForceEntry& entry : external_forces()) {
     if (!settings.has(entry.table))
       continue;
     forces.push_back({&entry, settings.parameters(entry.table, name)});
     try {
-      if (entry.check && size_x > 0.0)
-        entry.check(forces.back().parameters, size_x);
+      if (scene.size_x > 0.0 && entry.check)
+        entry.check(forces.back().parameters, scene.size_x);
+      if (scene.size_x > 0.0)
+        entry.make(forces.back().parameters, context);
     } catch (const UsageError& fault) {
       fail_at(settings.place(entry.table), fault.what());
     }
@@ -112,7 +118,9 @@ std::int64_t whole_kicks(Scene& scene, Settings& settings, const std::string& ke
                         key, orbits, scene.time.step));
   if (orbits == 0.0)
     return 0;
-  const std::int64_t whole = std::max<std::int64_t>(1, std::llround(kicks));
+  std::int64_t whole = std::max<std::int64_t>(1, std::llround(kicks));
+  if (whole > 1 && !find_key(key)->range.contains(static_cast<double>(whole) * interval))
+    --whole; // the resolved scene must be one
   const std::int64_t steps = whole * per_kick;
   if (std::fabs(kicks - static_cast<double>(whole)) > 1e-9 * kicks) {
     const double rounded = static_cast<double>(steps) * scene.time.step;
@@ -178,7 +186,7 @@ Scene read_scene(Document document, const std::string& name, Purpose purpose, st
   scene.collisions = read_collisions(settings, name);
   scene.gravity = read_gravity(settings, name, scene.size_x);
   choose_resting_contacts(scene, settings);
-  scene.external_forces = read_external_forces(settings, name, scene.size_x);
+  scene.external_forces = read_external_forces(scene, settings, name);
   resolve_times_of_quality(scene, settings);
   read_times(scene, settings);
   scene.output.collisions = read_contact_log(settings);

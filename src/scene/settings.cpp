@@ -52,8 +52,8 @@ Settings::Settings(Document document) : document_(std::move(document)) {
     for (const std::string& path : paths_of(key)) {
       if (has(path) || key.fallback.empty() || !condition_holds(document_, path))
         continue;
-      const Value value = parse_override_value(key.fallback, path, default_place).front().value;
-      document_.push_back({path, default_place, default_place, value, false});
+      const Value value = parse_override_value(key.fallback, path, default_place, default_place).front().value;
+      document_.add({path, default_place, default_place, value, false});
     }
 }
 
@@ -97,10 +97,8 @@ std::string Settings::file_path(const std::string& key, const std::string& scene
 }
 
 void Settings::resolve(const std::string& path, Value value, const std::string& replaced) {
-  document_.erase(std::remove_if(document_.begin(), document_.end(),
-                                 [&](const Entry& e) { return e.path == path || e.path == replaced; }),
-                  document_.end());
-  document_.push_back({path, "derived", "derived", std::move(value), false});
+  document_.remove_if([&](const Entry& e) { return e.path == path || e.path == replaced; });
+  document_.add({path, "derived", "derived", std::move(value), false});
 }
 
 NumberRows Settings::rows(const Key& key, const std::string& scene_name) {
@@ -138,11 +136,14 @@ Parameters::Value Settings::parameter(const Key& key, const std::string& scene_n
 
 Parameters Settings::parameters(const std::string& table, const std::string& scene_name) {
   Parameters parameters;
-  for (Key key : scene_keys()) {
+  const std::string section = declared_path(table);
+  for (const Key& declared : scene_keys()) {
+    if (declared.section() != section)
+      continue;
+    Key key = declared;
     const std::string name = key.name();
-    const bool own = key.section() == declared_path(table);
     key.path = table + "." + name;
-    if (own && has(key.path))
+    if (has(key.path))
       parameters.set(name, parameter(key, scene_name));
   }
   return parameters;

@@ -39,6 +39,7 @@ std::vector<Key> mode_keys() {
                .type = KeyType::rows,
                .fallback = "[]",
                .meaning = meaning,
+               .range = {.low = -360, .high = 1000},
                .columns = {"waves in the box", "amplitude of the relative surface density",
                            "phase in degrees, with a crest at x = -phase/k"},
                .effect = KeyEffect::start};
@@ -57,6 +58,7 @@ std::vector<Key> pattern_keys() {
        .example = "[-20.0, 20.0]",
        .unit = "m",
        .meaning = "between these x the surface density is another one at the start; its mean over the box stays",
+       .range = {.low = -1e7, .high = 1e7},
        .effect = start},
       {.path = "particles.step.factor",
        .type = number,

@@ -2,6 +2,7 @@
 
 #include "separation.hpp"
 
+#include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
@@ -82,11 +83,18 @@ Patch patch_from_table(const ParticleTable& table, const TableScene& of) {
                        figures(patch.positions[k].x()), figures(patch.positions[k].y()), figures(patch.box.size_x),
                        figures(patch.box.size_y)));
   }
+  require_no_heap(patch, table.file);
   return patch;
 }
 
 Relaxation relax(Patch& patch) {
   constexpr int most_sweeps = 4000;
+  constexpr std::size_t most_each = 50; // an equal sphere has room for 12 neighbours
+  if (const std::size_t overlaps = count_overlaps(patch, allowed_overlap); overlaps > most_each * patch.size())
+    throw InvariantError(
+        fmt::format("{} overlap in {} pairs (more than {} each are a heap, for which no room can be made); "
+                    "spread them out",
+                    counted(patch.size(), "particle"), overlaps, most_each));
   std::vector<Sphere> spheres(patch.size());
   for (std::size_t k = 0; k < patch.size(); ++k)
     spheres[k] = {patch.positions[k], patch.radii[k], patch.positions[k].z(), static_cast<std::uint32_t>(k)};

@@ -1,5 +1,6 @@
 #include <keeler/states/possible.hpp>
 
+#include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/core/words.hpp>
@@ -75,6 +76,7 @@ void require_possible_particles(const Patch& patch, const std::string& path) {
     if (const std::string fault = particle_fault(patch, k); !fault.empty())
       throw InvariantError(
           fmt::format("particle {} of '{}' has {}; correct it or take another state", patch.ids[k], path, fault));
+  require_no_heap(patch, "'" + path + "'");
 }
 
 } // namespace keeler

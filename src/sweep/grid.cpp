@@ -2,6 +2,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/files/input.hpp>
+#include <keeler/files/toml_bounds.hpp>
 #include <keeler/scene/keys.hpp>
 
 #include <fmt/format.h>
@@ -60,13 +61,11 @@ public:
 
 private:
   toml::table parse() const {
+    require_bounded_toml(text_, grid_.file.string());
     try {
       return toml::parse(text_, grid_.file.string());
     } catch (const toml::parse_error& error) {
-      std::string reason(error.description());
-      std::replace_if(
-          reason.begin(), reason.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-      fail_at(place(error.source().begin), fmt::format("not TOML ({}); correct this line", reason));
+      fail_at(place(error.source().begin), toml_fault(error.description()));
     }
   }
 
@@ -193,6 +192,7 @@ private:
   void add_settings(const toml::table& table, const std::string& prefix) {
     for (const auto& [key, node] : table) {
       const std::string path = prefix + std::string(key.str());
+      refuse_long(path, place(key.source().begin));
       const toml::table* const inner = node.as_table();
       if (inner && !inner->is_inline())
         add_settings(*inner, path + ".");
@@ -201,8 +201,19 @@ private:
     }
   }
 
+  // What no scene has is found when its values are tried; but each value has its key, and each run all of them.
+  static void refuse_long(const std::string& key, const std::string& at) {
+    constexpr std::size_t longest = 200;
+    if (key.size() > longest)
+      fail_at(at, fmt::format("unknown key of {} bytes (no scene has one so long); correct it", key.size()));
+  }
+
   // Each key of the scene is given once.
   std::string claimed(const std::string& key, const std::string& at) {
+    constexpr std::size_t most = 1000;
+    refuse_long(key, at);
+    if (keys_.size() >= most)
+      fail_at(at, fmt::format("the grid has more than {} keys (no scene has so many); remove some", most));
     if (key == seed_key)
       fail_at(at, "particles.seed is given by seeds (a run has one seed); write seeds = [...]");
     if (!keys_.insert(key).second)

@@ -2,6 +2,9 @@
 
 #include <keeler/batch/quantities.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/interrupt.hpp>
+#include <keeler/core/stopwatch.hpp>
+#include <keeler/core/words.hpp>
 #include <keeler/io/hash.hpp>
 
 #include <fmt/format.h>
@@ -119,10 +122,34 @@ void check_plot(const Grid& grid) {
                                  grid.plot.y, fmt::join(names, ", ")));
 }
 
+// Counted before anything is made of them: axes are crossed.
+double number_of_runs(const Grid& grid) {
+  constexpr double most = 1e5;
+  double runs = static_cast<double>(std::max<std::size_t>(1, grid.seeds.size()));
+  for (const GridAxis& axis : grid.axes)
+    runs *= static_cast<double>(axis.points.size());
+  if (runs > most)
+    throw UsageError(
+        fmt::format("{}:1:1: the grid makes {} runs (a sweep takes {} at most); give it fewer seeds or values, "
+                    "or make several grids",
+                    grid.file.string(), figures(runs), figures(most)));
+  return runs;
+}
+
+constexpr std::size_t runs_a_word = 1000;
+
+Progress checked(std::size_t runs, double all, double elapsed_s) {
+  const double share = static_cast<double>(runs) / all;
+  return {share, elapsed_s, elapsed_s * (1.0 / share - 1.0), fmt::format("checking {}", counted(runs, "run"))};
+}
+
 } // namespace
 
-Plan plan_runs(const Grid& grid) {
+Plan plan_runs(const Grid& grid, const std::function<void(const Progress&)>& progress) {
   check_plot(grid);
+  const double count = number_of_runs(grid);
+  double elapsed = 0.0;
+  Stopwatch watch(elapsed);
   Plan plan;
   for (const GridAxis& axis : grid.axes)
     plan.keys.insert(plan.keys.end(), axis.keys.begin(), axis.keys.end());
@@ -135,6 +162,7 @@ Plan plan_runs(const Grid& grid) {
     seeds.push_back(nullptr);
   for (std::size_t p = 0; p < plan.points.size(); ++p)
     for (const GridValue* const seed : seeds) {
+      throw_if_interrupted();
       PlannedRun run;
       const std::string point = name_of(plan.points[p], names);
       run.scene = checked_scene(grid, plan.points[p], seed, point + (seed ? "seed-" + seed->label : "seed"));
@@ -144,6 +172,8 @@ Plan plan_runs(const Grid& grid) {
       check_start(grid, run);
       check_since(grid, run);
       plan.runs.push_back(std::move(run));
+      if (progress && plan.runs.size() % runs_a_word == 0)
+        progress(checked(plan.runs.size(), count, watch.elapsed()));
     }
   return plan;
 }

@@ -4,7 +4,9 @@
 #include "grid.hpp"
 
 #include <keeler/batch/planned_run.hpp>
+#include <keeler/core/progress.hpp>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,7 +26,8 @@ struct Plan {
   std::vector<std::string> keys; ///< of all axes
 };
 
-/// Checks the scene of every run. The grid must outlive the plan. Throws UsageError for the first fault.
-Plan plan_runs(const Grid& grid);
+/// Checks the scene of every run, and tells how far it is where they are many. The grid must outlive the plan. Throws
+/// UsageError for the first fault and for a grid of too many runs, Interrupted (interrupt.hpp).
+Plan plan_runs(const Grid& grid, const std::function<void(const Progress&)>& progress = {});
 
 } // namespace keeler

@@ -6,6 +6,7 @@
 #include <keeler/batch/claims.hpp>
 #include <keeler/batch/workers.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/interrupt.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/report/csv.hpp>
@@ -83,7 +84,15 @@ void write_tables(const Grid& grid, const Plan& plan, const RunFolders& folders,
 
 SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
   const Grid grid = read_grid(settings.grid);
-  const Plan plan = plan_runs(grid);
+  SweepResult result;
+  Plan plan;
+  try {
+    const Interruptible by_requests(requests.stop);
+    plan = plan_runs(grid, settings.progress);
+  } catch (const Interrupted&) {
+    result.stopped = true;
+    return result;
+  }
   const RunFolders folders(settings.folder);
   refuse_other_content(folders);
   folders.refuse_changed(plan.runs, grid.file.string() + ":1:1");
@@ -101,7 +110,6 @@ SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
     work_on(plan.runs, folders, claims, {settings.jobs, settings.threads_per_run, settings.progress, settings.notice},
             requests);
   }
-  SweepResult result;
   result.runs = plan.runs.size();
   result.stopped = requests.stop;
   if (result.stopped)

@@ -43,6 +43,55 @@ refused_by_all "bytes that are no text" "TOML" "$work/bytes.toml"
 refused_by_all "the same by --set" "gravity.solver" "$work/scene.toml" --set "gravity.solver=$(printf 'tr\xff\x1b[31mee')"
 LC_ALL=C grep -qP '[\x80-\xff\x1b]' "$work/said" && fail "raw bytes in: $(cat -v "$work/said")"
 
+# Depth, length and number of what a file holds.
+python3 - "$work" <<'END'
+import sys
+from pathlib import Path
+work = Path(sys.argv[1])
+scene = (work / "scene.toml").read_text()
+for name, text in {
+    "dots": "a." * 15000 + "b = 1\n",
+    "tables": "[" + "a." * 15000 + "b]\n",
+    "lists": "a = " + "[" * 100000 + "\n",
+    "braces": "a = " + "{ b = " * 15000 + "1" + " }" * 15000 + "\n",
+    "moonlets": scene + "[[moonlet]]\nradius = 1.0\ndensity = 900.0\n" * 20000,
+    "aggregates": scene + "[[particles.aggregate]]\ncount = 1\n" * 20000,
+    "modes": scene + "[particles.modes]\ninward = [" + "[1, 1e-7, 0.0], " * 200000 + "]\n",
+    "grid": 'scene = "scene.toml"\nseeds = [' + ", ".join(map(str, range(1000000))) + "]\n",
+    "deep_grid": 'scene = "scene.toml"\n[set]\n' + "a." * 15000 + "b = 1\n",
+    "marked": "\ufeff" + scene,
+    "rows.csv": "x,y,z,r\n" + "1.0,2.0,0.0,1.0\n" * 10000,
+    "few_rows.csv": "x,y,z,r\n" + "1.0,2.0,0.0,1.0\n" * 2000,
+    "marked_radii": "\ufeff1.0\n",
+}.items():
+    (work / (name if "." in name else name + ".toml")).write_text(text, encoding="utf-8")
+END
+refused_by_all "a deeply dotted key" "dots.toml:1:32: a name of more than 16 parts" "$work/dots.toml"
+refused_by_all "a deeply dotted table" "a name of more than 16 parts" "$work/tables.toml"
+refused_by_all "deep lists" "lists or tables inside each other, more than 16 deep" "$work/lists.toml"
+refused_by_all "deep inline tables" "more than 16 deep" "$work/braces.toml"
+refused_by_all "a deeply dotted --set" "more than 16 parts" "$work/scene.toml" --set "$(head -c 30000 "$work/dots.toml")b=1"
+refused_by_all "a deep value by --set" "more than 16 deep" "$work/scene.toml" --set "box.size=$(head -c 30000 "$work/lists.toml" | tail -c 29000)"
+refused_by_all "20,000 moonlets" "20000 tables [[moonlet]] are too many" "$work/moonlets.toml"
+refused_by_all "20,000 aggregates" "20000 tables [[particles.aggregate]] are too many" "$work/aggregates.toml"
+refused_by_all "200,000 modes" "[particles.modes] has 200000 modes" "$work/modes.toml"
+refuses "a grid of a million runs" "the grid makes 1000000 runs" sweep "$work/grid.toml" -o "$work/none"
+refuses "a deep grid" "a name of more than 16 parts" sweep "$work/deep_grid.toml" -o "$work/none"
+refuses_with 3 "10,000 equal rows" "lie on each other in heaps" generate "$work/scene.toml" --from-table "$work/rows.csv" \
+  --relax -o "$work/none.hdf"
+refuses_with 3 "2,000 equal rows" "are a heap" generate "$work/scene.toml" --from-table "$work/few_rows.csv" --relax \
+  -o "$work/none.hdf"
+refuses "a file that does not end" "File too large" check /dev/zero
+
+# What a person would write.
+accepts "a count with an exponent" check "$work/scene.toml" --set particles.count=1e2
+prints "a count with an exponent" "particles          100"
+refused_by_all "a seed of 2^64 - 1" "particles.seed is 1.8446744073709552e+19, but must be a whole number from 0" \
+  "$work/scene.toml" --set particles.seed=18446744073709551615
+accepts "a scene with a byte order mark" check "$work/marked.toml"
+accepts "radii with a byte order mark" check "$work/scene.toml" \
+  --set "particles.sizes={law=\"file\",path=\"$work/marked_radii.toml\"}"
+
 # What a scene will cost is a number.
 accepts "a long run" check "$work/scene.toml" --set time.end=1e9
 prints "a long run" "time               about"

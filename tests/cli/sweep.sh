@@ -171,6 +171,27 @@ small_grid 1
 runs 0 sweep "$work/grid.toml" -o "$work/whole"
 grep -q "4 runs in .* that this grid does not have" "$work/err" || fail "fewer seeds: $(cat "$work/err")"
 sed -i 's/2\.0$/3.0/' "$work/grid.toml"
+# A folder whose name begins with a dash is a folder to the runs too.
+cat >"$work/small.toml" <<END
+scene = "scene.toml"
+seeds = [1, 2]
+[set]
+"time.end" = 0.01
+END
+(cd "$work" && "$keeler" sweep small.toml --output=-dash >"$work/out" 2>"$work/err") || fail "a dash: $(cat "$work/err")"
+[ -s "$work/-dash/sweep.csv" ] || fail "a dash: no table"
+
+# A plan of many runs heeds a signal.
+{ echo 'scene = "scene.toml"' && seq -s ', ' 1 100000 | sed 's/^/seeds = [/; s/$/]/'; } >"$work/many.toml"
+"$keeler" sweep "$work/many.toml" -o "$work/many" >"$work/out" 2>"$work/err" &
+many=$!
+sleep 1
+kill -INT "$many"
+code=0
+wait "$many" || code=$?
+[ "$code" -eq 75 ] || fail "INT while runs are planned: exit $code: $(tail -n 3 "$work/err")"
+[ -e "$work/many" ] && fail "INT while runs are planned: a folder was made"
+
 refuses "another end" "was made with time.end = 2.0 and now has time.end = 3.0" sweep "$work/grid.toml" -o "$work/whole"
 refuses "another's folder" "holds no sweep" sweep "$work/grid.toml" -o "$work/by_hand"
 refuses "a file" "is a file" sweep "$work/grid.toml" -o "$work/scene.toml"

@@ -38,9 +38,14 @@ for target in "${targets[@]}"; do
   if [ "$target" = scene ]; then
     seeds+=("$work/examples")
   fi
+  # what grows with depth, length or number is found by inputs of some size; a folder is a list of short edits
+  longest=65536
+  if [ "$target" = folder ]; then
+    longest=4096
+  fi
   log=build/fuzz/$target.log
   nice -n 15 "$bin/fuzz" "--target=$target" -fork=1 -ignore_crashes=1 -ignore_timeouts=1 -ignore_ooms=1 -timeout=10 \
-    -rss_limit_mb=3000 "-max_total_time=$((60 * minutes))" "-artifact_prefix=$found/$target/" "$corpus" "${seeds[@]}" \
+    "-max_len=$longest" -rss_limit_mb=3000 "-max_total_time=$((60 * minutes))" "-artifact_prefix=$found/$target/" "$corpus" "${seeds[@]}" \
     >"$log" 2>&1 || { tail -n 20 "$log" >&2; exit 1; }
   inputs=$(grep -oE '^#[0-9]+: cov' "$log" | tail -n 1 | tr -dc '0-9')
   printf '| %s | %s | %s | %s | %s | %s files, %s kB |\n' "$target" "$minutes" "${inputs:-0}" \

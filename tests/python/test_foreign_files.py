@@ -102,6 +102,27 @@ class ForeignFiles(unittest.TestCase):
         self.assertEqual(done.returncode, 3)
         self.assertIn(b"an Omega of 1 rad/s", done.stderr)
 
+    def test_deep_scenes(self):
+        """In a snapshot, a text, a dictionary and overrides."""
+        dots, whole = "a." * 15000 + "b = 1", self.scene.read_text()
+        self.change(lambda file, part: file["Parameters"].attrs.__setitem__("scene", dots))
+        done = keeler("analyze", self.file)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(b"a name of more than 16 parts", done.stderr)
+        endless, deep = {}, 1
+        endless["again"] = endless
+        for _ in range(50):
+            deep = [deep]
+        for make, words in (
+            (lambda: ring.generate(dots + "\n"), "a name of more than 16 parts"),
+            (lambda: ring.generate(whole, **{"a." * 15000 + "b": 1}), "more than 16 parts"),
+            (lambda: ring.generate(whole, box={"size": deep}), "more than 16 deep"),
+            (lambda: ring.generate({"box": endless}), "too deep"),
+            (lambda: ring.generate(whole, box=endless), "too deep"),
+        ):
+            with self.subTest(words), self.assertRaisesRegex(ring.UsageError, words):
+                make()
+
     def test_no_particles(self):
         def how(file, part):
             del file["VTKHDF"]

@@ -27,8 +27,12 @@ std::size_t count_overlaps(const Patch& patch, double depth);
 /// An overlap from which no run starts, of a radius sum: contacts by the inexact finders are below it.
 inline constexpr double allowed_overlap = 1e-8;
 
-/// Throws InvariantError where particles overlap by more than that, naming the worst pair of `state` ("the initial
-/// state").
+/// Throws InvariantError where so many particles of `state` lie in one place that whatever looks at pairs would not
+/// end: N in one place have N² pairs. Takes the time of a sort.
+void require_no_heap(const Patch& patch, const std::string& state);
+
+/// Throws InvariantError where particles are in heaps, or overlap by more than that, naming the worst pair of `state`
+/// ("the initial state").
 void require_apart(const Patch& patch, const std::string& state);
 void require_apart(const Overlap& largest, const std::string& state);
 

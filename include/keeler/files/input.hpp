@@ -6,11 +6,15 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace keeler {
 
-/// The whole file, named at `place` ("scene.toml:7:9", or the file itself). Throws UsageError "PLACE: FILE cannot be
-/// read (why); …".
+/// The text without the byte order mark of UTF-8 that some editors and spreadsheets put before it.
+std::string_view without_byte_order_mark(std::string_view text);
+
+/// The whole file without a byte order mark, named at `place` ("scene.toml:7:9", or the file itself). Throws UsageError
+/// "PLACE: FILE cannot be read (why); …", also where the file has more than 1 GiB or does not end, and for UTF-16.
 std::string read_input(const std::filesystem::path& file, const std::string& place);
 
 /// Hands over each row of numbers in a text, with the number of its line, from 1. Blanks, commas or semicolons part the

@@ -5,6 +5,7 @@
 
 #include <keeler/core/key.hpp>
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct Section {
   std::string meaning{};
   std::string replaced_by{}; ///< a key that takes the section's place: with it the section must be absent
   bool repeated = false;     ///< a list of tables, [[path]]: table n of it is path[n], from 1, and has keys path[n].key
+  std::size_t most = 1;      ///< tables in the list
 
   /// As it is written in a scene.
   std::string header() const { return repeated ? "[[" + path + "]]" : "[" + path + "]"; }

@@ -12,7 +12,7 @@ namespace keeler {
 /// The particles of a table in the scene's box, with the shear offset zero. Particle k of the table gets the id k;
 /// masses that the table does not have follow from the scene's density, velocities are those of circular orbits. Throws
 /// UsageError, naming the row, for a particle that no ring has, one farther outside the box than an eccentric one is,
-/// or without a mass, and for spins where the scene has no friction.
+/// or without a mass, and for spins where the scene has no friction; InvariantError for particles in heaps.
 Patch patch_from_table(const ParticleTable& table, const TableScene& scene);
 
 /// What relax() did.

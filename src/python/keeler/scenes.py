@@ -33,20 +33,32 @@ def _toml(value, place):
     raise UsageError(f"{place} is {value!r} ({type(value).__name__}); a scene has texts, numbers, lists and tables")
 
 
-def overrides_of(tables, place=""):
-    """{"time": {"end": 2}} and {"time.end": 2} as ["time.end=2"]."""
+def _overrides(tables, place):
     lines = []
     for name, value in tables.items():
         path = place + name
-        below = overrides_of(value, path + ".") if isinstance(value, dict) else None
+        below = _overrides(value, path + ".") if isinstance(value, dict) else None
         lines += below or [f"{path}={_toml(value, path)}"]  # an empty table says something: {"gravity": {}}
     return lines
+
+
+def _not_too_deep(make):
+    """What make() returns. A table may hold itself."""
+    try:
+        return make()
+    except RecursionError:
+        raise UsageError("lists or tables inside each other are too deep; a scene has them a few deep") from None
+
+
+def overrides_of(tables):
+    """{"time": {"end": 2}} and {"time.end": 2} as ["time.end=2"]."""
+    return _not_too_deep(lambda: _overrides(tables, ""))
 
 
 def source(scene):
     """(text, name for messages) of a scene: a path, a text with a line break, a dictionary, or a snapshot's."""
     if isinstance(scene, dict):
-        lines = (f"{json.dumps(str(key))} = {_toml(value, key)}" for key, value in scene.items())
+        lines = _not_too_deep(lambda: [f"{json.dumps(str(key))} = {_toml(value, key)}" for key, value in scene.items()])
         return "\n".join(lines) + "\n", "scene"
     if isinstance(scene, str) and "\n" in scene:
         return scene, "scene"

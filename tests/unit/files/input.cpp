@@ -37,6 +37,21 @@ TEST_CASE("a pipe is read to its end") {
   writer.join();
 }
 
+TEST_CASE("a byte order mark is no part of a text, UTF-16 is called that, and what does not end is refused") {
+  const TemporaryFolder folder;
+  const std::string file = folder / "f";
+  std::ofstream(file) << "\xef\xbb\xbf"
+                      << "1.0\n";
+  CHECK(read_input(file, file) == "1.0\n");
+  std::ofstream(file) << "\xff\xfe"
+                      << "1";
+  CHECK_THROWS_WITH_AS(read_input(file, file),
+                       (file + ": is a text in UTF-16 (its byte order mark says so); save it as UTF-8").c_str(),
+                       UsageError);
+  CHECK_THROWS_WITH_AS(read_input("/dev/zero", "/dev/zero"),
+                       "/dev/zero: cannot be read (File too large); check the path and its permissions", UsageError);
+}
+
 TEST_CASE("rows of numbers are told with their lines") {
   std::vector<std::pair<int, std::vector<double>>> rows;
   for_each_row("# speed  value\n1e-3, 0.9\n\n  -2;.5 # a comment\r\n  \r\n7 1.5x", [&](int line, auto numbers) {

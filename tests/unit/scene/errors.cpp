@@ -36,7 +36,7 @@ TEST_CASE("wrong types are told with what is needed") {
   CHECK(with("900", "\"900\"") ==
         "s.toml:7:11: particles.density is a string, but must be a number from 0.01 to 30000 (density of the "
         "particles' material, in kg/m^3); write for example density = 600.0");
-  CHECK(with("300", "300.0") ==
+  CHECK(with("300", "300.5") ==
         "s.toml:6:9: particles.count is a number with a fraction, but must be a whole number from "
         "1 to 1e9 (number of particles); write for example count = 10000");
   CHECK(with("[100, 50.0]", "[100]") ==
@@ -48,6 +48,51 @@ TEST_CASE("wrong types are told with what is needed") {
   CHECK(with("[time]", "[[time]]").rfind("s.toml:9:1: time is a list of tables, but must be a table", 0) == 0);
   CHECK(with("end = 2", "end = 2021-01-01").rfind("s.toml:10:7: time.end is a date or time, but must be", 0) == 0);
   CHECK(with("300", "{ a = 1 }").rfind("s.toml:6:9: particles.count is a table, but must be", 0) == 0);
+}
+
+TEST_CASE("a whole number may be written with an exponent, and too large a one is called that") {
+  for (const char* const three_hundred : {"3e2", "300.0", "3.0e+2", "300"})
+    CHECK(parse_scene(changed(least, "300", three_hundred), "s.toml").particles.count == 300);
+  CHECK(parse_scene(least, "s.toml", {"particles.count=3e2"}).resolved == parse_scene(least, "s.toml").resolved);
+  CHECK(with("count = 300", "count = 1e300").find("particles.count is 1e+300, but must be a whole number") !=
+        std::string::npos);
+  CHECK(with("count = 300", "count = 300\nseed = 18446744073709551615")
+            .ends_with(
+                "the number is too large (whole numbers end at 9223372036854775807, others at 1.8e308); lower it"));
+  CHECK(with("900", "1e400").find("the number is too large") != std::string::npos);
+  CHECK(
+      fault(least, {"particles.seed=18446744073709551615"}) ==
+      "--set particles.seed=18446744073709551615: particles.seed is 1.8446744073709552e+19, but must be a whole number "
+      "from 0 to 9.22337e18 (seed of all random numbers); write for example seed = 1");
+  CHECK(fault(least, {"particles.density=1e400"}).find("is a number too large or too small to compute with") !=
+        std::string::npos);
+  CHECK(parse_scene(least, "s.toml", {"particles.sizes.radius=.5"}).particles.sizes.largest == 0.5);
+  CHECK(parse_scene(least, "s.toml", {"title=.5"}).title == ".5");
+  CHECK(parse_scene(least, "s.toml", {"particles.seed=9223372036854775807"}).particles.seed == 9223372036854775807U);
+}
+
+TEST_CASE("depth and number of things in a scene are bounded") {
+  const auto repeated = [](const std::string& part, std::size_t count) {
+    std::string text;
+    for (std::size_t k = 0; k < count; ++k)
+      text += part;
+    return text;
+  };
+  const std::string dots = repeated("a.", 100000), open = repeated("[", 100000), braces = repeated("{a=", 100000);
+  CHECK(fault(dots + "b = 1\n").rfind("s.toml:1:32: a name of more than 16 parts", 0) == 0);
+  CHECK(fault("[" + dots + "b]\n").rfind("s.toml:1:33: a name of more than 16 parts", 0) == 0);
+  CHECK(fault("a = " + open + "\n").rfind("s.toml:1:21: lists or tables inside each other, more than 16 deep", 0) == 0);
+  CHECK(fault("a = " + braces + "\n").find("more than 16 deep") != std::string::npos);
+  CHECK(fault(least, {dots + "b=1"}).find("unknown key (it has more than 16 parts") != std::string::npos);
+  CHECK(fault(least, {"a=" + open}).find("more than 16 deep") != std::string::npos);
+  CHECK(fault(least, {"title=../../../../../../../../../../../../a"}) == "");
+  CHECK(fault("[a.\"" + repeated("x", 1000000) + "\"]\n" + repeated("b", 1000000) + " = 1\n")
+            .rfind("s.toml:1:2: unknown table a ", 0) == 0);
+  CHECK(fault(least + repeated("[[moonlet]]\nradius = 1.0\ndensity = 900.0\n", 20000))
+            .find("20000 tables [[moonlet]] are too many (a scene takes 1000 at most") != std::string::npos);
+  CHECK(fault(least + "[particles.modes]\noutward = [" + repeated("[1, 1e-6, 0.0],", 200000) + "]\n")
+            .find("[particles.modes] has 200000 modes (a start takes 1000 at most") != std::string::npos);
+  CHECK(fault(least, {"moonlet=[" + repeated("{radius=1.0,density=900.0},", 20000) + "]"}).size() < 1000);
 }
 
 TEST_CASE("values out of range are told with the range") {

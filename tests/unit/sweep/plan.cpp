@@ -72,3 +72,35 @@ TEST_CASE("without axes and seeds there is one run, with the scene's seed") {
   CHECK(plan.runs.front().name == "seed-1");
   CHECK(plan.points.size() == 1);
 }
+
+TEST_CASE("a grid of too many runs, too deep a one or one with too many keys is refused at once") {
+  const auto list = [](std::size_t count) {
+    std::string numbers;
+    for (std::size_t k = 1; k <= count; ++k)
+      numbers += std::to_string(k) + ", ";
+    return "[" + numbers + "]";
+  };
+  const std::string scene = "scene = \"scene.toml\"\n";
+  CHECK(GridFile(scene + "seeds = " + list(1000000) + "\n").fault() ==
+        "grid.toml:1:1: the grid makes 1000000 runs (a sweep takes 100000 at most); give it fewer seeds or values, or "
+        "make several grids");
+  std::string crossed = scene;
+  for (const char* const key : {"a", "b", "c", "d", "e"})
+    crossed += std::string("[[axis]]\nkey = \"") + key + "\"\nvalues = " + list(10000) + "\n";
+  CHECK(GridFile(crossed).fault().rfind("grid.toml:1:1: the grid makes 1e20 runs", 0) == 0);
+  std::string dots;
+  for (int k = 0; k < 100000; ++k)
+    dots += "a.";
+  CHECK(GridFile(scene + "[set]\n" + dots + "b = 1\n").fault().find("a name of more than 16 parts") !=
+        std::string::npos);
+  CHECK(GridFile(scene + "[set]\n\"" + dots + "b\" = 1\n").fault().find("unknown key of 200001 bytes") !=
+        std::string::npos);
+  std::string many = scene + "[set]\n";
+  for (int k = 0; k < 2000; ++k)
+    many += "k" + std::to_string(k) + " = 1\n";
+  CHECK(GridFile(many).fault().find("the grid has more than 1000 keys") != std::string::npos);
+  CHECK(GridFile("\xef\xbb\xbf" + scene).fault() == "");
+  CHECK(GridFile(scene + "seeds = [1e3, 2]\n").fault() == "");
+  CHECK(GridFile(scene + "seeds = [18446744073709551615]\n").fault().find("the number is too large") !=
+        std::string::npos);
+}

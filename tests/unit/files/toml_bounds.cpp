@@ -1,0 +1,49 @@
+#include <keeler/files/toml_bounds.hpp>
+
+#include <keeler/core/error.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace keeler;
+
+namespace {
+
+std::string dotted(std::size_t parts) {
+  std::string name = "a";
+  for (std::size_t k = 1; k < parts; ++k)
+    name += ".a";
+  return name;
+}
+
+std::string nested(std::size_t depth) {
+  return std::string(depth, '[') + std::string(depth, ']');
+}
+
+} // namespace
+
+TEST_CASE("names and lists may be so deep and no deeper") {
+  CHECK_FALSE(toml_excess(dotted(most_toml_depth) + " = 1.5"));
+  CHECK(toml_excess(dotted(most_toml_depth + 1) + " = 1.5"));
+  CHECK_FALSE(toml_excess("a = " + nested(most_toml_depth)));
+  CHECK(toml_excess("a = " + nested(most_toml_depth + 1)));
+  CHECK_FALSE(toml_excess("a = [" + nested(3) + "," + nested(3) + "]\nb = 1.0\nc.d = [1.0, 2.0, 3.0]\n"));
+  CHECK_THROWS_WITH_AS(require_bounded_toml("é = 1\n[é." + dotted(20) + "]\n", "s.toml"),
+                       "s.toml:2:34: a name of more than 16 parts (nothing that is read here has more than a few); "
+                       "shorten it",
+                       UsageError);
+}
+
+TEST_CASE("strings and comments are read as TOML does") {
+  const std::string deep = dotted(40) + nested(40);
+  for (const std::string text : {"# " + deep + "\n", "a = \"" + deep + "\"\n", "a = '" + deep + "'\n",
+                                 "a = \"\\\"" + deep + "\"\n", "a = \"\"\"\n" + deep + "\"\"" + deep + "\"\"\"\"\"\n",
+                                 "a = '''" + deep + "'" + deep + "'''\n", "a = \"\" # " + deep + "\n"}) {
+    CAPTURE(text);
+    CHECK_FALSE(toml_excess(text));
+    CHECK(toml_excess(text + deep)); // behind it the text is read again
+  }
+  CHECK(toml_excess("a = '\\' # \n" + deep)); // no escapes there
+  CHECK_FALSE(toml_excess("a = \""));
+  CHECK_FALSE(toml_excess(""));
+  CHECK(toml_excess(std::string(std::size_t{65} << 20, ' ')));
+}
