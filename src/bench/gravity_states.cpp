@@ -1,5 +1,6 @@
 #include <keeler/bench/gravity_states.hpp>
 
+#include <keeler/scene/derived.hpp>
 #include <keeler/simulation/simulation.hpp>
 #include <keeler/states/initial.hpp>
 #include <keeler/states/tiled.hpp>
@@ -73,6 +74,7 @@ BenchState gravity_state(std::size_t count, GravityState kind, PhaseProgress& pr
   const double side = std::ceil(std::sqrt(asked / (clumped ? largest_clumped_tile : largest_uniform_tile)));
   const long tile_count = std::lround(asked / (side * side));
   BenchState state{a_ring_scene(static_cast<std::size_t>(tile_count), 1), {}};
+  require_memory_for(state.scene, count);
   state.patch = clumped ? evolved_with_gravity(state.scene, clumping_orbits, progress) : initial_patch(state.scene);
   if (side > 1.0)
     state.patch = tiled_patch(state.patch, static_cast<std::size_t>(side), static_cast<std::size_t>(side));

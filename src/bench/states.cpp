@@ -140,6 +140,7 @@ BenchState bench_state(const DriftBenchSettings& settings, PhaseProgress& progre
   const double side = std::ceil(std::sqrt(count / static_cast<double>(recipe.largest_tile)));
   const double tile_count = std::max(1.0, std::round(count / (side * side)));
   BenchState state{tile_scene(recipe, static_cast<std::size_t>(tile_count), settings), {}};
+  require_memory_for(state.scene, settings.count);
   if (moonlet)
     require_room_for_moonlet(side * state.scene.size_x);
 

@@ -146,7 +146,7 @@ void add_analyze(CLI::App& program, Action& action) {
   command
       .add_option("--cluster-gap", options->settings.cluster_gap,
                   "largest gap between touching spheres, over the sum of their radii (default: 0.01)")
-      ->check(positive_number());
+      ->check(positive_number(10.0)); // wider ones make everything one cluster, in the time of all pairs
   command.add_option("--modes", options->settings.radial_modes, "radial modes to measure (default: 4)")
       ->check(number_between(1, 1000, "a number of modes"));
   CLI::Option* const profile =

@@ -30,7 +30,7 @@ struct BenchThreadOption {
 
 /// --repeats N.
 inline void add_repeats(CLI::App& command, int& repeats) {
-  command.add_option("--repeats", repeats, "times measured; medians are given (default: 5)")->check(positive_number());
+  command.add_option("--repeats", repeats, "times measured; medians are given (default: 5)")->check(repeat_number());
 }
 
 /// What measure(settings) returns, with progress shown when it takes so long that one wonders; the first rank's alone.

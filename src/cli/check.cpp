@@ -3,6 +3,7 @@
 #include "scene_arguments.hpp"
 
 #include <keeler/bench/yardsticks.hpp>
+#include <keeler/core/memory.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
@@ -193,8 +194,12 @@ ExitCode check(const CheckOptions& options) {
   if (scene.start_from && !std::filesystem::exists(*scene.start_from))
     throw IoError(fmt::format("start.from names '{}', which does not exist", *scene.start_from));
   const std::optional<PatchScale> start = scale_of_start(scene);
-  const Lines said = start ? doubts(scene, *start) : doubts(scene);
+  Lines said = start ? doubts(scene, *start) : doubts(scene);
   const Derived derived = derive(scene);
+  if (const double left = 1e-6 * available_memory(); derived.memory_mb > left)
+    said.push_back(fmt::format("the run needs about {} GB of memory, and {} GB can be had here: run refuses it; take "
+                               "fewer particles, a coarser mesh, or a machine that has more",
+                               figures(1e-3 * derived.memory_mb, 3), figures(1e-3 * left, 3)));
   const std::optional<RunEstimate> cost = estimate(scene, derived);
   if (options.json)
     fmt::print("{}\n", as_json(scene, derived, cost, said).dump(2));

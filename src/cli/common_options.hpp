@@ -7,26 +7,30 @@
 #include <keeler/core/threads.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/scene/keys.hpp>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace keeler {
 
-/// Refuses what is no number above 0, in fewer words than CLI11's own check.
-inline CLI::Validator positive_number() {
-  const auto refusal = [](const std::string& text) {
+/// Refuses what is no number above 0, up to `most`, in fewer words than CLI11's own check.
+inline CLI::Validator positive_number(double most = std::numeric_limits<double>::infinity()) {
+  const auto refusal = [most](const std::string& text) {
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
-    return *end == '\0' && end != text.c_str() && value > 0.0 ? std::string()
-                                                              : "'" + text + "' is not a number above 0";
+    return *end == '\0' && end != text.c_str() && value > 0.0 && value <= most
+               ? std::string()
+               : "'" + text + "' is not a number above 0" + (std::isfinite(most) ? ", up to " + figures(most) : "");
   };
   return CLI::Validator(refusal, "");
 }
@@ -42,6 +46,17 @@ inline CLI::Validator number_between(double low, double high, const std::string&
   };
   return CLI::Validator(refusal, "");
 }
+
+/// Refuse what is no number of particles that a run may have, of times that something is measured.
+inline CLI::Validator particle_number() {
+  return number_between(1, find_key("particles.count")->range.high, "a number of particles");
+}
+inline CLI::Validator repeat_number() {
+  return number_between(1, 1000, "a number of repeats");
+}
+
+inline constexpr double most_orbits = 1e6;   ///< of a probe, or of a run of a study
+inline constexpr double most_seeds = 1000.0; ///< of a study
 
 /// The same for whole numbers.
 inline CLI::Validator whole_number_between(long low, long high, const std::string& what) {

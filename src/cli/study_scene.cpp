@@ -16,8 +16,6 @@
 namespace keeler {
 namespace {
 
-constexpr double most_seeds = 1000.0;
-
 struct SceneStudyOptions {
   SceneArguments scene;
   SceneStudySettings settings;
@@ -66,9 +64,9 @@ void add_one(CLI::App& study, Action& action, const std::vector<std::string>& ar
   command
       .add_option("--grow", settings.grow_orbits,
                   "orbits before anything is compared (default: 6 with self-gravity, 10 without)")
-      ->check(positive_number());
+      ->check(positive_number(most_orbits));
   command.add_option("--orbits", settings.orbits, "orbits of each run from then on (default: 6)")
-      ->check(positive_number());
+      ->check(positive_number(most_orbits));
   command.add_option("--jobs", options->jobs, "runs at once, on one thread each (default: threads of the machine)")
       ->check(number_between(1, most_threads, "a number of runs"));
   command.add_flag("--quick", settings.quick,

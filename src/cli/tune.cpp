@@ -213,7 +213,7 @@ void add_tune(CLI::App& program, Action& action) {
   command
       .add_option("--orbits", options->settings.orbits,
                   "age of the state that is probed (default: 4 with self-gravity, else 8; at most the run's end)")
-      ->check(positive_number());
+      ->check(positive_number(most_orbits));
   command.add_option("-o,--output", options->output, "write the scene with the keys that were found")
       ->type_name("FILE");
   command.add_flag("--force", options->force, "replace the file if it exists");

@@ -39,6 +39,14 @@ OwnLaws& own_laws() {
   return laws;
 }
 
+void require_coefficient(double kept, const std::string& name, const Impact& impact) {
+  if (!(kept >= 0.0 && kept <= 1.0))
+    throw UsageError(
+        fmt::format("the restitution law '{}' gives {:g} for an impact of {:g} m/s of radii {:g} m and {:g} "
+                    "m (coefficients are from 0 to 1); correct the law",
+                    name, kept, impact.speed, impact.radius_low, impact.radius_high));
+}
+
 RestitutionLaw own_restitution(const std::string& name) {
   OwnLaws& own = own_laws();
   const std::lock_guard lock(own.guard);
@@ -56,14 +64,15 @@ void add_own_restitution(const std::string& name, const RestitutionLaw& law) {
   if (name.empty())
     throw UsageError("a restitution law of one's own needs a name; states and checkpoints know it by that");
   for (double speed = 1e-6; speed < 101.0; speed *= 10.0)
-    if (const double kept = law({speed, 1.0, 1.0}); !(kept >= 0.0 && kept <= 1.0))
-      throw UsageError(
-          fmt::format("the restitution law '{}' gives {:g} for an impact of {:g} m/s; coefficients are from "
-                      "0 to 1",
-                      name, kept, speed));
+    require_coefficient(law({speed, 1.0, 1.0}), name, {speed, 1.0, 1.0});
+  const auto held_to_range = [name, law](const Impact& impact) {
+    const double kept = law(impact);
+    require_coefficient(kept, name, impact);
+    return kept;
+  };
   OwnLaws& own = own_laws();
   const std::lock_guard lock(own.guard);
-  if (!own.laws.try_emplace(name, law).second)
+  if (!own.laws.try_emplace(name, held_to_range).second)
     throw UsageError(fmt::format("there is a restitution law '{}' already; give this one another name", name));
 }
 

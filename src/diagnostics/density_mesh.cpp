@@ -76,7 +76,7 @@ void shear_columns(MeshTransform& mesh, double turns_per_column) {
 MeshSize mesh_size(const Patch& patch) {
   const double between = std::sqrt(patch.box.area() / static_cast<double>(patch.size()));
   const double spacing = std::max(critical_wavelength(patch) / 32.0, between);
-  const auto nodes = [&](double size) { return 2 * std::clamp(static_cast<int>(size / (2.0 * spacing)), 4, 512); };
+  const auto nodes = [&](double size) { return 2 * static_cast<int>(std::clamp(size / (2.0 * spacing), 4.0, 512.0)); };
   return {nodes(patch.box.size_x), nodes(patch.box.size_y)};
 }
 

@@ -136,7 +136,7 @@ Crowding crowding(const Patch& patch, double radius) {
     total.cuts += patch.masses[i] * cuts;
   });
   const double side = std::sqrt(pi) * radius;
-  const auto cells = [&](double size) { return std::clamp(static_cast<int>(std::lround(size / side)), 1, 1 << 14); };
+  const auto cells = [&](double size) { return static_cast<int>(std::clamp(std::round(size / side), 1.0, 0x1p14)); };
   const int columns = cells(patch.box.size_x), rows = cells(patch.box.size_y);
   Crowding result;
   result.optical_depth = sums.discs / (sums.mass * radius * radius);

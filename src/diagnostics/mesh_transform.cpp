@@ -11,7 +11,10 @@ namespace {
 
 // A plan for one use.
 struct Plan {
-  explicit Plan(fftw_plan made) : plan(made) {}
+  explicit Plan(fftw_plan made) : plan(made) {
+    if (plan == nullptr)
+      throw std::bad_alloc();
+  }
   Plan(const Plan&) = delete;
   Plan& operator=(const Plan&) = delete;
   ~Plan() { fftw_destroy_plan(plan); }

@@ -1,7 +1,11 @@
 #include <keeler/diagnostics/transmission.hpp>
 
+#include <keeler/core/memory.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/core/threads.hpp>
+#include <keeler/core/words.hpp>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <atomic>
@@ -57,18 +61,25 @@ private:
   double x_ = 0, y_ = 0, radius2_ = 0, half_x_ = 0, top_dx_ = 0;
 };
 
-std::size_t at_least_one(double number) {
-  return static_cast<std::size_t>(std::max(1.0, std::round(number)));
+double at_least_one(double number) {
+  return std::max(1.0, std::round(number));
 }
 
 } // namespace
 
-RayLattice::RayLattice(const ShearingBox& box, std::size_t rays, double footprint, std::uint64_t seed)
-    : box_(box), across_(at_least_one(box.size_x / footprint)), along_(at_least_one(box.size_y / footprint)) {
+RayLattice::RayLattice(const ShearingBox& box, std::size_t rays, double footprint, std::uint64_t seed) : box_(box) {
+  const double across = at_least_one(box.size_x / footprint), along = at_least_one(box.size_y / footprint);
   const double side = std::sqrt(box.area() / static_cast<double>(rays)); // of a ray's cell
-  columns_ = across_ * at_least_one(footprint_x() / side);
-  rows_ = along_ * at_least_one(footprint_y() / side);
-  places_.resize(columns_ * rows_);
+  const double columns = across * at_least_one(box.size_x / across / side),
+               rows = along * at_least_one(box.size_y / along / side);
+  // a ray also has marks, and at least one a footprint has its share
+  constexpr double bytes = sizeof(Place) + 2 * sizeof(std::uint8_t) + sizeof(double);
+  places_.resize(affordable_size(columns * rows, bytes,
+                                 fmt::format("a lattice of {} rays, at least one in each footprint of {} m,",
+                                             figures(columns * rows, 4), figures(footprint, 4)),
+                                 "lower --rays or raise --footprint"));
+  across_ = static_cast<std::size_t>(across), along_ = static_cast<std::size_t>(along);
+  columns_ = static_cast<std::size_t>(columns), rows_ = static_cast<std::size_t>(rows);
   const double dx = box.size_x / static_cast<double>(columns_), dy = box.size_y / static_cast<double>(rows_);
   parallel_for(places_.size(), [&](std::size_t k) {
     RandomStream random(seed, RandomPurpose::sample, k);

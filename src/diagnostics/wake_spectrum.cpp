@@ -23,7 +23,7 @@ double cloud_window(double turn) {
 std::size_t bin_of(double kx, double ky, double critical_wavelength) {
   const double length = 4.0 * std::hypot(kx, ky) * critical_wavelength / two_pi;
   const double turns = std::atan2(ky, kx) / pi * WakePower::directions + 0.5; // ky ≥ 0
-  return std::min(static_cast<std::size_t>(length), WakePower::lengths - 1) * WakePower::directions +
+  return static_cast<std::size_t>(std::min(length, WakePower::lengths - 1.0)) * WakePower::directions +
          static_cast<std::size_t>(turns) % WakePower::directions;
 }
 

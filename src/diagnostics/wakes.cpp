@@ -114,7 +114,8 @@ std::span<const CrestPoint> within(std::span<const CrestPoint> crest, double dis
 
 // Gaussian smoothing of a profile that is even about its first entry.
 std::vector<double> smooth(const std::vector<double>& profile, double sigma) {
-  const int count = static_cast<int>(profile.size()), half = static_cast<int>(std::ceil(3.0 * sigma));
+  const int count = static_cast<int>(profile.size()),
+            half = static_cast<int>(std::min(std::ceil(3.0 * sigma), 2.0 * count));
   std::vector<double> smoothed(profile.size());
   for (int i = 0; i < count; ++i) {
     double sum = 0.0, weights = 0.0;

@@ -1,6 +1,7 @@
 #include <keeler/gravity/axisymmetric.hpp>
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/memory.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/core/words.hpp>
@@ -10,9 +11,11 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <complex>
+#include <memory>
+#include <new>
+#include <utility>
 #include <vector>
 
 namespace keeler {
@@ -47,15 +50,53 @@ struct Place {
   Weights weights;
 };
 
+// Memory and plans of FFTW.
+struct Free {
+  void operator()(void* numbers) const { fftw_free(numbers); }
+  void operator()(fftw_plan plan) const { fftw_destroy_plan(plan); }
+};
+template<class T> using Owned = std::unique_ptr<T, Free>;
+
+template<class T> T* there(T* made) {
+  if (made == nullptr)
+    throw std::bad_alloc();
+  return made;
+}
+
+double waves_in(double size_x, double shortest_wavelength) {
+  return std::floor(size_x / shortest_wavelength * (1.0 + 1e-12));
+}
+
 } // namespace
+
+double radial_mesh_nodes(double size_x, double shortest_wavelength) {
+  const double least = std::max(static_cast<double>(nodes_a_wave) * waves_in(size_x, shortest_wavelength), 2.0 * order);
+  return std::exp2(std::ceil(std::log2(least)));
+}
+
+std::string radial_mesh_fault(double size_x, double shortest_wavelength) {
+  constexpr double most_nodes = 0x1p30; // FFTW counts them by an int
+  const double nodes = radial_mesh_nodes(size_x, shortest_wavelength);
+  const bool too_long = !(waves_in(size_x, shortest_wavelength) >= 1.0);
+  if (!too_long && nodes <= most_nodes)
+    return {};
+  const std::string begin = fmt::format("gravity.shortest_wavelength = {} m is ", figures(shortest_wavelength, 4)),
+                    width = figures(size_x, 4);
+  if (too_long)
+    return fmt::format("{}longer than the box is wide ({} m: no wave is left); shorten it", begin, width);
+  return fmt::format(
+      "{}too short (in a box that is {} m wide it needs a mesh of {} nodes, and {} are the most); raise it", begin,
+      width, figures(nodes, 3), figures(most_nodes, 3));
+}
+
+// The sums, the waves and what FFTW notes for its plans; and a mesh of whole numbers a thread.
+double radial_mesh_bytes(double size_x, double shortest_wavelength, int threads) {
+  return radial_mesh_nodes(size_x, shortest_wavelength) * (32.0 + 8.0 * threads);
+}
 
 struct AxisymmetricSolver::Mesh {
   explicit Mesh(double wavelength) : shortest_wavelength(wavelength) {}
-  ~Mesh() { destroy(); }
-  Mesh(const Mesh&) = delete;
-  Mesh& operator=(const Mesh&) = delete;
 
-  void destroy();
   void prepare(const ShearingBox& box);
   Place place_of(double x, double length) const;
   void spread(const GravityProblem& problem);
@@ -65,34 +106,28 @@ struct AxisymmetricSolver::Mesh {
   double shortest_wavelength;
   std::size_t modes = 0, nodes = 0;
   std::vector<std::vector<std::int64_t>> fixed; // a mesh a thread
-  double* real = nullptr;                       // nodes
-  fftw_complex* waves = nullptr;                // nodes / 2 + 1
-  fftw_plan forward = nullptr, backward = nullptr;
+  Owned<double[]> real;                         // nodes
+  Owned<fftw_complex[]> waves;                  // nodes / 2 + 1
+  Owned<fftw_plan_s> forward, backward;
 };
 
-void AxisymmetricSolver::Mesh::destroy() {
-  fftw_destroy_plan(forward);
-  fftw_destroy_plan(backward);
-  fftw_free(real);
-  fftw_free(waves);
-}
-
 void AxisymmetricSolver::Mesh::prepare(const ShearingBox& box) {
-  const double waves_in_box = std::floor(box.size_x / shortest_wavelength * (1.0 + 1e-12));
-  if (!(waves_in_box >= 1.0))
-    throw UsageError(fmt::format("gravity.shortest_wavelength = {} m is longer than the box is wide ({} m: no wave is "
-                                 "left); shorten it",
-                                 figures(shortest_wavelength, 4), figures(box.size_x, 4)));
-  if (modes == static_cast<std::size_t>(waves_in_box))
+  const double waves_in_box = waves_in(box.size_x, shortest_wavelength);
+  if (static_cast<double>(modes) == waves_in_box && modes > 0)
     return;
-  destroy();
-  modes = static_cast<std::size_t>(waves_in_box);
-  nodes = std::bit_ceil(std::max(nodes_a_wave * modes, 2 * order));
-  real = fftw_alloc_real(nodes);
-  waves = fftw_alloc_complex(nodes / 2 + 1);
+  if (const std::string fault = radial_mesh_fault(box.size_x, shortest_wavelength); !fault.empty())
+    throw UsageError(fault);
+  modes = 0; // until all is there
+  const double nodes_needed = radial_mesh_nodes(box.size_x, shortest_wavelength);
+  require_memory(radial_mesh_bytes(box.size_x, shortest_wavelength, threads()),
+                 fmt::format("a mesh of {} nodes", figures(nodes_needed, 4)), "raise gravity.shortest_wavelength");
+  nodes = static_cast<std::size_t>(nodes_needed);
+  real.reset(there(fftw_alloc_real(nodes)));
+  waves.reset(there(fftw_alloc_complex(nodes / 2 + 1)));
   const auto size = static_cast<int>(nodes);
-  forward = fftw_plan_dft_r2c_1d(size, real, waves, FFTW_ESTIMATE);
-  backward = fftw_plan_dft_c2r_1d(size, waves, real, FFTW_ESTIMATE);
+  forward.reset(there(fftw_plan_dft_r2c_1d(size, real.get(), waves.get(), FFTW_ESTIMATE)));
+  backward.reset(there(fftw_plan_dft_c2r_1d(size, waves.get(), real.get(), FFTW_ESTIMATE)));
+  modes = static_cast<std::size_t>(waves_in_box);
 }
 
 Place AxisymmetricSolver::Mesh::place_of(double x, double length) const {
@@ -135,7 +170,7 @@ void AxisymmetricSolver::Mesh::transform(const GravityProblem& problem) {
     throw InvariantError("a particle stands at no finite place; take a shorter time.step");
   prepare(problem.box);
   spread(problem);
-  fftw_execute(forward);
+  fftw_execute(forward.get());
   for (std::size_t n = 1; n <= modes; ++n)
     for (double& part : waves[n])
       part /= spline_transform(n);
@@ -161,7 +196,7 @@ void AxisymmetricSolver::accelerate(const GravityProblem& problem, std::span<Vec
     wave[0] = -factor * im; // g_n = 2π i G S_n
     wave[1] = factor * re;
   }
-  fftw_execute(mesh.backward);
+  fftw_execute(mesh.backward.get());
   parallel_for(count, [&](std::size_t k) {
     const Place place = mesh.place_of(problem.positions[k].x(), problem.box.size_x);
     double g = 0.0;

@@ -32,6 +32,14 @@ double mass_spread(std::span<const double> masses, const Ranks& ranks) {
   return mass > 0.0 ? std::sqrt(squares.value() * count) / mass : 1.0;
 }
 
+// Nodes are floats, and half as many waves between the transforms complex ones; each column of waves has its turn.
+double mesh_bytes(const ShearingBox& box, double spacing, double height, std::size_t count) {
+  const Extent z{-0.5 * height, 0.5 * height};
+  const double step = affordable_spacing(box, spacing, z, count);
+  const double turns = sizeof(std::complex<float>) * box.area() / (step * step);
+  return (sizeof(float) + 0.5 * sizeof(std::complex<float>)) * mesh_nodes(box, step, z) + turns;
+}
+
 // The errors of equal spheres, a little more than measured in fresh and clumped patches (docs/dev/gravity-fft.md); what
 // they are multiplied by for other sizes is fitted to the patches there.
 double cut_for(double force_error, double mass_spread) {

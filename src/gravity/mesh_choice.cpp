@@ -19,12 +19,13 @@ Extent extent_of(std::span<const Vec3> positions) {
   return z;
 }
 
+double mesh_nodes(const ShearingBox& box, double spacing, const Extent& z) {
+  return box.size_x / spacing * (box.size_y / spacing) * ((z.high - z.low) / (flatness * spacing) + 4.0);
+}
+
 double affordable_spacing(const ShearingBox& box, double spacing, const Extent& z, std::size_t count) {
   const double most = 0x1p21 + 64.0 * static_cast<double>(count);
-  const auto nodes = [&](double step) {
-    return box.size_x / step * (box.size_y / step) * ((z.high - z.low) / (flatness * step) + 4.0);
-  };
-  while (nodes(spacing) > most)
+  while (mesh_nodes(box, spacing, z) > most)
     spacing *= 1.1;
   return spacing;
 }

@@ -21,6 +21,9 @@ struct Extent {
 /// Throws InvariantError when a place is not finite.
 Extent extent_of(std::span<const Vec3> positions);
 
+/// Nodes of a mesh with that spacing over the box and these heights, as a number that has no bound.
+double mesh_nodes(const ShearingBox& box, double spacing, const Extent& z);
+
 /// The spacing, made larger where the mesh would hold very many nodes a particle: few particles in a large box, or some
 /// that have strayed far from the layer. Clouds grow with it, so the error stays what it was, and neighbours cost more.
 double affordable_spacing(const ShearingBox& box, double spacing, const Extent& z, std::size_t count);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 namespace keeler {
 namespace {
@@ -45,6 +46,7 @@ void ShearedTransform::destroy_plans() {
 
 void ShearedTransform::make_plans() {
   destroy_plans();
+  planned_columns_ = planned_rows_ = 0; // until all is there
   const auto columns = static_cast<int>(shape_.columns), rows = static_cast<int>(shape_.rows);
   AlignedArray<float> real;
   AlignedArray<Complex> one, other;
@@ -55,6 +57,9 @@ void ShearedTransform::make_plans() {
   backward_y_ = fftwf_plan_dft_c2r_1d(rows, fftw(one.data()), real.data(), FFTW_ESTIMATE);
   forward_x_ = fftwf_plan_dft_1d(columns, fftw(one.data()), fftw(other.data()), FFTW_FORWARD, FFTW_ESTIMATE);
   backward_x_ = fftwf_plan_dft_1d(columns, fftw(one.data()), fftw(other.data()), FFTW_BACKWARD, FFTW_ESTIMATE);
+  for (const fftwf_plan plan : {forward_y_, backward_y_, forward_x_, backward_x_})
+    if (plan == nullptr)
+      throw std::bad_alloc();
   planned_columns_ = shape_.columns;
   planned_rows_ = shape_.rows;
 }

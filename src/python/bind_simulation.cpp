@@ -9,8 +9,12 @@
 #include <keeler/core/threads.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/runs/state_hash.hpp>
+#include <keeler/scene/derived.hpp>
 #include <keeler/states/broken.hpp>
 #include <keeler/states/initial.hpp>
+#include <keeler/states/possible.hpp>
+
+#include <fmt/format.h>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -28,7 +32,11 @@ template<class Make> std::unique_ptr<Held> begun(const Scene& scene, const Make&
 }
 
 std::unique_ptr<Held> from_scene(const Scene& scene) {
-  return begun(scene, [&] { return initial_patch(scene); });
+  return begun(scene, [&] {
+    if (!scene.start_from)
+      require_memory_for(scene, scene.particles.count);
+    return initial_patch(scene);
+  });
 }
 
 std::unique_ptr<Held> from_snapshot(const PythonSnapshot& snapshot, const std::string& name, const Scene& scene) {
@@ -128,12 +136,22 @@ void change_spins(Particles& particles, const Doubles& spins, const py::object& 
       particles.spins[k] = turn.to_epoch(rows[k]);
 }
 
+// What a start may not have, no change may bring.
+void require_possible_change(const Held& held, const Particles& particles) {
+  const SimulationState& state = held.state();
+  Patch patch = make_patch(particles, state.box, held.simulation().boundary().offset, held.scene().planet.frequencies,
+                           -0.5 * state.step_length);
+  patch.orbital_frequency = held.scene().planet.orbital_frequency;
+  require_possible_particles(patch, "the changed state");
+}
+
 // Arrays in the order of memory. Only particles whose place or velocity differs get new elements: from one form to the
 // other and back, a bit or two is lost.
 void replace(Held& held, const Doubles& positions, const Doubles& velocities, const Doubles& radii,
              const Doubles& masses, const std::optional<Doubles>& changed_spins) {
   const SimulationState& state = held.whole_state();
   const std::size_t count = state.particles.size();
+  const Frequencies& frequencies = held.scene().planet.frequencies;
   const double omega = held.scene().planet.orbital_frequency;
   const auto [old_positions, old_velocities] = motion(held);
   const Doubles before_x = old_positions, before_v = old_velocities;
@@ -146,18 +164,25 @@ void replace(Held& held, const Doubles& positions, const Doubles& velocities, co
     const double *const x = positions.data() + 3 * k, *const v = velocities.data() + 3 * k;
     Body& body = particles.bodies[k];
     body.radius = new_radii[k], body.mass = new_masses[k];
-    if (!same_bits(x, before_x.data() + 3 * k) || !same_bits(v, before_v.data() + 3 * k))
-      body.elements = elements_from({Vec3(x[0], x[1], x[2]), Vec3(v[0], v[1], v[2]) / omega},
-                                    held.scene().planet.frequencies, rotation);
+    const bool moved = !same_bits(x, before_x.data() + 3 * k);
+    if (!moved && same_bits(v, before_v.data() + 3 * k))
+      continue;
+    const State at{Vec3(x[0], x[1], x[2]), Vec3(v[0], v[1], v[2]) / omega};
+    if (const std::string fault = moved ? box_fault(at, state.box, frequencies) : ""; !fault.empty())
+      throw InvariantError(
+          fmt::format("particle {} of the changed state has {}; correct it", state.particles.ids[k], fault));
+    body.elements = elements_from(at, frequencies, rotation);
   }
   if (changed_spins)
     change_spins(particles, *changed_spins, spins(held), -0.5 * state.step_length, omega);
+  require_possible_change(held, particles);
   held.replace(std::move(particles));
 }
 
 py::array contacts(Held& held) {
-  const std::vector<ContactRecord> rows = held.take_contacts();
-  return py::array_t<ContactRecord>(static_cast<py::ssize_t>(rows.size()), rows.data());
+  return held.take_contacts([](const std::vector<ContactRecord>& rows) -> py::array {
+    return py::array_t<ContactRecord>(static_cast<py::ssize_t>(rows.size()), rows.data());
+  });
 }
 
 void save(const Held& held, const std::filesystem::path& file) {

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 PythonSnapshot read(const fs::path& file, bool is_a_start) {
   require_own_threads();
-  const py::gil_scoped_release unlocked;
+  const Unlocked unlocked;
   Snapshot snapshot = read_snapshot(file);
   return {std::move(snapshot.patch), std::move(snapshot.meta.scene), is_a_start};
 }
@@ -35,7 +35,7 @@ PythonSnapshot read(const fs::path& file, bool is_a_start) {
 // As a start, its scene names the file; for copies in memory it stays as it is.
 void write(const PythonSnapshot& snapshot, const fs::path& file, bool as_it_is) {
   require_own_threads();
-  const py::gil_scoped_release unlocked;
+  const Unlocked unlocked;
   const std::string scene = snapshot.is_a_start && !as_it_is
                                 ? parse_scene(snapshot.scene, file.string(), {}, file.string()).resolved
                                 : snapshot.scene;
@@ -118,7 +118,7 @@ py::dict series(const fs::path& file) {
 
 void render(const PythonSnapshot& snapshot, const fs::path& file, const std::string& title, int width) {
   require_own_threads();
-  const py::gil_scoped_release unlocked;
+  const Unlocked unlocked;
   PictureOptions look;
   look.title = title;
   look.width = width;

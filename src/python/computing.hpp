@@ -13,13 +13,29 @@ namespace keeler::python {
 /// copy. Throws Error (run_time) there.
 void require_own_threads();
 
+/// Without the interpreter's lock as long as it lives. When the interpreter ends meanwhile, the thread stands still for
+/// good once its work is done: the interpreter would end it inside C++.
+class Unlocked {
+public:
+  Unlocked();
+  ~Unlocked();
+  Unlocked(const Unlocked&) = delete;
+  Unlocked& operator=(const Unlocked&) = delete;
+
+private:
+  PyThreadState* state_;
+};
+
+/// Interrupts what other threads compute and waits for them: the interpreter is about to end.
+void end_other_threads();
+
 /// What `make` makes. An interrupt ends it at once: nothing could be kept.
 template<class Make> auto made(const Make& make) {
   require_own_threads();
   const Keyboard keyboard;
   try {
     const Interruptible by_keyboard(keyboard.stop_flag());
-    const pybind11::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     return make();
   } catch (const Interrupted&) {
     raise_interrupts();

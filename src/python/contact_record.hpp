@@ -4,9 +4,9 @@
 #include <keeler/core/units.hpp>
 #include <keeler/simulation/simulation.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace keeler::python {
@@ -42,7 +42,10 @@ public:
                          c.normal_speed * omega_, c.tangential_speed * omega_, c.energy_lost * omega_ * omega_});
   }
 
-  std::vector<ContactRecord> take() { return std::exchange(rows_, {}); }
+  const std::vector<ContactRecord>& rows() const { return rows_; }
+  void clear() { rows_.clear(); }
+  /// Forgets all rows but the first ones.
+  void keep_first(std::size_t count) { rows_.erase(rows_.begin() + static_cast<std::ptrdiff_t>(count), rows_.end()); }
 
 private:
   double minimum_speed_, omega_;

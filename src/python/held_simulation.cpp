@@ -39,13 +39,13 @@ HeldSimulation::~HeldSimulation() {
     keep_->state = std::move(*simulation_).take_state();
 }
 
-const Simulation& HeldSimulation::simulation() const {
+void HeldSimulation::require_idle() const {
   if (at_work_)
     refuse_at_work();
-  if (given_up_)
-    throw Error(ExitCode::run_time,
-                "a step of this simulation was given up, and its state with it; load the last one that was saved, or "
-                "begin again");
+}
+
+const Simulation& HeldSimulation::simulation() const {
+  require_idle();
   return *simulation_;
 }
 
@@ -55,49 +55,80 @@ const SimulationState& HeldSimulation::whole_state() const {
     throw Error(ExitCode::run_time,
                 fmt::format("this simulation cannot go on (an invariant broke: {}); look at its "
                             "state with snapshot(), load the last one that was saved, or begin again",
-                            broken_));
+                            broken_->what()));
   return state;
 }
 
-void HeldSimulation::make_way_for_views() {
-  if (keep_.use_count() == 1)
+// Leaves the state to arrays that look at it, and goes on with a simulation made of a copy; likewise where the present
+// one cannot go on. All that may fail comes first.
+void HeldSimulation::make_way() {
+  if (keep_.use_count() == 1 && !put_back_)
     return;
-  SimulationState copy = simulation_->state();
-  keep_->state = std::move(*simulation_).take_state();
-  keep_ = std::make_shared<Keep>();
-  simulation_ = std::make_unique<Simulation>(scene_, std::move(copy));
+  auto keep = std::make_shared<Keep>();
+  auto next = std::make_unique<Simulation>(scene_, simulation_->state());
+  static_assert(std::is_nothrow_move_constructible_v<SimulationState>);
+  if (keep_.use_count() > 1)
+    keep_->state.emplace(std::move(*simulation_).take_state());
+  keep_ = std::move(keep);
+  simulation_ = std::move(next);
+  put_back_ = false;
   if (recorder_)
     recorder_->watch(*simulation_);
+}
+
+// Calls change(); where it throws, the state and the contacts that were recorded are those of before, unless an
+// invariant broke. `before` is memory for the copy.
+template<class Change> void HeldSimulation::change(SimulationState& before, const Change& change) {
+  const std::size_t contacts = recorder_ ? recorder_->rows().size() : 0;
+  {
+    const Unlocked unlocked;
+    before = simulation_->state();
+  }
+  try {
+    change();
+  } catch (...) {
+    if (!broken_) {
+      simulation_->put_back(std::move(before));
+      put_back_ = true;
+      if (recorder_)
+        recorder_->keep_first(contacts);
+    }
+    throw;
+  }
 }
 
 void HeldSimulation::step_until(std::int64_t until_tick) {
   const Keyboard keyboard;
   const Interruptible by_keyboard(keyboard.give_up());
-  const pybind11::gil_scoped_release unlocked;
+  const Unlocked unlocked;
   const std::int64_t interval = scene_.kick_interval();
   double elapsed = 0.0;
   const Stopwatch watch(elapsed);
   const auto must_return = [&] {
     return simulation_->state().step % interval == 0 && (keyboard.stop() || watch.elapsed() > between_signals);
   };
-  do
-    simulation_->advance();
-  while (simulation_->state().step < until_tick && !must_return());
+  try {
+    do
+      simulation_->advance();
+    while (simulation_->state().step < until_tick && !must_return());
+  } catch (const InvariantError& error) {
+    broken_ = error;
+    throw;
+  }
 }
 
 void HeldSimulation::advance(std::int64_t until_tick) {
   whole_state();
   const AtWork here(at_work_);
   require_own_threads();
-  make_way_for_views();
+  make_way();
+  SimulationState before;
   while (simulation_->state().step < until_tick) {
     try {
-      step_until(until_tick);
-    } catch (const InvariantError& error) {
-      broken_ = error.what();
+      change(before, [&] { step_until(until_tick); });
+    } catch (const InvariantError&) {
       throw;
-    } catch (...) { // an unfinished step: interrupted, or there is no memory
-      given_up_ = true;
+    } catch (...) { // an interrupt, no memory, a law that gives no coefficient
       raise_interrupts();
       throw;
     }
@@ -109,28 +140,25 @@ void HeldSimulation::replace(Particles particles) {
   whole_state();
   const AtWork here(at_work_);
   require_own_threads();
-  make_way_for_views();
-  const pybind11::gil_scoped_release unlocked;
-  simulation_->replace(std::move(particles));
+  make_way();
+  SimulationState before;
+  change(before, [&] {
+    const Unlocked unlocked;
+    simulation_->replace(std::move(particles));
+  });
 }
 
 void HeldSimulation::record_contacts(std::optional<double> minimum_speed) {
-  if (at_work_)
-    refuse_at_work();
-  if (minimum_speed)
+  require_idle();
+  std::unique_ptr<ContactRecorder> next;
+  if (minimum_speed) {
     whole_state(); // recording ends in any state
+    next = std::make_unique<ContactRecorder>(*minimum_speed, scene_.planet.orbital_frequency);
+  }
   simulation_->drift().observe(nullptr);
-  recorder_.reset();
-  if (!minimum_speed)
-    return;
-  recorder_ = std::make_unique<ContactRecorder>(*minimum_speed, scene_.planet.orbital_frequency);
-  recorder_->watch(*simulation_);
-}
-
-std::vector<ContactRecord> HeldSimulation::take_contacts() {
-  if (at_work_)
-    refuse_at_work();
-  return recorder_ ? recorder_->take() : std::vector<ContactRecord>();
+  recorder_ = std::move(next);
+  if (recorder_)
+    recorder_->watch(*simulation_);
 }
 
 } // namespace keeler::python

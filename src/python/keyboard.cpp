@@ -14,8 +14,8 @@ bool in_main_thread() {
 
 } // namespace
 
-Keyboard::Keyboard() {
-  if (!in_main_thread())
+Keyboard::Keyboard() : main_(in_main_thread()) {
+  if (!main_)
     return;
   sigaction(SIGINT, nullptr, &before);
   if ((before.sa_flags & SA_SIGINFO) != 0 || before.sa_handler == SIG_DFL || before.sa_handler == SIG_IGN)

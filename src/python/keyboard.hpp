@@ -8,8 +8,9 @@
 
 namespace keeler::python {
 
-/// While it lives, in the interpreter's main thread, interrupts are counted here as well. In other threads it does
-/// nothing: the interpreter tells its main thread. To be made with the interpreter's lock held.
+/// While it lives, in the interpreter's main thread, interrupts are counted here as well. In other threads it only
+/// says when the interpreter ends: it is the main thread that the interpreter tells of interrupts. To be made with the
+/// interpreter's lock held.
 class Keyboard {
 public:
   Keyboard();
@@ -19,15 +20,20 @@ public:
 
   /// Since it was made: whether to stop when what is at hand is done, and whether to give that up.
   bool stop() const { return watching_ && stop_; }
-  const std::atomic<bool>& stop_flag() const { return watching_ ? stop_ : never_; }
-  const std::atomic<bool>& give_up() const { return watching_ ? give_up_ : never_; }
+  const std::atomic<bool>& stop_flag() const { return watching_ ? stop_ : when_it_ends(); }
+  const std::atomic<bool>& give_up() const { return watching_ ? give_up_ : when_it_ends(); }
+
+  /// From now on the work of other threads is to be given up.
+  static void end_others() { ends_ = true; }
 
 private:
   static void note(int signal);
+  const std::atomic<bool>& when_it_ends() const { return main_ ? never_ : ends_; }
 
   static inline std::atomic<bool> stop_ = false, give_up_ = false; // a handler has no object
+  static inline std::atomic<bool> ends_ = false;                   // the interpreter
   static constexpr std::atomic<bool> never_ = false;
-  bool watching_ = false;
+  bool main_, watching_ = false;
 };
 
 /// Raises what the interpreter's handlers of signals raise, KeyboardInterrupt as a rule. With the lock held.

@@ -1,6 +1,7 @@
 // The compiled part of the Python package `keeler`: thin, so that the package beside it (src/python/keeler) holds what
 // a user reads. Docstrings are there.
 #include "bindings.hpp"
+#include "computing.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
@@ -40,6 +41,7 @@ PYBIND11_MODULE(_core, module) {
   using namespace keeler;
   module.def("version", &program_version);
   module.def("threads", &threads);
+  module.def("end_other_threads", &python::end_other_threads);
   module.def("set_threads", &set_threads, py::arg("count"));
   python::bind_errors(module);
   python::bind_scene(module);

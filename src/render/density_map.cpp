@@ -11,7 +11,7 @@ namespace {
 constexpr double particles_a_cell = 4.0;
 
 int cells(double length, double wanted) {
-  return std::clamp(static_cast<int>(std::lround(length / wanted)), 1, 4096);
+  return static_cast<int>(std::clamp(std::round(length / wanted), 1.0, 4096.0));
 }
 
 } // namespace

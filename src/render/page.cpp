@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <new>
 
 #include <fcntl.h>
 
@@ -36,6 +37,11 @@ void require_drawn(cairo_status_t status) {
 
 Page::Page(int width, int height, const Colour& background)
     : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height)), cairo_(cairo_create(surface_)) {
+  if (const cairo_status_t status = cairo_status(cairo_); status != CAIRO_STATUS_SUCCESS) {
+    cairo_destroy(cairo_);
+    cairo_surface_destroy(surface_);
+    require_drawn(status);
+  }
   set_colour(cairo_, background);
   cairo_paint(cairo_);
 }
@@ -49,7 +55,7 @@ void Page::place(const Raster& raster, int left, int top) {
   cairo_surface_flush(surface_);
   unsigned char* data = cairo_image_surface_get_data(surface_);
   if (data == nullptr)
-    return; // the surface failed; save() says so
+    return; // drawing failed; pixels() and png() say so
   const std::ptrdiff_t stride = cairo_image_surface_get_stride(surface_);
   for (int y = 0; y < raster.height(); ++y) {
     auto* row = reinterpret_cast<std::uint32_t*>(data + (top + y) * stride) + left;
@@ -172,9 +178,13 @@ std::span<const std::byte> Page::pixels() {
 std::vector<std::byte> Page::png() {
   std::vector<std::byte> bytes;
   const auto take = [](void* to, const unsigned char* data, unsigned int length) {
+    auto& all = *static_cast<std::vector<std::byte>*>(to);
     const auto* begin = reinterpret_cast<const std::byte*>(data);
-    static_cast<std::vector<std::byte>*>(to)->insert(static_cast<std::vector<std::byte>*>(to)->end(), begin,
-                                                     begin + length);
+    try {
+      all.insert(all.end(), begin, begin + length);
+    } catch (const std::bad_alloc&) { // an exception must not pass through Cairo
+      return CAIRO_STATUS_NO_MEMORY;
+    }
     return CAIRO_STATUS_SUCCESS;
   };
   require_drawn(cairo_status(cairo_));

@@ -173,6 +173,9 @@ PictureLayout layout_of(const Patch& patch, const PictureOptions& options) {
 std::unique_ptr<Page> patch_page(const Patch& patch, const PictureOptions& asked) {
   if (patch.size() == 0)
     throw UsageError("the patch holds no particles, so there is nothing to draw; choose another snapshot");
+  if (asked.width < least_picture_width || asked.width > most_picture_width)
+    throw UsageError(fmt::format("a picture cannot be {} pixels wide (possible are {} to {}); choose another width",
+                                 asked.width, least_picture_width, most_picture_width));
   if (asked.oblique && asked.colour == ColourField::density)
     throw UsageError("no oblique view of the surface density: it is a map seen from above; choose another field");
   PictureOptions options = asked;

@@ -1,5 +1,9 @@
 #include "raster.hpp"
 
+#include <keeler/core/memory.hpp>
+
+#include <fmt/format.h>
+
 #include <cmath>
 
 namespace keeler {
@@ -22,7 +26,9 @@ double lit(double u, double v) {
 
 Raster::Raster(int width, int height, const Colour& background)
     : width_(width), height_(height),
-      pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), background) {}
+      pixels_(affordable_size(static_cast<double>(width) * height, sizeof(Colour),
+                              fmt::format("a picture of {} x {} pixels", width, height), "lower its width"),
+              background) {}
 
 void Raster::sphere(double x, double y, double radius, const Colour& colour) {
   const double drawn = std::max(radius, least_radius);

@@ -14,6 +14,7 @@
 #include <keeler/io/checkpoint_folder.hpp>
 #include <keeler/runs/folder_lock.hpp>
 #include <keeler/runs/state_hash.hpp>
+#include <keeler/scene/derived.hpp>
 #include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
@@ -166,6 +167,8 @@ Begun first_simulation(const Scene& scene, const RunOptions& options, const RunR
   };
   try {
     const Interruptible start(ranks.many() ? never : requests.stop);
+    if (!scene.start_from)
+      ranks.together([&] { require_memory_for(scene, (scene.particles.count + ranks.count() - 1) / ranks.count()); });
     const Patch patch = initial_patch(scene, progress, ranks);
     const PatchScale scale = scale_of(patch, ranks);
     return {Simulation(scene, patch, ranks), scale};

@@ -1,6 +1,11 @@
 #include <keeler/scene/derived.hpp>
 
+#include <keeler/core/memory.hpp>
+#include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/core/words.hpp>
+#include <keeler/gravity/axisymmetric.hpp>
+#include <keeler/gravity/fft.hpp>
 #include <keeler/orbit/toomre.hpp>
 #include <keeler/particles/patch.hpp>
 
@@ -18,26 +23,57 @@ constexpr double program_bytes = 33e6;  // code, libraries, buffers that do not 
 constexpr double drift_bytes = 590.0;   // lines, cells, lists, stamps, what threads note: at most 660 with state
 constexpr double tree_node_bytes = 120; // box, mass, centre, quadrupole, links
 constexpr double nodes_per_particle = 0.5;
-constexpr double mesh_bytes = 150.0; // some ten nodes a particle in a layer of ten radii, and the places
+constexpr double mesh_places = 80.0; // the particles in the order of the mesh's tiles
 } // namespace cost
 
-double bytes_per_particle(const Scene& scene) {
+double bytes_per_particle(const Scene& scene, std::size_t count) {
   const double state = sizeof(Body) + sizeof(std::uint64_t);
   const double output_copy = 2 * sizeof(Vec3) + 2 * sizeof(double) + sizeof(std::uint64_t); // a Patch
   const double spins = scene.collisions.friction ? 2.0 * sizeof(Vec3) : 0.0;                // in the state and a Patch
   double total = state + spins + output_copy + cost::drift_bytes;
   if (scene.gravity) {
     total += 2 * sizeof(Vec3) + sizeof(double) + sizeof(std::uint64_t); // a GravityProblem and its answer
-    const auto solver = chosen_for(scene.particles.count, *scene.gravity).solver;
+    const auto solver = chosen_for(count, *scene.gravity).solver;
     if (solver == GravitySettings::Solver::fft || solver == GravitySettings::Solver::mesh)
-      total += cost::mesh_bytes * std::max(1.0, std::pow(1.6 / scene.gravity->mesh_spacing, 3));
+      total += cost::mesh_places;
     if (solver == GravitySettings::Solver::tree)
       total += cost::nodes_per_particle * cost::tree_node_bytes + 4 * sizeof(double);
     const bool pairwise = solver == GravitySettings::Solver::tree || solver == GravitySettings::Solver::direct;
     if (pairwise && scene.output.stress_every > 0)
-      total += cost::mesh_bytes; // that measures their energy
+      total += cost::mesh_places; // that measures their energy
   }
   return total;
+}
+
+// In heights of the layer, above and below: nearly all of 10⁷ particles are within.
+constexpr double highest = 5.0;
+
+// Of the mesh that gravity or the measurement of its energy makes for so many particles in a box of that size.
+double mesh_memory(const Scene& scene, std::size_t count, double size_x, double size_y) {
+  using Solver = GravitySettings::Solver;
+  if (!scene.gravity)
+    return 0.0;
+  const GravitySettings gravity = chosen_for(count, *scene.gravity);
+  if (gravity.solver == Solver::axisymmetric)
+    return radial_mesh_bytes(size_x, gravity.shortest_wavelength, threads());
+  const bool pairwise = gravity.solver == Solver::tree || gravity.solver == Solver::direct;
+  if (pairwise && (scene.output.stress_every == 0 || !has_energy_meter(gravity)))
+    return 0.0;
+  ShearingBox box;
+  box.size_x = size_x;
+  box.size_y = size_y;
+  const double distance = std::sqrt(size_x * size_y / static_cast<double>(count));
+  const double height = layer_height(scene.optical_depth(), crowd_of(scene.particles),
+                                     scene.particles.velocity_dispersion, scene.planet.frequencies.nu);
+  const double spacing = pairwise ? cheapest_spacing : gravity.mesh_spacing;
+  return mesh_bytes(box, spacing * distance, 2.0 * highest * height, count);
+}
+
+// Beside the program itself.
+double run_bytes(const Scene& scene, std::size_t count) {
+  const double larger = std::sqrt(static_cast<double>(count) / static_cast<double>(scene.particles.count));
+  return bytes_per_particle(scene, count) * static_cast<double>(count) +
+         mesh_memory(scene, count, larger * scene.size_x, larger * scene.size_y);
 }
 
 } // namespace
@@ -120,8 +156,13 @@ Derived derive(const Scene& scene) {
   d.midplane_filling =
       std::min(largest_filling, midplane_filling(scene.bunched_optical_depth(), crowd_of(particles),
                                                  particles.velocity_dispersion, scene.planet.frequencies.nu));
-  d.memory_mb = 1e-6 * (cost::program_bytes + bytes_per_particle(scene) * static_cast<double>(particles.count));
+  d.memory_mb = 1e-6 * (cost::program_bytes + run_bytes(scene, particles.count));
   return d;
+}
+
+void require_memory_for(const Scene& scene, std::size_t count) {
+  require_memory(run_bytes(scene, count), fmt::format("a run of {} particles", figures(static_cast<double>(count))),
+                 "take fewer, or a machine that has more");
 }
 
 std::string in_words(const GravitySettings& gravity) {

@@ -122,6 +122,10 @@ void read_wake(Scene& scene, Settings& settings, DensityPattern& pattern) {
             fmt::format("particles.wake.wavelength = {} is shorter than the largest particle ({} m across); raise "
                         "it",
                         figures(wavelength), figures(2.0 * scene.particles.sizes.largest, 4)));
+  constexpr double most_waves = 1e9;
+  if (!(waves_x <= most_waves && waves_y <= most_waves))
+    fail_at(place, fmt::format("particles.wake.wavelength = {} is too short ({} waves would be in the box); raise it",
+                               figures(wavelength), figures(std::max(waves_x, waves_y), 3)));
   pattern.contrast = settings.number("particles.wake.contrast");
   pattern.waves_x = static_cast<int>(waves_x);
   pattern.waves_y = static_cast<int>(waves_y);

@@ -12,6 +12,7 @@
 #include <keeler/core/units.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/forces/self_gravity.hpp>
+#include <keeler/gravity/axisymmetric.hpp>
 #include <keeler/scene/derived.hpp>
 #include <keeler/scene/examples.hpp>
 #include <keeler/scene/keys.hpp>
@@ -64,11 +65,9 @@ std::optional<GravitySettings> read_gravity(Settings& settings, const std::strin
   if (!settings.has("gravity"))
     return {};
   const GravitySettings gravity = gravity_settings(settings.parameters("gravity", name));
-  if (size_x > 0.0 && gravity.shortest_wavelength > size_x)
-    fail_at(settings.place("gravity.shortest_wavelength"),
-            fmt::format("gravity.shortest_wavelength = {} m is longer than the box is wide ({} m: no wave is left); "
-                        "shorten it",
-                        figures(gravity.shortest_wavelength, 4), figures(size_x, 4)));
+  if (size_x > 0.0 && gravity.solver == GravitySettings::Solver::axisymmetric)
+    if (const std::string fault = radial_mesh_fault(size_x, gravity.shortest_wavelength); !fault.empty())
+      fail_at(settings.place("gravity.shortest_wavelength"), fault);
   return gravity;
 }
 

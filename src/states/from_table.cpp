@@ -22,18 +22,6 @@ namespace {
   throw UsageError(fmt::format("{}: the particle has {}; correct it or remove the row", table.place_of(k), fault));
 }
 
-// In snapshots the guiding centres are in the cell in the middle of a step, so some stand a little outside: a tenth of
-// the box is more than the shear makes in the longest half step of an automatic run.
-bool inside(const Patch& patch, std::size_t k) {
-  constexpr double reach = 0.6; // of the sides
-  const auto within = [&](double x, double y) {
-    return std::fabs(x) <= reach * patch.box.size_x && std::fabs(y) <= reach * patch.box.size_y;
-  };
-  const State state{patch.positions[k], patch.velocities[k]};
-  const Elements el = elements_from(state, patch.frequencies, Rotation());
-  return within(state.position.x(), state.position.y()) || within(el.guiding_x, el.guiding_y);
-}
-
 void require_fitting(const ParticleTable& table, const TableScene& of) {
   if (table.masses.empty() && !of.density)
     throw UsageError(
@@ -69,19 +57,12 @@ Patch patch_from_table(const ParticleTable& table, const TableScene& of) {
     patch.spins.emplace_back(spin / patch.orbital_frequency);
   patch.ids.resize(table.size());
   std::iota(patch.ids.begin(), patch.ids.end(), std::uint64_t{0});
-  const double narrow = std::min(patch.box.size_x, patch.box.size_y);
   for (std::size_t k = 0; k < patch.size(); ++k) {
-    if (const std::string fault = particle_fault(patch, k); !fault.empty())
+    std::string fault = particle_fault(patch, k);
+    if (fault.empty())
+      fault = box_fault({patch.positions[k], patch.velocities[k]}, patch.box, patch.frequencies);
+    if (!fault.empty())
       fail(table, k, fault);
-    if (2.0 * patch.radii[k] > narrow)
-      fail(table, k,
-           fmt::format("a diameter of {} m, more than the box is wide ({} m)", figures(2.0 * patch.radii[k], 4),
-                       figures(narrow, 4)));
-    if (!inside(patch, k))
-      fail(table, k,
-           fmt::format("x = {}, y = {} outside the box of {} m x {} m about 0 (as has its guiding centre)",
-                       figures(patch.positions[k].x()), figures(patch.positions[k].y()), figures(patch.box.size_x),
-                       figures(patch.box.size_y)));
   }
   require_no_heap(patch, table.file);
   return patch;

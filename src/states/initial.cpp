@@ -5,6 +5,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/exact_sum.hpp>
+#include <keeler/core/memory.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
@@ -219,6 +220,12 @@ Patch initial_patch(const Scene& scene, const std::function<void(const StartProg
     const std::string& path = *scene.start_from;
     return thinned(patch_from_snapshot(read_snapshot(path, ranks).patch, path, scene, ranks), scene, ranks);
   }
+  constexpr double placing_bytes = 250.0; // a particle: the patch, its spheres and their neighbours
+  const double count = static_cast<double>(scene.particles.count);
+  ranks.together([&] {
+    require_memory(placing_bytes * count / static_cast<double>(ranks.count()),
+                   fmt::format("a start of {} particles", figures(count)), "take fewer, or a machine that has more");
+  });
   return fresh_patch(scene, progress, ranks);
 }
 

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace keeler {
 
@@ -42,7 +43,25 @@ std::string particle_fault(const Patch& patch, std::size_t k) {
   for (const Quantity& q : quantities)
     if (!q.range.contains(q.value))
       return fmt::format("{} of {} (possible is {})", q.what, figures(q.value, 3), q.range.words());
+  if (const double narrow = std::min(patch.box.size_x, patch.box.size_y); 2.0 * radius > narrow)
+    return fmt::format("a diameter of {} m, more than the box is wide ({} m)", figures(2.0 * radius, 4),
+                       figures(narrow, 4));
   return {};
+}
+
+// In snapshots the guiding centres are in the cell in the middle of a step, so some are a little outside: a tenth of
+// the box is more than the shear makes in the longest half step of an automatic run.
+std::string box_fault(const State& state, const ShearingBox& box, const Frequencies& frequencies) {
+  constexpr double reach = 0.6; // of the sides
+  const auto within = [&](double x, double y) {
+    return std::fabs(x) <= reach * box.size_x && std::fabs(y) <= reach * box.size_y;
+  };
+  const Elements el = elements_from(state, frequencies, Rotation());
+  if (within(state.position.x(), state.position.y()) || within(el.guiding_x, el.guiding_y))
+    return {};
+  return fmt::format("x = {}, y = {} outside the box of {} m x {} m about 0 (as has its guiding centre)",
+                     figures(state.position.x()), figures(state.position.y()), figures(box.size_x),
+                     figures(box.size_y));
 }
 
 void require_possible(const Patch& patch, const std::string& path) {

@@ -1,6 +1,7 @@
 #include <keeler/states/tiled.hpp>
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/memory.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/scene/keys.hpp>
@@ -108,6 +109,10 @@ TiledPatch::TiledPatch(const Patch& patch, std::size_t nx, std::size_t ny) : pat
 
 Patch tiled_patch(const Patch& patch, std::size_t nx, std::size_t ny) {
   const TiledPatch tiled(patch, nx, ny);
+  const double bytes =
+      2 * sizeof(Vec3) + 2 * sizeof(double) + sizeof(std::uint64_t) + (patch.spins.empty() ? 0 : sizeof(Vec3));
+  const auto count = static_cast<double>(tiled.size());
+  require_memory(bytes * count, fmt::format("a patch of {} particles", figures(count, 4)), "take fewer copies");
   return tiled.some(0, tiled.size());
 }
 

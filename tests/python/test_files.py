@@ -2,6 +2,7 @@
 
 import json
 import pickle
+import resource
 import signal
 import subprocess
 import sys
@@ -175,6 +176,41 @@ class Starts(InAFolder):
             with self.assertRaises(keeler.UsageError) as caught:
                 keeler.from_arrays(RING, **wrong)
             self.assertNotIn("\n", str(caught.exception))
+
+    def test_masks_are_not_lost(self):
+        places = np.array([[-10.0, 0.0, 0.0], [10.0, 5.0, 1.0]])
+        masked = np.ma.array(places, mask=[[False] * 3, [False, True, False]])
+        one_radius = np.ma.array([1.5, 1e20], mask=[False, True])
+        for wrong in (
+            dict(positions=masked, radii=1.5), dict(positions=list(masked), radii=1.5),
+            dict(positions=places, radii=one_radius), dict(positions=places, radii=1.5, velocities=masked),
+            dict(positions=places, radii=1.5, masses=one_radius),
+        ):
+            with self.assertRaisesRegex(keeler.UsageError, "masked"):
+                keeler.from_arrays(RING, **wrong)
+        whole = keeler.from_arrays(RING, np.ma.array(places), np.ma.array([1.5, 1.5]))
+        np.testing.assert_allclose(whole.by_id(whole.positions), places, atol=1e-12)
+        np.testing.assert_array_equal(whole.by_id(np.ma.array(whole.ids, mask=whole.ids == 1)).mask, [False, True])
+        with self.assertRaisesRegex(keeler.UsageError, "box.size has 1 masked"):
+            keeler.Simulation(RING, box={"size": np.ma.array([60.0, 60.0], mask=[True, False])})
+
+    def test_sizes_are_bounded(self):
+        start = keeler.generate(RING)
+        for width in (20000, 199, -1, 1e3, 2**40, "wide", None):
+            with self.assertRaisesRegex(keeler.UsageError, "width is .* from 200 to 8000"):
+                start.plot(width=width)
+        for copies in (0, -1, 1.5, 10**5, 2**70):
+            with self.assertRaises(keeler.UsageError):
+                start.tile(copies, 1)
+        soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+        self.addCleanup(resource.setrlimit, resource.RLIMIT_AS, (soft, hard))
+        resource.setrlimit(resource.RLIMIT_AS, (6 * 10**9, hard))  # whatever the machine has
+        with self.assertRaisesRegex(keeler.UsageError, "GB of memory"):
+            keeler.tile(keeler.from_arrays(RING, [[0.0, 0.0, 0.0]], 1.0).snapshot(), 9999, 9999)
+        with self.assertRaisesRegex(keeler.UsageError, "GB of memory"):
+            keeler.Simulation(RING, particles={"optical_depth": 0.3}, box={"size": [1e5, 1e5]})
+        with self.assertRaisesRegex(keeler.UsageError, "too short"):
+            keeler.Simulation(RING, gravity={"solver": "axisymmetric", "shortest_wavelength": 1e-18})
 
     def test_pictures(self):
         sim = keeler.Simulation(RING)

@@ -93,6 +93,31 @@ class Processes(unittest.TestCase):
         for other in others:
             self.assertEqual(other.run(0.1).state_hash, sim.state_hash)
 
+    def test_the_interpreter_ends_while_daemon_threads_compute(self):
+        program = """if True:
+            import atexit, sys, threading, time
+            sys.path.insert(0, sys.argv[1])
+            late = []
+            atexit.register(lambda: print(len(late[0].step())))  # after Keeler's own: the main thread may compute
+            import keeler
+            from scenes import RING, ring
+            late.append(keeler.Simulation(RING))
+            large = ring(box={"size": [300.0, 300.0]}, time={"step": 5e-4, "end": 500.0})
+            sims = [keeler.Simulation(large) for _ in range(2)]
+            work = [sims[0].run, lambda: [sims[1].step() for _ in range(10**6)],
+                    lambda: [keeler.generate(large) for _ in range(10**6)]]
+            for each in work:
+                threading.Thread(target=each, daemon=True).start()
+            time.sleep(0.3)
+        """
+        here = os.path.dirname(os.path.abspath(__file__))
+        for _ in range(5):
+            ended = subprocess.run(
+                [sys.executable, "-c", program, here], capture_output=True, text=True, timeout=60, check=False
+            )
+            self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+            self.assertGreater(int(ended.stdout), 100)
+
     def test_nothing_is_printed_unasked(self):
         code = ("import keeler, scenes\n"
                 "sim = keeler.Simulation(scenes.RING).run(); sim.analyze(); sim.plot()\n"

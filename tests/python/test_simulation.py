@@ -19,6 +19,8 @@ from scenes import RING, ring
 LAW = """
 double half(double speed, double low, double high) { return 0.5; }
 double twice(double speed, double low, double high) { return 2.0; }
+double mood = 0.5;
+double moody(double speed, double low, double high) { return mood; }
 """
 
 
@@ -282,13 +284,34 @@ class Changes(unittest.TestCase):
         def shape(state):
             state.radii = np.ones(2)
 
+        def masked(state):
+            state.radii = np.ma.masked_less(state.radii, 2.0)
+
+        def other_ids(state):
+            state.ids = state.ids[::-1]
+
+        def put(name, value):
+            def change(state):
+                getattr(state, name)[4] = value
+
+            return change
+
         for change, error in [
+            (put("radii", 1e-300), keeler.InvariantError), (put("radii", 1e4), keeler.InvariantError),
+            (put("radii", 40.0), keeler.InvariantError), (put("masses", 1e9), keeler.InvariantError),
+            (put("masses", 1e-9), keeler.InvariantError), (put("positions", [1000.0, 0.0, 0.0]), keeler.InvariantError),
+            (put("positions", [0.0, -1000.0, 0.0]), keeler.InvariantError),
+            (put("positions", [0.0, 0.0, 1e8]), keeler.InvariantError),
+            (put("velocities", [0.0, 1e5, 0.0]), keeler.InvariantError), (masked, keeler.UsageError),
+            (other_ids, keeler.UsageError),
             (overlap, keeler.InvariantError), (not_a_number, keeler.InvariantError),
             (negative, keeler.InvariantError), (shape, keeler.UsageError),
         ]:
             with self.assertRaises(error), self.sim.edit() as state:
                 change(state)
             self.assertEqual(self.sim.state_hash, before)
+        with self.assertRaises(keeler.InvariantError), self.sim.edit() as state:
+            state.radii[:] = 1e4
         with self.assertRaises(AttributeError), self.sim.edit() as state:
             state.position = 0.0
         with self.assertRaises(ValueError), self.sim.edit() as state:
@@ -297,6 +320,12 @@ class Changes(unittest.TestCase):
             state.masses *= 2.0
             raise KeyError
         self.assertEqual(self.sim.state_hash, before)
+
+    def test_a_place_a_little_outside_is_one_inside(self):
+        with self.sim.edit() as state:
+            state.positions[:, 0] += 1.0
+        self.assertLess(np.abs(self.sim.positions[:, 0]).max(), 33.0)
+        self.sim.run(0.1)
 
     def test_a_simulation_that_moves_on_within_is_refused(self):
         def moves():
@@ -402,6 +431,25 @@ class Laws(unittest.TestCase):
         )
         self.assertEqual(refused.returncode, 2)
         self.assertIn("'half'", refused.stderr)
+
+    def test_a_law_that_gives_none_in_a_run_is_refused_and_the_state_is_that_of_before(self):
+        keeler.add_restitution_law("moody", self.functions.moody)
+        mood = ctypes.c_double.in_dll(self.functions, "mood")
+        scene = ring(collisions={"restitution": {"law": "own", "name": "moody"}})
+        wanted = keeler.Simulation(scene).run(0.04).run(0.06).state_hash
+        for threads in (1, 2):
+            keeler.set_threads(threads)
+            for wrong in (float("nan"), -0.5, 5.0, float("inf"), 1.0000001):
+                sim = keeler.Simulation(scene).run(0.04)
+                before, positions = sim.state_hash, sim.positions
+                mood.value = wrong
+                with self.assertRaisesRegex(keeler.UsageError, "'moody' gives .*from 0 to 1"):
+                    sim.run(0.06)
+                mood.value = 0.5
+                self.assertEqual(sim.state_hash, before)
+                np.testing.assert_array_equal(sim.positions, positions)
+                self.assertEqual(sim.run(0.06).state_hash, wanted)
+        keeler.set_threads(1)
 
     def test_what_is_no_coefficient_is_refused(self):
         with self.assertRaisesRegex(keeler.UsageError, "coefficients are from 0 to 1"):

@@ -44,7 +44,8 @@ RestitutionLaw tabulated_restitution(NumberRows table);
 
 /// A law that the program brings itself, known to scenes by this name from now on (law = "own", name = NAME), and so to
 /// the state hash and to checkpoints: a program that has no law of that name refuses them. Throws UsageError when the
-/// name is empty or known, or when the coefficient of an impact of 1 µm/s to 100 m/s is not in [0, 1].
+/// name is empty or known, or when the coefficient of an impact of 1 µm/s to 100 m/s is not in [0, 1]; a step in which
+/// the law gives another one throws it too.
 void add_own_restitution(const std::string& name, const RestitutionLaw& law);
 
 /// A law that a scene can choose: its name, its keys, and how it is made from their values.

@@ -38,7 +38,7 @@ inline bool interrupted() {
   return Interruptible::flag().load(std::memory_order_relaxed);
 }
 
-/// Not for the bodies of parallel loops, which no exception may leave: they return.
+/// Throws Interrupted when the work at hand is to be given up.
 inline void throw_if_interrupted() {
   if (interrupted())
     throw Interrupted();

@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstddef>
+#include <exception>
 #include <vector>
 
 namespace keeler {
@@ -22,9 +23,30 @@ inline constexpr int most_threads = 1024;
 void set_threads(int count);
 int threads();
 
+/// The first exception that one of several threads met, for the thread that waits for them.
+class FirstException {
+public:
+  /// Keeps the exception that is being handled, unless there is one already.
+  void keep() noexcept {
+    if (!any_.exchange(true, std::memory_order_relaxed))
+      first_ = std::current_exception();
+  }
+  bool any() const { return any_.load(std::memory_order_relaxed); }
+  /// Throws it, if there is one. Precondition: the other threads have ended.
+  void rethrow() const {
+    if (first_)
+      std::rethrow_exception(first_);
+  }
+
+private:
+  std::atomic<bool> any_ = false;
+  std::exception_ptr first_;
+};
+
 /// Calls body(k) once for each k in [0, count), in no promised order; body must write only what belongs to k.
-/// Exceptions must not leave body. What fits in one chunk runs on the calling thread. Throws Interrupted after the
-/// chunks at hand when the work is to be given up (interrupt.hpp).
+/// What fits in one chunk runs on the calling thread. Throws Interrupted after the chunks at hand when the work is to
+/// be given up (interrupt.hpp). An exception of body, no memory for instance, ends the loop in the same way and is
+/// thrown on the calling thread.
 ///
 /// Each thread begins with a range of its own, the same one in every loop of that length, so that it meets its memory
 /// again; then it helps the others, a chunk at a time.
@@ -33,9 +55,10 @@ template<class Body> void parallel_for(std::size_t count, const Body& body, std:
     std::atomic<std::size_t> next = 0;
     std::size_t end = 0;
   };
+  FirstException failure;
   const auto work_on = [&](Range& range) {
-    for (std::size_t begin;
-         !interrupted() && (begin = range.next.fetch_add(chunk, std::memory_order_relaxed)) < range.end;)
+    for (std::size_t begin; !interrupted() && !failure.any() &&
+                            (begin = range.next.fetch_add(chunk, std::memory_order_relaxed)) < range.end;)
       for (std::size_t k = begin; k < std::min(begin + chunk, range.end); ++k)
         body(k);
   };
@@ -57,9 +80,14 @@ template<class Body> void parallel_for(std::size_t count, const Body& body, std:
 #pragma omp parallel
   {
     const Interruptible as_caller(flag);
-    for (std::size_t r = 0; r < ranges_count; ++r)
-      work_on(ranges[(static_cast<std::size_t>(omp_get_thread_num()) + r) % ranges_count]);
+    try {
+      for (std::size_t r = 0; r < ranges_count; ++r)
+        work_on(ranges[(static_cast<std::size_t>(omp_get_thread_num()) + r) % ranges_count]);
+    } catch (...) {
+      failure.keep();
+    }
   }
+  failure.rethrow();
   throw_if_interrupted();
 }
 

@@ -27,7 +27,7 @@ struct LineOfSight {
 class RayLattice {
 public:
   /// About `rays` rays, at least one a footprint; footprints are near squares of side `footprint` (m), a whole number a
-  /// box.
+  /// box. Throws UsageError where there is no memory for so many.
   RayLattice(const ShearingBox& box, std::size_t rays, double footprint, std::uint64_t seed = 1);
 
   std::size_t size() const { return places_.size(); }
@@ -52,7 +52,7 @@ private:
   };
 
   ShearingBox box_;
-  std::size_t across_, along_, columns_, rows_;
+  std::size_t across_ = 0, along_ = 0, columns_ = 0, rows_ = 0;
   std::vector<Place> places_; // in the order of cells: column by column
 };
 

@@ -11,12 +11,23 @@
 #include <keeler/gravity/solver.hpp>
 
 #include <memory>
+#include <string>
 
 namespace keeler {
 
+/// What the mesh of the radial waves is for a box of that width (m), before there is one: its nodes, a whole number
+/// that grows as size_x / shortest_wavelength without a bound, and its bytes on that many threads.
+double radial_mesh_nodes(double size_x, double shortest_wavelength);
+double radial_mesh_bytes(double size_x, double shortest_wavelength, int threads);
+
+/// "gravity.shortest_wavelength = 1e-18 m is too short (why); raise it", where no mesh over a box of that width has
+/// such waves; empty where one has.
+std::string radial_mesh_fault(double size_x, double shortest_wavelength);
+
 class AxisymmetricSolver final : public GravitySolver, public EnergyMeter {
 public:
-  /// `shortest_wavelength` in m. Solving throws UsageError where the box is narrower than that.
+  /// `shortest_wavelength` in m. Solving throws UsageError with radial_mesh_fault(), or where
+  /// there is no memory for the mesh.
   explicit AxisymmetricSolver(double shortest_wavelength);
   ~AxisymmetricSolver() override;
 

@@ -23,6 +23,10 @@ struct FftSettings {
 /// The cheapest spacing of the mesh, in mean distances of particles, (their number an area)^−1/2.
 inline constexpr double cheapest_spacing = 1.6;
 
+/// Bytes of the mesh and of its waves for so many particles, which lie within `height` (m) from the lowest to the
+/// highest; what is kept a particle is not in it. For estimates: `spacing` is that of FftSettings.
+double mesh_bytes(const ShearingBox& box, double spacing, double height, std::size_t count);
+
 /// √⟨m²⟩ / ⟨m⟩: 1 for equal masses. The same bits in any order. Collective: of the masses of all ranks.
 double mass_spread(std::span<const double> masses, const Ranks& ranks = {});
 

@@ -77,6 +77,9 @@ struct Derived {
 
 Derived derive(const Scene& scene);
 
+/// Throws UsageError when a run of so many particles, in a patch like the scene's, needs more memory than can be had.
+void require_memory_for(const Scene& scene, std::size_t count);
+
 /// "tree, opening angle 0.6".
 std::string in_words(const GravitySettings& gravity);
 

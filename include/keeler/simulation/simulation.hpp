@@ -59,6 +59,13 @@ public:
   /// finite or particles overlap by more than rounding.
   void replace(Particles particles);
 
+  /// After advance() or replace() has thrown: the state of before is the state again. It may be looked at, but no step
+  /// may follow: for that a simulation is to be made of it.
+  void put_back(SimulationState state) noexcept {
+    state_ = std::move(state);
+    drifting_ = undisturbed_ = false;
+  }
+
   const SimulationState& state() const { return state_; }
   /// The state itself, its arrays where they are in memory; nothing else may be asked of the simulation afterwards.
   SimulationState take_state() && { return std::move(state_); }

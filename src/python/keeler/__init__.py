@@ -28,6 +28,7 @@ Lengths are in m, velocities in m/s, masses in kg, times in orbits. x points out
 docs/manual/python.md has more.
 """
 
+import atexit as _atexit
 import ctypes as _ctypes
 import os as _os
 import sys as _sys
@@ -60,6 +61,8 @@ from .simulation import ELEMENTS, Simulation, from_arrays, load, resume
 from .snapshots import Picture, Snapshot, generate, start_from_arrays, tile
 
 __version__ = _core.version()
+
+_atexit.register(_core.end_other_threads)  # daemon threads that compute: the interpreter would end them inside C++
 
 __all__ = [
     "ELEMENTS",

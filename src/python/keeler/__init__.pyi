@@ -68,7 +68,8 @@ class _Edited:
     radii: _Floats
     masses: _Floats
     spins: _Floats | None
-    ids: _Ids
+    @property
+    def ids(self) -> _Ids: ...
 
 class Simulation:
     def __init__(self, scene: _Scene, start: Snapshot | Simulation | _Path | None = None, **overrides: Any) -> None: ...

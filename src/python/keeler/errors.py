@@ -26,6 +26,6 @@ class IoError(Error, OSError):
 
 
 class RunError(Error, RuntimeError):
-    """Anything else that ends a computation: wakes that never settle, a step that was given up."""
+    """Anything else that ends a computation: wakes that never settle, a simulation that cannot go on."""
 
     exit_code = 1

@@ -6,6 +6,8 @@ import operator
 import os
 from pathlib import Path
 
+import numpy as np
+
 from . import _core
 from .errors import UsageError
 
@@ -21,7 +23,7 @@ def _toml(value, place):
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{json.dumps(str(k))} = {_toml(v, f'{place}.{k}')}" for k, v in value.items()) + " }"
     if hasattr(value, "tolist"):  # arrays and numbers of numpy
-        return _toml(value.tolist(), place)
+        return _toml(unmasked(value, place).tolist(), place)
     if isinstance(value, int):
         return str(value)
     if isinstance(value, float):
@@ -85,6 +87,18 @@ def whole_number(value, name, least, most):
     if number is None or not least <= number <= most:
         raise UsageError(f"{name} is {value!r}; give a whole number from {least} to {most}")
     return number
+
+
+def unmasked(value, name):
+    """An array as given, None, or a sequence of numbers; refused where entries are masked: the mask would be lost."""
+    rows = value if isinstance(value, (list, tuple)) else (value,)
+    count = sum(int(np.ma.count_masked(row)) for row in rows if isinstance(row, np.ma.MaskedArray))
+    if count:
+        raise UsageError(
+            f"{name} has {count} masked {'entry' if count == 1 else 'entries'}, and a mask is no number; leave these rows "
+            "out of all arrays, or fill them in"
+        )
+    return value
 
 
 def read(scene, overrides, start_from=None):

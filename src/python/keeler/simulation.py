@@ -148,8 +148,8 @@ class Simulation:
         return self._motion
 
     def by_id(self, array):
-        """A copy of an array, its rows in the order of the ids."""
-        array = np.asarray(array)
+        """A copy of an array, its rows in the order of the ids; of a masked array with its mask."""
+        array = np.asanyarray(array)
         if array.shape[:1] != (len(self),):
             raise UsageError(f"the array has {array.shape[0] if array.ndim else 'no'} rows; give one a particle ({len(self)})")
         return array[np.argsort(self.ids)]
@@ -176,10 +176,12 @@ class Simulation:
         ``callback(sim)`` is called every so many orbits, and at the end; what it raises ends the run. Times are rounded
         to whole kick intervals, where kicks and drifts meet. ``progress`` shows a line on standard error.
 
-        Ctrl-C is heeded at the next such time, with KeyboardInterrupt, and the run can go on; a second one gives up the
-        step at hand, and then the simulation is lost. Raises InvariantError when a step comes to what cannot be. The
-        simulation then does not go on, but its arrays and snapshot() can be looked at: they are of the last contact
-        in the step, or of the step's end.
+        Ctrl-C is heeded at the next such time, with KeyboardInterrupt, and the run can go on. A second one gives up the
+        step at hand, and the state is one of before it: of the last 0.2 s of computing, or of the step before. So it is
+        after a MemoryError, or when a restitution law of your own gives no coefficient (UsageError); the run can go on.
+
+        Raises InvariantError when a step comes to what cannot be. The simulation then does not go on, but its arrays and
+        snapshot() can be looked at: they are of the last contact in the step, or of the step's end.
         """
         core, scene = self._core, self._core.scene
         interval = scene.kick_interval
@@ -239,8 +241,11 @@ class Simulation:
         try:
             yield contacts
         finally:
-            contacts.end()
-            self._recording = False
+            try:
+                contacts.end()
+            finally:
+                self._core.record_contacts(None)
+                self._recording = False
 
     # --- changes and files
 
@@ -253,15 +258,17 @@ class Simulation:
                 state.velocities[:, 2] += 1e-4
 
         At the end they become the state, unless the block raises. Raises InvariantError, and changes nothing, when a
-        number is not finite or particles overlap; UsageError for arrays of another shape, or when the simulation has
-        moved on within the block. The energy that a change brings counts as part of the start.
+        particle is not possible in a start (a number that is not finite, a radius or a density out of all bounds, a
+        place that was moved far out of the box) or particles overlap; UsageError for arrays of another shape or with
+        masked entries, or when the simulation has moved on within the block. The energy that a change brings counts as
+        part of the start.
         """
         state, begun = _Edited(self), (self._core.tick, self._changes)
         yield state
         if begun != (self._core.tick, self._changes):
             raise UsageError("the simulation has moved on, or was changed, within edit(); its rows may be others now")
+        self._core.replace(*state.arrays())
         self._changes += 1
-        self._core.replace(state.positions, state.velocities, state.radii, state.masses, state.spins)
         self._motion = None
 
     def save(self, file):
@@ -307,13 +314,12 @@ class _Contacts:
 
     def end(self):
         self.last = self.core.take_contacts()
-        self.core.record_contacts(None)
 
 
 class _Edited:
     """What edit() gives to write to; a name that it has not is an error."""
 
-    __slots__ = ("positions", "velocities", "radii", "masses", "spins", "ids")
+    __slots__ = ("positions", "velocities", "radii", "masses", "spins", "_ids")
 
     def __init__(self, sim):
         self.positions = np.array(sim.positions)
@@ -322,8 +328,20 @@ class _Edited:
         self.masses = np.array(sim.masses)
         spins = sim.spins
         self.spins = None if spins is None else np.array(spins)
-        self.ids = np.array(sim.ids)
-        self.ids.flags.writeable = False
+        self._ids = np.array(sim.ids)
+        self._ids.flags.writeable = False
+
+    @property
+    def ids(self):
+        return self._ids
+
+    @ids.setter
+    def ids(self, _):
+        raise UsageError("ids are given within edit(), and they never change; change the rows of the other arrays")
+
+    def arrays(self):
+        names = ("positions", "velocities", "radii", "masses", "spins")
+        return [scenes.unmasked(getattr(self, name), name) for name in names]
 
 
 def _ticks(orbits, name, scene):

@@ -73,10 +73,13 @@ class Snapshot:
 
     def tile(self, nx, ny):
         """The snapshot repeated nx times along the radius and ny times along the orbit. Raises UsageError."""
+        nx, ny = (scenes.whole_number(n, name, 1, 10000) for n, name in ((nx, "nx"), (ny, "ny")))
         return Snapshot(self._core.tile(nx, ny, self._name), self._name)
 
     def plot(self, file=None, *, title="Ring patch", width=1600):
-        """The picture of ``keeler render``: from above, and edge-on. Written to a PNG where a file is named."""
+        """The picture of ``keeler render``: from above, and edge-on. Written to a PNG where a file is named. ``width``
+        is in pixels, from 200 to 8000. Raises UsageError, IoError."""
+        width = scenes.whole_number(width, "width", 200, 8000)
         if file is not None:
             if Path(file).suffix != ".png":
                 raise UsageError(f"'{file}' cannot be written: pictures are PNGs; give it the ending .png")
@@ -117,11 +120,12 @@ def start_from_arrays(scene, positions, radii, velocities=None, masses=None, spi
     positions (N, 3) m, velocities (N, 3) m/s or None (circular orbits), radii (N,) m or one number, masses (N,) kg or
     one number or None (of the scene's density), spins (N, 3) rad/s against the stars where the scene has friction.
     Particle k gets the id k. ``relax`` moves particles that overlap apart.
-    Raises UsageError, naming the row, for particles that no ring has; InvariantError for overlaps.
+    Raises UsageError, naming the row, for particles that no ring has, and for masked entries; InvariantError for overlaps.
     """
-    text, name = scenes.source(scene)
-    arrays = [None if a is None else np.asarray(a, dtype=float) for a in (positions, velocities, radii, masses, spins)]
-    return Snapshot(_core.from_arrays(text, name, scenes.overrides_of(overrides), *arrays, relax), "the arrays")
+    text, scene_name = scenes.source(scene)
+    given = {"positions": positions, "velocities": velocities, "radii": radii, "masses": masses, "spins": spins}
+    arrays = [None if a is None else np.asarray(scenes.unmasked(a, name), dtype=float) for name, a in given.items()]
+    return Snapshot(_core.from_arrays(text, scene_name, scenes.overrides_of(overrides), *arrays, relax), "the arrays")
 
 
 def read(file):

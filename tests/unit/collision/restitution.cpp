@@ -112,6 +112,13 @@ TEST_CASE("a law of one's own is known by its name, and to the program that brou
                        UsageError);
   add_own_restitution("soft-ice", [](const Impact& impact) { return 1.0 / (1.0 + impact.speed / impact.radius_low); });
   CHECK(own.make(named("soft-ice"))({.speed = 2.0, .radius_low = 2.0, .radius_high = 1.0}) == 0.5);
+  add_own_restitution("brittle",
+                      [](const Impact& impact) { return impact.radius_low > 1.0 ? impact.speed - 2.0 : 0.5; });
+  const RestitutionLaw brittle = own.make(named("brittle"));
+  CHECK(brittle({.speed = 3.0, .radius_low = 2.0, .radius_high = 1.0}) == 1.0);
+  for (const double speed : {3.5, 1.5, HUGE_VAL, std::nan("")})
+    CHECK_THROWS_WITH_AS(brittle({.speed = speed, .radius_low = 2.0, .radius_high = 1.0}),
+                         doctest::Contains("'brittle' gives"), UsageError);
   CHECK_THROWS_AS(add_own_restitution("soft-ice", constant_restitution(0.5)), UsageError); // taken
   CHECK_THROWS_AS(add_own_restitution("", constant_restitution(0.5)), UsageError);
   CHECK_THROWS_AS(add_own_restitution("bouncy", constant_restitution(1.1)), UsageError);

@@ -1,7 +1,10 @@
 #include <keeler/core/memory.hpp>
 
+#include <keeler/core/error.hpp>
+
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <vector>
 
 using namespace keeler;
@@ -17,4 +20,18 @@ TEST_CASE("the peak of memory grows by what is held, and stays when it is given 
   CHECK(before > 0.0);
   CHECK(after >= bytes);
   CHECK(after >= before);
+}
+
+TEST_CASE("sizes are checked before they are ones") {
+  CHECK(available_memory() > 1e6);
+  CHECK(available_memory() <= 0x1p47);
+  CHECK(affordable_size(0.0, 8.0, "nothing", "") == 0);
+  CHECK(affordable_size(1000.9, 8.0, "some", "") == 1000);
+  for (const double count : {1e18, 1e300, HUGE_VAL, -HUGE_VAL, std::nan(""), 2.0 * available_memory() / 8.0})
+    CHECK_THROWS_AS(affordable_size(count, 8.0, "a mesh", "make it coarser"), UsageError);
+  CHECK_THROWS_AS(affordable_size(-1.0, 8.0, "a mesh", ""), UsageError);
+  CHECK_THROWS_AS(affordable_size(0x1p60, 0.0, "a mesh", ""), UsageError); // of nothing, and no index has so many
+  CHECK_THROWS_WITH_AS(require_memory(1e20, "a mesh", "make it coarser"),
+                       doctest::Contains("a mesh needs 1e+11 GB of memory, and "), UsageError);
+  require_memory(1.0, "a byte", "");
 }

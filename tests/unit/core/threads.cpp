@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -60,6 +61,23 @@ TEST_CASE("the largest of all is that of a plain loop, and what is not a number 
           values[k] = before;
         }
     }
+  }
+  set_threads(1);
+}
+
+TEST_CASE("an exception in a loop reaches its caller, from any thread, and the next loop is whole") {
+  constexpr std::size_t count = 100000;
+  for (const int number : {1, 2, 5}) {
+    set_threads(number);
+    for (const std::size_t bad : {std::size_t{0}, count / 2, count - 1}) {
+      const auto body = [&](std::size_t k) {
+        if (k == bad)
+          throw std::bad_alloc();
+      };
+      CHECK_THROWS_AS(parallel_for(count, body), std::bad_alloc);
+    }
+    CHECK_THROWS_AS(parallel_for(count, [](std::size_t) { throw UsageError("each of them"); }), UsageError);
+    CHECK(ordered_sum(count, [](std::size_t) { return 1.0; }) == static_cast<double>(count));
   }
   set_threads(1);
 }

@@ -2,6 +2,8 @@
 
 #include "states.hpp"
 
+#include <keeler/core/error.hpp>
+
 #include <doctest/doctest.h>
 
 #include <array>
@@ -10,6 +12,12 @@ using namespace keeler;
 
 namespace {
 const ShearingBox box{240.0, 200.0, 1.5, 0.0};
+}
+
+TEST_CASE("a lattice without memory is refused before there is one") {
+  for (const double footprint : {8.381903171539307e-09, 1e-300, 1e-5})
+    CHECK_THROWS_WITH_AS(RayLattice(box, 1, footprint), doctest::Contains("raise --footprint"), UsageError);
+  CHECK(RayLattice(box, 1, 1e300).size() == 1);
 }
 
 TEST_CASE("moments of a known distribution") {

@@ -1,5 +1,6 @@
 #include "scenes.hpp"
 
+#include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/scene/derived.hpp>
 
@@ -64,6 +65,36 @@ TEST_CASE("the A-ring example has the numbers that the design gives for it") {
   CHECK(d.hill_parameter == doctest::Approx(0.82 * std::cbrt(600.0 / 900) * 1.3).epsilon(3e-4));
   CHECK(d.steps == 3000);
   CHECK(d.memory_mb == doctest::Approx(40.0).epsilon(0.1)); // 33 MB and some 700 bytes a particle
+}
+
+TEST_CASE("the memory that is foretold is that of the meshes too") {
+  const auto megabytes = [](const std::string& gravity) {
+    return derive(parse_scene(R"(
+[planet]
+preset = "saturn-a-ring"
+[box]
+size = [1000, 1000]
+[particles]
+count = 20000
+density = 600.0
+sizes = { law = "equal", radius = 1.0 }
+[time]
+end = 1.0
+)" + gravity,
+                              "scene"))
+        .memory_mb;
+  };
+  const double without = megabytes("");
+  CHECK(without < 60.0);
+  // 12 · 10⁶ waves: 2²⁷ nodes
+  const double nodes = 0x1p27, radial = megabytes("[gravity]\nsolver = 'axisymmetric'\nshortest_wavelength = 1e-4\n");
+  CHECK(radial - without > 1e-6 * 24 * nodes); // one number a node, half a complex one, a whole one on each thread
+  CHECK(radial - without < 1e-6 * 64 * nodes * threads());
+  // at most 2²¹ nodes and 64 a particle, 8 bytes each
+  const double fine = megabytes("[gravity]\nsolver = 'mesh'\nmesh_spacing = 0.1\n"),
+               coarse = megabytes("[gravity]\nsolver = 'mesh'\n");
+  CHECK(fine - coarse > 5.0);
+  CHECK(fine - coarse < 1e-6 * 16 * (0x1p21 + 64 * 20000));
 }
 
 TEST_CASE("the equilibrium example has about 1500 particles and no gravity") {
