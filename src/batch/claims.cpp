@@ -38,7 +38,7 @@ int set_lock(int descriptor, int command, short type, const std::string& name) {
 } // namespace
 
 Claims::Claims(const std::filesystem::path& file)
-    : descriptor_(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+    : descriptor_(open(file.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666)) {
   if (descriptor_ < 0)
     throw IoError(
         fmt::format("cannot open '{}': {}; name a folder that can be written to", file.string(), std::strerror(errno)));

@@ -1,6 +1,7 @@
 // keeler analyze: numbers from a snapshot, or averaged over the part of a run that is steady.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "print.hpp"
 #include "profile_file.hpp"
 #include "results.hpp"
 #include "sight_options.hpp"
@@ -9,9 +10,11 @@
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/diagnostics/analysis.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/files/new_file.hpp>
 #include <keeler/report/csv.hpp>
 #include <keeler/runs/analysis_numbers.hpp>
 #include <keeler/runs/measured_part.hpp>
@@ -23,16 +26,19 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace keeler {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct AnalyzeOptions {
   std::string path;
   bool json = false;
   AnalysisSettings settings;
   OrbitWindow window;
-  std::string profile, csv;
+  std::optional<std::string> profile, csv;
   std::size_t profile_bins = default_profile_bins;
   SightOptions sights;
   ThreadOption threads;
@@ -42,33 +48,32 @@ void print_wakes(const Analysis& a) {
   const char* const none =
       a.wake_amplitude > 0.0 ? "no wakes stand out of the noise" : "these particles are too few to resolve lambda_cr";
   if (a.wake_pitch_degrees)
-    fmt::print("wake pitch           {:.1f} degrees, {}\n", std::abs(*a.wake_pitch_degrees),
-               *a.wake_pitch_degrees < 0.0 ? "leading" : "trailing");
+    print("wake pitch           {:.1f} degrees, {}\n", std::abs(*a.wake_pitch_degrees),
+          *a.wake_pitch_degrees < 0.0 ? "leading" : "trailing");
   else
-    fmt::print("wake pitch           not known because {}\n", none);
+    print("wake pitch           not known because {}\n", none);
   if (a.wake_spacing_m)
-    fmt::print("wake spacing         {} m radially = {:.2f} lambda_cr\n", figures(*a.wake_spacing_m, 3),
-               *a.wake_spacing_m / a.critical_wavelength_m);
+    print("wake spacing         {} m radially = {:.2f} lambda_cr\n", figures(*a.wake_spacing_m, 3),
+          *a.wake_spacing_m / a.critical_wavelength_m);
   else
-    fmt::print("wake spacing         not known because {}\n",
-               a.wake_pitch_degrees ? "no second wake stands out within half a box" : none);
-  fmt::print("wake amplitude       {} in the autocorrelation\n", figures(a.wake_amplitude, 3));
+    print("wake spacing         not known because {}\n",
+          a.wake_pitch_degrees ? "no second wake stands out within half a box" : none);
+  print("wake amplitude       {} in the autocorrelation\n", figures(a.wake_amplitude, 3));
 }
 
 void print_text(const Analysis& a, double overlap) {
   const auto& c = a.dispersion_r_omega;
   const auto& v = a.dispersion_m_s;
-  fmt::print("snapshots            {} up to orbit {}, {}\n", a.snapshots, figures(a.time_orbits, 4),
-             counted(a.particle_count, "particle"));
-  fmt::print("optical depth        {}\n", figures(a.optical_depth, 4));
-  fmt::print("surface density      {} kg/m^2, lambda_cr {} m\n", figures(a.surface_density_kg_m2, 4),
-             figures(a.critical_wavelength_m, 4));
-  fmt::print("Toomre Q             {:.3g}\n", a.toomre_q);
-  fmt::print("velocity dispersion  {:.3g} {:.3g} {:.3g} r Omega = {:.3g} {:.3g} {:.3g} m/s\n", c[0], c[1], c[2], v[0],
-             v[1], v[2]);
-  fmt::print("scale height         {:.3g} m, filling factor {:.3g} in the mid-plane\n", a.scale_height_m,
-             a.filling_factor);
-  fmt::print("largest overlap      {} of a radius sum\n", figures(overlap, 2));
+  print("snapshots            {} up to orbit {}, {}\n", a.snapshots, figures(a.time_orbits, 4),
+        counted(a.particle_count, "particle"));
+  print("optical depth        {}\n", figures(a.optical_depth, 4));
+  print("surface density      {} kg/m^2, lambda_cr {} m\n", figures(a.surface_density_kg_m2, 4),
+        figures(a.critical_wavelength_m, 4));
+  print("Toomre Q             {:.3g}\n", a.toomre_q);
+  print("velocity dispersion  {:.3g} {:.3g} {:.3g} r Omega = {:.3g} {:.3g} {:.3g} m/s\n", c[0], c[1], c[2], v[0], v[1],
+        v[2]);
+  print("scale height         {:.3g} m, filling factor {:.3g} in the mid-plane\n", a.scale_height_m, a.filling_factor);
+  print("largest overlap      {} of a radius sum\n", figures(overlap, 2));
   print_wakes(a);
   print_structure(a);
 }
@@ -82,7 +87,7 @@ std::string column_of_axis(const std::string& name, char axis) {
 }
 
 // A row a snapshot: the numbers of each by itself, [x, y, z] in columns of their own.
-void write_snapshots(const std::string& file, const StoredPatches& stored, const AnalysisSettings& settings) {
+void write_snapshots(const fs::path& file, const StoredPatches& stored, const AnalysisSettings& settings) {
   auto rows = nlohmann::ordered_json::array();
   for (const Patch& patch : stored.patches) {
     nlohmann::ordered_json all = numbers_of(analyze(std::span(&patch, 1), settings), largest_overlap(patch).depth), row;
@@ -98,11 +103,33 @@ void write_snapshots(const std::string& file, const StoredPatches& stored, const
   write_table(file, csv_of(rows));
 }
 
+// The files that get tables. One of them may go to standard output, in place of what is printed there.
+struct Tables {
+  explicit Tables(const AnalyzeOptions& options) : profile(named(options.profile)), csv(named(options.csv)) {
+    const auto there = [](const auto& file) { return file && is_standard_output(*file) ? 1 : 0; };
+    const int asked = there(profile) + there(csv);
+    fill_standard_output = asked > 0;
+    if (asked > 1 || (asked == 1 && options.json))
+      throw UsageError("only one of --csv, --profile and --json can go to standard output; name files for the others");
+  }
+
+  std::optional<fs::path> profile, csv;
+  bool fill_standard_output = false;
+
+private:
+  static std::optional<fs::path> named(const std::optional<std::string>& name) {
+    if (!name)
+      return std::nullopt;
+    const fs::path file = output_named(*name);
+    if (!is_stream(file))
+      require_writable_folder(folder_of(file), file);
+    return file;
+  }
+};
+
 ExitCode run(const AnalyzeOptions& options) {
   options.threads.apply();
-  for (const std::string& file : {options.profile, options.csv})
-    if (!file.empty())
-      require_writable_folder(std::filesystem::absolute(file).parent_path(), file);
+  const Tables tables(options);
   const auto [stored, transport] = measured_part(options.path, options.window);
   double overlap = 0.0;
   for (const Patch& patch : stored.patches)
@@ -111,16 +138,18 @@ ExitCode run(const AnalyzeOptions& options) {
   std::optional<Sights> sights;
   if (options.sights.asked())
     sights.emplace(options.sights, stored.patches);
-  if (!options.profile.empty())
-    write_profiles(options.profile, stored.patches, options.profile_bins);
-  if (!options.csv.empty())
-    write_snapshots(options.csv, stored, options.settings);
+  if (tables.profile)
+    write_profiles(*tables.profile, stored.patches, options.profile_bins);
+  if (tables.csv)
+    write_snapshots(*tables.csv, stored, options.settings);
+  if (tables.fill_standard_output)
+    return ExitCode::done;
   if (options.json) {
     nlohmann::ordered_json json = numbers_of(analysis, overlap);
     transport.add_to(json, stored.patches.back());
     if (sights)
       json["sights"] = sights->json();
-    fmt::print("{}\n", json.dump(2));
+    print("{}\n", json_text(json, 2));
   } else {
     print_text(analysis, overlap);
     print_transport(transport, stored.patches.back());

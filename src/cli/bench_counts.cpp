@@ -1,5 +1,7 @@
 #include "bench_counts.hpp"
 
+#include "print.hpp"
+
 #include <keeler/core/words.hpp>
 
 #include <fmt/format.h>
@@ -22,15 +24,14 @@ void add_drift_counts(nlohmann::ordered_json& json, const TimedSteps& timed) {
 }
 
 void print_over_yardsticks(double ns, const Yardsticks& yardsticks) {
-  fmt::print("  over what the machine can do      {:.1f} times {:.2f} ns for a line of memory, {:.1f} times {:.2f} ns "
-             "for a pair's |d|^2 and d.v\n",
-             ns / yardsticks.line_ns, yardsticks.line_ns, ns / yardsticks.pair_ns, yardsticks.pair_ns);
+  print("  over what the machine can do      {:.1f} times {:.2f} ns for a line of memory, {:.1f} times {:.2f} ns "
+        "for a pair's |d|^2 and d.v\n",
+        ns / yardsticks.line_ns, yardsticks.line_ns, ns / yardsticks.pair_ns, yardsticks.pair_ns);
 }
 
 void print_pairs(const TimedSteps& timed) {
-  fmt::print("pairs per particle and step         {} tested, {} handed to the finder\n",
-             figures(timed.per_particle_step(timed.pairs_tested), 3),
-             figures(timed.per_particle_step(timed.survivors), 3));
+  print("pairs per particle and step         {} tested, {} handed to the finder\n",
+        figures(timed.per_particle_step(timed.pairs_tested), 3), figures(timed.per_particle_step(timed.survivors), 3));
 }
 
 } // namespace keeler

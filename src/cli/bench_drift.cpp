@@ -1,8 +1,10 @@
 // keeler bench drift: the drift phase.
 #include "bench.hpp"
 #include "bench_counts.hpp"
+#include "print.hpp"
 
 #include <keeler/bench/drift.hpp>
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/scene/keys.hpp>
 
@@ -61,34 +63,34 @@ void print_json(const DriftBenchSettings& s, const std::string& sizes, const Dri
   json["threads"] = threads();
   json["repeats"] = s.repeats;
   json["steps"] = t.steps;
-  fmt::print("{}\n", json.dump(2));
+  print("{}\n", json_text(json, 2));
 }
 
 void print_text(const DriftBenchSettings& s, const DriftBench& b) {
   const TimedSteps& t = b.timed;
-  fmt::print("ns per particle and step            {:.1f} (median of {} of {}, {}, {})\n", t.ns_per_particle_step,
-             counted(s.repeats, "repeat"), counted(t.steps, "step"), counted(t.count, "particle"),
-             counted(threads(), "thread"));
-  fmt::print("  of these                          advance {:.1f}, build {:.1f}, reject {:.1f}, solve {:.1f}, "
-             "events {:.1f}\n",
-             t.split.advance, t.drift_split.build, t.drift_split.reject, t.drift_split.solve, t.drift_split.events);
+  print("ns per particle and step            {:.1f} (median of {} of {}, {}, {})\n", t.ns_per_particle_step,
+        counted(s.repeats, "repeat"), counted(t.steps, "step"), counted(t.count, "particle"),
+        counted(threads(), "thread"));
+  print("  of these                          advance {:.1f}, build {:.1f}, reject {:.1f}, solve {:.1f}, "
+        "events {:.1f}\n",
+        t.split.advance, t.drift_split.build, t.drift_split.reject, t.drift_split.solve, t.drift_split.events);
   print_over_yardsticks(t.ns_per_particle_step, t.yardsticks);
   if (threads() > 1)
-    fmt::print("over one thread, by turns           {:.2f} times as fast, the events {:.2f}, a pair {:.2f}\n",
-               t.speedup.step, t.speedup.events, t.speedup.pair);
-  fmt::print("us per particle and orbit           {}\n", figures(cost_per_orbit_us(s, b), 3));
+    print("over one thread, by turns           {:.2f} times as fast, the events {:.2f}, a pair {:.2f}\n",
+          t.speedup.step, t.speedup.events, t.speedup.pair);
+  print("us per particle and orbit           {}\n", figures(cost_per_orbit_us(s, b), 3));
   if (t.contacts > 0)
-    fmt::print("ns per collision                    {:.0f} for all of that time, {:.0f} for the events alone\n",
-               t.per_contact(t.ns_per_particle_step), t.per_contact(t.drift_split.events));
+    print("ns per collision                    {:.0f} for all of that time, {:.0f} for the events alone\n",
+          t.per_contact(t.ns_per_particle_step), t.per_contact(t.drift_split.events));
   if (b.calls_per_particle_step > 0.0)
-    fmt::print("ns per finder call                  {:.1f}, {} calls per particle at the start of a step\n",
-               b.ns_per_call, figures(b.calls_per_particle_step, 3));
+    print("ns per finder call                  {:.1f}, {} calls per particle at the start of a step\n", b.ns_per_call,
+          figures(b.calls_per_particle_step, 3));
   else
-    fmt::print("ns per finder call                  none: no pair came to the finder\n");
+    print("ns per finder call                  none: no pair came to the finder\n");
   print_pairs(t);
-  fmt::print("collisions per particle and orbit   {} faster than v_cut\n", figures(collisions_per_orbit(s, b), 3));
-  fmt::print("bytes per particle                  {}\n", t.bytes_per_particle);
-  fmt::print("dispersion c_x                      {} r Omega\n", figures(b.dispersion_r_omega, 3));
+  print("collisions per particle and orbit   {} faster than v_cut\n", figures(collisions_per_orbit(s, b), 3));
+  print("bytes per particle                  {}\n", t.bytes_per_particle);
+  print("dispersion c_x                      {} r Omega\n", figures(b.dispersion_r_omega, 3));
 }
 
 ExitCode bench(const DriftOptions& options) {

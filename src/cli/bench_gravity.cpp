@@ -1,7 +1,9 @@
 // keeler bench gravity: every solver with every setting, its error and its cost.
 #include "bench.hpp"
+#include "print.hpp"
 
 #include <keeler/bench/gravity.hpp>
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/core/words.hpp>
 
 #include <fmt/format.h>
@@ -38,21 +40,21 @@ void print_json(const GravityOptions& options, const GravityBench& b) {
   json["edge_width_m"] = b.edge_width_m;
   json["threads"] = threads();
   json["repeats"] = options.bench.repeats;
-  fmt::print("{}\n", json.dump(2));
+  print("{}\n", json_text(json, 2));
 }
 
 void print_text(const GravityOptions& options, const GravityBench& b) {
-  fmt::print("{}, {}, box {} m x {} m, shear offset {} m, {}\n", counted(b.count, "particle"), options.state,
-             figures(b.size_x_m, 4), figures(b.size_y_m, 4), figures(b.offset_m, 4), counted(threads(), "thread"));
-  fmt::print("errors of {} particles' forces over the rms force, of {} within {:g} m of the edges; medians of {}\n\n",
-             b.sample, b.edge_sample, b.edge_width_m, counted(options.bench.repeats, "repeat"));
-  fmt::print("{:<8}{:<22}{:>12}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>10}{:>10}\n", "solver", "settings", "ns/particle",
-             "rms", "99.9 %", "x", "y", "z", "edge", "edge pull", "net force");
+  print("{}, {}, box {} m x {} m, shear offset {} m, {}\n", counted(b.count, "particle"), options.state,
+        figures(b.size_x_m, 4), figures(b.size_y_m, 4), figures(b.offset_m, 4), counted(threads(), "thread"));
+  print("errors of {} particles' forces over the rms force, of {} within {:g} m of the edges; medians of {}\n\n",
+        b.sample, b.edge_sample, b.edge_width_m, counted(options.bench.repeats, "repeat"));
+  print("{:<8}{:<22}{:>12}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>10}{:>10}\n", "solver", "settings", "ns/particle", "rms",
+        "99.9 %", "x", "y", "z", "edge", "edge pull", "net force");
   for (const GravityBenchRow& row : b.rows) {
     const ForceErrors& e = row.errors;
-    fmt::print("{:<8}{:<22}{:>12.0f}{:>9.1e}{:>9.1e}{:>9.1e}{:>9.1e}{:>9.1e}{:>9.1e}{:>10.1e}{:>10.1e}\n",
-               row.choice.solver, row.choice.text, row.ns_per_particle, e.rms, e.p999, e.component_rms[0],
-               e.component_rms[1], e.component_rms[2], e.edge_rms, e.edge_pull, row.net_force);
+    print("{:<8}{:<22}{:>12.0f}{:>9.1e}{:>9.1e}{:>9.1e}{:>9.1e}{:>9.1e}{:>9.1e}{:>10.1e}{:>10.1e}\n", row.choice.solver,
+          row.choice.text, row.ns_per_particle, e.rms, e.p999, e.component_rms[0], e.component_rms[1],
+          e.component_rms[2], e.edge_rms, e.edge_pull, row.net_force);
   }
 }
 

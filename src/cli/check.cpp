@@ -1,9 +1,11 @@
 // keeler check: what a scene means, before anything runs.
 #include "command.hpp"
+#include "print.hpp"
 #include "scene_arguments.hpp"
 
 #include <keeler/bench/yardsticks.hpp>
 #include <keeler/core/memory.hpp>
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
@@ -100,15 +102,15 @@ std::string duration(double seconds) {
 }
 
 void print_particles(const Scene& scene, const Derived& d) {
-  fmt::print("box                {} m x {} m", figures(scene.size_x, 4), figures(scene.size_y, 4));
-  fmt::print(" ({:.2f} x {:.2f} lambda_cr)\n", scene.size_x / d.lambda_cr, scene.size_y / d.lambda_cr);
-  fmt::print("particles          {}\n", d.particle_count);
-  fmt::print("optical depth      {}\n", figures(d.optical_depth, 4));
-  fmt::print("surface density    {} kg/m^2\n", figures(d.surface_density, 4));
-  fmt::print("lambda_cr          {} m\n", figures(d.lambda_cr, 4));
-  fmt::print("Toomre Q           {} at the start\n", figures(d.toomre_q, 3));
-  fmt::print("Hill parameter r_h {:.3g}\n", d.hill_parameter);
-  fmt::print("mid-plane filling  {:.3g} at the start\n", d.midplane_filling);
+  print("box                {} m x {} m", figures(scene.size_x, 4), figures(scene.size_y, 4));
+  print(" ({:.2f} x {:.2f} lambda_cr)\n", scene.size_x / d.lambda_cr, scene.size_y / d.lambda_cr);
+  print("particles          {}\n", d.particle_count);
+  print("optical depth      {}\n", figures(d.optical_depth, 4));
+  print("surface density    {} kg/m^2\n", figures(d.surface_density, 4));
+  print("lambda_cr          {} m\n", figures(d.lambda_cr, 4));
+  print("Toomre Q           {} at the start\n", figures(d.toomre_q, 3));
+  print("Hill parameter r_h {:.3g}\n", d.hill_parameter);
+  print("mid-plane filling  {:.3g} at the start\n", d.midplane_filling);
 }
 
 void print_estimate(const RunEstimate& cost) {
@@ -116,54 +118,53 @@ void print_estimate(const RunEstimate& cost) {
   for (const RunEstimate::Part& part : cost.parts())
     if (part.seconds > 0.0)
       parts += fmt::format("{}{} {}", parts.empty() ? "" : ", ", part.name, duration(part.seconds));
-  fmt::print("time               about {} on one thread (an estimate): {}; {} dominates\n", duration(cost.total()),
-             parts, cost.dominating());
+  print("time               about {} on one thread (an estimate): {}; {} dominates\n", duration(cost.total()), parts,
+        cost.dominating());
 }
 
 void print_steps(const Scene& scene, const Derived& d) {
   if (scene.time.automatic)
-    fmt::print("steps              automatic, from 1/{} to 1/{} orbits\n", TimeSettings::ticks_per_orbit,
-               TimeSettings::ticks_per_orbit / TimeSettings::longest);
+    print("steps              automatic, from 1/{} to 1/{} orbits\n", TimeSettings::ticks_per_orbit,
+          TimeSettings::ticks_per_orbit / TimeSettings::longest);
   else
-    fmt::print("steps              {} of {} orbits\n", d.steps, figures(scene.time.step));
+    print("steps              {} of {} orbits\n", d.steps, figures(scene.time.step));
   if (!scene.gravity)
     return;
-  fmt::print("gravity            {}",
-             in_words(d.particles_known ? chosen_for(d.particle_count, *scene.gravity) : *scene.gravity));
+  print("gravity            {}",
+        in_words(d.particles_known ? chosen_for(d.particle_count, *scene.gravity) : *scene.gravity));
   if (scene.time.automatic)
-    fmt::print("\n");
+    print("\n");
   else
-    fmt::print("; a kick each {} orbits\n", figures(kick_interval_orbits(scene)));
+    print("; a kick each {} orbits\n", figures(kick_interval_orbits(scene)));
 }
 
 void print_bodies(const Scene& scene) {
   const double g = newton_g(scene.planet.orbital_frequency);
   for (std::size_t k = 0; k < scene.particles.aggregates.size(); ++k) {
     const AggregateSettings& a = scene.particles.aggregates[k];
-    fmt::print("aggregate {:<8} ids {} to {}, radius {} m, mass {} kg, Hill radius {} m\n", k + 1, a.first,
-               a.first + a.count - 1, figures(a.radius, 4), figures(a.mass, 4),
-               figures(std::cbrt(g * a.mass / 3.0), 3));
+    print("aggregate {:<8} ids {} to {}, radius {} m, mass {} kg, Hill radius {} m\n", k + 1, a.first,
+          a.first + a.count - 1, figures(a.radius, 4), figures(a.mass, 4), figures(std::cbrt(g * a.mass / 3.0), 3));
   }
   for (std::size_t k = 0; k < scene.moonlets.size(); ++k) {
     const MoonletSettings& m = scene.moonlets[k];
-    fmt::print("moonlet {:<10} id {}, radius {} m, mass {} kg, Hill radius {} m\n", k + 1, scene.particles.count + k,
-               figures(m.radius), figures(m.mass, 4), figures(std::cbrt(g * m.mass / 3.0), 3));
+    print("moonlet {:<10} id {}, radius {} m, mass {} kg, Hill radius {} m\n", k + 1, scene.particles.count + k,
+          figures(m.radius), figures(m.mass, 4), figures(std::cbrt(g * m.mass / 3.0), 3));
   }
 }
 
 // Before the file is read a scene has to say whether contacts carry.
 void print_start(const Scene& scene, const PatchScale& start) {
-  fmt::print("box and particles  from {}\n", *scene.start_from);
-  fmt::print("Hill parameter r_h {:.3g} of its particles\n",
-             hill_parameter(start.density, distance_from_saturn(scene.planet)));
+  print("box and particles  from {}\n", *scene.start_from);
+  print("Hill parameter r_h {:.3g} of its particles\n",
+        hill_parameter(start.density, distance_from_saturn(scene.planet)));
   if (scene.gravity && scene.gravity->carries())
-    fmt::print("contacts at rest   carried (as is the default of any start from a file, whatever its r_h)\n");
+    print("contacts at rest   carried (as is the default of any start from a file, whatever its r_h)\n");
 }
 
 void print_text(const Scene& scene, const Derived& d, const std::optional<RunEstimate>& cost,
                 const std::optional<PatchScale>& start, const Lines& said) {
   if (!scene.title.empty())
-    fmt::print("{}\n", scene.title);
+    print("{}\n", scene.title);
   if (start)
     print_start(scene, *start);
   else
@@ -171,21 +172,21 @@ void print_text(const Scene& scene, const Derived& d, const std::optional<RunEst
   print_bodies(scene);
   print_steps(scene, d);
   if (d.particles_known)
-    fmt::print("memory             about {:.0f} MB (an estimate)\n", d.memory_mb);
+    print("memory             about {:.0f} MB (an estimate)\n", d.memory_mb);
   if (cost)
     print_estimate(*cost);
   for (const std::string& notice : scene.notices)
-    fmt::print("note: {}\n", notice);
+    print("note: {}\n", notice);
   for (const std::string& doubt : said)
-    fmt::print("note: {}\n", doubt);
+    print("note: {}\n", doubt);
   if (d.particles_known)
     for (const std::string& line : dear_choices(scene))
-      fmt::print("note: {}\n", line);
+      print("note: {}\n", line);
 }
 
 ExitCode check(const CheckOptions& options) {
   if (options.defaults) {
-    fmt::print("{}", describe_keys(options.markdown));
+    print("{}", describe_keys(options.markdown));
     return ExitCode::done;
   }
   if (options.scene.path.empty())
@@ -202,7 +203,7 @@ ExitCode check(const CheckOptions& options) {
                                figures(1e-3 * derived.memory_mb, 3), figures(1e-3 * left, 3)));
   const std::optional<RunEstimate> cost = estimate(scene, derived);
   if (options.json)
-    fmt::print("{}\n", as_json(scene, derived, cost, said).dump(2));
+    print("{}\n", json_text(as_json(scene, derived, cost, said), 2));
   else
     print_text(scene, derived, cost, start, said);
   return ExitCode::done;

@@ -1,6 +1,7 @@
 // keeler complete: what a shell may offer at the end of a command line. The scripts in src/cli/completion ask it, so
 // that it follows the options by itself.
 #include "command.hpp"
+#include "print.hpp"
 #include "usage.hpp"
 
 #include <keeler/scene/examples.hpp>
@@ -153,10 +154,10 @@ ExitCode complete(const CLI::App& program, std::vector<std::string> words) {
     words.erase(words.begin());
   const Position at = position_after(program, words);
   const Offer offer = help ? Offer{.candidates = commands_below(*at.command)} : offer_at(at, begun);
-  fmt::print("{}\n", offer.names);
+  print("{}\n", offer.names);
   for (const Candidate& candidate : offer.candidates)
     if (candidate.word.starts_with(begun))
-      fmt::print("{}\t{}\n", candidate.word, candidate.meaning);
+      print("{}\t{}\n", candidate.word, candidate.meaning);
   return ExitCode::done;
 }
 

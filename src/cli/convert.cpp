@@ -1,6 +1,7 @@
 // keeler convert: snapshots and checkpoints for other programs, as CSV or for ParaView.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "print.hpp"
 #include "results.hpp"
 #include "signals.hpp"
 
@@ -15,6 +16,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace keeler {
@@ -23,7 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ConvertOptions {
-  std::string path, output, format;
+  std::string path, format;
+  std::optional<std::string> output;
   bool force = false;
 
   std::string ending() const { return "." + format; }
@@ -57,38 +60,39 @@ double convert_file(const fs::path& file, const fs::path& output, const ConvertO
 void convert_one(const ConvertOptions& options) {
   const fs::path file(options.path);
   const fs::path output =
-      options.output.empty() ? fs::path(file).replace_extension(options.ending()) : fs::path(options.output);
-  require_new_file(output.string(), options.force, "the result");
+      options.output ? output_named(*options.output) : fs::path(file).replace_extension(options.ending());
+  require_new_file(output, options.force, "the result");
   convert_file(file, output, options);
-  fmt::print("{}\n", output.string());
+  print_written(output);
 }
 
 // All snapshots of a run, into a folder of their own; the list for ParaView is written last.
 void convert_run(const ConvertOptions& options) {
   const std::vector<fs::path> snapshots = snapshots_in(options.path);
-  const fs::path folder = options.output.empty() ? options.path / fs::path(options.format) : fs::path(options.output);
+  const fs::path folder = options.output.value_or(fs::path(options.path) / options.format);
+  require_folder_name(folder);
   const fs::path list = folder / "snapshots.pvd";
   const auto result_of = [&](const fs::path& snapshot) {
     return folder / snapshot.filename().replace_extension(options.ending());
   };
-  require_writable_folder(fs::absolute(folder).parent_path(), folder);
+  require_writable_folder(folder_of(folder), folder);
   std::error_code error;
   fs::create_directory(folder, error);
   if (error)
     throw IoError(fmt::format("cannot make the folder '{}': {}; name another", folder.string(), error.message()));
   for (const fs::path& snapshot : snapshots)
-    require_new_file(result_of(snapshot).string(), options.force, "the result");
+    require_new_file(result_of(snapshot), options.force, "the result");
   std::vector<VtpInstant> instants;
   for (const fs::path& snapshot : snapshots) {
     throw_if_interrupted();
     const fs::path result = result_of(snapshot);
     instants.push_back({convert_file(snapshot, result, options), result.filename().string()});
     if (options.format == "csv")
-      fmt::print("{}\n", result.string());
+      print("{}\n", result.string());
   }
   if (options.format == "vtp") {
     write_pvd(list, instants);
-    fmt::print("{}\n", list.string());
+    print("{}\n", list.string());
   }
 }
 

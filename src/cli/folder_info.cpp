@@ -1,5 +1,7 @@
 #include "folder_info.hpp"
 
+#include "print.hpp"
+
 #include <keeler/batch/run_folders.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/words.hpp>
@@ -66,10 +68,22 @@ std::optional<FileDescription> description_of(const fs::path& file) {
   }
 }
 
+// What is no number is null: files of others may hold anything.
+Json number_in(const std::string& text) {
+  const Json number = Json::parse(text, nullptr, false);
+  return number.is_number() ? number : Json(nullptr);
+}
+
+// Empty where the file has none.
+std::string attribute_of(const FileDescription& file, const std::string& name) {
+  const auto found = file.attributes.find(name);
+  return found == file.attributes.end() ? "" : found->second;
+}
+
 Json value_of_field(const FileDescription& file, const std::string& name) {
   for (const FieldDescription& field : file.fields)
     if (field.name == name)
-      return field.value.empty() ? Json(field.shape.front()) : Json::parse(field.value);
+      return field.value.empty() ? Json(field.shape.front()) : number_in(field.value);
   return nullptr;
 }
 
@@ -79,7 +93,7 @@ void add_mark(Json& line, const std::optional<FileDescription>& file) {
   if (!file)
     return;
   if (file->kind == FileKind::snapshot)
-    line["time_orbits"] = std::stod(file->attributes.at("RingBox/time_orbits"));
+    line["time_orbits"] = number_in(attribute_of(*file, "RingBox/time_orbits"));
   else if (file->kind == FileKind::checkpoint)
     line["steps"] = value_of_field(*file, "steps");
   else
@@ -90,8 +104,9 @@ void add_mark(Json& line, const std::optional<FileDescription>& file) {
 void add_writer(Json& json, const FileDescription& file) {
   const std::string group = file.kind == FileKind::checkpoint ? "provenance/" : "Code/";
   for (const char* const name : {"version", "commit", "host"})
-    json[name] = file.attributes.at(group + name);
-  json["threads"] = std::stoi(file.attributes.at(group + "threads"));
+    if (const std::string value = attribute_of(file, group + name); !value.empty())
+      json[name] = value;
+  json["threads"] = number_in(attribute_of(file, group + "threads"));
 }
 
 // Lines of the files; the last whole one says which program wrote them.
@@ -189,16 +204,20 @@ std::string size_in_words(const Json& bytes) {
   return size < 1e6 ? fmt::format("{:.3g} kB", 1e-3 * size) : fmt::format("{} MB", figures(1e-6 * size, 4));
 }
 
+std::string in_words(const Json& value) {
+  return value.is_string() ? value.get<std::string>() : value.is_number() ? figures(value.get<double>()) : "unknown";
+}
+
 // What lies on disk of one kind: how many, how large, and the first and the last.
 void print_files(const char* what, const Json& files, const char* mark, const char* unit) {
   std::uintmax_t bytes = 0;
   for (const Json& file : files)
     bytes += file["bytes"].get<std::uintmax_t>();
-  fmt::print("{:<12}{}{}\n", what, files.size(), files.empty() ? "" : ", " + size_in_words(bytes));
+  print("{:<12}{}{}\n", what, files.size(), files.empty() ? "" : ", " + size_in_words(bytes));
   for (const Json& file : files)
-    fmt::print("  {:<24}{:<20}{}\n", file["file"].get<std::string>(),
-               file["damaged"].get<bool>() ? "damaged" : fmt::format("{} {}", unit, figures(file[mark].get<double>())),
-               size_in_words(file["bytes"]));
+    print("  {:<24}{:<20}{}\n", file["file"].get<std::string>(),
+          file["damaged"].get<bool>() ? "damaged" : fmt::format("{} {}", unit, in_words(file[mark])),
+          size_in_words(file["bytes"]));
 }
 
 std::string clock(const Json& seconds) {
@@ -211,38 +230,40 @@ std::string clock(const Json& seconds) {
 void print_run(const Json& json) {
   const auto text = [&](const char* key) { return json[key].get<std::string>(); };
   const std::string state = text("state");
-  fmt::print("folder      {}\ntitle       {}\n", text("folder"), text("title"));
-  fmt::print("state       {}{}\n", state,
-             state == "finished"  ? std::string()
-             : state == "running" ? ", " + clock(json["remaining_s"]) + " left"
-             : state == "broken"  ? ": log.jsonl has the reason, broken_*.hdf the state"
-                                  : "; \"keeler resume " + text("folder") + "\" goes on");
-  fmt::print("orbits      {} of {}\n", figures(json["time_orbits"].get<double>(), 4),
-             figures(json["end_orbits"].get<double>(), 4));
-  fmt::print("particles   {}\nwall time   {}\n", json["particle_count"].get<std::uint64_t>(), clock(json["wall_s"]));
+  print("folder      {}\ntitle       {}\n", text("folder"), text("title"));
+  print("state       {}{}\n", state,
+        state == "finished"  ? std::string()
+        : state == "running" ? ", " + clock(json["remaining_s"]) + " left"
+        : state == "broken"  ? ": log.jsonl has the reason, broken_*.hdf the state"
+                             : "; \"keeler resume " + text("folder") + "\" goes on");
+  print("orbits      {} of {}\n", figures(json["time_orbits"].get<double>(), 4),
+        figures(json["end_orbits"].get<double>(), 4));
+  print("particles   {}\nwall time   {}\n", json["particle_count"].get<std::uint64_t>(), clock(json["wall_s"]));
   if (!json["version"].is_null())
-    fmt::print("written by  keeler {}, commit {}, {} on {}\n", text("version"), text("commit"),
-               counted(json["threads"].get<std::uint64_t>(), "thread"), text("host"));
-  fmt::print("on disk     {}\n", size_in_words(json["bytes"]));
+    print("written by  keeler {}, commit {}, {} on {}\n", in_words(json["version"]), in_words(json["commit"]),
+          json["threads"].is_number_unsigned() ? counted(json["threads"].get<std::uint64_t>(), "thread")
+                                               : "unknown threads",
+          in_words(json["host"]));
+  print("on disk     {}\n", size_in_words(json["bytes"]));
   print_files("snapshots", json["snapshots"], "time_orbits", "orbit");
   print_files("checkpoints", json["checkpoints"], "steps", "step");
   if (!json["contacts"].empty())
     print_files("contacts", json["contacts"], "contact_count", "rows:");
-  fmt::print("series      {} of {}, {}\n", counted(json["series"]["rows"].get<std::uint64_t>(), "row"),
-             counted(json["series"]["columns"].get<std::uint64_t>(), "column"), size_in_words(json["series"]["bytes"]));
+  print("series      {} of {}, {}\n", counted(json["series"]["rows"].get<std::uint64_t>(), "row"),
+        counted(json["series"]["columns"].get<std::uint64_t>(), "column"), size_in_words(json["series"]["bytes"]));
 }
 
 void print_many(const Json& json) {
-  fmt::print("folder      {}\nkind        {}", json["folder"].get<std::string>(), json["kind"].get<std::string>());
+  print("folder      {}\nkind        {}", json["folder"].get<std::string>(), json["kind"].get<std::string>());
   if (const auto study = json.find("study"); study != json.end() && study->is_string())
-    fmt::print(", {}", study->get<std::string>());
-  fmt::print("\non disk     {}\n", size_in_words(json["bytes"]));
+    print(", {}", study->get<std::string>());
+  print("\non disk     {}\n", size_in_words(json["bytes"]));
   if (json.contains("runs"))
     for (const auto& [stage, count] : json["runs"].items())
       if (count.get<int>() > 0)
-        fmt::print("runs        {} {}\n", count.get<int>(), stage);
+        print("runs        {} {}\n", count.get<int>(), stage);
   for (const Json& name : json["files"])
-    fmt::print("file        {}\n", name.get<std::string>());
+    print("file        {}\n", name.get<std::string>());
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include "command.hpp"
 #include "common_options.hpp"
 #include "messages.hpp"
+#include "print.hpp"
 #include "progress_line.hpp"
 #include "results.hpp"
 #include "scene_arguments.hpp"
@@ -9,6 +10,7 @@
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/words.hpp>
+#include <keeler/files/new_file.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/states/broken.hpp>
 #include <keeler/states/clumped.hpp>
@@ -58,27 +60,32 @@ ClumpedState evolve_until_clumped(const Scene& scene, const GenerateOptions& opt
 
 void print_means(const char* name, const char* unit, const WindowMeans& means, const MeanBounds& bounds,
                  double in_unit) {
-  fmt::print("{}: {:.4g} ± {:.2g} {}, {:.4g} ± {:.2g} before: changes by {:.1f} % (at most {:.1f} %), errors up to "
-             "{:.1f} % (at most {:g} %)\n",
-             name, in_unit * means.last.value, in_unit * means.last.error, unit, in_unit * means.before.value,
-             in_unit * means.before.error, 100.0 * means.change(), 100.0 * means.tolerance, 100.0 * means.error(),
-             100.0 * bounds.error);
+  print("{}: {:.4g} ± {:.2g} {}, {:.4g} ± {:.2g} before: changes by {:.1f} % (at most {:.1f} %), errors up to "
+        "{:.1f} % (at most {:g} %)\n",
+        name, in_unit * means.last.value, in_unit * means.last.error, unit, in_unit * means.before.value,
+        in_unit * means.before.error, 100.0 * means.change(), 100.0 * means.tolerance, 100.0 * means.error(),
+        100.0 * bounds.error);
 }
 
 void print_clumping(const Clumping& c) {
   const Settling& s = c.settling;
-  fmt::print("settled after {:.4g} orbits, by means over the last {} orbits and the {} before, after orbit {:g}\n",
-             c.orbits, s.window_orbits, s.window_orbits, c.criterion.first_orbit);
+  print("settled after {:.4g} orbits, by means over the last {} orbits and the {} before, after orbit {:g}\n", c.orbits,
+        s.window_orbits, s.window_orbits, c.criterion.first_orbit);
   print_means("viscosity from the loss of energy", "m²/s", s.viscosity, c.criterion.viscosity, c.orbital_frequency);
   print_means("wake length lambda_perp", "m", s.wavelength, c.criterion.wavelengths, 1.0);
   print_means("wake length lambda_x", "m", s.radial_wavelength, c.criterion.wavelengths, 1.0);
-  fmt::print("contrast: {:.3g}, of this state {:.1f} % off it (at most {:g} %)\n", s.contrast, 100.0 * s.deviation,
-             100.0 * c.criterion.largest_deviation);
+  print("contrast: {:.3g}, of this state {:.1f} % off it (at most {:g} %)\n", s.contrast, 100.0 * s.deviation,
+        100.0 * c.criterion.largest_deviation);
+}
+
+void require_place_for_state(const GenerateOptions& options) {
+  refuse_stream(output_named(options.output), "HDF5");
+  require_new_file(options.output, options.force, "a state");
 }
 
 void print_doubts(const Scene& scene, const Patch& patch) {
   for (const std::string& doubt : doubts(scene, scale_of(patch)))
-    fmt::print("note: {}\n", doubt);
+    print("note: {}\n", doubt);
 }
 
 // Overlaps that a run would refuse are reported, or removed where the user asks for it.
@@ -93,18 +100,17 @@ void part(Patch& patch, const GenerateOptions& options, const ParticleTable& tab
   if (!options.relax)
     throw InvariantError(found + "; correct them, or move them apart by --relax");
   const Relaxation moved = unless_stopped(stopped, [&] { return relax(patch); });
-  fmt::print("{}; moved {} apart, by {} m at most\n", found, counted(moved.moved, "particle"),
-             figures(moved.farthest, 3));
+  print("{}; moved {} apart, by {} m at most\n", found, counted(moved.moved, "particle"), figures(moved.farthest, 3));
 }
 
 void print_written(const Patch& patch, const std::string& output) {
-  fmt::print("{} in {} m x {} m, no overlaps: {}\n", counted(patch.size(), "particle"), figures(patch.box.size_x, 5),
-             figures(patch.box.size_y, 5), output);
+  print("{} in {} m x {} m, no overlaps: {}\n", counted(patch.size(), "particle"), figures(patch.box.size_x, 5),
+        figures(patch.box.size_y, 5), output);
 }
 
 ExitCode generate_from_table(const GenerateOptions& options, const std::vector<std::string>& arguments) {
   const TableScene of = load_table_scene(options.scene.path, options.scene.overrides);
-  require_new_file(options.output, options.force, "a state");
+  require_place_for_state(options);
   const ParticleTable table = read_particle_table(options.table);
   Patch patch = patch_from_table(table, of);
   part(patch, options, table);
@@ -125,7 +131,7 @@ ExitCode generate(const GenerateOptions& options, const std::vector<std::string>
     return generate_from_table(options, arguments);
   const Scene scene = options.scene.load();
   options.talk.say_scene(scene);
-  require_new_file(options.output, options.force, "a state");
+  require_place_for_state(options);
   SnapshotMeta meta{scene.resolved, collect_provenance(arguments)};
   Patch patch;
   if (options.clumped) {

@@ -1,6 +1,7 @@
 // keeler help, and what --help ends with.
 #include "command.hpp"
 #include "man_page.hpp"
+#include "print.hpp"
 #include "usage.hpp"
 
 #include <keeler/core/suggest.hpp>
@@ -44,7 +45,7 @@ void examples_of(CLI::App& command, const std::vector<std::string>& lines) {
 }
 
 ExitCode print_help(const CLI::App& command) {
-  fmt::print("{}", command.get_formatter()->make_help(&command, full_name(command), CLI::AppFormatMode::Normal));
+  print("{}", command.get_formatter()->make_help(&command, full_name(command), CLI::AppFormatMode::Normal));
   return ExitCode::done;
 }
 

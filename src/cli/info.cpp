@@ -1,8 +1,10 @@
 // keeler info: what is in a snapshot, a checkpoint or a file of contacts, or in a folder of results.
 #include "command.hpp"
 #include "folder_info.hpp"
+#include "print.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/io/contacts.hpp>
 #include <keeler/io/describe.hpp>
@@ -72,17 +74,16 @@ void print_text(const nlohmann::ordered_json& json) {
   for (const char* key : {"file", "kind", "format_version", "state_hash", "time_orbits", "particle_count",
                           "contact_count", "first_time_orbits", "last_time_orbits"})
     if (json.contains(key))
-      fmt::print("{:17} {}\n", key, json[key].is_string() ? json[key].get<std::string>() : json[key].dump());
-  fmt::print("\n");
+      print("{:17} {}\n", key, json[key].is_string() ? json[key].get<std::string>() : json_text(json[key]));
+  print("\n");
   for (const auto& [name, field] : json["fields"].items()) {
     const std::string shape =
-        field.contains("value") ? "= " + field["value"].get<std::string>() : field["shape"].dump();
-    fmt::print("{:28} {:8} {:24} {}\n", name, field["type"].get<std::string>(), shape,
-               field["unit"].get<std::string>());
+        field.contains("value") ? "= " + field["value"].get<std::string>() : json_text(field["shape"]);
+    print("{:28} {:8} {:24} {}\n", name, field["type"].get<std::string>(), shape, field["unit"].get<std::string>());
   }
-  fmt::print("\n");
+  print("\n");
   for (const auto& [name, value] : json["attributes"].items())
-    fmt::print("{:28} {}\n", name, value.get<std::string>());
+    print("{:28} {}\n", name, value.get<std::string>());
 }
 
 nlohmann::ordered_json as_json(const std::string& path, const std::vector<VerifiedFile>& files) {
@@ -105,7 +106,7 @@ void print_verified(const VerifiedFile& file) {
   const std::string verdict = !file.damage.empty()                  ? "damaged: " + printable_line(file.damage)
                               : file.sealed || !may_have_seal(file) ? "whole"
                                                                     : "whole as far as can be told without a seal";
-  fmt::print("{:<11} {:<32} {}\n", file.kind, fs::path(file.file).filename().string(), verdict);
+  print("{:<11} {:<32} {}\n", file.kind, fs::path(file.file).filename().string(), verdict);
 }
 
 // A line a file; the first damage ends the program.
@@ -113,7 +114,7 @@ ExitCode verify(const std::string& path, bool json) {
   const std::vector<VerifiedFile> files =
       fs::is_directory(path) ? verify_folder(path) : std::vector<VerifiedFile>{verify_file(path)};
   if (json)
-    fmt::print("{}\n", as_json(path, files).dump(2));
+    print("{}\n", json_text(as_json(path, files), 2));
   else
     for (const VerifiedFile& file : files)
       print_verified(file);
@@ -153,7 +154,7 @@ void add_info(CLI::App& program, Action& action) {
       const bool folder = fs::is_directory(options->path);
       const nlohmann::ordered_json json = folder ? describe_folder(options->path) : describe(options->path);
       if (options->json)
-        fmt::print("{}\n", json.dump(2));
+        print("{}\n", json_text(json, 2));
       else
         folder ? print_folder(json) : print_text(json);
       return ExitCode::done;

@@ -3,6 +3,7 @@
 #include "messages.hpp"
 #include "usage.hpp"
 
+#include <keeler/core/error_at_hand.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/version.hpp>
 #include <keeler/ranks/ranks.hpp>
@@ -14,7 +15,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <exception>
 #include <new>
 #include <system_error>
 
@@ -31,6 +31,12 @@ int fail(ExitCode code, const std::string& message) {
     say(message);
   fail_ranks(code);
   return static_cast<int>(code);
+}
+
+// Within a catch clause.
+int fail_at_hand() {
+  const Error error = error_at_hand();
+  return fail(error.code(), error.what());
 }
 
 // Results that nobody got must not look like success.
@@ -170,16 +176,11 @@ int main(int argc, char** argv) {
   try {
     start_hdf5();
     return run(argc, argv);
-  } catch (const Error& error) {
-    return fail(error.code(), error.what());
-  } catch (const std::system_error& error) { // fmt::print throws it
-    return std::ferror(stdout) != 0
-               ? fail(ExitCode::input_output, "cannot write to standard output: " + error.code().message())
-               : fail(ExitCode::run_time, error.what());
-  } catch (const std::bad_alloc&) {
-    return fail(ExitCode::run_time,
-                "there is not enough memory for this; take fewer particles, or a machine or a limit with more");
-  } catch (const std::exception& error) {
-    return fail(ExitCode::run_time, error.what());
+  } catch (const std::system_error& error) {
+    if (std::ferror(stdout) != 0) // fmt::print throws it
+      return fail(ExitCode::input_output, "cannot write to standard output: " + error.code().message());
+    return fail_at_hand();
+  } catch (...) {
+    return fail_at_hand();
   }
 }

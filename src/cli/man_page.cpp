@@ -1,5 +1,6 @@
 #include "man_page.hpp"
 
+#include "print.hpp"
 #include "usage.hpp"
 
 #include <keeler/core/version.hpp>
@@ -43,7 +44,7 @@ std::string page_name(const CLI::App& command) {
 }
 
 void print_tagged(const std::string& tag, const std::string& text) {
-  fmt::print(".TP\n{}\n{}\n", tag, roff(text));
+  print(".TP\n{}\n{}\n", tag, roff(text));
 }
 
 std::string usage_of(const CLI::App& command) {
@@ -84,15 +85,14 @@ void print_commands(const CLI::App& program) {
   std::string group;
   for (const CLI::App* command : listed_commands(program)) {
     if (command->get_group() != group)
-      fmt::print(".SS {}\n", group = command->get_group());
+      print(".SS {}\n", group = command->get_group());
     print_tagged(fmt::format("\\fB{}\\fR(1)", roff(page_name(*command))), command->get_description());
   }
 }
 
 void print_parts(const CLI::App& command) {
   for (const CLI::App* part : listed_commands(command)) {
-    fmt::print(".SS {}\n{}.\n.PP\n.B {}\n", roff(full_name(*part)), roff(part->get_description()),
-               roff(usage_of(*part)));
+    print(".SS {}\n{}.\n.PP\n.B {}\n", roff(full_name(*part)), roff(part->get_description()), roff(usage_of(*part)));
     print_options(*part);
   }
 }
@@ -101,7 +101,7 @@ void print_parts(const CLI::App& command) {
 void print_examples(const CLI::App& command) {
   for (const std::string& line : CLI::detail::split(command.get_footer(), '\n'))
     if (line.starts_with("  "))
-      fmt::print("{}\n", roff(line.substr(2)));
+      print("{}\n", roff(line.substr(2)));
   if (command.get_parent())
     for (const CLI::App* part : listed_commands(command))
       print_examples(*part);
@@ -115,22 +115,22 @@ ExitCode print_man_page(const CLI::App& command) {
   const bool program = command.get_parent() == nullptr;
   std::string title = page_name(command);
   std::transform(title.begin(), title.end(), title.begin(), [](unsigned char letter) { return std::toupper(letter); });
-  fmt::print(".TH {} 1 \"\" \"keeler {}\" \"Keeler\"\n", title, program_version());
-  fmt::print(".SH NAME\n{} \\- {}\n", roff(page_name(command)), roff(command.get_description()));
-  fmt::print(".SH SYNOPSIS\n.B {}\n", roff(usage_of(command)));
-  fmt::print(".SH OPTIONS\n");
+  print(".TH {} 1 \"\" \"keeler {}\" \"Keeler\"\n", title, program_version());
+  print(".SH NAME\n{} \\- {}\n", roff(page_name(command)), roff(command.get_description()));
+  print(".SH SYNOPSIS\n.B {}\n", roff(usage_of(command)));
+  print(".SH OPTIONS\n");
   print_options(command);
   if (!listed_commands(command).empty())
-    fmt::print(".SH COMMANDS\n");
+    print(".SH COMMANDS\n");
   program ? print_commands(command) : print_parts(command);
-  fmt::print(".SH EXIT STATUS\n");
+  print(".SH EXIT STATUS\n");
   for (const Exit& exit : exits)
     print_tagged(fmt::format("\\fB{}\\fR", static_cast<int>(exit.code)), exit.meaning);
-  fmt::print(".SH EXAMPLES\n.nf\n");
+  print(".SH EXAMPLES\n.nf\n");
   print_examples(command);
-  fmt::print(".fi\n.SH SEE ALSO\n{}the manual: commands, scene keys, a tutorial, in the folder doc/keeler beside that "
-             "of this page.\n",
-             program ? "" : "\\fBkeeler\\fR(1), ");
+  print(".fi\n.SH SEE ALSO\n{}the manual: commands, scene keys, a tutorial, in the folder doc/keeler beside that "
+        "of this page.\n",
+        program ? "" : "\\fBkeeler\\fR(1), ");
   return ExitCode::done;
 }
 

@@ -1,15 +1,18 @@
 // keeler new: a shipped example as the beginning of one's own scene.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "print.hpp"
 #include "results.hpp"
 
 #include <keeler/files/files.hpp>
+#include <keeler/files/new_file.hpp>
 #include <keeler/scene/examples.hpp>
 
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace keeler {
 namespace {
@@ -17,29 +20,34 @@ namespace {
 namespace fs = std::filesystem;
 
 struct NewOptions {
-  std::string name, output;
+  std::string name;
+  std::optional<std::string> output;
   bool list = false, force = false;
 };
 
 ExitCode list_examples() {
   for (const ExampleScene& example : example_scenes())
-    fmt::print("{:<20} {}\n", example.name, example.about());
+    print("{:<20} {}\n", example.name, example.about());
   return ExitCode::done;
 }
 
 // The scene and, beside it, its tables. Nothing is written when one of the names is taken.
 ExitCode write_example(const NewOptions& options) {
   const ExampleScene& example = find_example(options.name);
-  const fs::path scene = options.output.empty() ? fs::path(options.name + ".toml") : fs::path(options.output);
-  require_new_file(scene.string(), options.force, "a scene");
+  const fs::path scene = options.output ? output_named(*options.output) : fs::path(options.name + ".toml");
+  if (is_stream(scene) && !example.tables.empty())
+    throw UsageError(
+        fmt::format("'{}' cannot take the example {} (it has tables in files beside its scene); name a file",
+                    scene.string(), options.name));
+  require_new_file(scene, options.force, "a scene");
   for (const ExampleScene::Table& table : example.tables)
-    require_new_file((scene.parent_path() / table.file).string(), options.force, "a table");
+    require_new_file(scene.parent_path() / table.file, options.force, "a table");
   write_text(scene, example.toml);
-  fmt::print("{}\n", scene.string());
+  print_written(scene);
   for (const ExampleScene::Table& table : example.tables) {
     const fs::path file = scene.parent_path() / table.file;
     write_text(file, table.text);
-    fmt::print("{}\n", file.string());
+    print_written(file);
   }
   return ExitCode::done;
 }

@@ -9,6 +9,7 @@
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/diagnostics/wakes.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/files/new_file.hpp>
 #include <keeler/render/autocorrelation_picture.hpp>
 #include <keeler/render/movie.hpp>
 #include <keeler/render/patch_picture.hpp>
@@ -20,6 +21,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace keeler {
 namespace {
@@ -27,7 +29,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RenderOptions {
-  std::string path, output, colour = "height", theme = "dark";
+  std::optional<std::string> output;
+  std::string path, colour = "height", theme = "dark";
   int width = PictureOptions().width;
   bool oblique = false, autocorrelation = false, movie = false, series = false;
 };
@@ -36,8 +39,8 @@ constexpr std::string_view png_signature = "\x89PNG", svg_signature = "<svg ";
 
 // picture.png in a run's folder, NAME.png beside a snapshot NAME.hdf.
 fs::path picture_path(const RenderOptions& options) {
-  if (!options.output.empty())
-    return options.output;
+  if (options.output)
+    return output_named(*options.output);
   const fs::path path(options.path);
   return fs::is_directory(path) ? path / "picture.png" : fs::path(path).replace_extension(".png");
 }
@@ -57,7 +60,7 @@ void draw_autocorrelation(const RenderOptions& options, fs::path file, const std
   const AutocorrelationMap map = mean_autocorrelation(stored.patches);
   render_autocorrelation(map, find_wakes(map, wavelength), wavelength, file.string(),
                          fmt::format("{}, {}", title, orbits_of(stored.patches)));
-  fmt::print("{}\n", file.string());
+  print_written(file);
 }
 
 PictureOptions look_of(const RenderOptions& options) {
@@ -72,8 +75,8 @@ PictureOptions look_of(const RenderOptions& options) {
 ExitCode draw_movie(const RenderOptions& options) {
   if (!fs::is_directory(options.path))
     throw UsageError(fmt::format("no movie of '{}': it is no folder; name the folder of a run", options.path));
-  const fs::path movie = !options.output.empty() ? fs::path(options.output)
-                                                 : options.path / fs::path(has_ffmpeg() ? "movie.mp4" : "movie.png");
+  const fs::path movie = options.output ? output_named(*options.output)
+                                        : options.path / fs::path(has_ffmpeg() ? "movie.mp4" : "movie.png");
   require_movie_name(movie.string());
   if (movie.extension() == ".mp4")
     require_replaceable(movie, "a movie", "ftyp", 4);
@@ -89,20 +92,20 @@ ExitCode draw_movie(const RenderOptions& options) {
     render_movie(snapshots.size(), patch, movie.string(), look,
                  [&line](const Progress& progress) { line.show_if_long(progress); });
   }
-  fmt::print("{}\n", movie.string());
+  print_written(movie);
   return ExitCode::done;
 }
 
 ExitCode draw_series(const RenderOptions& options) {
   if (!fs::is_directory(options.path))
     throw UsageError(fmt::format("no plots of '{}': it is no folder; name the folder of a run", options.path));
-  const fs::path figure = options.output.empty() ? fs::path(options.path) / "series.svg" : fs::path(options.output);
-  if (figure.extension() != ".svg")
+  const fs::path figure = options.output ? output_named(*options.output) : fs::path(options.path) / "series.svg";
+  if (!is_stream(figure) && figure.extension() != ".svg")
     throw UsageError(
         fmt::format("'{}' cannot be the plots: they are an .svg file; give it that ending", figure.string()));
   require_replaceable(figure, "the plots", svg_signature);
   write_text(figure, run_series_svg(options.path, {options.width, options.theme == "light"}));
-  fmt::print("{}\n", figure.string());
+  print_written(figure);
   return ExitCode::done;
 }
 
@@ -114,14 +117,18 @@ ExitCode render(const RenderOptions& options) {
     return draw_movie(options);
   const StoredPatches stored = load_newest_patch(options.path);
   const fs::path picture = picture_path(options);
-  if (picture.extension() != ".png")
+  if (is_stream(picture) && options.autocorrelation)
+    throw UsageError(fmt::format("'{}' takes one picture, and --autocorrelation draws a second one into a file beside "
+                                 "it; name a .png",
+                                 picture.string()));
+  if (!is_stream(picture) && picture.extension() != ".png")
     throw UsageError(
         fmt::format("'{}' cannot be a picture: pictures are .png files; give it that ending", picture.string()));
   require_replaceable(picture, "a picture", png_signature);
   if (!stored.title.empty())
     look.title = stored.title;
   render_patch(stored.patches.back(), picture.string(), look);
-  fmt::print("{}\n", picture.string());
+  print_written(picture);
   if (options.autocorrelation)
     draw_autocorrelation(options, picture, look.title);
   return ExitCode::done;

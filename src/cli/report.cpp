@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace keeler {
 namespace {
@@ -18,14 +19,15 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ReportOptions {
-  std::string folder, output;
+  std::string folder;
+  std::optional<std::string> output;
   RunReportOptions page;
   ThreadOption threads;
 };
 
 ExitCode report(ReportOptions& options) {
   options.threads.apply();
-  const fs::path file = options.output.empty() ? fs::path(options.folder) / "report.html" : fs::path(options.output);
+  const fs::path file = options.output ? output_named(*options.output) : fs::path(options.folder) / "report.html";
   if (!fs::is_directory(options.folder))
     throw UsageError(fmt::format("no report of '{}': it is no folder; name the folder of a run", options.folder));
   require_replaceable(file, "a report", "<!DOCTYPE html>");
@@ -36,7 +38,7 @@ ExitCode report(ReportOptions& options) {
     page = run_report(options.folder, options.page);
   }
   write_text(file, page);
-  fmt::print("{}\n", file.string());
+  print_written(file);
   return ExitCode::done;
 }
 

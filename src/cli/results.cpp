@@ -1,11 +1,16 @@
 #include "results.hpp"
 
+#include "print.hpp"
+
 #include <keeler/core/error.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/files/new_file.hpp>
 
 #include <fmt/format.h>
 
 #include <fstream>
+
+#include <unistd.h>
 
 namespace keeler {
 namespace {
@@ -28,25 +33,51 @@ std::string first_bytes(const fs::path& file, std::size_t count) {
 
 } // namespace
 
-void require_new_file(const std::string& path, bool force, const std::string& what) {
-  refuse_folder(path, what);
-  if (fs::exists(path) && !force)
-    throw UsageError("'" + path + "' exists already (" + what +
-                     " is never overwritten unasked); name another file or add --force");
-  require_writable_folder(fs::absolute(path).parent_path(), path);
+fs::path output_named(const std::string& name) {
+  if (name.empty())
+    throw UsageError("the name of the file to write is empty; name a file, or \"-\" for standard output");
+  return name == "-" ? "/dev/stdout" : name;
+}
+
+bool is_standard_output(const fs::path& file) {
+  return descriptor_named(file) == STDOUT_FILENO;
+}
+
+void print_written(const fs::path& file) {
+  if (!is_standard_output(file))
+    print("{}\n", file.string());
+}
+
+void require_folder_name(const fs::path& folder) {
+  if (folder.empty())
+    throw UsageError("the name of the folder for the results is empty; name a folder");
+  if (folder == "-")
+    throw UsageError("'-' is standard output, and the results are many files; name a folder (./- is one)");
+}
+
+void require_new_file(const fs::path& file, bool force, const std::string& what) {
+  if (is_stream(file))
+    return;
+  refuse_folder(file, what);
+  if (fs::exists(file) && !force)
+    throw UsageError(fmt::format("'{}' exists already ({} is never overwritten unasked); name another file or add "
+                                 "--force",
+                                 file.string(), what));
+  require_writable_folder(folder_of(file), file);
 }
 
 void require_replaceable(const fs::path& file, const std::string& what, std::string_view bytes, std::size_t place) {
+  if (is_stream(file))
+    return;
   refuse_folder(file, what);
   const std::string there = first_bytes(file, place + bytes.size());
   if (!there.empty() && (there.size() < place || there.substr(place) != bytes))
     throw UsageError(fmt::format("'{}' exists already, and is not {} that could be made anew; name another file",
                                  file.string(), what));
-  require_writable_folder(fs::absolute(file).parent_path(), file);
+  require_writable_folder(folder_of(file), file);
 }
 
 void write_table(const fs::path& file, const std::string& table) {
-  refuse_folder(file, "a table");
   require_replaceable(file, "a table with these columns", std::string_view(table).substr(0, table.find('\n') + 1));
   write_text(file, table);
 }

@@ -7,16 +7,28 @@
 
 namespace keeler {
 
+/// The file that a user names for a result; "-" is standard output. Throws UsageError where it has no name.
+std::filesystem::path output_named(const std::string& name);
+
+/// Whether a result goes to standard output: then nothing else may go there.
+bool is_standard_output(const std::filesystem::path& file);
+
+/// Prints the name of a file that was written, where it has one.
+void print_written(const std::filesystem::path& file);
+
+/// Refuses "-" for results that fill a folder. Throws UsageError.
+void require_folder_name(const std::filesystem::path& folder);
+
 /// Refuses to make a file ("a state") where there is a folder, where there is one unless `force`, or where none can be
-/// made. Throws UsageError, IoError.
-void require_new_file(const std::string& path, bool force, const std::string& what);
+/// made. A device or a pipe is written to, and replaced by nothing. Throws UsageError, IoError.
+void require_new_file(const std::filesystem::path& file, bool force, const std::string& what);
 
 /// Pictures, pages and tables are made again as often as one likes, but take the place of nothing else: refuses a
 /// folder, and a file that does not have these bytes at this place. Throws UsageError, IoError.
 void require_replaceable(const std::filesystem::path& file, const std::string& what, std::string_view bytes,
                          std::size_t place = 0);
 
-/// Writes a table over nothing, or over one with the same columns. Throws UsageError, IoError.
+/// Writes a table over nothing, over one with the same columns, or to a device or a pipe. Throws UsageError, IoError.
 void write_table(const std::filesystem::path& file, const std::string& table);
 
 } // namespace keeler

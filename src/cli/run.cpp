@@ -2,7 +2,9 @@
 #include "command.hpp"
 #include "common_options.hpp"
 #include "messages.hpp"
+#include "print.hpp"
 #include "progress_line.hpp"
+#include "results.hpp"
 #include "scene_arguments.hpp"
 #include "signals.hpp"
 
@@ -56,77 +58,71 @@ void print_contacts_at_rest(const nlohmann::json& s) {
   constexpr double too_many = 0.1;
   const double unresolved = s["unresolved_contacts_share"].get<double>();
   if (const nlohmann::json& resting = s["resting_contacts"]; !resting.is_null())
-    fmt::print("contacts at rest                    {} carry the kicks of gravity now\n",
-               counted(resting.get<std::uint64_t>(), "pair"));
+    print("contacts at rest                    {} carry the kicks of gravity now\n",
+          counted(resting.get<std::uint64_t>(), "pair"));
   else if (unresolved > too_many)
-    fmt::print(
-        "contacts at rest                    {} % of the contacts are slower than one kick of the pair's own "
-        "gravity: where the energy balance is above 1, set gravity.resting_contacts to \"carried\", or kick more "
-        "often\n",
-        figures(100.0 * unresolved, 2));
+    print("contacts at rest                    {} % of the contacts are slower than one kick of the pair's own "
+          "gravity: where the energy balance is above 1, set gravity.resting_contacts to \"carried\", or kick more "
+          "often\n",
+          figures(100.0 * unresolved, 2));
 }
 
 void print_summary(const std::string& folder, const nlohmann::json& s) {
   const auto number = [&](const char* key) { return s[key].get<double>(); };
   const auto count = [&](const char* key, const char* noun) { return counted(s[key].get<std::uint64_t>(), noun); };
-  fmt::print("{} orbits, {}, {}, {}\n", figures(number("time_orbits")), count("steps", "step"),
-             count("particle_count", "particle"), count("threads", "thread"));
-  fmt::print("collisions per particle and orbit   {} faster than v_cut, {} slow contacts\n",
-             figures(number("collisions_per_particle_orbit"), 3),
-             figures(number("slow_contacts_per_particle_orbit"), 3));
+  print("{} orbits, {}, {}, {}\n", figures(number("time_orbits")), count("steps", "step"),
+        count("particle_count", "particle"), count("threads", "thread"));
+  print("collisions per particle and orbit   {} faster than v_cut, {} slow contacts\n",
+        figures(number("collisions_per_particle_orbit"), 3), figures(number("slow_contacts_per_particle_orbit"), 3));
   print_contacts_at_rest(s);
-  fmt::print("largest overlap                     {} of a radius sum\n", figures(number("largest_overlap"), 2));
+  print("largest overlap                     {} of a radius sum\n", figures(number("largest_overlap"), 2));
   if (s["finder_gave_up"].get<long>() > 0 || number("largest_overlap") > 1e-8)
-    fmt::print("the collision finder                gave up on {}, and may have missed contacts\n",
-               s["finder_gave_up"].get<long>() == 1 ? "1 search"
-                                                    : fmt::format("{} searches", s["finder_gave_up"].get<long>()));
+    print("the collision finder                gave up on {}, and may have missed contacts\n",
+          s["finder_gave_up"].get<long>() == 1 ? "1 search"
+                                               : fmt::format("{} searches", s["finder_gave_up"].get<long>()));
   constexpr double left_out = 0.05; // no solver of all forces errs as much
   if (const nlohmann::json& f = s["force_error"]; !f.is_null() && f["rms"].get<double>() > left_out)
-    fmt::print(
-        "left out of gravity                 {} % of the rms acceleration, by choice: a mesh alone has no pull of "
-        "neighbours, rings of images none from beyond, and few particles feel little else\n",
-        figures(100.0 * f["rms"].get<double>(), 2));
+    print("left out of gravity                 {} % of the rms acceleration, by choice: a mesh alone has no pull of "
+          "neighbours, rings of images none from beyond, and few particles feel little else\n",
+          figures(100.0 * f["rms"].get<double>(), 2));
   else if (!f.is_null())
-    fmt::print("error of gravity                    {:.1e} of the rms acceleration, at worst {:.1e} (rms of {}, {})\n",
-               f["rms"].get<double>(), f["worst_rms"].get<double>(),
-               counted(f["particles"].get<std::uint64_t>(), "particle"),
-               counted(f["checks"].get<std::uint64_t>(), "check"));
+    print("error of gravity                    {:.1e} of the rms acceleration, at worst {:.1e} (rms of {}, {})\n",
+          f["rms"].get<double>(), f["worst_rms"].get<double>(),
+          counted(f["particles"].get<std::uint64_t>(), "particle"), counted(f["checks"].get<std::uint64_t>(), "check"));
   const nlohmann::json& e = s["energy_j"];
   const auto energy = [&](const char* key) { return e[key].get<double>(); };
   const auto joules = [&](const char* key) { return figures(energy(key), 4); };
-  fmt::print("energy of random motion (J)         change {} = shear by transport {} + by contacts {} + kicks {}{} - "
-             "collisions {}, rounding {:.1e}\n",
-             figures(energy("now") - energy("start"), 4), joules("translational_shear_work"),
-             joules("collisional_shear_work"), joules("kick_work"),
-             energy("resting_work") == 0.0 ? "" : fmt::format(" + contacts at rest {}", joules("resting_work")),
-             joules("lost_in_collisions"), energy("residual"));
+  print("energy of random motion (J)         change {} = shear by transport {} + by contacts {} + kicks {}{} - "
+        "collisions {}, rounding {:.1e}\n",
+        figures(energy("now") - energy("start"), 4), joules("translational_shear_work"),
+        joules("collisional_shear_work"), joules("kick_work"),
+        energy("resting_work") == 0.0 ? "" : fmt::format(" + contacts at rest {}", joules("resting_work")),
+        joules("lost_in_collisions"), energy("residual"));
   const auto known = [](const nlohmann::json& b) { // better than by its own size
     return !b.is_null() && b["ratio"].is_number() &&
            (!b["error"].is_number() || b["error"].get<double>() < std::fabs(b["ratio"].get<double>()));
   };
   if (const nlohmann::json& b = s["energy_balance"]; known(b))
-    fmt::print(
-        "energy balance                      {:.3f}{}: energy lost over the work of the shear, orbits {} to {}{}\n",
-        b["ratio"].get<double>(), b["error"].is_number() ? fmt::format(" +- {:.1g}", b["error"].get<double>()) : "",
-        figures(b["since_orbit"].get<double>(), 4), figures(b["until_orbit"].get<double>(), 4),
-        b["steady"].get<bool>() ? "" : ", not steady");
+    print("energy balance                      {:.3f}{}: energy lost over the work of the shear, orbits {} to {}{}\n",
+          b["ratio"].get<double>(), b["error"].is_number() ? fmt::format(" +- {:.1g}", b["error"].get<double>()) : "",
+          figures(b["since_orbit"].get<double>(), 4), figures(b["until_orbit"].get<double>(), 4),
+          b["steady"].get<bool>() ? "" : ", not steady");
   const nlohmann::json& split = s["split"];
   const auto part = [&](const char* key) { return split.value(key, 0.0); };
-  fmt::print("time                                {:.1f} s wall, {:.1f} s processor: start {:.1f} s, drift {:.1f} s, "
-             "gravity {:.1f} s\n",
-             number("wall_s"), number("cpu_s"), part("start_s"), part("drift_s"), part("gravity_s"));
-  fmt::print("time of output                      series {:.2g} s, stresses {:.2g} s, snapshots {:.2g} s, "
-             "checkpoints {:.2g} s, checks of forces {:.2g} s\n",
-             part("series_s"), part("stresses_s"), part("snapshots_s"), part("checkpoints_s"), part("force_checks_s"));
+  print("time                                {:.1f} s wall, {:.1f} s processor: start {:.1f} s, drift {:.1f} s, "
+        "gravity {:.1f} s\n",
+        number("wall_s"), number("cpu_s"), part("start_s"), part("drift_s"), part("gravity_s"));
+  print("time of output                      series {:.2g} s, stresses {:.2g} s, snapshots {:.2g} s, "
+        "checkpoints {:.2g} s, checks of forces {:.2g} s\n",
+        part("series_s"), part("stresses_s"), part("snapshots_s"), part("checkpoints_s"), part("force_checks_s"));
   if (const std::uint64_t ranks = s["ranks"].get<std::uint64_t>(); ranks > 1)
-    fmt::print(
-        "exchange of ranks                   {:.1f} s of the first of {}: sending, receiving, waiting for others\n",
-        part("exchange_s"), ranks);
+    print("exchange of ranks                   {:.1f} s of the first of {}: sending, receiving, waiting for others\n",
+          part("exchange_s"), ranks);
   const nlohmann::json& cost = s["ns_per_particle_step"];
-  fmt::print("ns per particle and step            drift {:.0f}, gravity {:.0f}, series {:.1f}\n",
-             cost.value("drift", 0.0), cost.value("gravity", 0.0), cost.value("series", 0.0));
-  fmt::print("state                               {}\n", s["state_hash"].get<std::string>());
-  fmt::print("folder                              {}\n", folder);
+  print("ns per particle and step            drift {:.0f}, gravity {:.0f}, series {:.1f}\n", cost.value("drift", 0.0),
+        cost.value("gravity", 0.0), cost.value("series", 0.0));
+  print("state                               {}\n", s["state_hash"].get<std::string>());
+  print("folder                              {}\n", folder);
 }
 
 ExitCode report(const JobOptions& job, const RunResult& result, const Ranks& ranks) {
@@ -134,7 +130,7 @@ ExitCode report(const JobOptions& job, const RunResult& result, const Ranks& ran
     return result.finished ? ExitCode::done : ExitCode::stopped;
   const std::string text = read_text(std::filesystem::path(job.folder) / "summary.json");
   if (job.json)
-    fmt::print("{}", text);
+    print("{}", text);
   else
     print_summary(job.folder, nlohmann::json::parse(text));
   if (result.finished)
@@ -173,7 +169,10 @@ void add_run(CLI::App& program, Action& action, const std::vector<std::string>& 
       if (ranks.is_first())
         job->talk.say_program();
       Scene scene;
-      ranks.together([&] { scene = job->scene.load(job->from); });
+      ranks.together([&] {
+        require_folder_name(job->folder);
+        scene = job->scene.load(job->from);
+      });
       if (ranks.is_first())
         job->talk.say_scene(scene);
       RunResult result;

@@ -2,15 +2,19 @@
 #include "command.hpp"
 #include "common_options.hpp"
 #include "messages.hpp"
+#include "print.hpp"
 #include "progress_line.hpp"
+#include "results.hpp"
 #include "signals.hpp"
 #include "study_scene.hpp"
 
 #include <keeler/core/interrupt.hpp>
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/study/finders/study.hpp>
 #include <keeler/study/gravity/study.hpp>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <memory>
 
@@ -22,6 +26,7 @@ template<class Settings, class Study>
 ExitCode carry_out(Settings& settings, const TalkOption& talk, const Study& study,
                    const std::vector<const char*>& results) {
   talk.say_program();
+  require_folder_name(settings.folder);
   bool finished = false;
   {
     ProgressLine line(talk);
@@ -29,7 +34,8 @@ ExitCode carry_out(Settings& settings, const TalkOption& talk, const Study& stud
     settings.progress = [&](const Progress& progress) { line.show(progress); };
     try {
       const Interruptible measurement(requests_from_signals().give_up); // by a second signal
-      finished = study(settings, requests_from_signals().stop);
+      finished =
+          using_json_of<nlohmann::json>(settings.folder, [&] { return study(settings, requests_from_signals().stop); });
     } catch (const Interrupted&) { // what was measured so far is kept
     }
   }
@@ -38,7 +44,7 @@ ExitCode carry_out(Settings& settings, const TalkOption& talk, const Study& stud
     return ExitCode::stopped;
   }
   for (const char* name : results)
-    fmt::print("{}/{}\n", settings.folder.string(), name);
+    print("{}/{}\n", settings.folder.string(), name);
   return ExitCode::done;
 }
 

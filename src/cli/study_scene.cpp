@@ -2,13 +2,17 @@
 
 #include "common_options.hpp"
 #include "messages.hpp"
+#include "print.hpp"
 #include "progress_line.hpp"
+#include "results.hpp"
 #include "scene_arguments.hpp"
 #include "signals.hpp"
 
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/study/scene/study.hpp>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -26,6 +30,7 @@ struct SceneStudyOptions {
 ExitCode carry_out(SceneStudyOptions& options) {
   options.talk.say_program();
   SceneStudySettings& settings = options.settings;
+  require_folder_name(settings.folder);
   settings.scene = options.scene.path;
   settings.overrides = options.scene.overrides;
   settings.jobs = options.jobs > 0 ? options.jobs : static_cast<std::size_t>(std::max(1, threads()));
@@ -34,14 +39,15 @@ ExitCode carry_out(SceneStudyOptions& options) {
     ProgressLine line(options.talk);
     settings.notice = [&](const std::string& text) { line.note(text); };
     settings.progress = [&](const Progress& progress) { line.show(progress); };
-    result = study_scene(settings, requests_from_signals());
+    result =
+        using_json_of<nlohmann::json>(settings.folder, [&] { return study_scene(settings, requests_from_signals()); });
   }
   if (result.stopped) {
     say("stopped; the same command goes on from here");
     return ExitCode::stopped;
   }
   for (const char* const name : {"report.md", "report.html", "study.csv", "settings.csv", "figures"})
-    fmt::print("{}/{}\n", settings.folder.string(), name);
+    print("{}/{}\n", settings.folder.string(), name);
   if (result.failed > 0)
     say(fmt::format("{} missing, the report has the reasons; the same command tries again",
                     result.failed == 1 ? "a run is" : fmt::format("{} runs are", result.failed)));

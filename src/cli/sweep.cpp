@@ -2,9 +2,12 @@
 #include "command.hpp"
 #include "common_options.hpp"
 #include "messages.hpp"
+#include "print.hpp"
 #include "progress_line.hpp"
+#include "results.hpp"
 #include "signals.hpp"
 
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/sweep/sweep.hpp>
 
@@ -30,19 +33,20 @@ void print_json(const SweepResult& result) {
   json["finished"] = result.finished;
   json["failed"] = result.failed;
   json["points"] = nlohmann::ordered_json::parse(result.points);
-  fmt::print("{}\n", json.dump(2));
+  print("{}\n", json_text(json, 2));
 }
 
 void print_text(const SweepResult& result, const std::filesystem::path& folder) {
-  fmt::print("{}: {} finished, {} failed\n", counted(result.runs, "run"), result.finished, result.failed);
+  print("{}: {} finished, {} failed\n", counted(result.runs, "run"), result.finished, result.failed);
   for (const char* const name : {"sweep.csv", "points.csv", "report.md", "figure.svg"})
     if (std::filesystem::exists(folder / name))
-      fmt::print("{}\n", (folder / name).string());
+      print("{}\n", (folder / name).string());
 }
 
 ExitCode carry_out(SweepOptions& options) {
   options.talk.say_program();
   SweepSettings& settings = options.settings;
+  require_folder_name(settings.folder);
   const auto processors = static_cast<std::size_t>(threads());
   const auto per_run = static_cast<std::size_t>(settings.threads_per_run);
   settings.jobs = options.jobs > 0 ? options.jobs : std::max<std::size_t>(1, processors / per_run);

@@ -1,10 +1,12 @@
 // keeler tile: a snapshot repeated into a larger patch, as a snapshot.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "print.hpp"
 #include "results.hpp"
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/words.hpp>
+#include <keeler/files/new_file.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/states/initial.hpp>
@@ -37,6 +39,7 @@ void write(const TiledPatch& tiled, const std::string& file, const SnapshotMeta&
 
 ExitCode tile(const TileOptions& options, const std::vector<std::string>& arguments) {
   options.threads.apply();
+  refuse_stream(output_named(options.output), "HDF5");
   require_new_file(options.output, options.force, "a state");
   Snapshot snapshot = read_snapshot(options.file);
   // No fresh start makes this state: the scene that goes with it starts from the file, and keeps all of it.
@@ -46,8 +49,8 @@ ExitCode tile(const TileOptions& options, const std::vector<std::string>& argume
   const TiledPatch tiled(patch, options.nx, options.ny);
   write(tiled, options.output, {scene.resolved, collect_provenance(arguments)});
   const ShearingBox box = tiled.some(0, 0).box;
-  fmt::print("{} in {} m x {} m, {} x {} copies of {}: {}\n", counted(tiled.size(), "particle"), figures(box.size_x, 5),
-             figures(box.size_y, 5), options.nx, options.ny, options.file, options.output);
+  print("{} in {} m x {} m, {} x {} copies of {}: {}\n", counted(tiled.size(), "particle"), figures(box.size_x, 5),
+        figures(box.size_y, 5), options.nx, options.ny, options.file, options.output);
   return ExitCode::done;
 }
 

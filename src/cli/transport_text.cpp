@@ -1,5 +1,7 @@
 #include "transport_text.hpp"
 
+#include "print.hpp"
+
 #include <keeler/core/words.hpp>
 
 #include <fmt/format.h>
@@ -18,24 +20,24 @@ std::string with_error(const Estimate& e, double unit) {
 void print_viscosity(const char* label, const char* name, const std::optional<Estimate>& nu,
                      const ViscosityUnits& units) {
   if (nu)
-    fmt::print("{:<20} {:<14} {} m^2/s = {:.3g} r^2 Omega = {:.3g} G^2 Sigma^2/Omega^3\n", label, name,
-               with_error(*nu, 1.0), nu->value / units.radii, nu->value / units.gravity);
+    print("{:<20} {:<14} {} m^2/s = {:.3g} r^2 Omega = {:.3g} G^2 Sigma^2/Omega^3\n", label, name, with_error(*nu, 1.0),
+          nu->value / units.radii, nu->value / units.gravity);
   else
-    fmt::print("{:<20} {:<14} not measured\n", label, name);
+    print("{:<20} {:<14} not measured\n", label, name);
 }
 
 } // namespace
 
 void print_transport(const TransportReport& report, const Patch& patch) {
   if (!report.transport()) {
-    fmt::print("viscosities          not known because series.csv has fewer than three rows with all stresses here\n");
+    print("viscosities          not known because series.csv has fewer than three rows with all stresses here\n");
     return;
   }
   const ViscosityUnits units(patch);
   const Transport& t = *report.transport();
   if (report.is_of_run())
-    fmt::print("viscosities          orbits {} to {}, {}\n", figures(t.since_orbit, 4), figures(t.until_orbit, 4),
-               t.steady ? "where the run is steady" : "which are not steady or too few to tell: run longer");
+    print("viscosities          orbits {} to {}, {}\n", figures(t.since_orbit, 4), figures(t.until_orbit, 4),
+          t.steady ? "where the run is steady" : "which are not steady or too few to tell: run longer");
   print_viscosity(report.is_of_run() ? "" : "viscosity", "translational", t.translational, units);
   if (report.is_of_run())
     print_viscosity("", "collisional", t.collisional, units);
@@ -45,8 +47,8 @@ void print_transport(const TransportReport& report, const Patch& patch) {
   print_viscosity("", "total", t.total, units);
   print_viscosity("", "from the loss", t.from_loss, units);
   if (t.balance)
-    fmt::print("energy balance       {}: energy lost over the work of the shear; 1 but for its error\n",
-               with_error(*t.balance, 1.0));
+    print("energy balance       {}: energy lost over the work of the shear; 1 but for its error\n",
+          with_error(*t.balance, 1.0));
 }
 
 } // namespace keeler

@@ -2,12 +2,14 @@
 #include "command.hpp"
 #include "common_options.hpp"
 #include "messages.hpp"
+#include "print.hpp"
 #include "progress_line.hpp"
 #include "results.hpp"
 #include "scene_arguments.hpp"
 #include "signals.hpp"
 
 #include <keeler/core/interrupt.hpp>
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/scene/examples.hpp>
@@ -57,13 +59,20 @@ void require_same_files(const std::string& text, const Scene& scene, const std::
                                  output));
 }
 
+// The scene alone goes there then.
+bool fills_standard_output(const TuneOptions& options) {
+  return options.output && is_standard_output(output_named(*options.output));
+}
+
 void refuse_what_cannot_be_written(const TuneOptions& options) {
   if (!options.output)
     return;
   if (!options.scene.overrides.empty())
     throw UsageError("--output cannot stand beside --set (the file would not have what was tuned); write the keys into "
                      "the scene first");
-  require_new_file(*options.output, options.force, "a scene");
+  require_new_file(output_named(*options.output), options.force, "a scene");
+  if (options.json && fills_standard_output(options))
+    throw UsageError("--json and --output are both for standard output; name a file for the scene");
 }
 
 Tuning measure(const Scene& scene, TuneSettings settings, const TalkOption& talk) {
@@ -117,40 +126,40 @@ const char* mark(bool chosen) {
 }
 
 void print_text(const Tuning& t) {
-  fmt::print("{} in states up to {:.3g} orbits old, one thread\n", counted(t.particles, "particle"), t.orbits);
+  print("{} in states up to {:.3g} orbits old, one thread\n", counted(t.particles, "particle"), t.orbits);
   if (!t.gravity.empty())
-    fmt::print("errors are held to {} of what is allowed, since other seeds differ\n", margin_for_seeds);
+    print("errors are held to {} of what is allowed, since other seeds differ\n", margin_for_seeds);
   if (!t.gravity.empty())
-    fmt::print("\n{:<8}{:<22}{:>14}{:>18}\n", "solver", "settings", "force error", "ns a particle");
+    print("\n{:<8}{:<22}{:>14}{:>18}\n", "solver", "settings", "force error", "ns a particle");
   for (std::size_t k = 0; k < t.gravity.size(); ++k)
-    fmt::print("{:<8}{:<22}{:>14.1e}{:>18.0f}{}\n", t.gravity[k].choice.solver, t.gravity[k].choice.text,
-               t.gravity[k].errors.rms, t.gravity[k].ns_per_particle, mark(k == t.chosen_gravity));
+    print("{:<8}{:<22}{:>14.1e}{:>18.0f}{}\n", t.gravity[k].choice.solver, t.gravity[k].choice.text,
+          t.gravity[k].errors.rms, t.gravity[k].ns_per_particle, mark(k == t.chosen_gravity));
   if (!t.kicks.empty())
-    fmt::print("\n{:<22}{:>22}{:>18}\n", "kick interval, orbits", "contacts by kicks", "loss over work");
+    print("\n{:<22}{:>22}{:>18}\n", "kick interval, orbits", "contacts by kicks", "loss over work");
   for (std::size_t k = 0; k < t.kicks.size(); ++k)
-    fmt::print("{:<22g}{:>22}{:>+16.2g} %{}\n", t.kicks[k].interval,
-               fmt::format("{:.2g} +- {:.1g} %", 100.0 * t.kicks[k].unresolved, 100.0 * t.kicks[k].unresolved_error),
-               100.0 * t.kicks[k].physics_error(), mark(k == t.chosen_kicks));
-  fmt::print("\n{:<16}{:>16}{:>28}{:>28}\n", "step, orbits", "drifts a kick", "contacts a particle, drift",
-             "processor s an orbit");
+    print("{:<22g}{:>22}{:>+16.2g} %{}\n", t.kicks[k].interval,
+          fmt::format("{:.2g} +- {:.1g} %", 100.0 * t.kicks[k].unresolved, 100.0 * t.kicks[k].unresolved_error),
+          100.0 * t.kicks[k].physics_error(), mark(k == t.chosen_kicks));
+  print("\n{:<16}{:>16}{:>28}{:>28}\n", "step, orbits", "drifts a kick", "contacts a particle, drift",
+        "processor s an orbit");
   for (std::size_t k = 0; k < t.steps.size(); ++k)
-    fmt::print("{:<16g}{:>16}{:>28.2g}{:>28.3g}{}\n", t.steps[k].step, t.steps[k].drifts, t.steps[k].contacts,
-               t.steps[k].seconds, mark(k == t.chosen_step));
-  fmt::print("\n");
+    print("{:<16g}{:>16}{:>28.2g}{:>28.3g}{}\n", t.steps[k].step, t.steps[k].drifts, t.steps[k].contacts,
+          t.steps[k].seconds, mark(k == t.chosen_step));
+  print("\n");
   for (const ThreadProbe& probe : t.threads)
     if (probe.threads > 1)
-      fmt::print("{}: {:.2f} times as fast{}\n", counted(probe.threads, "thread"), probe.speedup,
-                 mark(probe.threads == t.chosen_threads));
-  fmt::print("the whole run: about {} processor seconds, {} s on {}\n\n", figures(t.processor_seconds, 2),
-             figures(t.wall_seconds, 2), counted(t.chosen_threads, "thread"));
+      print("{}: {:.2f} times as fast{}\n", counted(probe.threads, "thread"), probe.speedup,
+            mark(probe.threads == t.chosen_threads));
+  print("the whole run: about {} processor seconds, {} s on {}\n\n", figures(t.processor_seconds, 2),
+        figures(t.wall_seconds, 2), counted(t.chosen_threads, "thread"));
 }
 
 void print_keys(const std::vector<KeyChange>& keys) {
   for (const KeyChange& key : keys) {
     if (!key.comment.empty())
-      fmt::print("# {}\n", key.comment);
+      print("# {}\n", key.comment);
     if (key.value)
-      fmt::print("{} = {}\n", key.path, *key.value);
+      print("{} = {}\n", key.path, *key.value);
   }
 }
 
@@ -171,19 +180,19 @@ ExitCode tune_scene(const TuneOptions& options) {
   refuse_what_cannot_be_written(options);
   const std::string text = read_scene_text(options.scene.path);
   if (options.output)
-    require_same_files(text, scene, *options.output);
+    require_same_files(text, scene, fills_standard_output(options) ? "standard output" : *options.output);
   const Tuning tuning = measure(scene, settings, options.talk);
   const std::vector<KeyChange> keys = chosen_keys(tuning, settings, scene);
   if (options.json)
-    fmt::print("{}\n", as_json(tuning, keys).dump(2));
-  else
+    print("{}\n", json_text(as_json(tuning, keys), 2));
+  else if (!fills_standard_output(options))
     print_text(tuning);
   if (!options.talk.quiet)
     warn(tuning);
   if (options.output) {
-    write_text(*options.output, edit_scene(text, options.scene.path, keys));
+    write_text(output_named(*options.output), edit_scene(text, options.scene.path, keys));
     if (!options.json)
-      fmt::print("{}\n", *options.output);
+      print_written(output_named(*options.output));
   } else if (!options.json) {
     print_keys(keys);
   }

@@ -1,5 +1,6 @@
 // keeler watch: a run as seen from another terminal.
 #include "command.hpp"
+#include "print.hpp"
 #include "terminal.hpp"
 
 #include <keeler/core/words.hpp>
@@ -118,7 +119,9 @@ ExitCode watch(const std::string& folder) {
   for (;;) {
     const RunView view = view_run(folder);
     const std::string text = text_of(view, folder, terminal_width(STDOUT_FILENO));
-    fmt::print("{}{}", terminal ? "\033[H\033[J" : "", text);
+    if (terminal)
+      fmt::print("\033[H\033[J");
+    print("{}", text);
     std::fflush(stdout);
     if (!terminal || !view.running)
       return ExitCode::done;

@@ -1,5 +1,7 @@
 #include <keeler/core/words.hpp>
 
+#include <keeler/core/printable.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,6 +37,20 @@ std::size_t character_at(std::string_view text) {
   return too_long || no_character || control ? 0 : length;
 }
 
+// Keeps those control characters alone.
+std::string printable(std::string_view text, std::string_view kept) {
+  std::string all;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = kept.find(text[at]) != kept.npos ? 1 : character_at(text.substr(at, 4));
+    if (length > 0)
+      all += text.substr(at, length);
+    else
+      all += '?';
+    at += std::max<std::size_t>(length, 1);
+  }
+  return all;
+}
+
 } // namespace
 
 std::string figures(double value, int digits) {
@@ -53,14 +69,13 @@ std::string counted(std::uint64_t count, const std::string& noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
+std::string printable_text(std::string_view text) {
+  return printable(text, "\n\t");
+}
+
 std::string printable_line(const std::string& line) {
   constexpr std::size_t longest = 2000, end = 500;
-  std::string text;
-  for (std::size_t at = 0; at < line.size();) {
-    const std::size_t length = character_at(std::string_view(line).substr(at, 4));
-    text += length > 0 ? line.substr(at, length) : "?";
-    at += std::max<std::size_t>(length, 1);
-  }
+  std::string text = printable(line, "");
   if (text.size() <= longest)
     return text;
   std::size_t head = longest - end, tail = text.size() - end;

@@ -38,8 +38,17 @@ constexpr std::size_t largest_transfer = std::size_t{1} << 30;
 
 Descriptor::Descriptor(const std::filesystem::path& file, int flags) : file_(file) {
   number_ = retried([&] { return ::open(file.c_str(), flags | O_CLOEXEC, 0666); });
+  if (number_ < 0 && errno == ELOOP && (flags & O_NOFOLLOW) != 0)
+    throw IoError(fmt::format("cannot open for writing '{}': it is a link, and output is not sent elsewhere by links; "
+                              "put the file itself there",
+                              file.string()));
   if (number_ < 0)
     fail((flags & O_ACCMODE) == O_RDONLY ? "open" : "open for writing", file);
+}
+
+Descriptor::Descriptor(int number, const std::filesystem::path& file) : file_(file), number_(number) {
+  if (number_ < 0)
+    fail("open for writing", file);
 }
 
 Descriptor::~Descriptor() {
@@ -114,6 +123,11 @@ std::size_t Descriptor::size() const {
   if (::fstat(number_, &status) != 0)
     fail("read", file_);
   return static_cast<std::size_t>(status.st_size);
+}
+
+void Descriptor::set_mode(unsigned mode) {
+  if (::fchmod(number_, mode) != 0)
+    fail("set the permissions of", file_);
 }
 
 void Descriptor::truncate(std::size_t size) {

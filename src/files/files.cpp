@@ -3,24 +3,17 @@
 #include "content.hpp"
 
 #include <keeler/core/error.hpp>
-#include <keeler/files/descriptor.hpp>
-#include <keeler/files/naming_guard.hpp>
+#include <keeler/files/new_file.hpp>
 
 #include <fmt/format.h>
 
 #include <cerrno>
 #include <cstring>
-#include <utility>
 
-#include <fcntl.h>
 #include <unistd.h>
 
 namespace keeler {
 namespace {
-
-std::filesystem::path folder_of(const std::filesystem::path& file) {
-  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-}
 
 template<class Bytes> Bytes read(const std::filesystem::path& file) {
   std::optional<Bytes> content = content_of<Bytes>(file);
@@ -31,30 +24,13 @@ template<class Bytes> Bytes read(const std::filesystem::path& file) {
 
 } // namespace
 
-NewFile::NewFile(std::filesystem::path file) : file_(std::move(file)), temporary_(file_.string() + ".tmp") {}
-
-NewFile::~NewFile() {
-  std::error_code ignored;
-  if (!kept_ && std::filesystem::is_regular_file(temporary_, ignored))
-    std::filesystem::remove(temporary_, ignored);
-}
-
-void NewFile::keep() {
-  Descriptor(temporary_, O_RDONLY).sync();
-  NamingGuard::ask();
-  std::error_code error;
-  std::filesystem::rename(temporary_, file_, error);
-  if (error)
-    throw IoError(fmt::format("cannot write '{}': {}", file_.string(), error.message()));
-  kept_ = true;
-  Descriptor(folder_of(file_), O_RDONLY | O_DIRECTORY).sync();
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
 }
 
 void write_file(const std::filesystem::path& file, std::span<const std::byte> content) {
   NewFile unfinished(file);
-  Descriptor out(unfinished.temporary(), O_WRONLY | O_CREAT | O_TRUNC);
-  out.write_all(content);
-  out.close();
+  unfinished.write(content);
   unfinished.keep();
 }
 

@@ -1,6 +1,6 @@
 #include "apart.hpp"
 
-#include <keeler/core/error.hpp>
+#include <keeler/core/error_at_hand.hpp>
 
 #include <fmt/format.h>
 
@@ -87,8 +87,8 @@ void become_apart(const ApartLimits& limits, pid_t parent) {
     sender(std::uint8_t{error.code() == ExitCode::usage ? has_usage_error : has_io_error}, std::string(error.what()));
   } catch (const std::bad_alloc&) {
     sender(std::uint8_t{has_fault}, std::string("it takes more memory than there is"));
-  } catch (const std::exception& error) {
-    sender(std::uint8_t{has_fault}, std::string(error.what()));
+  } catch (...) {
+    sender(std::uint8_t{has_fault}, std::string(error_at_hand().what()));
   }
   sender.flush();
   _exit(0);

@@ -1,6 +1,7 @@
 #include <keeler/io/checkpoint_folder.hpp>
 
 #include <keeler/core/error.hpp>
+#include <keeler/files/new_file.hpp>
 #include <keeler/io/checkpoint.hpp>
 
 #include <fmt/format.h>
@@ -12,11 +13,10 @@
 namespace keeler {
 namespace {
 
-constexpr std::string_view prefix = "checkpoint_";
+constexpr std::string_view prefix = "checkpoint_", ending = ".h5";
 
-// The number in the name of a file that is called checkpoint_NNNNNN + ending.
-std::optional<std::int64_t> number_of(const std::filesystem::path& file, std::string_view ending) {
-  const std::string name = file.filename().string();
+// The number in checkpoint_NNNNNN.h5.
+std::optional<std::int64_t> number_of(std::string_view name) {
   if (name.size() <= prefix.size() + ending.size() || !name.starts_with(prefix) || !name.ends_with(ending))
     return std::nullopt;
   std::int64_t number = 0;
@@ -27,12 +27,12 @@ std::optional<std::int64_t> number_of(const std::filesystem::path& file, std::st
   return number;
 }
 
-// The files checkpoint_NNNNNN + ending of a folder, highest number first.
-std::vector<std::filesystem::path> list(const std::filesystem::path& folder, std::string_view ending) {
+// The checkpoints of a folder, highest number first.
+std::vector<std::filesystem::path> list(const std::filesystem::path& folder) {
   std::vector<std::pair<std::int64_t, std::filesystem::path>> found;
   try {
     for (const auto& entry : std::filesystem::directory_iterator(folder))
-      if (const auto number = number_of(entry.path(), ending))
+      if (const auto number = number_of(entry.path().filename().string()))
         found.emplace_back(*number, entry.path());
   } catch (const std::filesystem::filesystem_error& error) {
     throw IoError(fmt::format("cannot list folder '{}': {}", folder.string(), error.code().message()));
@@ -54,11 +54,11 @@ void remove_file(const std::filesystem::path& file) {
 } // namespace
 
 std::filesystem::path checkpoint_path(const std::filesystem::path& folder, std::int64_t number) {
-  return folder / fmt::format("{}{:06}.h5", prefix, number);
+  return folder / fmt::format("{}{:06}{}", prefix, number, ending);
 }
 
 std::vector<std::filesystem::path> list_checkpoints(const std::filesystem::path& folder) {
-  return list(folder, ".h5");
+  return list(folder);
 }
 
 NewestCheckpoint newest_valid_checkpoint(const std::filesystem::path& folder) {
@@ -86,8 +86,7 @@ void prune_checkpoints(const std::filesystem::path& newest, std::size_t keep) {
   const auto at = static_cast<std::size_t>(std::find(files.begin(), files.end(), newest) - files.begin());
   for (std::size_t k = at + keep; k < files.size(); ++k)
     remove_file(files[k]);
-  for (const std::filesystem::path& file : list(newest.parent_path(), ".h5.tmp"))
-    remove_file(file);
+  remove_left_overs(newest.parent_path(), [](std::string_view name) { return number_of(name).has_value(); });
 }
 
 void remove_later_checkpoints(const std::filesystem::path& newest) {

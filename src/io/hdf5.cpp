@@ -100,6 +100,19 @@ Handle make_space(const Shape& shape) {
 
 namespace {
 
+// What an error means to a user; the library's own words are about its inside.
+const char* reason_of(hid_t error) {
+  if (error == H5E_NOTFOUND)
+    return "it is not there";
+  if (error == H5E_NOSPACE || error == H5E_CANTALLOC)
+    return "there is not enough memory";
+  if (error == H5E_NOFILTER)
+    return "it is compressed in a way that is not known here";
+  if (error == H5E_UNSUPPORTED || error == H5E_BADTYPE || error == H5E_CANTCONVERT)
+    return "it has a type that does not fit";
+  return "its structures are damaged";
+}
+
 // Chunks of about a megabyte for rows of a few numbers.
 void set_compressed(const Handle& list, const Shape& shape) {
   constexpr unsigned level = 1; // higher levels cost several times the time and gain a few per cent on such data
@@ -122,15 +135,15 @@ Handle::~Handle() {
 }
 
 void fail(const std::string& what) {
-  std::string reason = "unknown reason";
-  const auto innermost = [](unsigned depth, const H5E_error2_t* error, void* text) -> herr_t {
-    if (depth == 0 && error->desc != nullptr)
-      *static_cast<std::string*>(text) = error->desc;
+  hid_t innermost = -1;
+  const auto keep_first = [](unsigned depth, const H5E_error2_t* error, void* minor) -> herr_t {
+    if (depth == 0)
+      *static_cast<hid_t*>(minor) = error->min_num;
     return 0;
   };
-  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, innermost, &reason);
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &innermost);
   H5Eclear2(H5E_DEFAULT);
-  throw IoError(fmt::format("cannot {}: {}", what, reason));
+  throw IoError(fmt::format("cannot {}: {}", what, reason_of(innermost)));
 }
 
 std::size_t Layout::count() const {

@@ -34,7 +34,7 @@ private:
   herr_t (*close_)(hid_t);
 };
 
-/// What the functions below throw: IoError "cannot DO WHAT: HDF5's innermost reason".
+/// What the functions below throw: IoError "cannot DO WHAT: reason", in our words.
 
 /// Opens, for reading, a file from its bytes, which are copied.
 Handle open_image(std::span<const std::byte> image);

@@ -1,5 +1,5 @@
-// For hdf5*.cpp. One door to HDF5: its own printing is off during a call, and a failure becomes an IoError with HDF5's
-// reason.
+// For hdf5*.cpp. One door to HDF5: its own printing is off during a call, and a failure becomes an IoError with
+// its reason in our words.
 #pragma once
 
 #include "hdf5.hpp"

@@ -114,7 +114,7 @@ void Disk::write(std::uint64_t place, std::span<const std::byte> bytes) {
   if (failure_)
     return;
   try {
-    file_.write_at(place, bytes);
+    file_->write_at(place, bytes);
     size_ = std::max(size_, place + bytes.size());
   } catch (...) {
     failure_ = std::current_exception();
@@ -124,7 +124,7 @@ void Disk::write(std::uint64_t place, std::span<const std::byte> bytes) {
 bool Disk::read(std::uint64_t place, std::span<std::byte> into) const {
   const std::size_t there = place < size_ ? std::min<std::uint64_t>(into.size(), size_ - place) : 0;
   try {
-    const std::size_t have = file_.read_at(place, into.first(there));
+    const std::size_t have = file_->read_at(place, into.first(there));
     std::fill(into.begin() + static_cast<std::ptrdiff_t>(have), into.end(), std::byte{0});
     return true;
   } catch (const Error&) {
@@ -136,7 +136,7 @@ void Disk::resize(std::uint64_t size) {
   if (failure_ || size == size_)
     return;
   try {
-    file_.truncate(size);
+    file_->truncate(size);
     size_ = size;
   } catch (...) {
     failure_ = std::current_exception();

@@ -18,9 +18,9 @@ namespace keeler::hdf5 {
 class Disk {
 public:
   /// `size`: how many bytes of the file are HDF5's, from its beginning.
-  Disk(Descriptor file, std::uint64_t size) : file_(std::move(file)), size_(size) {}
+  Disk(std::shared_ptr<Descriptor> file, std::uint64_t size) : file_(std::move(file)), size_(size) {}
 
-  Descriptor& file() { return file_; }
+  Descriptor& file() { return *file_; }
   std::uint64_t size() const { return size_; }
   /// Throws what has failed first, if anything has: from then on nothing was written.
   void require_sound() const;
@@ -32,7 +32,7 @@ public:
   void resize(std::uint64_t size);
 
 private:
-  Descriptor file_;
+  std::shared_ptr<Descriptor> file_;
   std::uint64_t size_;
   std::exception_ptr failure_;
 };

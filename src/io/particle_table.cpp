@@ -6,8 +6,8 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/interrupt.hpp>
 #include <keeler/files/columns.hpp>
-#include <keeler/files/descriptor.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/files/new_file.hpp>
 
 #include <fmt/format.h>
 
@@ -15,8 +15,6 @@
 #include <array>
 #include <concepts>
 #include <iterator>
-
-#include <fcntl.h>
 
 namespace keeler {
 
@@ -178,12 +176,11 @@ ParticleTable read_particle_table(const std::filesystem::path& file) {
 
 void write_particle_table(const std::filesystem::path& file, const Patch& patch) {
   constexpr std::size_t piece = std::size_t{1} << 22;
-  NewFile unfinished(file);
-  Descriptor out(unfinished.temporary(), O_WRONLY | O_CREAT | O_TRUNC);
+  NewFile out(file);
   fmt::memory_buffer text;
   const auto write_text_so_far = [&] {
     throw_if_interrupted();
-    out.write_all(std::as_bytes(std::span(text.data(), text.size())));
+    out.write(std::as_bytes(std::span(text.data(), text.size())));
     text.clear();
   };
   fmt::format_to(std::back_inserter(text), "{}", id_column);
@@ -201,8 +198,7 @@ void write_particle_table(const std::filesystem::path& file, const Patch& patch)
   }
   text.push_back('\n');
   write_text_so_far();
-  out.close();
-  unfinished.keep();
+  out.keep();
 }
 
 } // namespace keeler

@@ -65,6 +65,12 @@ Hash hash_of(const std::filesystem::path& name, const Descriptor& file, std::uin
   return hash;
 }
 
+// Refuses a stream before it is opened: a pipe would wait for its reader.
+std::filesystem::path file_for_hdf5(const std::filesystem::path& file) {
+  refuse_stream(file, "HDF5");
+  return file;
+}
+
 } // namespace
 
 std::string seal_of(std::span<const std::byte> content) {
@@ -74,8 +80,7 @@ std::string seal_of(std::span<const std::byte> content) {
 }
 
 SealedFile::SealedFile(const std::filesystem::path& file)
-    : unfinished_(file),
-      disk_(std::make_shared<hdf5::Disk>(Descriptor(unfinished_.temporary(), O_RDWR | O_CREAT | O_TRUNC), 0)) {
+    : name_(file), unfinished_(file_for_hdf5(file)), disk_(std::make_shared<hdf5::Disk>(unfinished_.descriptor(), 0)) {
   root_.emplace(hdf5::create_on(disk_));
 }
 
@@ -94,10 +99,9 @@ void SealedFile::finish() {
   root_.reset();
   disk_->require_sound();
   if (disk_.use_count() > 1)
-    throw IoError(fmt::format("cannot write '{}': HDF5 did not close it", unfinished_.temporary().string()));
-  const std::string seal = seal_of(disk_->size(), hash_of(unfinished_.temporary(), disk_->file(), disk_->size()));
+    throw IoError(fmt::format("cannot write '{}': HDF5 did not close it", name_.string()));
+  const std::string seal = seal_of(disk_->size(), hash_of(name_, disk_->file(), disk_->size()));
   disk_->file().write_at(disk_->size(), std::as_bytes(std::span(seal)));
-  disk_->file().close();
   unfinished_.keep();
 }
 
@@ -106,7 +110,7 @@ hdf5::Handle open_sealed(const std::filesystem::path& file) {
   const std::string seal = seal_at_end(file, descriptor);
   const std::size_t content = descriptor.size() - seal_size;
   require_match(file, seal, seal_of(content, hash_of(file, descriptor, content)));
-  return hdf5::open_on(std::make_shared<hdf5::Disk>(std::move(descriptor), content));
+  return hdf5::open_on(std::make_shared<hdf5::Disk>(std::make_shared<Descriptor>(std::move(descriptor)), content));
 }
 
 bool has_seal(const std::filesystem::path& file) {
@@ -125,7 +129,7 @@ hdf5::Handle open_sealed(const std::filesystem::path& file, const std::string& s
   Descriptor descriptor(file, O_RDONLY);
   require_match(file, seal_at_end(file, descriptor), seal);
   const std::size_t content = descriptor.size() - seal_size;
-  return hdf5::open_on(std::make_shared<hdf5::Disk>(std::move(descriptor), content));
+  return hdf5::open_on(std::make_shared<hdf5::Disk>(std::make_shared<Descriptor>(std::move(descriptor)), content));
 }
 
 FileContent load_content(const std::filesystem::path& file) {

@@ -7,6 +7,7 @@
 #include "hdf5_disk.hpp"
 
 #include <keeler/files/files.hpp>
+#include <keeler/files/new_file.hpp>
 
 #include <cstddef>
 #include <filesystem>
@@ -34,6 +35,7 @@ public:
   void finish();
 
 private:
+  std::filesystem::path name_;
   NewFile unfinished_;
   std::shared_ptr<hdf5::Disk> disk_;
   std::optional<hdf5::Handle> root_;

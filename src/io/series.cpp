@@ -90,7 +90,7 @@ std::vector<std::string_view> fields_of(std::string_view row) {
 
 // What has just been written; once more, when the file has been removed since.
 Descriptor open_with(const std::filesystem::path& file, std::string_view rows) {
-  Descriptor opened(file, O_RDWR | O_APPEND | O_CREAT);
+  Descriptor opened(file, O_RDWR | O_APPEND | O_CREAT | O_NOFOLLOW);
   if (opened.size() == 0)
     opened.append_whole(std::as_bytes(std::span(rows)));
   return opened;

@@ -1,7 +1,7 @@
 #include <keeler/io/vtp.hpp>
 
-#include <keeler/files/descriptor.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/files/new_file.hpp>
 
 #include <fmt/format.h>
 
@@ -9,8 +9,6 @@
 #include <cstdint>
 #include <numeric>
 #include <span>
-
-#include <fcntl.h>
 
 namespace keeler {
 namespace {
@@ -36,11 +34,11 @@ public:
                        type, name, components, offset, label);
   }
 
-  void write(Descriptor& out) const {
+  void write(NewFile& out) const {
     for (const std::span<const std::byte> array : arrays_) {
       const std::uint64_t length = array.size();
-      out.write_all(std::as_bytes(std::span(&length, 1)));
-      out.write_all(array);
+      out.write(std::as_bytes(std::span(&length, 1)));
+      out.write(array);
     }
   }
 
@@ -55,8 +53,8 @@ std::vector<Vec3> in_si(std::vector<Vec3> rates, double orbital_frequency) {
   return rates;
 }
 
-void write_text(Descriptor& out, std::string_view text) {
-  out.write_all(std::as_bytes(std::span(text)));
+void write_text(NewFile& out, std::string_view text) {
+  out.write(std::as_bytes(std::span(text)));
 }
 
 } // namespace
@@ -89,13 +87,11 @@ void write_vtp(const std::filesystem::path& file, const Patch& patch) {
   xml += arrays.add("Int64", "offsets", 1, "", ends);
   xml += "</Verts>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
 
-  NewFile unfinished(file);
-  Descriptor out(unfinished.temporary(), O_WRONLY | O_CREAT | O_TRUNC);
+  NewFile out(file);
   write_text(out, xml);
   arrays.write(out);
   write_text(out, "\n</AppendedData>\n</VTKFile>\n");
-  out.close();
-  unfinished.keep();
+  out.keep();
 }
 
 void write_pvd(const std::filesystem::path& file, const std::vector<VtpInstant>& instants) {

@@ -6,7 +6,10 @@
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/diagnostics/analysis.hpp>
+#include <keeler/files/files.hpp>
+#include <keeler/files/new_file.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/render/patch_picture.hpp>
@@ -90,7 +93,7 @@ std::string analyze_snapshot(const PythonSnapshot& snapshot) {
     const Patch& patch = snapshot.patch;
     auto numbers = numbers_of(analyze(std::span(&patch, 1)), largest_overlap(patch).depth);
     TransportReport::of_snapshot(patch, parse_stored_scene(snapshot.scene, "snapshot").gravity).add_to(numbers, patch);
-    return numbers.dump();
+    return json_text(numbers);
   });
 }
 
@@ -102,7 +105,7 @@ std::string analyze_path(const fs::path& path, const std::optional<double>& sinc
       overlap = std::max(overlap, largest_overlap(patch).depth);
     auto numbers = numbers_of(analyze(part.stored.patches), overlap);
     part.transport.add_to(numbers, part.stored.patches.back());
-    return numbers.dump();
+    return json_text(numbers);
   });
 }
 
@@ -123,6 +126,12 @@ void render(const PythonSnapshot& snapshot, const fs::path& file, const std::str
   look.title = title;
   look.width = width;
   render_patch(snapshot.patch, file.string(), look);
+}
+
+void write_bytes(const fs::path& file, const std::string& content) {
+  require_own_threads();
+  const py::gil_scoped_release unlocked;
+  write_text(file, content);
 }
 
 py::object array_or_none(const std::vector<Vec3>& rows, double factor) {
@@ -154,6 +163,10 @@ void bind_snapshot(py::module_& module) {
       .def("tile", &tile, py::arg("nx"), py::arg("ny"), py::arg("name"))
       .def("render", &render, py::arg("file"), py::arg("title"), py::arg("width"));
   module.def("read_snapshot", &read, py::arg("file"), py::arg("is_a_start") = false);
+  module.def(
+      "write_file", [](const fs::path& file, const py::bytes& content) { write_bytes(file, content); }, py::arg("file"),
+      py::arg("content"));
+  module.def("is_stream", &is_stream, py::arg("file"));
   module.def("read_series", &series, py::arg("file"));
   module.def("generate", &generate, py::arg("scene"), py::arg("clumped"));
   module.def("analyze", &analyze_path, py::arg("path"), py::arg("since"), py::arg("until"));

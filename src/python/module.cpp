@@ -3,9 +3,12 @@
 #include "bindings.hpp"
 #include "computing.hpp"
 
-#include <keeler/core/error.hpp>
+#include <keeler/core/error_at_hand.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/version.hpp>
+#include <keeler/core/words.hpp>
+
+#include <new>
 
 namespace py = pybind11;
 
@@ -26,11 +29,20 @@ PyObject* raised_for(ExitCode code, const py::module_& errors) {
 void bind_errors(py::module_&) {
   py::register_exception_translator(
       [](std::exception_ptr pointer) { // NOLINT(performance-unnecessary-value-param): its type
+        if (!pointer)
+          return;
         try {
-          if (pointer)
-            std::rethrow_exception(pointer);
-        } catch (const Error& error) {
-          PyErr_SetString(raised_for(error.code(), py::module_::import("keeler.errors")), error.what());
+          std::rethrow_exception(pointer);
+        } catch (const py::error_already_set&) { // these two are Python's
+          throw;
+        } catch (const py::builtin_exception&) {
+          throw;
+        } catch (const std::bad_alloc&) {
+          PyErr_SetString(PyExc_MemoryError, no_memory);
+        } catch (...) {
+          const Error error = error_at_hand();
+          PyErr_SetString(raised_for(error.code(), py::module_::import("keeler.errors")),
+                          printable_line(error.what()).c_str());
         }
       });
 }

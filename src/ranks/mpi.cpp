@@ -1,6 +1,7 @@
 // Ranks on MPI: the only source that knows of it.
 #include <keeler/ranks/ranks.hpp>
 
+#include <keeler/core/error_at_hand.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/version.hpp>
 
@@ -257,8 +258,8 @@ void Ranks::together(const std::function<void()>& work) const {
   std::exception_ptr thrown;
   try {
     work();
-  } catch (const Error& its) {
-    error = its;
+  } catch (...) {
+    error = error_at_hand();
     thrown = std::current_exception();
   }
   const auto speaker = static_cast<std::size_t>(least(static_cast<double>(error ? own_ : count_)));

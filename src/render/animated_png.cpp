@@ -2,8 +2,7 @@
 // in its sections on acTL, fcTL and fdAT. The first frame is what programs show that know still pictures alone.
 #include "movie_file.hpp"
 
-#include <keeler/files/descriptor.hpp>
-#include <keeler/files/files.hpp>
+#include <keeler/files/new_file.hpp>
 #include <keeler/render/movie.hpp>
 
 #include <array>
@@ -11,8 +10,6 @@
 #include <span>
 #include <string_view>
 #include <vector>
-
-#include <fcntl.h>
 
 namespace keeler {
 namespace {
@@ -63,8 +60,7 @@ void put_chunk(Bytes& to, std::string_view name, std::span<const std::byte> cont
 
 class AnimatedPng : public MovieFile {
 public:
-  AnimatedPng(const std::filesystem::path& file, std::size_t frames)
-      : frames_(frames), file_(file), out_(file_.temporary(), O_WRONLY | O_CREAT | O_TRUNC) {}
+  AnimatedPng(const std::filesystem::path& file, std::size_t frames) : frames_(frames), out_(file) {}
 
   void add(Page& page) override;
   void finish() override;
@@ -92,8 +88,7 @@ private:
 
   std::size_t frames_, added_ = 0;
   std::uint32_t sequence_ = 0;
-  NewFile file_;
-  Descriptor out_;
+  NewFile out_;
 };
 
 void AnimatedPng::add(Page& page) {
@@ -120,16 +115,15 @@ void AnimatedPng::add(Page& page) {
     }
     at += frame_of_chunk + length;
   }
-  out_.write_all(to);
+  out_.write(to);
   ++added_;
 }
 
 void AnimatedPng::finish() {
   Bytes end;
   put_chunk(end, "IEND", {});
-  out_.write_all(end);
-  out_.close();
-  file_.keep();
+  out_.write(end);
+  out_.keep();
 }
 
 } // namespace

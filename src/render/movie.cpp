@@ -6,6 +6,7 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/phase_progress.hpp>
+#include <keeler/files/new_file.hpp>
 
 #include <fmt/format.h>
 
@@ -52,6 +53,10 @@ bool has_ffmpeg() {
 
 void require_movie_name(const std::string& path) {
   const std::string ending = std::filesystem::path(path).extension().string();
+  if (ending == ".mp4")
+    refuse_stream(path, "MP4");
+  else if (is_stream(path))
+    return; // an animated PNG
   if (ending != ".mp4" && ending != ".png")
     throw UsageError(fmt::format(
         "'{}' cannot be a movie: movies are .mp4 files or animated .png files; give it such an ending", path));

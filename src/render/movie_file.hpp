@@ -1,5 +1,4 @@
-// The file of a movie, filled frame by frame. It takes its name when it is finished; until then it is NAME.tmp, which a
-// failure removes.
+// The file of a movie, filled frame by frame. It takes its name when it is finished; a failure before leaves nothing.
 #pragma once
 
 #include "page.hpp"

@@ -2,7 +2,7 @@
 #include "movie_file.hpp"
 
 #include <keeler/core/error.hpp>
-#include <keeler/files/files.hpp>
+#include <keeler/files/new_file.hpp>
 #include <keeler/render/movie.hpp>
 
 #include <fmt/format.h>
@@ -22,14 +22,17 @@
 namespace keeler {
 namespace {
 
-std::vector<std::string> arguments(const std::filesystem::path& file, int width, int height) {
+// The descriptor under which ffmpeg finds the file that it fills.
+constexpr int movie_descriptor = 3;
+
+std::vector<std::string> arguments(int width, int height) {
   return {"ffmpeg", "-nostdin", "-loglevel", "error", "-xerror", "-y",
           // Cairo's pixels, blue first, the fourth byte unused.
           "-f", "rawvideo", "-pixel_format", "bgr0", "-video_size", fmt::format("{}x{}", width, height), "-framerate",
           std::to_string(movie_frames_a_second), "-i", "pipe:0",
           // This chroma format needs even sides.
           "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-preset", "veryfast", "-crf", "20", "-pix_fmt",
-          "yuv420p", "-f", "mp4", "file:" + file.string()};
+          "yuv420p", "-f", "mp4", fmt::format("file:/proc/self/fd/{}", movie_descriptor)};
 }
 
 struct CloseFile {
@@ -60,7 +63,7 @@ Mp4::Mp4(const std::filesystem::path& file, int width, int height)
   int ends[2];
   if (!messages_ || pipe2(ends, O_CLOEXEC) != 0)
     throw IoError(fmt::format("cannot write the movie '{}': {}", name_.string(), std::strerror(errno)));
-  std::vector<std::string> words = arguments(file_.temporary(), width, height);
+  std::vector<std::string> words = arguments(width, height);
   std::vector<char*> pointers;
   for (std::string& word : words)
     pointers.push_back(word.data());
@@ -70,6 +73,7 @@ Mp4::Mp4(const std::filesystem::path& file, int width, int height)
   posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, fileno(messages_.get()), STDERR_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, file_.descriptor()->number(), movie_descriptor);
   posix_spawnattr_t apart; // in a group of its own: Ctrl-C is for this program, which then ends it
   posix_spawnattr_init(&apart);
   posix_spawnattr_setflags(&apart, POSIX_SPAWN_SETPGROUP);

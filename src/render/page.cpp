@@ -2,17 +2,14 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/files/descriptor.hpp>
 #include <keeler/files/files.hpp>
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <new>
 
-#include <fcntl.h>
 
 namespace keeler {
 namespace {
@@ -193,14 +190,7 @@ std::vector<std::byte> Page::png() {
 }
 
 void Page::save(const std::string& path) {
-  std::error_code none;
-  if (std::filesystem::exists(path, none) && !std::filesystem::is_regular_file(path, none)) {
-    Descriptor device(path, O_WRONLY); // has no name to take
-    device.write_all(png());
-    device.close();
-  } else {
-    write_file(path, png());
-  }
+  write_file(path, png());
 }
 
 } // namespace keeler

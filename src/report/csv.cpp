@@ -1,5 +1,7 @@
 #include <keeler/report/csv.hpp>
 
+#include <keeler/core/json_of_files.hpp>
+
 namespace keeler {
 namespace {
 
@@ -17,7 +19,7 @@ std::string csv_line(const nlohmann::ordered_json& row, bool names) {
   std::string line;
   bool first = true;
   for (const auto& [key, value] : row.items()) {
-    const std::string text = names ? key : value.is_string() ? value.get<std::string>() : value.dump();
+    const std::string text = names ? key : value.is_string() ? value.get<std::string>() : json_text(value);
     line += (first ? "" : ",") + field_of(text);
     first = false;
   }

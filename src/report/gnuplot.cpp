@@ -2,6 +2,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/files/new_file.hpp>
 
 #include <fmt/format.h>
 
@@ -16,11 +17,12 @@ namespace {
 
 constexpr int not_found = 127; // as a shell says it
 
-int run_in(const std::filesystem::path& folder, const std::string& preamble, const std::string& script) {
+int run_in(const std::filesystem::path& folder, const std::string& terminal, const std::string& script, int output) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
   posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  std::string program = "gnuplot", option = "-e", first = preamble, file = script;
+  std::string program = "gnuplot", option = "-e", first = terminal, file = script;
   const std::array<char*, 5> arguments = {program.data(), option.data(), first.data(), file.data(), nullptr};
   pid_t process = 0;
   const int failure = posix_spawnp(&process, "gnuplot", &actions, nullptr, arguments.data(), environ);
@@ -40,11 +42,13 @@ bool plot(const std::filesystem::path& folder, const std::string& name, const st
   const std::string png = fmt::format("set terminal pngcairo size {},{} font 'DejaVu Sans,11'", width, height);
   const std::string svg = fmt::format("set terminal svg size {},{} font 'DejaVu Sans,11'", width, height);
   for (const auto& [terminal, ending] : {std::pair(png, "png"), std::pair(svg, "svg")}) {
-    const int code = run_in(folder, fmt::format("{}; set output '{}.{}'", terminal, name, ending), name + ".gp");
+    NewFile picture(folder / fmt::format("{}.{}", name, ending));
+    const int code = run_in(folder, terminal, name + ".gp", picture.descriptor()->number());
     if (code == not_found)
       return false;
     if (code != 0)
       throw IoError(fmt::format("gnuplot failed on '{}'; run it there to see why", (folder / (name + ".gp")).string()));
+    picture.keep();
   }
   return true;
 }

@@ -1,5 +1,6 @@
 #include "number_tables.hpp"
 
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/mean.hpp>
@@ -123,7 +124,7 @@ std::string all_numbers(const Json& numbers) {
   Rows rows = {{"name", "value"}};
   const Json flat = numbers.flatten();
   for (const auto& [path, value] : flat.items())
-    rows.push_back({path.substr(1), value.is_null() ? "unknown" : value.dump()});
+    rows.push_back({path.substr(1), value.is_null() ? "unknown" : json_text(value)});
   return html_table(rows);
 }
 

@@ -7,6 +7,7 @@
 #include "series_plots.hpp"
 
 #include <keeler/cells/overlap.hpp>
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/core/phase_progress.hpp>
 #include <keeler/core/version.hpp>
 #include <keeler/core/words.hpp>
@@ -57,7 +58,7 @@ std::vector<std::size_t> evenly(std::size_t count, std::size_t most) {
 
 // JSON in a page: "</script>" in a title must not end the element.
 std::string data_element(const std::string& id, const Json& json) {
-  std::string text = json.dump();
+  std::string text = json_text(json);
   for (std::size_t at = text.find("</"); at != std::string::npos; at = text.find("</", at + 3))
     text.insert(at + 1, "\\");
   return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id, text);
@@ -301,15 +302,19 @@ std::string scripts() {
 
 std::string RunPage::html() {
   look_at_snapshots();
-  if (const fs::path file = folder_ / "summary.json"; fs::exists(file))
+  const fs::path file = folder_ / "summary.json";
+  if (fs::exists(file))
     summary_ = Json::parse(read_text(file), nullptr, false);
+  const std::string told = using_json_of<Json>(file, [&] { return accuracy(); });
+  const std::string facts_of_run = using_json_of<Json>(file, [&] { return facts(); });
   MeasuredPart part = measured_part(folder_, {});
   const std::string title = scene_->title.empty() ? folder_.filename().string() : scene_->title;
-  std::string page = head() + "<body>\n<h1>" + html_text(title) + "</h1>\n" + facts();
+  std::string page = head() + "<body>\n<h1>" + html_text(title) + "</h1>\n" + facts_of_run;
   page += pictures();
   page += view() + plots(part.transport);
   page += measured(std::move(part));
-  return page + accuracy() + scene_section() + provenance() + scripts() + "</body></html>\n";
+  page += told + scene_section() + using_json_of<Json>(file, [&] { return provenance(); });
+  return page + scripts() + "</body></html>\n";
 }
 
 } // namespace

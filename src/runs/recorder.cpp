@@ -3,6 +3,7 @@
 #include "invariants.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/core/simd.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/words.hpp>
@@ -256,7 +257,7 @@ void Recorder::check_forces(const Simulation& simulation) {
 }
 
 void Recorder::summary(const nlohmann::ordered_json& summary) {
-  ranks_.first_does([&] { write_text(folder_.summary(), summary.dump(2) + "\n"); });
+  ranks_.first_does([&] { write_text(folder_.summary(), json_text(summary, 2) + "\n"); });
 }
 
 void Recorder::log(const std::string& event, const nlohmann::ordered_json& details) {
@@ -269,8 +270,8 @@ void Recorder::write_log(const std::string& event, const nlohmann::ordered_json&
   line["event"] = event;
   line.update(details);
   line["time"] = utc_now();
-  const std::string text = line.dump() + "\n";
-  Descriptor file(folder_.log(), O_WRONLY | O_CREAT | O_APPEND);
+  const std::string text = json_text(line) + "\n";
+  Descriptor file(folder_.log(), O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW);
   lock_->require_in_place();
   file.append_whole(std::as_bytes(std::span(text)));
   file.close();

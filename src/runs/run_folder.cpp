@@ -2,6 +2,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/files/new_file.hpp>
 
 #include <fmt/format.h>
 
@@ -22,8 +23,6 @@ bool is_numbered(std::string_view name, std::string_view prefix, std::string_vie
 } // namespace
 
 bool RunFolder::is_own(std::string_view name) {
-  if (name.ends_with(".tmp"))
-    name.remove_suffix(4);
   for (const std::string_view own :
        {"scene.toml", "series.csv", "moonlets.csv", "impact_speeds.csv", "summary.json", "log.jsonl"})
     if (name == own)
@@ -83,6 +82,7 @@ void RunFolder::claim(bool force) const {
     for (const fs::directory_entry& entry : fs::directory_iterator(path_))
       if (is_own(entry.path().filename().string()))
         fs::remove(entry.path());
+    remove_left_overs(path_, is_own);
   } catch (const fs::filesystem_error& error) {
     throw IoError(fmt::format("cannot empty the folder '{}': {}", path_.string(), error.code().message()));
   }

@@ -22,7 +22,7 @@ public:
   std::filesystem::path broken(std::int64_t step) const;
   const std::filesystem::path& path() const { return path_; }
 
-  /// Whether a run gives a file such a name, an interrupted write included.
+  /// Whether a run gives a file such a name.
   static bool is_own(std::string_view name);
 
   /// For messages, where nothing of a run is in the folder: "; its runs are in 'sweep/runs'" of a sweep or a study, or

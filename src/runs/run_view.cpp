@@ -28,16 +28,25 @@ std::optional<double> seconds_of(const nlohmann::json& line) {
   return static_cast<double>(timegm(&utc));
 }
 
+// The value of a key; the other one where it is missing, or of another type.
+template<class Value> Value value_in(const nlohmann::json& line, const char* key, const Value& otherwise) {
+  try {
+    return line.value(key, otherwise);
+  } catch (const nlohmann::json::exception&) {
+    return otherwise;
+  }
+}
+
 void take_event(RunView& view, const nlohmann::json& line) {
-  const std::string event = view.last_event = line.value("event", "");
+  const std::string event = view.last_event = value_in(line, "event", std::string());
   if (event == "started" || event == "resumed") {
     if (view.unended)
       view.ended_s.reset();
     view.unended = true;
-    view.end_orbits = line.value("end_orbits", 0.0);
-    view.first_orbits = line.value("orbits", 0.0);
+    view.end_orbits = value_in(line, "end_orbits", 0.0);
+    view.first_orbits = value_in(line, "orbits", 0.0);
     view.began_s = seconds_of(line);
-    view.particles = line.value("particles", view.particles);
+    view.particles = value_in(line, "particles", view.particles);
   } else if (event == "finished" || event == "stopped" || event == "broken" || event == "given up") {
     view.unended = false;
     const std::optional<double> now = seconds_of(line);
@@ -48,7 +57,7 @@ void take_event(RunView& view, const nlohmann::json& line) {
   }
 }
 
-// A line that is still being written, or is no JSON, says nothing.
+// A line that is still being written, or is no JSON of a log, says nothing.
 void read_log(RunView& view, const fs::path& file) {
   std::istringstream lines(read_text(file));
   for (std::string text; std::getline(lines, text);) {

@@ -135,7 +135,8 @@ Found check_log(const std::string& file) {
   std::size_t line = 0;
   for (std::size_t begin = 0, end; (end = text.find('\n', begin)) != text.npos; begin = end + 1) {
     ++line;
-    if (!nlohmann::json::parse(text.substr(begin, end - begin), nullptr, false).is_object())
+    const auto json = nlohmann::json::parse(text.substr(begin, end - begin), nullptr, false);
+    if (!json.is_object() || !json.contains("event") || !json["event"].is_string())
       throw IoError(fmt::format("line {} of '{}' is not one of a log", line, file));
   }
   return {};
@@ -224,7 +225,7 @@ std::vector<VerifiedFile> verify_run(const fs::path& folder) {
   std::vector<Verified> files;
   for (const fs::path& path : sorted_entries(folder)) {
     const std::string name = path.filename().string();
-    if (!RunFolder::is_own(name) || name.ends_with(".tmp"))
+    if (!RunFolder::is_own(name))
       continue;
     Verified verified = verify(path);
     if (fs::exists(path))

@@ -11,23 +11,23 @@
 namespace keeler {
 namespace {
 
-void require_room(const ShearingBox& box, double largest) {
+void require_room(const ShearingBox& box, double largest, const std::string& name) {
   if (!(std::min(box.size_x, box.size_y) >= 2.0 * largest))
     throw UsageError(
         fmt::format("the box of {}, {:.4g} m x {:.4g} m, is smaller than its largest particle ({:.4g} m across); start "
                     "from another state",
-                    start_name, box.size_x, box.size_y, 2.0 * largest));
+                    name, box.size_x, box.size_y, 2.0 * largest));
 }
 
 // Collective.
-void require_fit(const Patch& start, const Ranks& ranks) {
+void require_fit(const Patch& start, const std::string& name, const Ranks& ranks) {
   ranks.together([&] {
     require_sound(start);
     if (!ranks.many())
-      require_apart(start, start_name);
+      require_apart(start, name);
   });
   const double largest = ranks.largest(start.size() ? *std::max_element(start.radii.begin(), start.radii.end()) : 0.0);
-  ranks.first_does([&] { require_room(start.box, largest); });
+  ranks.first_does([&] { require_room(start.box, largest, name); });
 }
 
 // Collective: what the first rank has of all but the particles, on the others too.
@@ -71,8 +71,12 @@ void note_moonlets(SimulationState& state, const Ranks& ranks) {
 
 } // namespace
 
+std::string start_name(const Scene& scene) {
+  return scene.start_from ? fmt::format("'{}'", *scene.start_from) : "the initial state";
+}
+
 SimulationState first_state(const Scene& scene, const Patch& start, const Ranks& ranks) {
-  require_fit(start, ranks);
+  require_fit(start, start_name(scene), ranks);
   SimulationState state(scene);
   if (scene.time.automatic)
     state.control = StepControl::automatic(!state.forces.empty());

@@ -5,7 +5,8 @@
 
 namespace keeler {
 
-inline constexpr char start_name[] = "the initial state";
+/// What messages call the state that a run begins with: its file, where it has one.
+std::string start_name(const Scene& scene);
 
 /// Of a patch of which each rank has some particles and the first one all else; collective. Throws InvariantError when
 /// a number is not finite or, on one rank, particles overlap by more than rounding, UsageError when the largest does

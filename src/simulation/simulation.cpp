@@ -51,7 +51,7 @@ Simulation::Simulation(const Scene& scene, const Patch& start, const Ranks& rank
   if constexpr (Ranks::possible)
     if (ranks_.many()) {
       const Overlap largest = largest_overlap_shared();
-      ranks_.together([&] { require_apart(largest, start_name); });
+      ranks_.together([&] { require_apart(largest, start_name(scene_)); });
     }
   for (std::size_t f = 0; f < forces_.size(); ++f)
     accelerate(f);

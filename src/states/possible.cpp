@@ -90,7 +90,11 @@ void require_possible_frame(const Patch& patch, std::size_t count, const std::st
 }
 
 void require_possible_particles(const Patch& patch, const std::string& path) {
-  require_sound(patch);
+  try {
+    require_sound(patch);
+  } catch (const InvariantError& error) {
+    throw InvariantError(fmt::format("'{}': {}", path, error.what()));
+  }
   for (std::size_t k = 0; k < patch.size(); ++k)
     if (const std::string fault = particle_fault(patch, k); !fault.empty())
       throw InvariantError(

@@ -1,12 +1,17 @@
 #include "job_list.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/core/stopwatch.hpp>
+#include <keeler/files/descriptor.hpp>
 #include <keeler/files/files.hpp>
 
 #include <fmt/format.h>
 
 #include <fstream>
+#include <span>
+
+#include <fcntl.h>
 
 namespace keeler {
 
@@ -15,7 +20,7 @@ JobList::JobList(const std::filesystem::path& file) : file_(file) {
   std::string text;
   for (std::string line; std::getline(in, line);) {
     const Json entry = Json::parse(line, nullptr, false);
-    if (!entry.is_object() || !entry.contains("job") || !entry.contains("result"))
+    if (!entry.is_object() || !entry.contains("job") || !entry["job"].is_string() || !entry.contains("result"))
       continue;
     results_[entry["job"].get<std::string>()] = entry["result"];
     text += line + "\n";
@@ -26,11 +31,13 @@ JobList::JobList(const std::filesystem::path& file) : file_(file) {
 }
 
 void JobList::keep(const std::string& name, const Json& result) {
-  std::ofstream out(file_, std::ios::app);
-  out << Json{{"job", name}, {"result", result}}.dump() << "\n" << std::flush;
-  if (!out)
-    throw IoError(fmt::format("cannot write '{}' (is the disk full?); free some space and start the same command again",
-                              file_.string()));
+  const std::string line = json_text(Json{{"job", name}, {"result", result}}) + "\n";
+  Descriptor out(file_, O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW);
+  try {
+    out.append_whole(std::as_bytes(std::span(line)));
+  } catch (const IoError& error) {
+    throw IoError(fmt::format("{}; free some space and start the same command again", error.what()));
+  }
   results_[name] = result;
 }
 

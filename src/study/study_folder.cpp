@@ -1,6 +1,7 @@
 #include "study_folder.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/io/provenance.hpp>
 
@@ -41,7 +42,7 @@ Json open_study_folder(const fs::path& folder, const Json& options, const std::m
     Json begun = options;
     for (const auto& [key, value] : builder)
       begun[key] = value;
-    write_text(file, begun.dump(2) + "\n");
+    write_text(file, json_text(begun, 2) + "\n");
     return begun;
   }
   const Json before = Json::parse(read_text(file), nullptr, false);
@@ -50,7 +51,7 @@ Json open_study_folder(const fs::path& folder, const Json& options, const std::m
       throw UsageError(fmt::format("'{}' holds a study with another {} ({}); give the same options or name another "
                                    "folder",
                                    folder.string(), key,
-                                   before.is_object() && before.contains(key) ? before[key].dump() : "none"));
+                                   before.is_object() && before.contains(key) ? json_text(before[key]) : "none"));
   return before;
 }
 

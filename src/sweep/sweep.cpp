@@ -7,6 +7,7 @@
 #include <keeler/batch/workers.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/interrupt.hpp>
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/report/csv.hpp>
@@ -120,7 +121,7 @@ SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
   write_tables(grid, plan, folders, runs, points, settings.notice);
   result.finished = count_of(runs, RunStatus::finished);
   result.failed = count_of(runs, RunStatus::failed);
-  result.points = points_as_json(plan, points).dump();
+  result.points = json_text(points_as_json(plan, points));
   return result;
 }
 

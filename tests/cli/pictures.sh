@@ -113,7 +113,7 @@ done
 for name in a.mp4 a.png; do
   setsid "$keeler" render "$work/run" --movie -o "$work/to/$name" >"$work/out" 2>"$work/err" &
   process=$!
-  until [ -s "$work/to/$name.tmp" ] || ! kill -0 "$process" 2>/dev/null; do sleep 0.01; done
+  until [ -s "$(compgen -G "$work/to/$name.keeler-*.tmp")" ] || ! kill -0 "$process" 2>/dev/null; do sleep 0.01; done
   kill -INT -- "-$process"
   code=0
   wait "$process" || code=$?

@@ -12,12 +12,13 @@ import damage
 import disks
 import folders
 import kills
+import outputs
 import page
 from program import Program
 from rows import measure
 from scenes import Scenes
 
-FAULTS = kills.FAULTS + disks.FAULTS + folders.FAULTS + damage.FAULTS
+FAULTS = kills.FAULTS + disks.FAULTS + folders.FAULTS + outputs.FAULTS + damage.FAULTS
 
 
 def read_options():

@@ -26,7 +26,7 @@ constexpr std::array names = {"scene.toml",
                               "snap_000000.hdf",
                               "checkpoint_000000.h5",
                               "checkpoint_000001.h5",
-                              "checkpoint_000001.h5.tmp",
+                              "checkpoint_000001.h5.keeler-0123456789abcdef.tmp",
                               "snap_000001.hdf"};
 
 std::map<std::string, std::string> files_in(const fs::path& folder) {

@@ -14,6 +14,8 @@ class Descriptor {
 public:
   /// `flags` as for open(2).
   Descriptor(const std::filesystem::path& file, int flags);
+  /// Takes one that open(2) or its like has just returned; below 0 it has failed. Messages name the file.
+  Descriptor(int number, const std::filesystem::path& file);
   ~Descriptor();
   Descriptor(Descriptor&& other) noexcept;
   Descriptor& operator=(Descriptor&& other) noexcept;
@@ -31,6 +33,9 @@ public:
   /// All of a file that is open for reading too, whatever has become of its name.
   std::string read_all() const;
   std::size_t size() const;
+  int number() const { return number_; }
+  /// Sets the permissions, as of chmod(2).
+  void set_mode(unsigned mode);
   /// Cuts it there, or fills it with zeros up to there.
   void truncate(std::size_t size);
   /// Forces the content to disk.

@@ -1,5 +1,4 @@
-// Whole files, read and written so that a name always stands for a complete file: the new content goes to NAME.tmp,
-// is forced to disk, and only then takes the name. A full disk or a crash leaves what stood there before.
+// Whole files, read, and written as new_file.hpp says: a name always means a complete file.
 #pragma once
 
 #include <cstddef>
@@ -11,24 +10,10 @@
 
 namespace keeler {
 
-/// A file in the making, for whoever fills it piece by piece: it is NAME.tmp until it is kept, and goes when it is not.
-class NewFile {
-public:
-  explicit NewFile(std::filesystem::path file);
-  ~NewFile();
-  NewFile(const NewFile&) = delete;
-  NewFile& operator=(const NewFile&) = delete;
+/// The folder that a file is in, or is to be in: "." of a name alone.
+std::filesystem::path folder_of(const std::filesystem::path& file);
 
-  const std::filesystem::path& temporary() const { return temporary_; }
-  /// Forces it to disk and gives it its name. Throws IoError.
-  void keep();
-
-private:
-  std::filesystem::path file_, temporary_;
-  bool kept_ = false;
-};
-
-/// Writes a file as described above; after a failure neither NAME.tmp nor a changed NAME is left. Throws IoError.
+/// Writes a file; after a failure what was there before is there, and nothing else. Throws IoError.
 /// A process that sets a file-size limit must ignore SIGXFSZ, else that signal ends it before the error is seen.
 void write_file(const std::filesystem::path& file, std::span<const std::byte> content);
 

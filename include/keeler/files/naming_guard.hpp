@@ -5,8 +5,8 @@
 
 namespace keeler {
 
-/// While it lives, each new file of this thread (files.hpp) asks `check` when it is written and has not taken its name
-/// yet. What that throws leaves no file: a folder that was replaced by another meanwhile gets none.
+/// While it lives, each new file of this thread (new_file.hpp) asks `check` when it is written and has not taken its
+/// name yet. What that throws leaves no file: a folder that was replaced by another meanwhile gets none.
 class NamingGuard {
 public:
   explicit NamingGuard(std::function<void()> check);

@@ -54,7 +54,11 @@ if _find_spec("._core", __name__) is None:
         "cmake --preset default, and cmake --build build/default --target keeler_python"
     )
 
-from . import _core, scenes
+from . import _border, _core
+
+_border.guard(_core)
+
+from . import scenes
 from .errors import Error, InvariantError, IoError, RunError, UsageError
 from .runs import Run, program, read, render, run, sweep
 from .simulation import ELEMENTS, Simulation, from_arrays, load, resume

@@ -28,7 +28,7 @@ class Run:
 
     @property
     def scene(self):
-        return (self.folder / "scene.toml").read_text(encoding="utf-8")
+        return _text(self.folder / "scene.toml")
 
     @property
     def series(self):
@@ -42,7 +42,12 @@ class Run:
     @property
     def summary(self):
         file = self.folder / "summary.json"
-        return json.loads(file.read_text(encoding="utf-8")) if file.exists() else None
+        if not file.exists():
+            return None
+        try:
+            return json.loads(_text(file))
+        except json.JSONDecodeError:
+            raise IoError(f"'{file}' is not the summary of a run; 'keeler resume {self.folder}' writes it again") from None
 
     @property
     def snapshots(self):
@@ -52,6 +57,15 @@ class Run:
         """The numbers of ``keeler analyze DIR --json``, as a dictionary, from one orbit to another (default: from where
         on the run is steady). Raises UsageError, IoError."""
         return json.loads(_core.analyze(self.folder, since, until))
+
+
+def _text(file):
+    try:
+        return file.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise IoError(f"'{file}' is no text (it has bytes that are not UTF-8); restore it, or make it again") from None
+    except OSError as error:
+        raise IoError(f"cannot read '{file}': {error.strerror}") from None
 
 
 class _Snapshots:
@@ -163,6 +177,7 @@ def _written(grid, place):
 
 def _rows(file):
     import csv
+    import io
 
     def number(text):
         try:
@@ -172,8 +187,8 @@ def _rows(file):
 
     if not file.exists():
         return []
-    with open(file, newline="", encoding="utf-8") as table:
-        return [{name: number(value) for name, value in row.items()} for row in csv.DictReader(table)]
+    rows = csv.DictReader(io.StringIO(_text(file), newline=""))
+    return [{name: number(value) for name, value in row.items()} for row in rows]
 
 
 def render(what, file=None, **look):

@@ -21,7 +21,8 @@ class Picture:
         return self.data
 
     def save(self, file):
-        Path(file).write_bytes(self.data)
+        """Writes the PNG. Raises IoError."""
+        _core.write_file(file, self.data)
 
 
 class Snapshot:
@@ -80,13 +81,15 @@ class Snapshot:
         """The picture of ``keeler render``: from above, and edge-on. Written to a PNG where a file is named. ``width``
         is in pixels, from 200 to 8000. Raises UsageError, IoError."""
         width = scenes.whole_number(width, "width", 200, 8000)
-        if file is not None:
-            if Path(file).suffix != ".png":
-                raise UsageError(f"'{file}' cannot be written: pictures are PNGs; give it the ending .png")
-            self._core.render(file, title, width)
-            return Picture(Path(file).read_bytes())
+        if file is not None and not _core.is_stream(file) and Path(file).suffix != ".png":
+            raise UsageError(f"'{file}' cannot be written: pictures are PNGs; give it the ending .png")
         with tempfile.TemporaryDirectory() as folder:
-            return self.plot(Path(folder) / "picture.png", title=title, width=width)
+            drawn = Path(folder) / "picture.png"
+            self._core.render(drawn, title, width)
+            picture = Picture(drawn.read_bytes())
+        if file is not None:
+            picture.save(file)
+        return picture
 
     def _repr_png_(self):
         return self.plot(width=1000)._repr_png_()

@@ -2,6 +2,7 @@
 #include "report.hpp"
 #include "study_folder.hpp"
 
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/report/csv.hpp>
 
@@ -37,7 +38,7 @@ void write_finder_tables(const FinderStudyData& data) {
     if (!name.starts_with("run/"))
       other[name] = result;
   write_text(data.folder / "finders.json",
-             Json{{"made", data.made}, {"rows", rows}, {"measurements", other}}.dump(1) + "\n");
+             json_text(Json{{"made", data.made}, {"rows", rows}, {"measurements", other}}, 1) + "\n");
 }
 
 } // namespace keeler

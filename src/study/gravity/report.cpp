@@ -3,6 +3,7 @@
 #include "runs.hpp"
 #include "study_folder.hpp"
 
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/diagnostics/scatter.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/report/csv.hpp>
@@ -250,7 +251,7 @@ void write_gravity_tables(const GravityStudyData& data) {
   Json all = {{"made", data.made}};
   all.update(data.bench);
   all["runs"] = runs;
-  write_text(data.folder / "gravity.json", all.dump(1) + "\n");
+  write_text(data.folder / "gravity.json", json_text(all, 1) + "\n");
 }
 
 void write_gravity_report(const GravityStudyData& data, bool with_figures) {

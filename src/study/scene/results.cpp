@@ -96,7 +96,7 @@ std::vector<Maybe> values_of(const StudyPlan& plan, const PlannedRun& run, const
   known["step_orbits"] = chosen("step_orbits", scene.time.step);
   if (scene.gravity)
     known["kick_interval_orbits"] = chosen("kick_interval_orbits", scene.time.step * scene.gravity->kick_every);
-  known["force_error"] = number_in(summary.value("force_error", Json()), "rms");
+  known["force_error"] = number_in(summary.is_object() ? summary.value("force_error", Json()) : Json(), "rms");
   for (const char* const key : {"unresolved_contacts_share", "finder_gave_up", "largest_overlap"})
     known[key] = number_in(summary, key);
   known["transmission"] = transmission_of(folder);

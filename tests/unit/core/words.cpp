@@ -1,5 +1,7 @@
 #include <keeler/core/words.hpp>
 
+#include <keeler/core/printable.hpp>
+
 #include <doctest/doctest.h>
 
 using namespace keeler;
@@ -28,6 +30,7 @@ TEST_CASE("a line that repeats the words of others can be printed") {
   CHECK(printable_line("\xff\xfe \xce \xc0\xaf \xe0\x80\xaf \xed\xa0\x80 \xf4\x90\x80\x80 \xc2\x85") ==
         "?? ? ?? ??? ??? ???? ??");
   CHECK(printable_line(std::string("a\0b", 3)) == "a?b");
+  CHECK(printable_text("a\x1b]0;t\a\n\tΩ\xff\xc2\x9b") == "a?]0;t?\n\tΩ???");
   const std::string cut = printable_line("begin " + std::string(1'000'000, 'x') + " end");
   CHECK(cut.size() < 2010);
   CHECK(cut.starts_with("begin xxx"));

@@ -22,14 +22,6 @@ TEST_CASE("a file is replaced as a whole and reads back") {
   CHECK(folder.file_count() == 1);
 }
 
-TEST_CASE("what an interrupted write left is overwritten") {
-  const TemporaryFolder folder;
-  write_text(folder / "a.txt.tmp", "a long torn beginning");
-  write_text(folder / "a.txt", "new");
-  CHECK(read_text(folder / "a.txt") == "new");
-  CHECK(folder.file_count() == 1);
-}
-
 TEST_CASE("a guard that refuses a new file its name leaves none, and the former one") {
   const TemporaryFolder folder;
   write_text(folder / "a.txt", "former");

@@ -30,7 +30,8 @@ TEST_CASE("checkpoints are listed by number, newest first") {
   const TemporaryFolder folder;
   for (const int step : {5, 1000000, 20, 999999})
     write_step(folder, step);
-  for (const char* other : {"checkpoint_.h5", "checkpoint_12a.h5", "snap_000030.hdf", "checkpoint_000040.h5.tmp"})
+  for (const char* other :
+       {"checkpoint_.h5", "checkpoint_12a.h5", "snap_000030.hdf", "checkpoint_000040.h5.keeler-0123456789abcdef.tmp"})
     write_text(folder / other, "");
   const auto files = list_checkpoints(folder.path());
   REQUIRE(files.size() == 4);
@@ -71,7 +72,7 @@ TEST_CASE("pruning keeps the newest and removes torn files") {
   const TemporaryFolder folder;
   for (const int step : {10, 20, 30, 40})
     write_step(folder, step);
-  write_text(folder / "checkpoint_000050.h5.tmp", "torn");
+  write_text(folder / "checkpoint_000050.h5.keeler-0123456789abcdef.tmp", "torn");
   write_text(folder / "series.csv", "");
   prune_checkpoints(checkpoint_path(folder.path(), 40));
   const auto files = list_checkpoints(folder.path());

@@ -1,0 +1,225 @@
+#include <keeler/files/new_file.hpp>
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/interrupt.hpp>
+#include <keeler/files/files.hpp>
+#include <keeler/files/naming_guard.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <charconv>
+#include <climits>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <random>
+#include <utility>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace keeler {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::string_view mark = ".keeler-", ending = ".tmp";
+constexpr std::size_t digits = 16, longest_name = 255;
+constexpr int patience_ms = 50; // between two looks at whether the work is to be given up
+
+std::string random_digits() {
+  std::random_device device;
+  return fmt::format("{:08x}{:08x}", device(), device());
+}
+
+// What is too long for a file system loses its end.
+std::string beginning_of(const fs::path& file) {
+  return file.filename().string().substr(0, longest_name - mark.size() - digits - ending.size());
+}
+
+fs::path temporary_of(const fs::path& file) {
+  return folder_of(file) / fmt::format("{}{}{}{}", beginning_of(file), mark, random_digits(), ending);
+}
+
+bool is_regular(int descriptor, struct stat& status) {
+  return fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
+}
+
+// Its writer holds the lock as long as it lives. A file that is no writer's has one name; links to others have more.
+void remove_if_left_over(const fs::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0)
+    return;
+  struct stat status = {};
+  if (is_regular(descriptor, status) && status.st_uid == geteuid() && status.st_nlink == 1 &&
+      flock(descriptor, LOCK_EX | LOCK_NB) == 0)
+    ::unlink(file.c_str());
+  ::close(descriptor);
+}
+
+// Locks a file that was just made; false where it was taken for a left-over before it had its lock.
+bool lock(int descriptor) {
+  flock(descriptor, LOCK_EX); // where there are no locks, left-overs cannot be told and stay
+  struct stat status = {};
+  return fstat(descriptor, &status) != 0 || status.st_nlink > 0;
+}
+
+std::optional<unsigned> mode_of(const fs::path& file) {
+  struct stat status = {};
+  if (::stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode))
+    return std::nullopt;
+  return status.st_mode & 0777u;
+}
+
+// The number in the last part of a path of descriptors of this process: "/proc/123/fd/1".
+std::optional<int> descriptor_at(const fs::path& path) {
+  std::error_code unknown;
+  const std::string folder = fs::canonical(folder_of(path), unknown).string();
+  const std::string name = path.filename().string();
+  if (unknown || !folder.starts_with(fmt::format("/proc/{}/", getpid())) || !folder.ends_with("/fd"))
+    return std::nullopt;
+  int number = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  return error == std::errc{} && end == name.data() + name.size() ? std::optional(number) : std::nullopt;
+}
+
+// A pipe without a reader opens only when it gets one.
+int open_stream(const fs::path& name) {
+  std::error_code none;
+  const bool waits = fs::is_fifo(name, none);
+  for (;;) {
+    const int number = ::open(name.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (number >= 0)
+      fcntl(number, F_SETFL, O_WRONLY); // terminals take a part at once, and more when they have room
+    if (number >= 0 || (errno != EINTR && !(waits && errno == ENXIO)))
+      return number;
+    throw_if_interrupted();
+    ::poll(nullptr, 0, patience_ms);
+  }
+}
+
+// A descriptor that is named keeps its flags: others may have it too.
+std::shared_ptr<Descriptor> opened_stream(const fs::path& name) {
+  const std::optional<int> named = descriptor_named(name);
+  if (named == STDOUT_FILENO)
+    std::fflush(stdout);
+  const int number = named ? fcntl(*named, F_DUPFD_CLOEXEC, 0) : open_stream(name);
+  return std::make_shared<Descriptor>(number, name);
+}
+
+void await_room(const Descriptor& out) {
+  pollfd wanted = {out.number(), POLLOUT, 0};
+  do
+    throw_if_interrupted();
+  while (::poll(&wanted, 1, patience_ms) == 0);
+}
+
+} // namespace
+
+std::optional<int> descriptor_named(const fs::path& name) {
+  constexpr int most_links = 40; // as the kernel has it
+  fs::path path = name;
+  for (int link = 0; link < most_links; ++link) {
+    if (const std::optional<int> number = descriptor_at(path))
+      return number;
+    std::error_code none;
+    const fs::path target = fs::read_symlink(path, none);
+    if (none)
+      return std::nullopt;
+    path = folder_of(path) / target; // the target alone where it begins at the root
+  }
+  return std::nullopt;
+}
+
+bool is_stream(const fs::path& name) {
+  std::error_code none;
+  const fs::file_status status = fs::status(name, none);
+  return descriptor_named(name) || (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status));
+}
+
+void refuse_stream(const fs::path& name, const std::string& format) {
+  if (is_stream(name))
+    throw UsageError(fmt::format("'{}' cannot take {} (it is no file on a disk, and the format goes back in what it "
+                                 "has written); name a file",
+                                 name.string(), format));
+}
+
+NewFile::NewFile(fs::path file) : file_(std::move(file)) {
+  if (is_stream(file_)) {
+    out_ = opened_stream(file_);
+    return;
+  }
+  const std::string own = beginning_of(file_);
+  remove_left_overs(folder_of(file_), [&](std::string_view name) { return name == own; });
+  replaced_mode_ = mode_of(file_);
+  const mode_t mode = replaced_mode_ ? 0600 : 0666;
+  for (;;) {
+    temporary_ = temporary_of(file_);
+    const int number =
+        ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode); // NOLINT: open has these
+    if (number < 0 && (errno == EEXIST || errno == EINTR))
+      continue;
+    if (number < 0)
+      temporary_.clear();
+    out_ = std::make_shared<Descriptor>(number, file_);
+    if (lock(number))
+      return;
+  }
+}
+
+NewFile::~NewFile() {
+  if (!temporary_.empty())
+    ::unlink(temporary_.c_str());
+}
+
+void NewFile::write(std::span<const std::byte> content) {
+  if (!temporary_.empty())
+    return out_->write_all(content);
+  while (!content.empty()) {
+    await_room(*out_);
+    const std::span<const std::byte> piece = content.first(std::min<std::size_t>(content.size(), PIPE_BUF));
+    out_->write_all(piece);
+    content = content.subspan(piece.size());
+  }
+}
+
+void NewFile::keep() {
+  if (temporary_.empty())
+    return out_->close();
+  if (replaced_mode_)
+    out_->set_mode(*replaced_mode_);
+  out_->sync();
+  NamingGuard::ask();
+  std::error_code error;
+  fs::rename(temporary_, file_, error);
+  if (error)
+    throw IoError(fmt::format("cannot write '{}': {}", file_.string(), error.message()));
+  temporary_.clear();
+  Descriptor(folder_of(file_), O_RDONLY | O_DIRECTORY).sync();
+}
+
+std::optional<std::string_view> unfinished_name(std::string_view name) {
+  const std::size_t tail = mark.size() + digits + ending.size();
+  if (name.size() <= tail || !name.ends_with(ending))
+    return std::nullopt;
+  const std::string_view number = name.substr(name.size() - ending.size() - digits, digits);
+  const std::string_view before = name.substr(name.size() - tail, mark.size());
+  const bool is_one = before == mark && number.find_first_not_of("0123456789abcdef") == number.npos;
+  return is_one ? std::optional(name.substr(0, name.size() - tail)) : std::nullopt;
+}
+
+void remove_left_overs(const fs::path& folder, const std::function<bool(std::string_view name)>& of) {
+  std::error_code unknown; // a folder that cannot be looked at keeps them
+  for (fs::directory_iterator entry(folder, unknown), end; !unknown && entry != end; entry.increment(unknown)) {
+    const std::string file = entry->path().filename().string();
+    if (const std::optional<std::string_view> name = unfinished_name(file); name && of(*name))
+      remove_if_left_over(entry->path());
+  }
+}
+
+} // namespace keeler
