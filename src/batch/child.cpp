@@ -18,13 +18,22 @@ namespace {
 
 constexpr const char* program = "/proc/self/exe";
 
+// A stop that comes before the program has handlers: it lets them come when it has (src/cli/signals.hpp).
+sigset_t stop_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGTERM);
+  return set;
+}
+
 // In the child, between fork and exec: system calls alone are allowed here.
-[[noreturn]] void become(char* const* arguments, int messages, pid_t parent) {
+[[noreturn]] void become(char* const* arguments, int messages, pid_t parent, const sigset_t& held) {
   const int nothing = open("/dev/null", O_RDWR);
   dup2(nothing, STDIN_FILENO);
   dup2(nothing, STDOUT_FILENO);
   dup2(messages, STDERR_FILENO);
   setpgid(0, 0);
+  sigprocmask(SIG_BLOCK, &held, nullptr);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() == parent) // else it died before the line above
     execv(program, arguments);
@@ -64,9 +73,10 @@ Child::Child(const std::vector<std::string>& arguments) : messages_(std::tmpfile
     pointers.push_back(word.data());
   pointers.push_back(nullptr);
   const pid_t parent = getpid();
+  const sigset_t held = stop_signals();
   process_ = fork();
   if (process_ == 0)
-    become(pointers.data(), fileno(messages_.get()), parent);
+    become(pointers.data(), fileno(messages_.get()), parent, held);
   if (process_ < 0)
     throw Error(ExitCode::run_time, fmt::format("cannot start a process for a run: {}; lower --jobs, or end other "
                                                 "programs",

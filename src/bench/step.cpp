@@ -4,6 +4,8 @@
 #include <keeler/core/error.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/io/snapshot.hpp>
+#include <keeler/ranks/same_request.hpp>
+#include <keeler/scene/keys_in_force.hpp>
 #include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
@@ -43,6 +45,21 @@ GravityChoice choice_for(const StepBenchSettings& settings, const BenchState& st
   return choice;
 }
 
+// Particles are the first rank's; all else each rank has made for itself.
+void require_same_bench(const StepBenchSettings& settings, const BenchState& state, const GravityChoice& choice) {
+  std::vector<Asked> request = {{"--count", fmt::format("{}", settings.count)},
+                                {"--repeats", fmt::format("{}", settings.repeats)},
+                                {"--solver", choice.solver},
+                                {"--kick-every", fmt::format("{}", choice.settings.kick_every)},
+                                {"the solver's settings", choice.text},
+                                {"particles", fmt::format("{}", state.patch.size())}};
+  settings.ranks.together([&] {
+    for (const KeyInForce& key : keys_in_force(state.scene))
+      request.push_back({key.path, key.value});
+  });
+  require_same_request(request, settings.ranks);
+}
+
 int whole_intervals(double steps, int kick_every) {
   return static_cast<int>(std::ceil(steps / kick_every)) * kick_every;
 }
@@ -58,6 +75,7 @@ StepBench bench_step(const StepBenchSettings& settings) {
         settings.from ? stored_state(*settings.from) : gravity_state(settings.count, GravityState::clumped, progress);
     bench.choice = choice_for(settings, state);
   });
+  require_same_bench(settings, state, bench.choice);
   state.scene.gravity = bench.choice.settings;
   bench.step_orbits = state.scene.time.step;
   bench.dispersion_r_omega = velocity_in_radii(state.patch, velocity_dispersion(state.patch)).x();

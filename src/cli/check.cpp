@@ -19,7 +19,6 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -192,8 +191,7 @@ ExitCode check(const CheckOptions& options) {
   if (options.scene.path.empty())
     throw UsageError("check needs a scene (there is nothing to check); write keeler check SCENE, or --defaults");
   const Scene scene = options.scene.load();
-  if (scene.start_from && !std::filesystem::exists(*scene.start_from))
-    throw IoError(fmt::format("start.from names '{}', which does not exist", *scene.start_from));
+  require_start_file(scene);
   const std::optional<PatchScale> start = scale_of_start(scene);
   Lines said = start ? doubts(scene, *start) : doubts(scene);
   const Derived derived = derive(scene);

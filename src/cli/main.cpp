@@ -1,15 +1,18 @@
 // The program: reads the command line, runs one subcommand, and turns every error into one line and an exit code.
 #include "command.hpp"
 #include "messages.hpp"
+#include "signals.hpp"
 #include "usage.hpp"
 
 #include <keeler/core/error_at_hand.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/version.hpp>
 #include <keeler/ranks/ranks.hpp>
+#include <keeler/ranks/same_request.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -82,39 +85,38 @@ void add_commands(CLI::App& program, Action& action, const std::vector<std::stri
   add_complete(program, action);
 }
 
-std::string subcommands_of(const CLI::App& command) {
-  std::string names;
-  for (const CLI::App* its : command.get_subcommands())
-    names += " " + its->get_name();
-  return names;
-}
-
 // Commands of one process would all do the same.
-void refuse_ranks(const CLI::App& program, const Ranks& ranks) {
-  for (const CLI::App* command : program.get_subcommands()) {
-    const bool timed = command->get_name() == "bench" && command->got_subcommand("step");
-    if (ranks.many() && !timed && command->get_name() != "run" && command->get_name() != "resume")
-      throw UsageError(
-          fmt::format("'keeler {}{}' is for one process, and a launcher of MPI has started {}; start it by "
-                      "itself (only run, resume and bench step are shared by ranks)",
-                      command->get_name(), subcommands_of(*command), ranks.count()));
-  }
+void refuse_ranks(const std::string& command, const Ranks& ranks) {
+  const std::vector<std::string> shared = {"keeler", "keeler run", "keeler resume", "keeler bench step"};
+  if (ranks.many() && std::find(shared.begin(), shared.end(), command) == shared.end())
+    throw UsageError(fmt::format("'{}' is for one process, and a launcher of MPI has started {}; start it by itself "
+                                 "(only run, resume and bench step are shared by ranks)",
+                                 command, ranks.count()));
 }
 
-// Whether there is anything to do beyond help.
-bool parse(CLI::App& program, int argc, char** argv, const Ranks& ranks) {
+// The command that a command line asks for.
+struct Parsed {
+  std::string command; // "keeler bench step"
+  Action help;         // prints --help or --version, where these are asked for
+};
+
+Parsed parse(CLI::App& program, int argc, char** argv, const Ranks& ranks) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& asked) { // --help and --version
     if (program.get_subcommands().empty() && program.remaining_size() > 0)
       throw UsageError(usage_fault(program, CLI::ExtrasError("keeler", program.remaining())));
-    program.exit(asked);
-    return false;
+    return {full_name(asked_command(program)) + (asked.get_name() == "CallForVersion" ? " --version" : " --help"),
+            [&program, asked] {
+              program.exit(asked);
+              return ExitCode::done;
+            }};
   } catch (const CLI::ParseError& error) {
     throw UsageError(usage_fault(program, error));
   }
-  refuse_ranks(program, ranks);
-  return true;
+  const std::string command = full_name(asked_command(program));
+  refuse_ranks(command, ranks);
+  return {command, {}};
 }
 
 int run(int argc, char** argv) {
@@ -128,10 +130,12 @@ int run(int argc, char** argv) {
   const std::vector<std::string> arguments(argv, argv + argc);
   add_commands(program, action, arguments, ranks);
   examples_of(program, {"keeler run a-ring-wakes -o wakes", "keeler report wakes", "keeler help run"});
-  bool acts = false;
-  ranks.together([&] { acts = parse(program, argc, argv, ranks); });
-  if (!acts)
-    return end_with(ExitCode::done);
+  Parsed parsed;
+  ranks.together([&] { parsed = parse(program, argc, argv, ranks); });
+  require_same_request({{"the command", parsed.command}}, ranks);
+  release_signals();
+  if (parsed.help)
+    return end_with(parsed.help());
   if (!action)
     return end_with(print_help(program));
   ranks.together([] { set_threads(threads()); }); // refuses what OMP_NUM_THREADS must not ask for
@@ -169,6 +173,7 @@ void fill_closed_streams() {
 } // namespace
 
 int main(int argc, char** argv) {
+  hold_signals();
   let_threads_sleep(argv);
   fill_closed_streams();
   for (const int signal : {SIGXFSZ, SIGPIPE}) // a file-size limit and a closed pipe are then errors of the write

@@ -121,6 +121,8 @@ void print_summary(const std::string& folder, const nlohmann::json& s) {
   const nlohmann::json& cost = s["ns_per_particle_step"];
   print("ns per particle and step            drift {:.0f}, gravity {:.0f}, series {:.1f}\n", cost.value("drift", 0.0),
         cost.value("gravity", 0.0), cost.value("series", 0.0));
+  for (const nlohmann::json& note : s["notes"])
+    print("note                                {}\n", note.get<std::string>());
   print("state                               {}\n", s["state_hash"].get<std::string>());
   print("folder                              {}\n", folder);
 }
@@ -164,6 +166,7 @@ void add_run(CLI::App& program, Action& action, const std::vector<std::string>& 
               {"keeler run scene.toml -o wakes", "keeler run scene.toml --set time.end=10 --threads 4 -o longer",
                "keeler run scene.toml --from start.hdf -o wakes"});
   command.callback([job, arguments, ranks, &action] {
+    requests_from_signals(); // before signals are released
     action = [job, arguments, ranks] {
       job->threads.apply();
       if (ranks.is_first())
@@ -193,6 +196,7 @@ void add_resume(CLI::App& program, Action& action, const std::vector<std::string
   add_common(command, *job);
   examples_of(command, {"keeler resume wakes", "keeler resume wakes --until 20"});
   command.callback([job, arguments, ranks, &action] {
+    requests_from_signals(); // before signals are released
     action = [job, arguments, ranks] {
       job->threads.apply();
       if (ranks.is_first())

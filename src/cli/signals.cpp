@@ -14,6 +14,7 @@ RunRequests requests;
 std::atomic<double> first_stop_s = 0.0;
 
 constexpr double one_request_s = 0.25;
+constexpr int stops[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
 
 double now_s() {
   timespec now{};
@@ -46,10 +47,28 @@ void install(int signal, void (*handler)(int)) {
   sigaction(signal, &action, nullptr);
 }
 
+// SIG_BLOCK or SIG_UNBLOCK.
+void mask_signals(int how) {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int signal : stops)
+    sigaddset(&set, signal);
+  sigaddset(&set, SIGUSR2);
+  sigprocmask(how, &set, nullptr);
+}
+
 } // namespace
 
+void hold_signals() {
+  mask_signals(SIG_BLOCK);
+}
+
+void release_signals() {
+  mask_signals(SIG_UNBLOCK);
+}
+
 RunRequests& requests_from_signals() {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGUSR1})
+  for (const int signal : stops)
     install(signal, ask_to_stop);
   install(SIGALRM, give_up);
   install(SIGUSR2, ask_for_snapshot);

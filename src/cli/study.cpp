@@ -67,6 +67,7 @@ void add_finders(CLI::App& command, Action& action, const std::vector<std::strin
   finders.add_flag("--quick", settings->quick, "3000 particles, three steps, two repeats: a few minutes");
   examples_of(finders, {"keeler study finders -o finders"});
   finders.callback([settings, talk, arguments, &action] {
+    requests_from_signals(); // before signals are released
     settings->arguments = arguments;
     action = [settings, talk] {
       return carry_out(*settings, *talk, study_finders,
@@ -108,6 +109,7 @@ void add_gravity(CLI::App& command, Action& action, const std::vector<std::strin
                    "by default 5000 particles, two repeats, two seeds and half an orbit: two or three minutes");
   examples_of(gravity, {"keeler study gravity -o gravity"});
   gravity.callback([settings, talk, quick, arguments, &gravity, &action] {
+    requests_from_signals(); // before signals are released
     settings->arguments = arguments;
     if (*quick)
       make_quick(*settings, gravity);

@@ -79,6 +79,7 @@ void add_one(CLI::App& study, Action& action, const std::vector<std::string>& ar
                    "few settings, and by default two seeds, an orbit to grow and two to compare: a first look");
   examples_of(command, {"keeler study " + name + " scene.toml -o " + name});
   command.callback([options, arguments, &action] {
+    requests_from_signals(); // before signals are released
     options->settings.arguments = arguments;
     action = [options] { return carry_out(*options); };
   });

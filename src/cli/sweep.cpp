@@ -97,7 +97,10 @@ void add_sweep(CLI::App& program, Action& action) {
   options->talk.add_to(command);
   command.add_flag("--json", options->json, "print the counts and the table of points as JSON");
   examples_of(command, {"keeler sweep grid.toml -o sweep"});
-  command.callback([options, &action] { action = [options] { return carry_out(*options); }; });
+  command.callback([options, &action] {
+    requests_from_signals(); // before signals are released
+    action = [options] { return carry_out(*options); };
+  });
 }
 
 } // namespace keeler

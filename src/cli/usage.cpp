@@ -8,14 +8,6 @@
 namespace keeler {
 namespace {
 
-// The command that the arguments name, as far as they were understood.
-const CLI::App& asked_command(const CLI::App& program) {
-  const CLI::App* command = &program;
-  while (!command->get_subcommands().empty())
-    command = command->get_subcommands().front();
-  return *command;
-}
-
 std::vector<std::string> option_names(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options())
@@ -34,6 +26,13 @@ bool is_option(const std::string& word) {
 }
 
 } // namespace
+
+const CLI::App& asked_command(const CLI::App& program) {
+  const CLI::App* command = &program;
+  while (!command->get_subcommands().empty())
+    command = command->get_subcommands().front();
+  return *command;
+}
 
 std::string full_name(const CLI::App& command) {
   return command.get_parent() ? full_name(*command.get_parent()) + " " + command.get_name() : command.get_name();

@@ -11,6 +11,9 @@ namespace keeler {
 /// "keeler bench drift".
 std::string full_name(const CLI::App& command);
 
+/// The command that a parsed command line names, as far as it was understood.
+const CLI::App& asked_command(const CLI::App& program);
+
 /// The commands below this one, without those that --help does not list.
 std::vector<const CLI::App*> listed_commands(const CLI::App& command);
 

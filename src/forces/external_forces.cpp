@@ -1,7 +1,8 @@
 #include <keeler/forces/force.hpp>
 
 #include "constant_acceleration.hpp"
-#include "satellite.hpp"
+
+#include <keeler/forces/satellite.hpp>
 
 namespace keeler {
 

@@ -11,7 +11,7 @@
 // had always been there. So t_n takes the X before the passage, to first order in the satellite's mass:
 //   X − 2 G m / (κ² S d |d| √(1 + S² τ²)),  d = X_s − X, τ = t − t_n(X)
 // This keeps |ΔX| = e²/(S |d|) right to second order (docs/theory/satellite.md).
-#include "satellite.hpp"
+#include <keeler/forces/satellite.hpp>
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
@@ -20,6 +20,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace keeler {
@@ -160,6 +161,24 @@ Key needed(Key key) {
 }
 
 } // namespace
+
+std::optional<SatellitePassage> dragging_passage(const Parameters& parameters, double orbital_frequency,
+                                                 const Frequencies& frequencies, double least, double from,
+                                                 double until) {
+  const double first = parameters.number("passage"), every = parameters.number("every");
+  const double upright = first + parameters.number("upright_after");
+  const double h =
+      newton_g(orbital_frequency) * parameters.number("mass") / std::pow(std::fabs(parameters.number("distance")), 3);
+  const double drag_per_orbit = 4.0 / (3.0 * std::sqrt(3.0)) * h * two_pi / (frequencies.kappa * frequencies.kappa);
+  const double apart = least / drag_per_orbit; // orbits from upright
+  const auto not_before = [&](double time) {   // the first passage
+    return every > 0.0 ? first + every * std::ceil((time - first) / every) : first;
+  };
+  for (const double passage : {not_before(from), not_before(std::max(from, upright + apart))})
+    if (passage >= from && passage <= until && std::fabs(passage - upright) >= apart)
+      return SatellitePassage{passage, drag_per_orbit * std::fabs(passage - upright)};
+  return std::nullopt;
+}
 
 ForceEntry satellite_entry() {
   const KeyRange turn = {.low = -360, .high = 360}, lengths = {.low = 0, .high = 1e7};

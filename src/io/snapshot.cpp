@@ -201,4 +201,8 @@ Snapshot read_snapshot(const std::filesystem::path& file, const Ranks& ranks) {
   return snapshot;
 }
 
+std::string snapshot_seal(const std::filesystem::path& file) {
+  return has_seal(file) ? seal_in(file) : "";
+}
+
 } // namespace keeler

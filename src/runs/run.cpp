@@ -3,6 +3,7 @@
 #include "broken_state.hpp"
 #include "recorder.hpp"
 #include "runner.hpp"
+#include "shared_request.hpp"
 #include "summary.hpp"
 
 #include <keeler/core/error.hpp>
@@ -211,6 +212,9 @@ RunResult begin(const Scene& scene, const RunOptions& options, RunRequests& requ
   Start start;
   const Ranks& ranks = options.ranks;
   const RunFolder folder(options.folder);
+  require_same_run(scene, options);
+  refuse_checks_of_many(options);
+  ranks.first_does([&] { require_start_file(scene); });
   require_shareable_start(scene, options);
   ranks.first_does([&] {
     if (!options.force)
@@ -237,24 +241,26 @@ RunResult begin(const Scene& scene, const RunOptions& options, RunRequests& requ
   return carry_on(scene, options, requests, folder, simulation, recorder, start);
 }
 
-// The newest whole checkpoint, which the first rank looks for.
+// The newest whole checkpoint, which the first rank looks for. Each rank finds the folder by its own name of it.
 std::filesystem::path newest_checkpoint(const RunOptions& options) {
-  std::string path;
+  std::string name;
   options.ranks.first_does([&] {
     const NewestCheckpoint newest = newest_valid_checkpoint(options.folder);
     if (options.notice)
       for (const std::string& warning : newest.warnings)
         options.notice(warning);
-    path = newest.path.string();
+    name = newest.path.filename().string();
   });
-  options.ranks.from_first(path);
-  return path;
+  options.ranks.from_first(name);
+  return options.folder / name;
 }
 
 RunResult go_on(const RunOptions& options, RunRequests& requests) {
   Start start;
   const Ranks& ranks = options.ranks;
   const RunFolder folder(options.folder);
+  require_same_run(options);
+  refuse_checks_of_many(options);
   std::optional<FolderLock> lock;
   ranks.first_does([&] { lock.emplace(folder.path()); });
   const std::filesystem::path newest = newest_checkpoint(options);
@@ -306,12 +312,10 @@ void store_checkpoint(const std::filesystem::path& file, const SimulationState& 
 }
 
 RunResult start_run(const Scene& scene, const RunOptions& options, RunRequests& requests) {
-  refuse_checks_of_many(options);
   return with_advice(options, [&] { return begin(scene, options, requests); });
 }
 
 RunResult resume_run(const RunOptions& options, RunRequests& requests) {
-  refuse_checks_of_many(options);
   return with_advice(options, [&] { return go_on(options, requests); });
 }
 

@@ -3,6 +3,8 @@
 #include <keeler/core/interrupt.hpp>
 #include <keeler/runs/state_hash.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -19,7 +21,8 @@ constexpr double least_patience = 5.0;    // s, with a stop
 Runner::Runner(const Scene& scene, const RunOptions& options, RunRequests& requests, Simulation& simulation,
                Recorder& recorder, const Stopwatch& watch, std::int64_t last_checkpoint)
     : scene_(scene), options_(options), requests_(requests), simulation_(simulation), recorder_(recorder),
-      watch_(watch), first_step_(simulation.state().step), last_checkpoint_(last_checkpoint),
+      watch_(watch), passage_(doubtful_passage(scene, simulation.orbits(), end_orbits(scene))),
+      first_step_(simulation.state().step), last_checkpoint_(last_checkpoint),
       first_collisions_(simulation.state().collisions.fast + simulation.state().collisions.slow) {
   requests_.patience_s = patience();
   if (options.check)
@@ -65,8 +68,20 @@ bool Runner::must_stop() const {
                             (options_.wall_time_s && watch_.elapsed() + reserve > *options_.wall_time_s));
 }
 
+// An orbit before, when the satellite begins to pull.
+void Runner::tell_of_passage() {
+  constexpr double before = 1.0, next = 1e-6; // orbits
+  if (!passage_ || simulation_.orbits() < passage_->orbits - before)
+    return;
+  recorder_.log("satellite passage", {{"orbits", passage_->orbits}, {"drag", passage_->drag}});
+  if (options_.notice)
+    options_.notice(fmt::format("note: {}", in_words(*passage_)));
+  passage_ = doubtful_passage(scene_, passage_->orbits + next, end_orbits(scene_));
+}
+
 void Runner::record() {
   const std::int64_t step = simulation_.state().step;
+  tell_of_passage();
   recorder_.contacts();
   if (due(scene_.output.series_every))
     recorder_.sample(simulation_);

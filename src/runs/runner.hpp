@@ -6,6 +6,7 @@
 
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/runs/run.hpp>
+#include <keeler/scene/doubts.hpp>
 
 #include <optional>
 
@@ -37,9 +38,13 @@ private:
   double passes_between_stops() const { return static_cast<double>(scene_.kick_interval()); }
   bool must_stop() const;
   void record();
+  void tell_of_passage();
   bool checkpoint_due_by_clock() const;
-  // The exact sum is over pairs, wherever they are.
-  bool has_force_checks() const { return scene_.gravity && scene_.gravity->by_pairs() && !ranks().many(); }
+  // The exact sum is over pairs, wherever they are. A particle alone has its own images, whose pulls cancel: nothing that
+  // an error could be a part of.
+  bool has_force_checks() const {
+    return scene_.gravity && scene_.gravity->by_pairs() && !ranks().many() && simulation_.count() > 1;
+  }
   bool force_check_due() const;
   unsigned patience() const;
   void take_pace(double now);
@@ -52,6 +57,7 @@ private:
   Recorder& recorder_;
   const Stopwatch& watch_; // since the command began, as a queue counts
   std::optional<StepCheck> check_;
+  std::optional<SatellitePassage> passage_; // the next one that a cell cannot show well
   std::int64_t first_step_, last_checkpoint_;
   std::uint64_t first_collisions_;
   std::int64_t paced_step_ = first_step_;

@@ -4,6 +4,7 @@
 #include <keeler/core/memory.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/scene/doubts.hpp>
 
 #include <fmt/format.h>
 
@@ -59,6 +60,13 @@ nlohmann::ordered_json energy_balance(const std::optional<Transport>& t) {
           {"steady", t->steady}};
 }
 
+// What a user must know of the results: empty where nothing is amiss.
+std::vector<std::string> notes(const Scene& scene, double orbits) {
+  if (const std::optional<SatellitePassage> passage = doubtful_passage(scene, 0.0, orbits))
+    return {in_words(*passage)};
+  return {};
+}
+
 } // namespace
 
 std::optional<Transport> transport_of_run(const std::filesystem::path& series, const RingScale& scale,
@@ -111,6 +119,7 @@ nlohmann::ordered_json summarise(Simulation& simulation, const Scene& scene, con
   json["finder_gave_up"] = state.collisions.gave_up;
   json["largest_overlap"] = simulation.largest_overlap();
   json["force_error"] = force_error(cost.force_checks);
+  json["notes"] = notes(scene, orbits);
   json["energy_j"] = energies(simulation, scene);
   json["energy_balance"] = energy_balance(transport);
   json["wall_s"] = cost.wall_s;

@@ -93,6 +93,11 @@ Estimate ratio_of(const Values& above, const Values& below) {
   return {ratio, block_mean(rest).error / std::fabs(block_mean(below).value)};
 }
 
+// Of a part where nothing moves or all swings about zero it is the ratio of two roundings.
+bool says_something(const Estimate& ratio) {
+  return std::isfinite(ratio.value) && !(ratio.error >= std::fabs(ratio.value));
+}
+
 } // namespace
 
 RingScale RingScale::of(const Patch& patch, bool driven) {
@@ -145,8 +150,8 @@ Transport transport(const SeriesTable& series, const RingScale& scale, const Orb
     result.gravitational = Estimate{};
   if (complete) {
     result.total = block_mean(rates.total);
-    if (!scale.driven)
-      result.balance = ratio_of(rates.loss, rates.total);
+    if (const Estimate balance = ratio_of(rates.loss, rates.total); !scale.driven && says_something(balance))
+      result.balance = balance;
   }
   const Values& all_dispersions = series.of("dispersion_x_m_s");
   Values dispersions;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace keeler {
 namespace {
@@ -66,27 +67,97 @@ void doubt_kicks(const Scene& scene, double density, Lines& lines) {
                     figures(apart, 3), figures(r_h, 2), figures(longest, 2)));
 }
 
+// Laws whose coefficient falls with the speed find an equilibrium at some speed. Friction loses energy besides, and the
+// critical value is one of smooth spheres.
+void doubt_equilibrium(const Scene& scene, const PatchScale& patch, Lines& lines) {
+  constexpr double fast = 100.0; // m/s: far above any speed in a ring
+  if (scene.collisions.friction || patch.particle_count < 2)
+    return;
+  const bool fresh = !scene.start_from; // then moonlets do not count
+  const double depth = fresh ? scene.optical_depth() : patch.optical_depth;
+  const double radius = fresh ? scene.particles.sizes.largest : patch.largest_radius;
+  const double kept = scene.collisions.restitution({fast, radius, radius});
+  if (const double critical = critical_restitution(depth); kept >= critical)
+    lines.push_back(fmt::format(
+        "the coefficient of restitution is {} however fast particles collide: above {} at an optical depth of {} "
+        "collisions lose less than the shear gives, there is no equilibrium, and the velocity dispersion grows without "
+        "end (critical value of Goldreich & Tremaine 1978, (1 - eps^2)(1 + tau^2) = 0.61, right to 0.03)",
+        figures(kept, 3), figures(critical, 3), figures(depth, 3)));
+}
+
+void doubt_room(const PatchScale& patch, Lines& lines) {
+  constexpr double enough = 10.0; // diameters
+  const double side = std::min(patch.size_x, patch.size_y), spans = side / (2.0 * patch.largest_radius);
+  if (patch.largest_radius > 0.0 && spans < enough)
+    lines.push_back(
+        fmt::format("the box spans {} diameters of its largest particle: below {:g} particles feel their own "
+                    "images, and velocity dispersion and viscosity depend on the box; widen it",
+                    figures(spans, 2), enough));
+}
+
+double largest_radius(const Scene& scene) {
+  double radius = scene.particles.sizes.largest;
+  for (const MoonletSettings& moonlet : scene.moonlets)
+    radius = std::max(radius, moonlet.radius);
+  return radius;
+}
+
+void doubt_satellite(const Scene& scene, Lines& lines) {
+  const double end = static_cast<double>(scene.time.end_step) * scene.time.step;
+  if (const std::optional<SatellitePassage> passage = doubtful_passage(scene, 0.0, end))
+    lines.push_back(in_words(*passage));
+}
+
 } // namespace
+
+double critical_restitution(double optical_depth) {
+  return std::sqrt(1.0 - 0.61 / (1.0 + optical_depth * optical_depth));
+}
+
+std::optional<SatellitePassage> doubtful_passage(const Scene& scene, double from, double until) {
+  for (const ForceSettings& force : scene.external_forces)
+    if (std::string_view(force.entry->table) == "satellite")
+      return dragging_passage(force.parameters, scene.planet.orbital_frequency, scene.planet.frequencies, doubtful_drag,
+                              from, until);
+  return std::nullopt;
+}
+
+std::string in_words(const SatellitePassage& passage) {
+  return fmt::format(
+      "the satellite's passage at orbit {} moves particles at {} of the speed at which it sweeps over the "
+      "cell, and drags them along: up to {:g} the cell shows what a ring does, at 1 particles are thrown "
+      "across it; end the run before this passage, or give each passage a run of its own (--from the "
+      "last snapshot, with upright_after from that passage)",
+      figures(passage.orbits, 4), figures(passage.drag, 2), doubtful_drag);
+}
 
 std::vector<std::string> doubts(const Scene& scene, const PatchScale& patch) {
   Lines lines;
   doubt_number(patch.particle_count, lines);
   if (scene.particles.density > 0.0 && scene.particles.density < 50.0) // 0: the particles come from elsewhere
     lines.push_back("the density is in kg/m^3: water ice has 917");
+  doubt_room(patch, lines);
+  doubt_equilibrium(scene, patch, lines);
   if (scene.gravity && scene.gravity->by_pairs())
     doubt_room_for_wakes(patch, lines);
   if (scene.gravity)
     doubt_kicks(scene, scene.start_from ? patch.density : scene.particles.density, lines);
+  doubt_satellite(scene, lines);
   return lines;
 }
 
 std::vector<std::string> doubts(const Scene& scene) {
   if (!scene.start_from)
-    return doubts(scene, {scene.particles.count, scene.size_x, scene.size_y,
-                          critical_wavelength(scene.surface_density(), scene.planet)});
+    return doubts(scene, {.particle_count = scene.particles.count,
+                          .size_x = scene.size_x,
+                          .size_y = scene.size_y,
+                          .lambda_cr = critical_wavelength(scene.surface_density(), scene.planet),
+                          .optical_depth = scene.optical_depth(),
+                          .largest_radius = largest_radius(scene)});
   Lines lines;
   if (scene.gravity)
     doubt_kicks(scene, 0.0, lines);
+  doubt_satellite(scene, lines);
   return lines;
 }
 

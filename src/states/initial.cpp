@@ -169,6 +169,12 @@ void spin_aggregates(const Scene& scene, Patch& patch) {
 
 } // namespace
 
+void require_start_file(const Scene& scene) {
+  std::error_code unknown; // what cannot be looked at is reported when it is read
+  if (scene.start_from && !std::filesystem::exists(*scene.start_from, unknown) && !unknown)
+    throw IoError(fmt::format("start.from names '{}', which does not exist", *scene.start_from));
+}
+
 Patch patch_from_snapshot(const std::string& path, const Scene& scene) {
   return patch_from_snapshot(read_snapshot(path).patch, path, scene);
 }
@@ -193,14 +199,24 @@ Patch patch_from_snapshot(Patch patch, const std::string& path, const Scene& sce
 }
 
 PatchScale scale_of(const Patch& patch, const Ranks& ranks) {
-  auto masses = exact_total<ExactSum>(patch.size(), [&](ExactSum& sum, std::size_t k) { sum += patch.masses[k]; });
-  auto cubes =
-      exact_total<ExactSum>(patch.size(), [&](ExactSum& sum, std::size_t k) { sum += std::pow(patch.radii[k], 3); });
-  ranks.merge({&masses, &cubes});
-  const double mass = masses.value();
-  return {ranks.sum(patch.size()), patch.box.size_x, patch.box.size_y,
-          critical_wavelength(newton_g(patch.orbital_frequency), mass / patch.box.area(), patch.frequencies.kappa),
-          mass / (4.0 / 3.0 * pi * cubes.value())};
+  const auto total = [&](const std::function<double(std::size_t)>& term) {
+    return exact_total<ExactSum>(patch.size(), [&](ExactSum& sum, std::size_t k) { sum += term(k); });
+  };
+  auto masses = total([&](std::size_t k) { return patch.masses[k]; });
+  auto squares = total([&](std::size_t k) { return std::pow(patch.radii[k], 2); });
+  auto cubes = total([&](std::size_t k) { return std::pow(patch.radii[k], 3); });
+  ranks.merge({&masses, &squares, &cubes});
+  const double mass = masses.value(), area = patch.box.area();
+  PatchScale scale;
+  scale.particle_count = ranks.sum(patch.size());
+  scale.size_x = patch.box.size_x;
+  scale.size_y = patch.box.size_y;
+  scale.lambda_cr = critical_wavelength(newton_g(patch.orbital_frequency), mass / area, patch.frequencies.kappa);
+  scale.density = mass / (4.0 / 3.0 * pi * cubes.value());
+  scale.optical_depth = pi * squares.value() / area;
+  scale.largest_radius =
+      ranks.largest(patch.radii.empty() ? 0.0 : *std::max_element(patch.radii.begin(), patch.radii.end()));
+  return scale;
 }
 
 namespace {

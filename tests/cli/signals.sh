@@ -24,6 +24,25 @@ for signal in INT TERM USR1; do
   stopped $signal "$work/$signal"
 done
 
+# One that waits when the program begins, as one does that comes before there are handlers.
+pending='import os, signal, sys
+number = getattr(signal, sys.argv[1])
+signal.pthread_sigmask(signal.SIG_BLOCK, [number])
+os.kill(os.getpid(), number)
+os.execv(sys.argv[2], sys.argv[2:])'
+for signal in INT TERM HUP USR1; do
+  code=0
+  timeout 60 python3 -c "$pending" "SIG$signal" "$keeler" "${endless[@]}" -o "$work/early" --wall-time 3 \
+    2>"$work/err" || code=$?
+  [ "$code" -eq 1 ] || fail "early $signal: exit $code: $(cat "$work/err")"
+  grep -q 'stopped before the first step (on request)' "$work/err" || fail "early $signal: $(cat "$work/err")"
+  [ ! -e "$work/early" ] || fail "early $signal: something was written"
+done
+# other commands end as any program
+code=0
+timeout 60 python3 -c "$pending" SIGUSR1 "$keeler" check "$work/scene.toml" >"$work/out" || code=$?
+[ "$code" -eq 138 ] || fail "early USR1, keeler check: exit $code"
+
 runs 75 "${endless[@]}" -o "$work/wall" --wall-time 0.5
 stopped "--wall-time" "$work/wall"
 runs 75 resume "$work/wall" --until 1e4 --wall-time 0.5

@@ -194,6 +194,68 @@ refused "'keeler bench drift' is for one process" bench drift --count 100
 refused 'particles.count' run "$work/uniform.toml" -o "$work/none" --set particles.count=-1
 refused "is not empty" run "$work/uniform.toml" -o "$work/uniform-1"
 
+# Ranks that are asked for different runs begin none: exit 2 on all, one line that names the difference, nothing written.
+# differ WORDS FIRST OTHERS: arguments of the first rank and of two others, which are in the folders a and b
+mkdir "$work/a" "$work/b"
+differ() {
+  local words=$1 code=0 of_first of_others
+  read -ra of_first <<<"$2"
+  read -ra of_others <<<"$3"
+  OMP_NUM_THREADS=1 timeout 60 "$mpiexec" --oversubscribe --bind-to none "${transport[@]}" \
+    -n 1 -wdir "$work/a" "$keeler" "${of_first[@]}" : -n 2 -wdir "$work/b" "$keeler" "${of_others[@]}" \
+    >"$work/out" 2>"$work/all" </dev/null || code=$?
+  grep '^keeler: ' "$work/all" >"$work/err"
+  [ "$code" -eq 2 ] || fail "$words: exit $code instead of 2: $(cat "$work/all")"
+  [ "$(wc -l <"$work/err")" -eq 1 ] || fail "$words: not one line: $(cat "$work/all")"
+  grep -qF -- "$words" "$work/err" || fail "no '$words' in: $(cat "$work/err")"
+  [ ! -s "$work/out" ] || fail "$words: printed $(cat "$work/out")"
+  [ ! -e "$work/none" ] || fail "$words: something was written"
+}
+uniform="run $work/uniform.toml -o $work/none"
+differ 'rank 1 is asked for something else than rank 0: it has title = "wakes", and rank 0 has title = "uniform"' \
+  "$uniform" "run $work/wakes.toml -o $work/none"
+differ 'it has time.end = 0.3, and rank 0 has time.end = 0.2' "$uniform" "$uniform --set time.end=0.3"
+differ 'and rank 0 has gravity.solver = "fft"' "$uniform --set gravity.solver=fft" "$uniform"
+differ "it has the folder = $work/b/none, and rank 0 has the folder = $work/none" "$uniform" \
+  "run $work/uniform.toml -o none"
+differ 'it has --force = given' "$uniform" "$uniform --force"
+differ 'it has --wall-time = 10' "$uniform" "$uniform --wall-time 10"
+differ 'it has the command = keeler bench step, and rank 0 has the command = keeler run' "$uniform" \
+  'bench step --count 1000 --solver fft'
+differ 'it has the command = keeler run, and rank 0 has the command = keeler bench step' \
+  'bench step --count 1000 --solver fft' "$uniform"
+differ 'the command = keeler resume' "resume $work/uniform-1" "$uniform"
+differ 'the command = keeler run --help' "$uniform" 'run --help'
+differ 'the command = keeler --version' '--version' "$uniform"
+differ "the command = keeler, and" "$uniform" ''
+differ 'it has --until = 0.3, and rank 0 has --until = not given' "resume $work/uniform-1" \
+  "resume $work/uniform-1 --until 0.3"
+differ 'the folder = ' "resume $work/uniform-1" "resume $work/uniform-2-1"
+differ 'it has --count = 3000, and rank 0 has --count = 1000' 'bench step --count 1000 --solver fft' \
+  'bench step --count 3000 --solver fft'
+differ 'it has --repeats = 2' 'bench step --count 1000 --solver fft --repeats 1' \
+  'bench step --count 1000 --solver fft --repeats 2'
+differ "'keeler info' is for one process" "$uniform" "info $work/uniform-1"
+# one name, and another file in the folder of each
+cp "$(last_of "$work/uniform-1")" "$work/a/start.hdf"
+cp "$(last_of "$work/uniform-4-2" | sed s/000002/000001/)" "$work/b/start.hdf"
+differ "the content of '/proc/self/cwd/start.hdf' = KEELER-SEAL" "$uniform --from /proc/self/cwd/start.hdf" \
+  "$uniform --from /proc/self/cwd/start.hdf"
+printf '1.0\n2.0\n' >"$work/a/radii.txt"
+printf '1.0\n2.5\n' >"$work/b/radii.txt"
+sed 's|law = "equal", radius = 1.0|law = "file", path = "/proc/self/cwd/radii.txt"|' "$work/uniform.toml" >"$work/radii.toml"
+differ "the content of '/proc/self/cwd/radii.txt'" "run $work/radii.toml -o $work/none" "run $work/radii.toml -o $work/none"
+# Threads and the words of a path are each rank's own.
+(cd "$work" && OMP_NUM_THREADS=1 "$mpiexec" --oversubscribe --bind-to none "${transport[@]}" \
+  -n 1 -wdir "$work/a" "$keeler" run "$work/uniform.toml" -o ../mixed --threads 1 : \
+  -n 1 -wdir "$work" "$keeler" run uniform.toml -o mixed --threads 2 >"$work/out" 2>"$work/all") ||
+  fail "own threads and paths: $(cat "$work/all")"
+same "own threads and paths" "$work/uniform-1" "$work/mixed"
+
+# A start that is not there is told before what else would be refused.
+shared 2 1 4 run "$work/wakes.toml" -o "$work/none" --from "$work/absent.hdf" --set gravity.solver=tree
+grep -qF "start.from names '$work/absent.hdf', which does not exist" "$work/err" || fail "absent: $(cat "$work/err")"
+
 # Two builds do not share a run, whichever comes first.
 for programs in "$other_build : $keeler" "$keeler : $other_build"; do
   first=${programs%% : *} second=${programs##* : } code=0

@@ -1,8 +1,10 @@
 // What is allowed but seldom meant, and what a patch cannot show: said before a run by `keeler check`, and by the run.
 #pragma once
 
+#include <keeler/forces/satellite.hpp>
 #include <keeler/scene/scene.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,12 +16,24 @@ struct PatchScale {
   double size_x = 0.0, size_y = 0.0; ///< m
   double lambda_cr = 0.0;            ///< m
   double density = 0.0;              ///< of the particles themselves, kg m^-3: asked where the scene does not give it
+  double optical_depth = 0.0;        ///< Σ π r² / area
+  double largest_radius = 0.0;       ///< m
 };
 
 /// A line each, with numbers; none where nothing is amiss.
 std::vector<std::string> doubts(const Scene& scene, const PatchScale& patch);
 
-/// The same before there is a patch: of one that a start file holds only the time step can be judged.
+/// The same before there is a patch: of one that a start file holds only the time step and forces can be judged.
 std::vector<std::string> doubts(const Scene& scene);
+
+/// Returns the first passage of the scene's satellite from `from` to `until` (orbits) that a cell cannot show well.
+std::optional<SatellitePassage> doubtful_passage(const Scene& scene, double from, double until);
+
+/// What such a passage does, and what to do instead.
+std::string in_words(const SatellitePassage& passage);
+
+/// The coefficient of restitution above which bounces of smooth spheres lose less than the shear gives at an optical
+/// depth, so that the velocity dispersion grows without end: (1 − ε²)(1 + τ²) = 0.61 (Goldreich & Tremaine 1978).
+double critical_restitution(double optical_depth);
 
 } // namespace keeler

@@ -18,6 +18,9 @@ namespace keeler {
 Patch initial_patch(const Scene& scene, const std::function<void(const StartProgress&)>& progress = {},
                     const Ranks& ranks = {});
 
+/// Throws IoError where the snapshot that the scene starts from does not exist.
+void require_start_file(const Scene& scene);
+
 /// The patch of a snapshot, made the start of a run of this scene: the scene's frequencies, its own box, time zero.
 /// Throws IoError; UsageError when it was made at another place; InvariantError for a particle that no ring has, named.
 Patch patch_from_snapshot(const std::string& path, const Scene& scene);

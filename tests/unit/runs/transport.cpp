@@ -92,6 +92,25 @@ TEST_CASE("viscosities and balance of a series that is known, after the transien
                        doctest::Contains("choose a longer part"), UsageError);
 }
 
+TEST_CASE("a balance whose error is larger than it, or that is nothing over nothing, is none") {
+  const auto balanced = [](const SeriesTable& series) {
+    return transport(series, {1e6, 1.9565e-4, 1.5}, {.since = 2.0, .until = {}}).balance.has_value();
+  };
+  SeriesTable series = made_up(80, 1.9565e-4, 1e6, 1.5);
+  CHECK(balanced(series));
+  const auto column = [&](const std::string& name) -> std::vector<double>& {
+    return series.columns[static_cast<std::size_t>(std::find(series.names.begin(), series.names.end(), name) -
+                                                   series.names.begin())];
+  };
+  for (std::size_t k = 0; k < series.rows(); ++k) // a loss of either sign
+    column("energy_lost_j")[k] = std::sin(12.9898 * static_cast<double>(k * k));
+  CHECK(!balanced(series));
+  for (const std::string name : {"energy_lost_j", "kick_work_j", "random_energy_j", "translational_flux_kg_m2_s",
+                                 "collisional_flux_kg_m2_s", "gravitational_viscosity_m2_s", "potential_energy_j"})
+    std::fill(column(name).begin(), column(name).end(), 0.0);
+  CHECK(!balanced(series));
+}
+
 TEST_CASE("gravity's energy and stress are in the rows that are due, and a scene without gravity has none") {
   const SeriesTable with = series_of({"time.end=0.4", "output.series_every=0.02", "output.stress_every=0.1"});
   const std::vector<double>& potential = with.of("potential_energy_j");

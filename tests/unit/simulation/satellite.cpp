@@ -2,6 +2,7 @@
 // the passage, and what a ring's streamlines do downstream.
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/forces/satellite.hpp>
 #include <keeler/simulation/simulation.hpp>
 #include <keeler/states/initial.hpp>
 
@@ -9,6 +10,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace keeler;
@@ -247,4 +249,53 @@ TEST_CASE("a satellite inside the box is refused, also where only a start file k
   Patch wide = initial_patch(parse_scene(scene, "s.toml"));
   wide.box.size_x = 60.0;
   CHECK_THROWS_AS(Simulation(parse_scene(scene + satellite, "s.toml"), wide), UsageError);
+}
+
+namespace {
+
+std::optional<SatellitePassage> dragging(const Scene& scene, double least, double from, double until) {
+  return dragging_passage(scene.external_forces.front().parameters, scene.planet.orbital_frequency,
+                          scene.planet.frequencies, least, from, until);
+}
+
+} // namespace
+
+// The speed of the sweep: the passage is at t(X) = (X_s t_0 − X t_u)/(X_s − X), so dX/dt = d/(t_0 − t_u).
+TEST_CASE("the drag of a passage is the fastest that it moves a particle over the speed of its sweep") {
+  const double upright = 40.0;
+  const Scene scene = scene_with(1e-5, fmt::format("passage = 3.0\nupright_after = {}\n", upright), 6.0);
+  const Patch start = circles(scene, {0.0});
+  Simulation simulation(scene, start);
+  double fastest = 0.0, before = 0.0, time = 0.0;
+  while (simulation.orbits() < 6.0 - 1e-9) {
+    simulation.advance();
+    const double now = after(simulation, start, 0).gained_x, rad = two_pi * simulation.orbits();
+    fastest = std::max(fastest, std::fabs(now - before) / (rad - time));
+    before = now;
+    time = rad;
+  }
+  const std::optional<SatellitePassage> passage = dragging(scene, 0.0, 0.0, 6.0);
+  REQUIRE(passage.has_value());
+  CHECK(passage->orbits == 3.0);
+  CHECK(relative(fastest / (distance / (two_pi * upright)), passage->drag) < 1e-2);
+}
+
+TEST_CASE("the passages that drag particles along are those far from the time when the cell stands upright") {
+  // 0.77 · 1e-3 · 2π an orbit: 0.6 at 124 orbits from 30
+  const Scene scene = scene_with(1e-3, "passage = 10.0\nevery = 25.0\nupright_after = 20.0\n", 1.0);
+  CHECK(!dragging(scene, doubtful_drag, 0.0, 150.0));
+  const std::optional<SatellitePassage> first = dragging(scene, doubtful_drag, 0.0, 400.0);
+  REQUIRE(first.has_value());
+  CHECK(first->orbits == 160.0);
+  CHECK(relative(first->drag, 4.0 / (3.0 * std::sqrt(3.0)) * 1e-3 * two_pi * 130.0) < 1e-9);
+  CHECK(dragging(scene, doubtful_drag, 160.0 + 1e-6, 400.0)->orbits == 185.0);
+  CHECK(!dragging(scene, doubtful_drag, 160.0 + 1e-6, 184.0));
+  // before it
+  const Scene late = scene_with(1e-3, "passage = 210.0\nevery = 100.0\nupright_after = 200.0\n", 1.0);
+  CHECK(dragging(late, doubtful_drag, 0.0, 1000.0)->orbits == 10.0);
+  CHECK(dragging(late, doubtful_drag, 250.0, 1000.0)->orbits == 610.0); // 310, 410 and 510 are near 410
+  // without `every` there is one
+  const Scene once = scene_with(1e-3, "passage = 10.0\nupright_after = 200.0\n", 1.0);
+  CHECK(dragging(once, doubtful_drag, 0.0, 1000.0)->orbits == 10.0);
+  CHECK(!dragging(once, doubtful_drag, 11.0, 1000.0));
 }

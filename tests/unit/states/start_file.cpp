@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 
@@ -97,6 +98,51 @@ TEST_CASE("doubts about a patch have numbers, and a large one none") {
   CHECK(doubts(scene({"box.size_in_wavelengths=[8,8]", "particles.optical_depth=0.5",
                       "particles.velocity_dispersion=3.5"}))
             .empty());
+}
+
+// ε_cr of Goldreich & Tremaine (1978), sqrt(1 - 0.61/(1 + τ²)): 0.625 at τ 0, 0.834 at 1.
+TEST_CASE("a restitution without an equilibrium is doubted, in a scene and of a start from a file") {
+  CHECK(critical_restitution(0.0) == doctest::Approx(std::sqrt(0.39)));
+  CHECK(critical_restitution(1.0) == doctest::Approx(0.8337).epsilon(1e-4));
+  const std::string file = (std::filesystem::temp_directory_path() / "keeler-test-elastic.hdf").string();
+  const std::vector<std::string> many = {"box.size=[100,100]", "particles.count=1600"}; // τ 0.5, ε_cr 0.7155
+  write_snapshot(file, initial_patch(scene(many)), {scene(many).resolved, {}});
+  const auto said = [&](std::vector<std::string> overrides) {
+    const Scene from = scene(overrides, file);
+    overrides.insert(overrides.end(), many.begin(), many.end());
+    const auto of = [](const std::vector<std::string>& lines) {
+      return std::count_if(lines.begin(), lines.end(), [](const std::string& line) {
+        return line.find("above 0.716 at an optical depth of 0.503 collisions lose less than the shear gives") !=
+               std::string::npos;
+      });
+    };
+    const auto fresh = of(doubts(scene(overrides)));
+    CHECK(of(doubts(from, scale_of(initial_patch(from)))) == fresh);
+    return fresh;
+  };
+  const std::string constant = "collisions.restitution={{ law = \"constant\", value = {} }}";
+  CHECK(said({fmt::format(fmt::runtime(constant), 0.71)}) == 0);
+  CHECK(said({fmt::format(fmt::runtime(constant), 0.72)}) == 1);
+  CHECK(said({fmt::format(fmt::runtime(constant), 1)}) == 1);
+  CHECK(said({fmt::format(fmt::runtime(constant), 1), "collisions.restitution.largest=0.7"}) == 0);
+  CHECK(said({fmt::format(fmt::runtime(constant), 1), "collisions.friction.tangential_restitution=0.5"}) == 0);
+  CHECK(said({"collisions.restitution={ law = \"table\", table = [[1e-3, 0.2], [1e-2, 0.8]] }"}) == 1);
+  CHECK(said({}) == 0); // frosty ice loses more, the faster it collides
+  std::filesystem::remove(file);
+}
+
+TEST_CASE("a box of a few diameters is doubted, a moonlet's included") {
+  const auto first = [](const std::vector<std::string>& overrides) {
+    for (const std::string& line : doubts(scene(overrides)))
+      if (line.find("diameters") != std::string::npos)
+        return line.substr(0, line.find(':'));
+    return std::string();
+  };
+  CHECK(first({}).empty());
+  CHECK(first({"box.size=[19, 40]", "particles.count=9"}) == "the box spans 9.5 diameters of its largest particle");
+  CHECK(first({"moonlet=[{ radius = 5.0, density = 600.0 }]", "box.size=[100, 100]"}).empty());
+  CHECK(first({"moonlet=[{ radius = 5.0, density = 600.0 }]", "box.size=[100, 80]"}) ==
+        "the box spans 8 diameters of its largest particle");
 }
 
 TEST_CASE("of a start from a file the kick interval is judged by the file's own density") {

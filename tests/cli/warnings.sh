@@ -1,0 +1,72 @@
+#!/bin/bash
+# warnings.sh KEELER SOURCE_DIR: what `keeler check` and a run warn of, and that they do not print ratios of nothing.
+# shellcheck source=tests/cli/helpers.sh
+source "$(dirname "$0")/helpers.sh"
+
+# A restitution without an equilibrium, and a box of a few diameters.
+small_scene
+elastic=(--set 'collisions.restitution={ law = "constant", value = 0.9 }')
+accepts "elastic" check "$work/scene.toml" "${elastic[@]}"
+prints "elastic" "note: the coefficient of restitution is 0.9 however fast particles collide: above "
+prints "elastic" "Goldreich & Tremaine 1978"
+accepts "frost" check "$work/scene.toml"
+grep -q "however fast" "$work/out" && fail "frost: $(cat "$work/out")"
+accepts "a narrow box" check "$work/scene.toml" --set 'box.size=[8, 50]' --set particles.count=30
+prints "a narrow box" "note: the box spans 4 diameters of its largest particle"
+runs 0 run "$work/scene.toml" "${elastic[@]}" --set time.end=0.01 -o "$work/elastic"
+grep -q '^keeler: note: the coefficient of restitution is 0.9' "$work/err" || fail "a run: $(cat "$work/err")"
+
+# A passage of a satellite that the cell cannot show. With `every` the fourth of Lewis & Stewart's ringlet is the first
+# such one; in the runs here a single one is far from the time when the cell stands upright.
+ringlet=$source_dir/examples/papers/lewis-stewart-2011/scene.toml
+accepts "one passage" check "$ringlet"
+grep -q "the satellite's passage" "$work/out" && fail "one passage: $(cat "$work/out")"
+accepts "passages" check "$ringlet" --set satellite.every=40.2 --set time.end=325
+prints "passages" "note: the satellite's passage at orbit 124.6 moves particles at 0."
+accepts "passages that end in time" check "$ringlet" --set satellite.every=40.2 --set time.end=124
+grep -q "the satellite's passage" "$work/out" && fail "passages that end in time: $(cat "$work/out")"
+far=(run "$ringlet" --set particles.optical_depth=1e-3 --set satellite.passage=1.5 --set satellite.upright_after=100)
+runs 0 "${far[@]}" --set time.end=0.4 -o "$work/before"
+[ "$(grep -c "satellite's passage" "$work/err" "$work/out")" = "$work/err:0
+$work/out:0" ] || fail "before a passage: $(cat "$work/err" "$work/out")"
+runs 0 "${far[@]}" --set time.end=2 -o "$work/passage"
+[ "$(grep -c "^keeler: note: the satellite's passage at orbit 1.5 moves particles at 1.1 of the speed" "$work/err")" -eq 2 ] ||
+  fail "a passage, at the start and when it comes: $(cat "$work/err")"
+prints "a passage" "note                                the satellite's passage at orbit 1.5"
+python3 - "$work" <<'END' || fail "a passage in the files"
+import json, sys
+work = sys.argv[1]
+log = [json.loads(line) for line in open(f"{work}/passage/log.jsonl")]
+passages = [line for line in log if line["event"] == "satellite passage"]
+assert len(passages) == 1 and passages[0]["orbits"] == 1.5 and 1.0 < passages[0]["drag"] < 1.2, passages
+notes = json.load(open(f"{work}/passage/summary.json"))["notes"]
+assert len(notes) == 1 and notes[0].startswith("the satellite's passage at orbit 1.5"), notes
+assert json.load(open(f"{work}/before/summary.json"))["notes"] == []
+END
+
+# One particle, and two that never meet: nothing is divided by nothing.
+for count in 1 2; do
+  few=("$work/scene.toml" --set "particles.count=$count" --set output.series_every=0.05 --set output.stress_every=0.05)
+  for more in "gravity.solver=tree" "gravity.solver=fft" "gravity.solver=direct" "collisions.friction.tangential_restitution=0.5"; do
+    name="few-$count-${more%%.*}-${more##*=}"
+    runs 0 run "${few[@]}" --set "$more" -o "$work/$name"
+    cp "$work/out" "$work/printed"
+    runs 0 analyze "$work/$name"
+    cat "$work/printed" "$work/out" >"$work/all"
+    runs 0 report "$work/$name"
+    grep -qE '[^a-z]-?(nan|inf)([^a-z]|$)|energy balance|left out of gravity' "$work/all" && fail "$name: $(cat "$work/all")"
+    grep -qiE '>-?(nan|inf)<' "$work/$name"/report.html && fail "$name: the report"
+    runs 0 analyze "$work/$name" --json
+    python3 - "$work/out" "$work/$name/summary.json" "$count" <<'END' || fail "$name: $(cat "$work/out")"
+import json, sys
+def no_constant(name):
+    raise ValueError(name)
+analysis, summary = (json.load(open(file), parse_constant=no_constant) for file in sys.argv[1:3])
+assert analysis["energy_balance"] is None
+assert summary["energy_balance"] is None or summary["energy_balance"]["ratio"] is None
+assert sys.argv[3] != "1" or summary["force_error"] is None
+END
+  done
+done
+
+report
