@@ -116,6 +116,11 @@ std::vector<Quantity> make_quantities() {
                    [column](const Measurements& m) { return over(column_mean(m, column), radius_speed(m)); }});
   }
   all.push_back(
+      {{"dispersion_without_waves_x", "m_s", "velocity dispersion along x without box-long epicyclic waves, m/s"},
+       [](const Measurements& m) { return column_mean(m, "dispersion_without_waves_x_m_s"); }});
+  all.push_back({{"epicyclic_wave_fraction", "", "fraction of the epicyclic energy in these waves"},
+                 [](const Measurements& m) { return column_mean(m, "epicyclic_wave_fraction"); }});
+  all.push_back(
       {{"scale_height", "m", "√⟨z²⟩, m"}, [](const Measurements& m) { return column_mean(m, "scale_height_m"); }});
   for (const QuantityName& name : {QuantityName{"mean_spin", "omega", "about the vertical, Ω; with friction"},
                                    QuantityName{"spin_energy_ratio", "", "of spins and random motion; with friction"}})

@@ -34,6 +34,14 @@ void print_spins(const SpinAnalysis& s) {
         s.mean_omega[0], s.mean_omega[1], s.mean_omega[2], s.dispersion_omega, s.energy_ratio);
 }
 
+void print_epicyclic_waves(const WaveAnalysis& w) {
+  const auto& c = w.dispersion_m_s;
+  fmt::print(
+      "box-long waves       {:.2g} of the epicyclic energy, axisymmetric; without them Toomre Q {:.3g}, dispersion "
+      "{:.3g} {:.3g} {:.3g} m/s\n",
+      w.energy_fraction, w.toomre_q, c[0], c[1], c[2]);
+}
+
 void print_local(const Analysis& a) {
   const LocalAnalysis& l = a.local;
   const auto& c = l.dispersion_m_s;
@@ -77,6 +85,8 @@ void print_clusters(const ClusterAnalysis& c) {
 
 void print_structure(const Analysis& a) {
   print_wakes(a);
+  if (a.waves)
+    print_epicyclic_waves(*a.waves);
   print_local(a);
   if (a.spins)
     print_spins(*a.spins);

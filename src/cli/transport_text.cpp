@@ -49,6 +49,8 @@ void print_transport(const TransportReport& report, const Patch& patch) {
   if (t.balance)
     print("energy balance       {}: energy lost over the work of the shear; 1 but for its error\n",
           with_error(*t.balance, 1.0));
+  if (t.waves)
+    print("epicyclic waves      {}\n", words_of(*t.waves));
 }
 
 } // namespace keeler

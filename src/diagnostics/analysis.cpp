@@ -3,6 +3,7 @@
 #include <keeler/core/error.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/energy.hpp>
+#include <keeler/diagnostics/epicyclic_waves.hpp>
 #include <keeler/diagnostics/local.hpp>
 #include <keeler/diagnostics/spin.hpp>
 #include <keeler/diagnostics/surface.hpp>
@@ -56,6 +57,24 @@ void add(LocalAnalysis& sum, const Patch& patch, double share) {
   sum.thin_cell_m += share * std::sqrt(crowd.cell_x * crowd.cell_y);
 }
 
+// The snapshots of a run hold the same particles: all have waves, or none.
+void add(std::optional<WaveAnalysis>& sum, const Patch& patch, double share) {
+  const std::optional<EpicyclicWaves> waves = epicyclic_waves(patch);
+  if (!waves)
+    return;
+  if (!sum)
+    sum.emplace();
+  const Vec3 rest = waves->taken_out_of(velocity_dispersion(patch));
+  const Vec3 si = velocity_si(patch, rest), radii = velocity_in_radii(patch, rest);
+  for (int axis = 0; axis < 3; ++axis) {
+    sum->dispersion_m_s[static_cast<std::size_t>(axis)] += share * si[axis];
+    sum->dispersion_r_omega[static_cast<std::size_t>(axis)] += share * radii[axis];
+  }
+  sum->energy_fraction += share * waves->energy;
+  sum->toomre_q +=
+      share * toomre_q(newton_g(patch.orbital_frequency), surface_density(patch), patch.frequencies.kappa, rest.x());
+}
+
 void add(std::optional<SpinAnalysis>& sum, const Patch& patch, double share) {
   const std::optional<SpinState> spins = spin_state(patch);
   if (!spins)
@@ -103,6 +122,7 @@ Analysis analyze(std::span<const Patch> patches, const AnalysisSettings& setting
     const double share = 1.0 / static_cast<double>(patches.size());
     add(mean, patch, share);
     add(mean.local, patch, share);
+    add(mean.waves, patch, share);
     add(mean.spins, patch, share);
     add(moments, velocity_moments(patch), share);
     add(mean.size_classes, patch, share);

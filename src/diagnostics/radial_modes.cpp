@@ -21,6 +21,25 @@ struct Sums {
   }
 };
 
+// radius(p) is that of particle p in the waves.
+template<class Radius> std::vector<RadialMode> modes_over(const Radius& radius, const Patch& patch, int count) {
+  const Vec3 mean = mean_velocity(patch);
+  const double mass = total_mass(patch);
+  std::vector<RadialMode> modes;
+  for (int n = 1; n <= count; ++n) {
+    const double k = two_pi * n / patch.box.size_x;
+    const Sums sums = ordered_total<Sums>(patch.size(), [&](Sums& total, std::size_t p) {
+      const std::complex<double> wave = patch.masses[p] * std::polar(1.0, -k * radius(p));
+      const Vec3 v = peculiar_velocity(patch, p) - mean;
+      total.mass += wave;
+      total.momentum_x += v.x() * wave;
+      total.momentum_y += v.y() * wave;
+    });
+    modes.push_back({n, 2.0 / mass * sums.mass, 2.0 / mass * sums.momentum_x, 2.0 / mass * sums.momentum_y});
+  }
+  return modes;
+}
+
 } // namespace
 
 double RadialMode::epicyclic_speed(double kappa) const {
@@ -38,21 +57,14 @@ std::complex<double> RadialMode::inward(double kappa) const {
 }
 
 std::vector<RadialMode> radial_modes(const Patch& patch, int count) {
-  const Vec3 mean = mean_velocity(patch);
-  const double mass = total_mass(patch);
-  std::vector<RadialMode> modes;
-  for (int n = 1; n <= count; ++n) {
-    const double k = two_pi * n / patch.box.size_x;
-    const Sums sums = ordered_total<Sums>(patch.size(), [&](Sums& total, std::size_t p) {
-      const std::complex<double> wave = patch.masses[p] * std::polar(1.0, -k * patch.positions[p].x());
-      const Vec3 v = peculiar_velocity(patch, p) - mean;
-      total.mass += wave;
-      total.momentum_x += v.x() * wave;
-      total.momentum_y += v.y() * wave;
-    });
-    modes.push_back({n, 2.0 / mass * sums.mass, 2.0 / mass * sums.momentum_x, 2.0 / mass * sums.momentum_y});
-  }
-  return modes;
+  return modes_over([&](std::size_t p) { return patch.positions[p].x(); }, patch, count);
+}
+
+std::vector<RadialMode> guiding_modes(const Patch& patch, int count) {
+  const auto guiding_x = [&](std::size_t p) {
+    return elements_from({patch.positions[p], patch.velocities[p]}, patch.frequencies, Rotation()).guiding_x;
+  };
+  return modes_over(guiding_x, patch, count);
 }
 
 double radial_mode_noise(const Patch& patch) {

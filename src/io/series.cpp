@@ -141,6 +141,17 @@ SeriesTable read_series(const std::filesystem::path& file) {
   return table;
 }
 
+std::vector<std::string> series_names(const std::filesystem::path& file) {
+  std::error_code unknown;
+  if (!std::filesystem::exists(file, unknown))
+    return {};
+  const std::string text = read_text(file);
+  const std::vector<std::string_view> fields = fields_of(std::string_view(text).substr(0, text.find('\n')));
+  if (fields.front() != "step")
+    return {};
+  return {fields.begin() + 1, fields.end()};
+}
+
 Series::Series(const std::filesystem::path& file, std::size_t columns, std::string_view rows)
     : path_(file), file_(open_with(file, rows)), columns_(columns), size_(rows.size()) {}
 

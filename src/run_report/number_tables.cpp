@@ -52,13 +52,18 @@ struct Line {
   const char *name, *key, *error_key, *unit;
 };
 
-constexpr std::array<Line, 21> lines = {
+constexpr std::array<Line, 25> lines = {
     {{"energy balance: viscosity from the loss over all three", "energy_balance", "energy_balance_error", ""},
      {"optical depth", "optical_depth", "", ""},
      {"surface density", "surface_density_kg_m2", "", "kg/m²"},
      {"critical wavelength λ_cr", "critical_wavelength_m", "", "m"},
      {"Toomre Q", "toomre_q", "", ""},
+     {"Toomre Q without box-long epicyclic waves", "toomre_q_without_waves", "", ""},
      {"Toomre Q by the local dispersion", "local_toomre_q", "", ""},
+     {"box-long epicyclic waves: fraction of the epicyclic energy", "epicyclic_wave_fraction", "", ""},
+     {"box-long epicyclic waves: the fraction in the first half of the orbits", "epicyclic_wave_fraction_first_half",
+      "", ""},
+     {"box-long epicyclic waves: the fraction in the last half", "epicyclic_wave_fraction_last_half", "", ""},
      {"scale height √⟨z²⟩", "scale_height_m", "", "m"},
      {"filling factor at z = 0", "filling_factor", "", ""},
      {"optical depth that the mean particle sees", "crowding_optical_depth", "", ""},
@@ -79,6 +84,7 @@ std::string dispersions(const Json& numbers) {
   Rows rows = {{"velocity dispersion", "radial", "along the orbit", "vertical"}};
   for (const auto& [key, name] :
        {std::pair{"dispersion_m_s", "m/s"}, std::pair{"dispersion_r_omega", "r Ω"},
+        std::pair{"dispersion_without_waves_m_s", "m/s, box-long axisymmetric waves taken out"},
         std::pair{"local_dispersion_m_s", "m/s, mean motion of the neighbourhood taken out"}}) {
     const Json c = of(numbers, key);
     if (c.is_array() && c.size() == 3)

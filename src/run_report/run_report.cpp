@@ -205,6 +205,8 @@ std::string RunPage::plots(const TransportReport& report) const {
                     "correlated.",
                     figures(steady->since_orbit, 3), figures(steady->until_orbit, 4),
                     steady->steady ? "where the run is steady" : "the best there is, though the run is not steady yet");
+  if (steady && steady->waves)
+    words += fmt::format(" Axisymmetric waves as long as the box hold {}.", words_of(*steady->waves));
   words +=
       " A curve is the mean of rows that follow each other, the band its standard error where a mean is of several "
       "rows. Drag along an axis to zoom, double-click to see all.";

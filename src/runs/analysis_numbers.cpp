@@ -45,6 +45,13 @@ void add_local(Json& json, const Analysis& a) {
     json["size_classes"].push_back(json_of(c));
 }
 
+void add_waves(Json& json, const std::optional<WaveAnalysis>& w) {
+  json["epicyclic_wave_fraction"] = w ? Json(w->energy_fraction) : nullptr;
+  json["dispersion_without_waves_m_s"] = w ? Json(w->dispersion_m_s) : nullptr;
+  json["dispersion_without_waves_r_omega"] = w ? Json(w->dispersion_r_omega) : nullptr;
+  json["toomre_q_without_waves"] = w ? Json(w->toomre_q) : nullptr;
+}
+
 void add_spins(Json& json, const SpinAnalysis& s) {
   json["mean_spin_omega"] = s.mean_omega;
   json["spin_dispersion_omega"] = s.dispersion_omega;
@@ -82,6 +89,7 @@ void add_structure(Json& json, const Analysis& a) {
   put(json, "wake_inner_pitch", "degrees", a.wakes.inner_pitch_degrees);
   put(json, "wake_outer_pitch", "degrees", a.wakes.outer_pitch_degrees);
   json["wake_contrast"] = a.wakes.contrast;
+  add_waves(json, a.waves);
   add_local(json, a);
   if (a.spins)
     add_spins(json, *a.spins);

@@ -19,6 +19,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <fcntl.h>
@@ -41,6 +42,17 @@ Series open_series(const std::filesystem::path& file, const std::vector<std::str
   return Series::resume(file, columns, *resumed_at, every > 0 ? every : *resumed_at + 1);
 }
 
+// A series that an earlier version began has fewer columns, and keeps them.
+std::vector<SeriesColumn> columns_to_continue(const std::filesystem::path& file,
+                                              const std::vector<SeriesColumn>& columns) {
+  const std::vector<std::string> names = series_names(file);
+  std::vector<SeriesColumn> present;
+  std::copy_if(columns.begin(), columns.end(), std::back_inserter(present), [&](const SeriesColumn& column) {
+    return std::find(names.begin(), names.end(), column.name) != names.end();
+  });
+  return !names.empty() && names_of(present) == names ? present : columns;
+}
+
 } // namespace
 
 void OutputCounters::list_fields(FieldTable& table, const Scene& scene) {
@@ -61,6 +73,8 @@ Recorder::Recorder(const RunFolder& folder, const FolderLock* lock, const Scene&
 }
 
 void Recorder::open(std::optional<std::int64_t> resumed_at) {
+  if (resumed_at)
+    columns_ = columns_to_continue(folder_.series(), columns_);
   series_.emplace(open_series(folder_.series(), names_of(columns_), scene_, resumed_at));
   if (!moonlet_columns_.empty()) {
     std::vector<std::string> names;

@@ -43,6 +43,12 @@ bool carries(const Scene& scene) {
   return scene.gravity && scene.gravity->carries();
 }
 
+std::optional<EpicyclicWaves> waves_in(const Simulation& simulation, const ParticleMeans& means,
+                                       const Frequencies& frequencies) {
+  const SimulationState& now = simulation.state();
+  return epicyclic_waves(now.particles, now.box.size_x, frequencies, -0.5 * now.step_length, means, simulation.ranks());
+}
+
 constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 
 const SeriesColumn all_columns[] = {
@@ -111,6 +117,14 @@ const SeriesColumn all_columns[] = {
     {"largest_overlap", "r_i + r_j",
      "largest overlap of any pair; only with a finder other than `certified`, which lets none overlap",
      [](Sample s) { return largest_overlap(s.simulation.patch()).depth; }, may_overlap},
+    {"epicyclic_wave_fraction", "1",
+     "fraction of ⟨½κ²e²⟩ about the mean motion in axisymmetric waves as long as the box (modes 1 to 4 over the "
+     "guiding "
+     "radius), without the part that particles at random would show; nan for too few particles",
+     [](Sample s) { return s.waves ? s.waves->energy : not_measured; }},
+    {"dispersion_without_waves_x_m_s", "m/s",
+     "radial velocity dispersion about the velocity field of these waves; nan for too few particles",
+     [](Sample s) { return s.waves ? speed(s, s.waves->taken_out_of(s.means.dispersion).x()) : not_measured; }},
 };
 
 } // namespace
@@ -118,7 +132,7 @@ const SeriesColumn all_columns[] = {
 SeriesSample::SeriesSample(const Scene& of_scene, const Simulation& of_simulation,
                            std::optional<GravityEnergy> of_gravity)
     : scene(of_scene), simulation(of_simulation), means(of_simulation.means()), balance(of_simulation.balance(means)),
-      gravity(of_gravity) {}
+      waves(waves_in(of_simulation, means, of_scene.planet.frequencies)), gravity(of_gravity) {}
 
 std::span<const SeriesColumn> series_columns() {
   return all_columns;

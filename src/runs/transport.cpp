@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 namespace keeler {
 namespace {
@@ -19,6 +20,7 @@ using Values = std::vector<double>;
 constexpr std::size_t least_rows = 3;                         // for a viscosity
 constexpr std::size_t least_for_steady = 8;                   // to look for where a run becomes steady
 constexpr double least_orbits = 2.0, least_share = 1.0 / 3.0; // of a part that may be called steady
+constexpr double small_waves = 0.02;                          // fraction of the energy: 1 % of the dispersion
 
 // Whether the run had self-gravity, and whether its stress was measured.
 bool measures_gravity(const SeriesTable& series) {
@@ -98,6 +100,43 @@ bool says_something(const Estimate& ratio) {
   return std::isfinite(ratio.value) && !(ratio.error >= std::fabs(ratio.value));
 }
 
+Values picked(const Values& column, const std::vector<std::size_t>& rows) {
+  Values values;
+  for (const std::size_t k : rows)
+    values.push_back(column[k]);
+  return values;
+}
+
+bool all_finite(const Values& values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+// c_x of the random motion: waves as long as the box go on growing when it is steady. Series of former versions, and
+// those of few particles, have only the dispersion about the mean motion.
+Values random_motion(const SeriesTable& series, const std::vector<std::size_t>& rows) {
+  if (const Values* const without_waves = series.find("dispersion_without_waves_x_m_s"))
+    if (Values values = picked(*without_waves, rows); all_finite(values))
+      return values;
+  return picked(series.of("dispersion_x_m_s"), rows);
+}
+
+std::optional<WaveGrowth> waves_in(const SeriesTable& series, const std::vector<std::size_t>& rows) {
+  constexpr double sure = 3.0; // errors
+  const Values* const column = series.find("epicyclic_wave_fraction");
+  if (!column || rows.size() < least_for_steady)
+    return std::nullopt;
+  const Values fractions = picked(*column, rows);
+  if (!all_finite(fractions))
+    return std::nullopt;
+  const std::span<const double> all(fractions);
+  const std::size_t half = all.size() / 2;
+  WaveGrowth waves{block_mean(all.first(half)), block_mean(all.last(half))};
+  const double first = waves.first_half.value, last = waves.last_half.value;
+  waves.steady = std::max(first, last) < small_waves ||
+                 std::fabs(last - first) <= sure * std::hypot(waves.first_half.error, waves.last_half.error);
+  return waves;
+}
+
 } // namespace
 
 RingScale RingScale::of(const Patch& patch, bool driven) {
@@ -114,11 +153,7 @@ double steady_since(const SeriesTable& series, double until) {
   if (rows.size() < least_for_steady)
     return orbits.empty() ? 0.0 : orbits.front();
   const Rates rates = rates_of(series, rows, {.mass = 1.0, .orbital_frequency = 1.0, .shear = 1.0});
-  const Values& dispersion = series.of("dispersion_x_m_s");
-  Values random;
-  for (const std::size_t k : rows)
-    random.push_back(dispersion[k]);
-  std::size_t start = std::max(steady_start(rates.loss), steady_start(random));
+  std::size_t start = std::max(steady_start(rates.loss), steady_start(random_motion(series, rows)));
   if (!rates.gravitational.empty())
     start = std::max(start, steady_start(rates.gravitational));
   return orbits[rows[std::min(start, rows.size() - least_for_steady)]];
@@ -153,13 +188,10 @@ Transport transport(const SeriesTable& series, const RingScale& scale, const Orb
     if (const Estimate balance = ratio_of(rates.loss, rates.total); !scale.driven && says_something(balance))
       result.balance = balance;
   }
-  const Values& all_dispersions = series.of("dispersion_x_m_s");
-  Values dispersions;
-  for (const std::size_t k : rows)
-    dispersions.push_back(all_dispersions[k]);
+  result.waves = waves_in(series, rows);
   const double length = result.until_orbit - result.since_orbit;
   result.steady = length >= least_orbits && length >= least_share * (until - orbits.front()) && is_steady(rates.loss) &&
-                  is_steady(dispersions);
+                  is_steady(random_motion(series, rows));
   return result;
 }
 

@@ -8,6 +8,9 @@
 #include <keeler/diagnostics/viscosity.hpp>
 #include <keeler/gravity/fft.hpp>
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -40,6 +43,14 @@ ViscosityUnits::ViscosityUnits(const Patch& patch) {
   const double g_sigma = newton_g_si * surface_density(patch);
   radii = r * r * omega;
   gravity = g_sigma * g_sigma / (omega * omega * omega);
+}
+
+std::string words_of(const WaveGrowth& waves) {
+  const auto fraction = [](const Estimate& half) { return fmt::format("{:.2g}", std::max(0.0, half.value)); };
+  return fmt::format("{} of the epicyclic energy in the first half of these orbits, {} in the last{}",
+                     fraction(waves.first_half), fraction(waves.last_half),
+                     waves.steady ? ""
+                                  : ": not steady, so Q and c_x with them depend on the age of the run and on its box");
 }
 
 TransportReport TransportReport::of_run(const std::filesystem::path& folder, const RingScale& scale,
@@ -94,6 +105,10 @@ void TransportReport::add_to(Json& json, const Patch& patch) const {
   json["until_orbit"] = t ? Json(t->until_orbit) : Json(nullptr);
   json["since_found"] = t ? Json(t->since_found) : Json(nullptr);
   json["steady"] = t && of_run_ ? Json(t->steady) : Json(nullptr);
+  const std::optional<WaveGrowth> waves = t ? t->waves : std::nullopt;
+  json["epicyclic_wave_fraction_first_half"] = waves ? or_null(waves->first_half.value) : Json(nullptr);
+  json["epicyclic_wave_fraction_last_half"] = waves ? or_null(waves->last_half.value) : Json(nullptr);
+  json["epicyclic_waves_steady"] = waves ? Json(waves->steady) : Json(nullptr);
 }
 
 } // namespace keeler

@@ -25,6 +25,7 @@ for fixture in "$source_dir"/tests/fixtures/*/; do
   grep -q 'cannot\|missing' "$work/err" && fail "$name, resumed: $(cat "$work/err")"
   [ "$(tail -n 1 "$work/run/series.csv" | cut -d , -f 1)" -eq 30 ] || fail "$name: rows after a restart"
   accepts "$name, resumed" info --verify "$work/run"
+  cmp -s <(head -n 1 "$fixture/run/series.csv") <(head -n 1 "$work/run/series.csv") || fail "$name: other columns in the series"
 done
 
 # What is verified of a run.

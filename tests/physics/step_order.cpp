@@ -1,5 +1,6 @@
-// The order of the kick–drift–kick step: second without collisions; with them first, because each collision sees a
-// velocity that lacks part of a half kick; exact without gravity.
+// The order of the kick–drift–kick step: second without collisions; with them first (rebounds.hpp derives the error);
+// exact without gravity.
+#include "physics/rebounds.hpp"
 #include "physics/scenes.hpp"
 
 #include <keeler/core/random.hpp>
@@ -128,6 +129,19 @@ TEST_CASE("first order in the step with collisions") {
   const double order = std::log2(errors[0] / errors[3]) / 3.0;
   CHECK(order > 0.7);
   CHECK(order < 1.4);
+}
+
+TEST_CASE("a rebound errs by (1 + ε) g h/√12, rms over the phases of the contact in the kick interval") {
+  for (const double restitution : {0.2, 0.5, 1.0})
+    for (const double interval : {4e-3, 1e-3}) {
+      const test::ReboundErrors errors = test::rebound_errors(300, interval, restitution);
+      CAPTURE(restitution);
+      CAPTURE(interval);
+      CHECK(errors.rms == doctest::Approx(errors.law).epsilon(0.05)); // 2 % of 300 phases, and the second order
+      CHECK(std::fabs(errors.mean) < 0.1 * errors.law);               // of either sign
+    }
+  const test::ReboundErrors drifts = test::rebound_errors(300, 4e-3, 0.5, 4); // the interval counts, not the step
+  CHECK(drifts.rms == doctest::Approx(drifts.law).epsilon(0.05));
 }
 
 TEST_CASE("without gravity a step of any length is exact") {

@@ -1,5 +1,7 @@
-// Two bodies in Hill's frame, their collisions apart: grains past a moonlet, and a bound pair.
+// Two bodies in Hill's frame: grains past a moonlet, a bound pair, and pairs that fall on each other.
 #include "rows.hpp"
+
+#include "physics/rebounds.hpp"
 
 #include <keeler/core/random.hpp>
 #include <keeler/core/units.hpp>
@@ -181,10 +183,29 @@ std::vector<Row> bound_pairs() {
   return rows;
 }
 
+// The error falls as the kick interval alone: contacts make the step of first order.
+std::vector<Row> rebounds() {
+  std::vector<Row> rows;
+  for (const double interval : {8e-3, 4e-3, 2e-3, 1e-3, 5e-4}) {
+    const test::ReboundErrors errors = test::rebound_errors(1000, interval, 0.5);
+    rows.push_back(
+        {.what = fmt::format("rebound under gravity: rms error of its speed, r Omega, kicks of {}", interval),
+         .measured = errors.rms,
+         .expected = errors.law,
+         .tolerance = 0.05 * errors.law,
+         .tolerance_is = "5 %, what is of second order at the longest interval",
+         .source = "(1 + eps) g h/sqrt(12), a contact at any phase of the kick interval h",
+         .command = "1000 pairs of spheres of 1 m and 900 kg/m^3 that fall from 3 to 4 m, eps 0.5"});
+  }
+  return rows;
+}
+
 } // namespace
 
 std::vector<Subject> two_body_subjects() {
-  return {{"encounters", "Two bodies", true, encounters}, {"bound-pairs", "Two bodies", false, bound_pairs}};
+  return {{"encounters", "Two bodies", true, encounters},
+          {"bound-pairs", "Two bodies", false, bound_pairs},
+          {"rebounds", "Two bodies", true, rebounds}};
 }
 
 } // namespace keeler::validation

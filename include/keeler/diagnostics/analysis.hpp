@@ -36,6 +36,14 @@ struct SpinAnalysis {
   double energy_ratio = 0.0;          ///< energy of the spins about their mean over that of the random motion
 };
 
+/// What axisymmetric waves as long as the box hold of the motion, and the motion without them (epicyclic_waves.hpp).
+struct WaveAnalysis {
+  double energy_fraction = 0.0;               ///< of the epicyclic energy
+  std::array<double, 3> dispersion_m_s{};     ///< c_x, c_y, c_z about the velocity field of the waves
+  std::array<double, 3> dispersion_r_omega{}; ///< the same in ⟨r⟩ Ω
+  double toomre_q = 0.0;                      ///< by this c_x
+};
+
 /// Means over the snapshots; the wakes are those of the mean autocorrelation.
 struct Analysis {
   std::size_t snapshots = 0;
@@ -63,6 +71,7 @@ struct Analysis {
   WakeGeometry wakes;
 
   LocalAnalysis local;
+  std::optional<WaveAnalysis> waves; ///< none: too few particles
   std::optional<SpinAnalysis> spins; ///< none: smooth particles
   ClusterAnalysis clusters;
   std::vector<RadialModeAnalysis> radial_modes;

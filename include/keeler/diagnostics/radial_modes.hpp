@@ -31,6 +31,10 @@ struct RadialMode {
 /// Modes 1 … count.
 std::vector<RadialMode> radial_modes(const Patch& patch, int count);
 
+/// Returns the same over the guiding radius X instead of x: the density is that of guiding centres, the velocities are
+/// still those at the particles.
+std::vector<RadialMode> guiding_modes(const Patch& patch, int count);
+
 /// rms |density| of a mode when particles stand at random: 2 √(Σm²)/Σm.
 double radial_mode_noise(const Patch& patch);
 

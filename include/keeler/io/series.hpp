@@ -32,6 +32,9 @@ struct SeriesTable {
 /// something else.
 SeriesTable read_series(const std::filesystem::path& file);
 
+/// Returns the names in the first line but "step"; none where the file is missing or begins otherwise.
+std::vector<std::string> series_names(const std::filesystem::path& file);
+
 /// Steps without a row.
 struct SeriesGap {
   std::int64_t from = 0, to = 0;

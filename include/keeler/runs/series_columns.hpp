@@ -2,6 +2,7 @@
 // the rows and the table in docs/formats.md come from here. A new column is one more entry in series_columns.cpp.
 #pragma once
 
+#include <keeler/diagnostics/epicyclic_waves.hpp>
 #include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/gravity/fft.hpp>
 #include <keeler/scene/scene.hpp>
@@ -14,15 +15,16 @@
 
 namespace keeler {
 
-/// One instant of a run, between two steps, and what one pass over its particles gives.
+/// One instant of a run, between two steps, and what its particles give.
 struct SeriesSample {
   const Scene& scene;
   const Simulation& simulation;
   ParticleMeans means;
   EnergyBalance balance;
+  std::optional<EpicyclicWaves> waves;  ///< none: too few particles
   std::optional<GravityEnergy> gravity; ///< none: not measured at this instant
 
-  /// Both must outlive it.
+  /// Both must outlive it. Collective.
   SeriesSample(const Scene& of_scene, const Simulation& of_simulation,
                std::optional<GravityEnergy> of_gravity = std::nullopt);
 };

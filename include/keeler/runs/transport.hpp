@@ -26,11 +26,21 @@ struct RingScale {
   static RingScale of(const Patch& patch, bool driven);
 };
 
+/// Axisymmetric epicyclic waves as long as the box (epicyclic_waves.hpp) in the two halves of a window: means of the
+/// fraction of the epicyclic energy that they hold.
+struct WaveGrowth {
+  Estimate first_half, last_half;
+  bool steady = false; ///< the means agree within three errors, or are both too small to matter
+
+  double mean() const { return 0.5 * (first_half.value + last_half.value); }
+};
+
 /// Means over a window. Viscosities in m²/s.
 struct Transport {
   double since_orbit = 0.0, until_orbit = 0.0;
   bool since_found = false; ///< the beginning was looked for, not given, in eight rows at least
-  bool steady = false;      ///< loss and dispersion are (is_steady), over two orbits at least and a third of the run
+  bool steady = false;      ///< loss and dispersion, without the waves, are (is_steady), over two orbits at least and a
+                            ///< third of the run
   std::size_t intervals = 0;
 
   Estimate translational, collisional;
@@ -38,6 +48,7 @@ struct Transport {
   std::optional<Estimate> total;         ///< none: without the gravitational one
   Estimate from_loss;                    ///< (loss + d(U + Φ)/dt) / (M S²): what the total must be
   std::optional<Estimate> balance;       ///< from_loss over total: 1; none in a driven run, and where its error is larger than it
+  std::optional<WaveGrowth> waves;       ///< none: not in the series, or too few rows
 };
 
 /// Whether there is a viscosity to be had of all rows: at least three (of those with gravity's stress, where it is

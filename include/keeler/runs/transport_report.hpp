@@ -10,6 +10,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace keeler {
 
@@ -19,6 +20,9 @@ struct ViscosityUnits {
   double radii = 0.0;   ///< r² Ω
   double gravity = 0.0; ///< G² Σ²/Ω³
 };
+
+/// Returns what the waves hold in the two halves, and what it means where that is not steady; a part of a sentence.
+std::string words_of(const WaveGrowth& waves);
 
 class TransportReport {
 public:

@@ -42,6 +42,23 @@ TEST_CASE("an analysis is the mean over the snapshots") {
   REQUIRE(mean.wake_spacing_m);
 }
 
+TEST_CASE("a wave as long as the box is told, and Q without it is that of the rest of the motion") {
+  Patch patch = with_motion(test::uniform(box, 33.0, 6000, 1), 2.0, 0.0);
+  const double rest = analyze(std::span(&patch, 1)).toomre_q;
+  for (std::size_t k = 0; k < patch.size(); ++k) {
+    const double x = patch.positions[k].x(), guiding_x = x + 2.0 * (patch.velocities[k].y() + box.shear * x);
+    patch.velocities[k].x() += 4.0 * std::cos(two_pi * guiding_x / box.size_x);
+  }
+  const Analysis found = analyze(std::span(&patch, 1));
+  REQUIRE(found.waves);
+  CHECK(found.toomre_q == doctest::Approx(rest * std::sqrt(3.0)).epsilon(0.03)); // ⟨v_x²⟩ = 4 + 16/2
+  CHECK(found.waves->toomre_q == doctest::Approx(rest).epsilon(0.03));
+  CHECK(found.waves->dispersion_r_omega[0] == doctest::Approx(2.0).epsilon(0.03));
+  CHECK(found.waves->dispersion_r_omega[2] == found.dispersion_r_omega[2]);
+  // ½κ²e² is 4 + (2 × 1)² without the wave, of which 8 are added
+  CHECK(found.waves->energy_fraction == doctest::Approx(0.5).epsilon(0.03));
+}
+
 TEST_CASE("without wakes there is no pitch, and the bits do not depend on the threads") {
   const std::vector<Patch> patches = {with_motion(test::uniform(box, 33.0, 5000, 1), 2.0, 0.0)};
   set_threads(1);

@@ -111,6 +111,42 @@ TEST_CASE("a balance whose error is larger than it, or that is nothing over noth
   CHECK(!balanced(series));
 }
 
+TEST_CASE("waves that grow are told, and do not make a steady ring unsteady") {
+  const double omega = 1.3e-4, mass = 5e6;
+  SeriesTable series = made_up(150, omega, mass, 1.5);
+  const RingScale scale{mass, omega, 1.5};
+  CHECK_FALSE(transport(series, scale, {}).waves); // of a version that did not measure them
+  const std::vector<double> orbits = series.of("time_orbits"), random = series.of("dispersion_x_m_s");
+  // c_x of the whole motion grows with the waves, that of the random motion stays
+  std::vector<double> fractions, whole;
+  for (std::size_t k = 0; k < orbits.size(); ++k) {
+    fractions.push_back(0.04 + 0.02 * orbits[k]);
+    whole.push_back(random[k] / std::sqrt(1.0 - fractions[k]));
+  }
+  series.columns[2] = whole;
+  CHECK_FALSE(transport(series, scale, {}).steady); // as it was while nothing but c_x was looked at
+  series.names.insert(series.names.end(), {"epicyclic_wave_fraction", "dispersion_without_waves_x_m_s"});
+  series.columns.push_back(fractions);
+  series.columns.push_back(random);
+  const Transport grown = transport(series, scale, {.since = 4.0, .until = 12.0});
+  REQUIRE(grown.waves);
+  CHECK(grown.steady);
+  CHECK_FALSE(grown.waves->steady);
+  CHECK(grown.waves->first_half.value == doctest::Approx(0.16).epsilon(0.01));
+  CHECK(grown.waves->last_half.value == doctest::Approx(0.24).epsilon(0.01));
+
+  std::vector<double>& column = series.columns[series.columns.size() - 2];
+  for (std::size_t k = 0; k < column.size(); ++k)
+    column[k] = 0.1 + 0.02 * std::sin(7.0 * static_cast<double>(k));
+  CHECK(transport(series, scale, {}).waves->steady);
+  for (double& fraction : column)
+    fraction = std::nan(""); // few particles
+  series.columns.back() = column;
+  const Transport few = transport(series, scale, {});
+  CHECK_FALSE(few.waves);
+  CHECK(few.since_found);
+}
+
 TEST_CASE("gravity's energy and stress are in the rows that are due, and a scene without gravity has none") {
   const SeriesTable with = series_of({"time.end=0.4", "output.series_every=0.02", "output.stress_every=0.1"});
   const std::vector<double>& potential = with.of("potential_energy_j");

@@ -1,0 +1,159 @@
+#include <keeler/diagnostics/epicyclic_waves.hpp>
+
+#include <keeler/core/exact_sum.hpp>
+#include <keeler/core/units.hpp>
+#include <keeler/diagnostics/dispersion.hpp>
+#include <keeler/diagnostics/radial_modes.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstdint>
+#include <span>
+
+namespace keeler {
+namespace {
+
+using Complex = std::complex<double>;
+
+// Fraction of the mean square `all` that is in waves whose squared amplitudes add up to `squares`; particles at random
+// would show `noise` of it. The mean square of a wave is half of the square of its amplitude.
+double fraction(double squares, double all, double noise) {
+  return all > 0.0 ? (0.5 * squares / all - noise) / (1.0 - noise) : 0.0;
+}
+
+// Squared amplitudes of the velocities, summed over the modes.
+struct Squares {
+  double x = 0.0, y = 0.0;
+
+  void add(const Complex& velocity_x, const Complex& velocity_y) {
+    x += std::norm(velocity_x);
+    y += std::norm(velocity_y);
+  }
+};
+
+// `random_density` is radial_mode_noise().
+std::optional<EpicyclicWaves> waves_of(const Squares& squares, const Vec3& dispersion, double kappa,
+                                       double random_density) {
+  const double noise = 0.5 * box_long_modes * random_density * random_density;
+  const double weight = 4.0 / (kappa * kappa); // of v_y² in the energy of an epicycle
+  const double xx = dispersion.x() * dispersion.x(), yy = dispersion.y() * dispersion.y();
+  const double motion = xx + weight * yy;
+  if (!(noise < 0.5) || !(motion > 0.0))
+    return std::nullopt;
+  return EpicyclicWaves{fraction(squares.x + weight * squares.y, motion, noise), fraction(squares.x, xx, noise),
+                        fraction(squares.y, yy, noise)};
+}
+
+constexpr std::size_t bins = 256; // of the guiding radius; a mode has 64 or more
+
+// Whole numbers of units: sums in any order, and over ranks modulo 2⁶⁴, are the same.
+struct Binned {
+  using Numbers = std::array<std::uint64_t, bins>;
+  Numbers mass{}, cosine{}, sine{}; // Σ m, Σ m e cos φ, Σ m e sin φ
+  std::uint64_t mass_squares = 0;
+
+  Binned& operator+=(const Binned& more) {
+    for (std::size_t b = 0; b < bins; ++b) {
+      mass[b] += more.mass[b];
+      cosine[b] += more.cosine[b];
+      sine[b] += more.sine[b];
+    }
+    mass_squares += more.mass_squares;
+    return *this;
+  }
+
+  void merge(const Ranks& ranks) {
+    if (!ranks.many())
+      return;
+    for (Numbers* const numbers : {&mass, &cosine, &sine})
+      ranks.sum(*numbers);
+    ranks.sum(std::span(&mass_squares, 1));
+  }
+};
+
+// Of sums whose terms' absolute values add up to no more than `bound`: they stay below 2⁶² units.
+class Unit {
+public:
+  explicit Unit(double bound) : per_one_(std::ldexp(1.0, 61 - std::ilogb(bound))) {}
+  std::uint64_t count(double term) const {
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(term * per_one_));
+  }
+  double value(std::uint64_t units) const { return static_cast<double>(static_cast<std::int64_t>(units)) / per_one_; }
+
+private:
+  double per_one_;
+};
+
+std::size_t bin_of(double guiding_x, double box_length) {
+  const double turns = guiding_x / box_length + 0.5;
+  return std::min(bins - 1, static_cast<std::size_t>((turns - std::floor(turns)) * static_cast<double>(bins)));
+}
+
+// Amplitude of exp(ikX) in a sum over bins, (2/M) Σ value(b) exp(−ikX), the width of the bins divided out.
+template<class Value> Complex amplitude(int n, double mass, const Value& value) {
+  const double phase = two_pi * n / static_cast<double>(bins); // from bin to bin
+  double sine = 0.0, cosine = 1.0;
+  Complex sum;
+  for (std::size_t b = 0; b < bins; ++b) {
+    sine_cosine(phase * (static_cast<double>(b) + 0.5 * (1.0 - static_cast<double>(bins))), sine, cosine);
+    sum += value(b) * Complex(cosine, -sine);
+  }
+  sine_cosine(0.5 * phase, sine, cosine);
+  return 2.0 / mass * (0.5 * phase / sine) * sum;
+}
+
+} // namespace
+
+Vec3 EpicyclicWaves::taken_out_of(const Vec3& dispersion) const {
+  const auto rest = [](double part) { return std::sqrt(std::max(0.0, 1.0 - part)); };
+  return {dispersion.x() * rest(x), dispersion.y() * rest(y), dispersion.z()};
+}
+
+std::optional<EpicyclicWaves> epicyclic_waves(const Patch& patch) {
+  Squares squares;
+  for (const RadialMode& mode : guiding_modes(patch, box_long_modes))
+    squares.add(mode.velocity_x, mode.velocity_y);
+  return waves_of(squares, velocity_dispersion(patch), patch.frequencies.kappa, radial_mode_noise(patch));
+}
+
+// By Cauchy and Schwarz Σ m |e cos φ| ≤ √(Σ m Σ m e²), which bounds the sums before they are made.
+std::optional<EpicyclicWaves> epicyclic_waves(const Particles& particles, double box_length,
+                                              const Frequencies& frequencies, double after, const ParticleMeans& means,
+                                              const Ranks& ranks) {
+  const double bound = std::sqrt(2.0 * means.mass * means.epicyclic_energy) / frequencies.kappa;
+  if (!std::isfinite(bound) || !(bound > 0.0))
+    return std::nullopt;
+  const Unit kilogram(means.mass), square(means.mass * means.mass), moment(bound);
+  Binned sums = exact_total<Binned>(particles.size(), [&](Binned& total, std::size_t k) {
+    particles.prefetch_after(k);
+    const auto& [elements, radius, mass] = particles.bodies[k];
+    const std::size_t b = bin_of(elements.guiding_x, box_length);
+    total.mass[b] += kilogram.count(mass);
+    total.cosine[b] += moment.count(mass * elements.e_cos);
+    total.sine[b] += moment.count(mass * elements.e_sin);
+    total.mass_squares += square.count(mass * mass);
+  });
+  sums.merge(ranks);
+  double mean_cosine = 0.0, mean_sine = 0.0;
+  for (std::size_t b = 0; b < bins; ++b) {
+    mean_cosine += moment.value(sums.cosine[b]) / means.mass;
+    mean_sine += moment.value(sums.sine[b]) / means.mass;
+  }
+  const Rotation rotation(frequencies, after);
+  const double kappa = frequencies.kappa;
+  Squares squares;
+  for (int n = 1; n <= box_long_modes; ++n) {
+    const auto about = [&](const Binned::Numbers& numbers, double mean) {
+      return amplitude(n, means.mass,
+                       [&](std::size_t b) { return moment.value(numbers[b]) - mean * kilogram.value(sums.mass[b]); });
+    };
+    const Complex cosine = about(sums.cosine, mean_cosine), sine = about(sums.sine, mean_sine);
+    squares.add(kappa * (sine * rotation.cos_e + cosine * rotation.sin_e),
+                0.5 * kappa * kappa * (cosine * rotation.cos_e - sine * rotation.sin_e));
+  }
+  return waves_of(squares, means.dispersion, kappa, 2.0 * std::sqrt(square.value(sums.mass_squares)) / means.mass);
+}
+
+} // namespace keeler
