@@ -3,6 +3,7 @@
 #include <keeler/batch/claims.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/scene/resting_choice.hpp>
 
 #include <fmt/format.h>
 
@@ -15,9 +16,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+using Keys = std::map<std::string, std::string>;
+
 // The keys of a resolved scene, which has one on a line.
-std::map<std::string, std::string> keys_of(const std::string& resolved) {
-  std::map<std::string, std::string> keys;
+Keys keys_of(const std::string& resolved) {
+  Keys keys;
   std::istringstream lines(resolved);
   std::string section;
   for (std::string line; std::getline(lines, line);) {
@@ -31,13 +34,12 @@ std::map<std::string, std::string> keys_of(const std::string& resolved) {
 }
 
 // "time.end = 20.0 and now has time.end = 30.0"; empty: none.
-std::string difference(const std::string& before, const std::string& now) {
-  const std::map<std::string, std::string> old_keys = keys_of(before), new_keys = keys_of(now);
-  const auto words = [](const std::map<std::string, std::string>& keys, const std::string& key) {
+std::string difference(const Keys& old_keys, const Keys& new_keys) {
+  const auto words = [](const Keys& keys, const std::string& key) {
     const auto found = keys.find(key);
     return found == keys.end() ? "no " + key : fmt::format("{} = {}", key, found->second);
   };
-  std::map<std::string, std::string> all = old_keys;
+  Keys all = old_keys;
   all.insert(new_keys.begin(), new_keys.end());
   for (const auto& [key, value] : all)
     if (words(old_keys, key) != words(new_keys, key))
@@ -51,9 +53,11 @@ void refuse_changed_run(const PlannedRun& run, const fs::path& folder, const std
   if (!fs::exists(file, unknown))
     return;
   // Both as this version of the program reads them: keys that it has learned since have their defaults.
-  const std::string before = parse_stored_scene(read_text(file), file.string()).resolved;
-  const std::string now = parse_stored_scene(run.scene.resolved, file.string()).resolved;
-  if (const std::string change = difference(before, now); !change.empty())
+  Keys old_keys = keys_of(parse_stored_scene(read_text(file), file.string()).resolved);
+  Keys new_keys = keys_of(parse_stored_scene(run.scene.resolved, file.string()).resolved);
+  if (leaves_resting_open(run.scene)) // until its start is read
+    new_keys["gravity.resting_contacts"] = old_keys["gravity.resting_contacts"];
+  if (const std::string change = difference(old_keys, new_keys); !change.empty())
     throw UsageError(fmt::format("{}: the run {} was made with {} (runs of other settings cannot stand in one table); "
                                  "change the setting back, name another folder, or remove '{}' to make it anew",
                                  place, run.name, change, folder.string()));

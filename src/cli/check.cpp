@@ -13,6 +13,7 @@
 #include <keeler/scene/derived.hpp>
 #include <keeler/scene/doubts.hpp>
 #include <keeler/scene/estimate.hpp>
+#include <keeler/scene/resting_choice.hpp>
 #include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
@@ -41,11 +42,9 @@ double kick_interval_orbits(const Scene& scene) {
 
 using Lines = std::vector<std::string>;
 
-// Of a start file: how large its patch is, and of what density, is known to it alone.
-std::optional<PatchScale> scale_of_start(const Scene& scene) {
-  if (!scene.start_from)
-    return std::nullopt;
-  return scale_of(initial_patch(scene));
+// How large the patch of a start file is, and of what density, is known to it alone.
+PatchScale scale_of_start(const Scene& scene) {
+  return scene.start_from ? scale_of(initial_patch(scene)) : scale_of(scene);
 }
 
 // None when only a start file knows the particles.
@@ -56,12 +55,19 @@ std::optional<RunEstimate> estimate(const Scene& scene, const Derived& d) {
   return estimate_run(scene, pair_yardstick(cpu_seconds));
 }
 
-nlohmann::ordered_json as_json(const RunEstimate& estimate) {
+nlohmann::ordered_json as_json(const RunEstimate& estimate, const Scene& scene) {
   nlohmann::ordered_json json;
   for (const RunEstimate::Part& part : estimate.parts())
     json[fmt::format("{}_s", part.name)] = part.seconds;
   json["dominates"] = estimate.dominating();
+  json["contacts_per_particle_orbit"] = scene_contacts(scene).wakes.all();
+  json["grains_in_piles"] = grains_in_piles(scene, static_cast<double>(scene.time.end_step) * scene.time.step);
   return json;
+}
+
+// Of a scene whose particles attract each other.
+const char* resting_word(const Scene& scene) {
+  return scene.gravity->carries() ? "carried" : "bounced";
 }
 
 // Numbers that only the start file knows are null.
@@ -85,9 +91,11 @@ nlohmann::ordered_json as_json(const Scene& scene, const Derived& d, const std::
   json["kick_interval_orbits"] = scene.gravity && !scene.time.automatic
                                      ? nlohmann::ordered_json(kick_interval_orbits(scene))
                                      : nlohmann::ordered_json();
+  json["resting_contacts"] = scene.gravity && scene.gravity->by_pairs() ? nlohmann::ordered_json(resting_word(scene))
+                                                                        : nlohmann::ordered_json();
   json["memory_mb"] = known(d.memory_mb);
   json["estimated_s"] = cost ? nlohmann::ordered_json(cost->total()) : nlohmann::ordered_json();
-  json["estimate"] = cost ? as_json(*cost) : nlohmann::ordered_json();
+  json["estimate"] = cost ? as_json(*cost, scene) : nlohmann::ordered_json();
   json["notices"] = scene.notices;
   json["doubts"] = said;
   json["costs"] = d.particles_known ? dear_choices(scene) : std::vector<std::string>();
@@ -151,25 +159,34 @@ void print_bodies(const Scene& scene) {
   }
 }
 
-// Before the file is read a scene has to say whether contacts carry.
 void print_start(const Scene& scene, const PatchScale& start) {
   print("box and particles  from {}\n", *scene.start_from);
+  print("optical depth      {}\n", figures(start.optical_depth, 4));
   print("Hill parameter r_h {:.3g} of its particles\n",
-        hill_parameter(start.density, distance_from_saturn(scene.planet)));
-  if (scene.gravity && scene.gravity->carries())
-    print("contacts at rest   carried (as is the default of any start from a file, whatever its r_h)\n");
+             hill_parameter(start.density, distance_from_saturn(scene.planet)));
 }
 
-void print_text(const Scene& scene, const Derived& d, const std::optional<RunEstimate>& cost,
-                const std::optional<PatchScale>& start, const Lines& said) {
+// What the default would be, and why, stands beside a choice of the scene's own.
+void print_resting_contacts(const Scene& scene, const PatchScale& start) {
+  if (!scene.gravity || !scene.gravity->by_pairs())
+    return;
+  const RestingChoice choice = choose_resting_contacts(start, scene);
+  const char* const otherwise = choice.carried ? "by default they are carried: " : "by default they bounce: ";
+  fmt::print("contacts at rest   {} ({}{})\n", resting_word(scene),
+             choice.carried == scene.gravity->carries() ? "" : otherwise, choice.reason);
+}
+
+void print_text(const Scene& scene, const Derived& d, const std::optional<RunEstimate>& cost, const PatchScale& start,
+                const Lines& said) {
   if (!scene.title.empty())
     print("{}\n", scene.title);
-  if (start)
-    print_start(scene, *start);
+  if (scene.start_from)
+    print_start(scene, start);
   else
     print_particles(scene, d);
   print_bodies(scene);
   print_steps(scene, d);
+  print_resting_contacts(scene, start);
   if (d.particles_known)
     print("memory             about {:.0f} MB (an estimate)\n", d.memory_mb);
   if (cost)
@@ -190,10 +207,11 @@ ExitCode check(const CheckOptions& options) {
   }
   if (options.scene.path.empty())
     throw UsageError("check needs a scene (there is nothing to check); write keeler check SCENE, or --defaults");
-  const Scene scene = options.scene.load();
-  require_start_file(scene);
-  const std::optional<PatchScale> start = scale_of_start(scene);
-  Lines said = start ? doubts(scene, *start) : doubts(scene);
+  const Scene asked = options.scene.load();
+  require_start_file(asked);
+  const PatchScale start = scale_of_start(asked);
+  const Scene scene = decided_by(asked, start);
+  Lines said = doubts(scene, start);
   const Derived derived = derive(scene);
   if (const double left = 1e-6 * available_memory(); derived.memory_mb > left)
     said.push_back(fmt::format("the run needs about {} GB of memory, and {} GB can be had here: run refuses it; take "

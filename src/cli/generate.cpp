@@ -12,6 +12,7 @@
 #include <keeler/core/words.hpp>
 #include <keeler/files/new_file.hpp>
 #include <keeler/io/snapshot.hpp>
+#include <keeler/scene/resting_choice.hpp>
 #include <keeler/states/broken.hpp>
 #include <keeler/states/clumped.hpp>
 #include <keeler/states/from_table.hpp>
@@ -117,7 +118,8 @@ ExitCode generate_from_table(const GenerateOptions& options, const std::vector<s
   if (table.velocities.empty())
     options.talk.notice()("note: the table has no velocities: all orbits are circular");
   // No fresh start makes this state: the scene that goes with it starts from the file.
-  const Scene scene = parse_scene(of.scene.resolved, options.scene.path, {}, options.output);
+  const Scene scene =
+      decided_by(parse_scene(of.scene.resolved, options.scene.path, {}, options.output), scale_of(patch));
   print_doubts(scene, patch);
   write_snapshot(options.output, patch, {scene.resolved, collect_provenance(arguments)});
   print_written(patch, options.output);
@@ -145,6 +147,7 @@ ExitCode generate(const GenerateOptions& options, const std::vector<std::string>
   for (const std::string& notice : scene.notices)
     options.talk.notice()(notice);
   print_doubts(scene, patch);
+  meta.scene = decided_by(scene, scale_of(patch)).resolved;
   write_snapshot(options.output, patch, meta);
   print_written(patch, options.output);
   return ExitCode::done;

@@ -137,8 +137,8 @@ std::vector<Key> gravity_keys() {
        .fallback = "\"auto\"",
        .meaning =
            "contacts that a kick does not resolve: carried, by impulses that act with it, or bounced as all others; "
-           "auto: carried where aggregates last (r_h of 1 or more, aggregates or moonlets placed, a start from a "
-           "file)",
+           "auto: carried where aggregates last (r_h of 1 or more), where grains stay on a moonlet, and where optical "
+           "depth, r_h and kick interval would make bounced ones lose 1.5 % too much",
        .choices = {"auto", "carried", "bounced"},
        .only_with = {"solver", {"direct", "tree", "fft", "mesh", "auto"}},
        .unhashed = "\"bounced\""},

@@ -10,6 +10,7 @@
 #include <keeler/runs/run.hpp>
 #include <keeler/runs/state_hash.hpp>
 #include <keeler/scene/derived.hpp>
+#include <keeler/scene/resting_choice.hpp>
 #include <keeler/states/broken.hpp>
 #include <keeler/states/initial.hpp>
 #include <keeler/states/possible.hpp>
@@ -26,9 +27,15 @@ namespace {
 
 using Held = HeldSimulation;
 
-// From a patch or a stored state.
-template<class Make> std::unique_ptr<Held> begun(const Scene& scene, const Make& start) {
-  return std::make_unique<Held>(scene, made([&] { return std::make_unique<Simulation>(scene, start()); }));
+// With what the start decides.
+template<class Make> std::unique_ptr<Held> from_patch(const Scene& scene, const Make& start) {
+  Scene decided;
+  auto simulation = made([&] {
+    const Patch patch = start();
+    decided = decided_by(scene, scale_of(patch));
+    return std::make_unique<Simulation>(decided, patch);
+  });
+  return std::make_unique<Held>(decided, std::move(simulation));
 }
 
 std::unique_ptr<Held> from_scene(const Scene& scene) {
@@ -40,11 +47,12 @@ std::unique_ptr<Held> from_scene(const Scene& scene) {
 }
 
 std::unique_ptr<Held> from_snapshot(const PythonSnapshot& snapshot, const std::string& name, const Scene& scene) {
-  return begun(scene, [&] { return patch_from_snapshot(snapshot.patch, name, scene); });
+  return from_patch(scene, [&] { return patch_from_snapshot(snapshot.patch, name, scene); });
 }
 
 std::unique_ptr<Held> from_stored(StoredRun stored) {
-  return begun(stored.scene, [&] { return std::move(stored.state); });
+  auto simulation = made([&] { return std::make_unique<Simulation>(stored.scene, std::move(stored.state)); });
+  return std::make_unique<Held>(stored.scene, std::move(simulation));
 }
 
 // --- views: of bodies in memory, by their strides

@@ -15,6 +15,7 @@
 #include <keeler/render/patch_picture.hpp>
 #include <keeler/runs/analysis_numbers.hpp>
 #include <keeler/runs/measured_part.hpp>
+#include <keeler/scene/resting_choice.hpp>
 #include <keeler/states/clumped.hpp>
 #include <keeler/states/from_table.hpp>
 #include <keeler/states/initial.hpp>
@@ -47,7 +48,9 @@ void write(const PythonSnapshot& snapshot, const fs::path& file, bool as_it_is) 
 
 PythonSnapshot generate(const Scene& scene, bool clumped) {
   return made([&] {
-    return PythonSnapshot{clumped ? clumped_state(scene).patch : initial_patch(scene), scene.resolved};
+    Patch patch = clumped ? clumped_state(scene).patch : initial_patch(scene);
+    const Scene decided = decided_by(scene, scale_of(patch));
+    return PythonSnapshot{std::move(patch), decided.resolved};
   });
 }
 
@@ -83,7 +86,8 @@ PythonSnapshot from_arrays(const std::string& text, const std::string& name, con
     if (relaxed)
       relax(patch);
     require_apart(patch, table.file);
-    return PythonSnapshot{std::move(patch), parse_scene(of.scene.resolved, name, {}, table.file).resolved, true};
+    const Scene scene = decided_by(parse_scene(of.scene.resolved, name, {}, table.file), scale_of(patch));
+    return PythonSnapshot{std::move(patch), scene.resolved, true};
   });
 }
 

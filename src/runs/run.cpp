@@ -16,6 +16,7 @@
 #include <keeler/runs/folder_lock.hpp>
 #include <keeler/runs/state_hash.hpp>
 #include <keeler/scene/derived.hpp>
+#include <keeler/scene/resting_choice.hpp>
 #include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
@@ -151,8 +152,9 @@ Scene until(Scene scene, const RunOptions& options, std::int64_t step) {
 }
 
 struct Begun {
+  Scene scene; // with what its start decides
   Simulation simulation;
-  PatchScale scale; // the first rank's
+  PatchScale scale;
 };
 
 // Until there is a run, a stop is heeded at once: there is nothing that could be kept. Ranks heed it together, after
@@ -171,8 +173,9 @@ Begun first_simulation(const Scene& scene, const RunOptions& options, const RunR
     if (!scene.start_from)
       ranks.together([&] { require_memory_for(scene, (scene.particles.count + ranks.count() - 1) / ranks.count()); });
     const Patch patch = initial_patch(scene, progress, ranks);
-    const PatchScale scale = scale_of(patch, ranks);
-    return {Simulation(scene, patch, ranks), scale};
+    const PatchScale scale = ranks.from_first(scale_of(patch, ranks));
+    const Scene decided = decided_by(scene, scale);
+    return {decided, Simulation(decided, patch, ranks), scale};
   } catch (const Interrupted&) {
     const Error stopped(ExitCode::run_time,
                         "stopped before the first step (on request), so nothing is written; start again");
@@ -208,20 +211,21 @@ void tell_notices(const Scene& scene, const RunOptions& options, const PatchScal
     options.notice("note: " + doubt);
 }
 
-RunResult begin(const Scene& scene, const RunOptions& options, RunRequests& requests) {
+RunResult begin(const Scene& asked, const RunOptions& options, RunRequests& requests) {
   Start start;
   const Ranks& ranks = options.ranks;
   const RunFolder folder(options.folder);
-  require_same_run(scene, options);
+  require_same_run(asked, options);
   refuse_checks_of_many(options);
-  ranks.first_does([&] { require_start_file(scene); });
-  require_shareable_start(scene, options);
+  ranks.first_does([&] { require_start_file(asked); });
+  require_shareable_start(asked, options);
   ranks.first_does([&] {
     if (!options.force)
       folder.refuse_if_occupied(); // before the work of an initial state
     folder.require_writable();
   });
-  Begun begun = first_simulation(scene, options, requests);
+  Begun begun = first_simulation(asked, options, requests);
+  const Scene& scene = begun.scene;
   Simulation& simulation = begun.simulation;
   start.made_s = start.watch.elapsed();
   std::optional<FolderLock> lock;

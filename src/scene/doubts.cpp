@@ -75,7 +75,7 @@ void doubt_equilibrium(const Scene& scene, const PatchScale& patch, Lines& lines
     return;
   const bool fresh = !scene.start_from; // then moonlets do not count
   const double depth = fresh ? scene.optical_depth() : patch.optical_depth;
-  const double radius = fresh ? scene.particles.sizes.largest : patch.largest_radius;
+  const double radius = fresh ? scene.particles.sizes.largest : patch.largest.radius;
   const double kept = scene.collisions.restitution({fast, radius, radius});
   if (const double critical = critical_restitution(depth); kept >= critical)
     lines.push_back(fmt::format(
@@ -87,19 +87,12 @@ void doubt_equilibrium(const Scene& scene, const PatchScale& patch, Lines& lines
 
 void doubt_room(const PatchScale& patch, Lines& lines) {
   constexpr double enough = 10.0; // diameters
-  const double side = std::min(patch.size_x, patch.size_y), spans = side / (2.0 * patch.largest_radius);
-  if (patch.largest_radius > 0.0 && spans < enough)
+  const double side = std::min(patch.size_x, patch.size_y), spans = side / (2.0 * patch.largest.radius);
+  if (patch.largest.radius > 0.0 && spans < enough)
     lines.push_back(
         fmt::format("the box spans {} diameters of its largest particle: below {:g} particles feel their own "
                     "images, and velocity dispersion and viscosity depend on the box; widen it",
                     figures(spans, 2), enough));
-}
-
-double largest_radius(const Scene& scene) {
-  double radius = scene.particles.sizes.largest;
-  for (const MoonletSettings& moonlet : scene.moonlets)
-    radius = std::max(radius, moonlet.radius);
-  return radius;
 }
 
 void doubt_satellite(const Scene& scene, Lines& lines) {
@@ -146,14 +139,44 @@ std::vector<std::string> doubts(const Scene& scene, const PatchScale& patch) {
   return lines;
 }
 
+// A body that holds much of the mass by itself is not counted with the grains, as in crowd_of().
+PatchScale scale_of(const BodySums& sums, std::size_t particle_count, double size_x, double size_y, double lambda_cr) {
+  PatchScale scale{particle_count, size_x, size_y, lambda_cr};
+  scale.mass = sums.mass;
+  scale.density = sums.mass / (4.0 / 3.0 * pi * sums.cubes);
+  scale.optical_depth = pi * sums.squares / (size_x * size_y);
+  scale.largest = sums.largest;
+  const double radius = (sums.cubes - sums.sixths / sums.cubes) / sums.squares;
+  scale.grain = {radius, 4.0 / 3.0 * pi * scale.density * std::pow(radius, 3)};
+  return scale;
+}
+
+PatchScale scale_of(const Scene& scene) {
+  const ParticleSettings& particles = scene.particles;
+  const SizeLaw& sizes = particles.sizes;
+  const auto count = static_cast<double>(particles.count);
+  const auto mass_of = [&](double cubes) { return 4.0 / 3.0 * pi * particles.density * cubes; };
+  BodySums sums;
+  sums.squares = count * sizes.mean_power(2);
+  sums.cubes = count * sizes.mean_power(3);
+  sums.sixths = count * sizes.mean_power(6);
+  sums.mass = mass_of(sums.cubes);
+  sums.largest = {sizes.largest, mass_of(std::pow(sizes.largest, 3))};
+  for (const MoonletSettings& moonlet : scene.moonlets) {
+    sums.squares += std::pow(moonlet.radius, 2);
+    sums.cubes += std::pow(moonlet.radius, 3);
+    sums.sixths += std::pow(moonlet.radius, 6);
+    sums.mass += moonlet.mass;
+    if (moonlet.radius > sums.largest.radius)
+      sums.largest = {moonlet.radius, moonlet.mass};
+  }
+  return scale_of(sums, particles.count, scene.size_x, scene.size_y,
+                  critical_wavelength(scene.surface_density(), scene.planet));
+}
+
 std::vector<std::string> doubts(const Scene& scene) {
   if (!scene.start_from)
-    return doubts(scene, {.particle_count = scene.particles.count,
-                          .size_x = scene.size_x,
-                          .size_y = scene.size_y,
-                          .lambda_cr = critical_wavelength(scene.surface_density(), scene.planet),
-                          .optical_depth = scene.optical_depth(),
-                          .largest_radius = largest_radius(scene)});
+    return doubts(scene, scale_of(scene));
   Lines lines;
   if (scene.gravity)
     doubt_kicks(scene, 0.0, lines);

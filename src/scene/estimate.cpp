@@ -1,9 +1,11 @@
 #include <keeler/scene/estimate.hpp>
 
+#include <keeler/core/units.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/gravity/fft.hpp>
 #include <keeler/gravity/near_image_count.hpp>
 #include <keeler/scene/derived.hpp>
+#include <keeler/scene/resting_choice.hpp>
 
 #include <fmt/format.h>
 
@@ -28,6 +30,8 @@ constexpr double mesh_cut = 52.0;                  // a particle and kick, for e
 constexpr double radial_waves = 70.0;              // a particle and kick
 constexpr double tree_image = 0.1;                 // the share of the tree's time that nine images take
 constexpr double direct_pair = 0.25, far_images = 40.0; // a pair and image; a particle and kick
+constexpr double far_set_up = 3.5e3;                    // a kick and image: the expansion of all that are farther
+constexpr double resting = 2e4;                         // a grain of a pile and kick, where contacts carry kicks
 constexpr double row = 12.0, row_itself = 2e4;          // a particle and row; a row
 constexpr double stress = 350.0;                        // a particle and measurement of gravity's energy
 constexpr double snapshot = 1550.0, checkpoint = 500.0; // a particle and file
@@ -69,16 +73,23 @@ double kicks_an_orbit(const Scene& scene) {
   return scene.time.automatic ? in_wakes : 1.0 / (scene.time.step * scene.gravity->kick_every);
 }
 
+// Contacts of a particle in an orbit; half as many events. Searches see more neighbours, or go through more levels;
+// neighbours that stand close are of the finest level. Contacts that follow from others in the same step are dearer.
+double contacts_ns(const ContactRates& rates, double dilute, double count, const Scene& scene) {
+  const double crowded = 1.0 + 0.17 * std::log(std::max(1.0, rates.fast / dilute));
+  const double search = std::max(size_spread(scene.particles.sizes), crowded);
+  const double chains = 1.0 + 0.3 * std::log(1.0 + rates.all() * step_in(scene, rates));
+  return cost::contact * search * chains * cache_factor(count) * 0.5 * rates.all();
+}
+
 // Of an orbit.
 double drift_ns(const ContactRates& rates, double dilute, double count, const Scene& scene) {
   const double step = step_in(scene, rates);
-  const double contacts = rates.all() * step; // of a particle in a step; half as many events
+  const double contacts = rates.all() * step; // of a particle in a step
   const double spread = size_spread(scene.particles.sizes);
-  // Searches see more neighbours, or go through more levels; neighbours that stand close are of the finest level.
-  const double search = std::max(spread, 1.0 + 0.17 * std::log(std::max(1.0, rates.fast / dilute)));
   const double kicks = cost::kick * static_cast<double>(scene.external_forces.size());
   const double lists = (cost::lists + cost::left_list * std::min(contacts, 0.3)) * spread;
-  return (cost::advance + kicks + lists + cost::contact * search * cache_factor(count) * 0.5 * contacts) / step;
+  return (cost::advance + kicks + lists) / step + contacts_ns(rates, dilute, count, scene);
 }
 
 // Height of the layer at the start in mean distances of particles in the plane. More than one where the layer is dense,
@@ -125,7 +136,8 @@ double gravity_ns(const Scene& scene) {
   const double height = relative_height(scene), images = near_images(scene, gravity.images);
   switch (gravity.solver) {
   case GravitySettings::Solver::direct:
-    return cost::kick + cost::direct_pair * count * images + (gravity.images.far ? cost::far_images : 0.0);
+    return cost::kick + cost::direct_pair * count * images +
+           (gravity.images.far ? cost::far_images + cost::far_set_up * images / count : 0.0);
   case GravitySettings::Solver::tree:
     return cost::kick + tree_ns(gravity, height) * (1.0 + cost::tree_image * (images / 9.0 - 1.0));
   case GravitySettings::Solver::mesh:
@@ -161,6 +173,10 @@ double met_optical_depth(const Scene& scene) {
   return 0.5 * scene.optical_depth() * (1.0 + 1.0 / size_spread(scene.particles.sizes));
 }
 
+double dilute_rate(double optical_depth, double vertical_ratio) {
+  return 19.0 * optical_depth * std::pow(vertical_ratio, 0.9);
+}
+
 // Impacts happen at about three times the speed r Ω.
 double typical_restitution(const Scene& scene) {
   const double speed = crowd_of(scene.particles).radius * scene.planet.orbital_frequency;
@@ -193,29 +209,120 @@ double wake_crowding(double optical_depth, double hill_parameter) {
          std::exp(12.5 * (std::min(hill_parameter, aggregates) - 0.39));
 }
 
-// Dilute layers collide 19 τ times an orbit. Particles that lose their speed stay together and collide again, the more
-// often the less they keep and the more crowded they are. Where sizes differ, small ones move too fast for slow
-// contacts. Spheres that keep nothing hop at the least rebound (v_cut/1000), thousands of times an orbit.
-ContactRates contact_rates(double optical_depth, double restitution, double crowding, double spread) {
-  const double dilute = 19.0 * optical_depth;
-  const double fast = dilute * (1.0 + 4.5 * std::exp(-7.2 * restitution) * crowding);
-  const double slow =
-      dilute * (34.0 * std::exp(-13.0 * restitution) * (1.0 / (spread * spread * spread) + crowding / 7.0) +
-                0.12 / (restitution + 7e-5) * std::exp(-30.0 * restitution));
+namespace {
+
+// What ν adds to the crowding of a layer that has no gravity of its own. Below an optical depth of one the particles of
+// a layer that is pulled flat lie side by side.
+double vertical_crowding(double optical_depth, double vertical_ratio) {
+  return layer_crowding(optical_depth) * std::min(1.0, std::pow(optical_depth, 3)) *
+         (std::pow(vertical_ratio, 2.1) - 1.0);
+}
+
+// How much more often than at ν = Ω particles press on each other that have lost their speed: the more, the more of
+// them lie on others.
+double vertical_press(double optical_depth, double restitution, double vertical_ratio) {
+  const double more = std::pow(vertical_ratio, std::min(3.7, 1.7 + 4.0 * restitution)) - 1.0;
+  return std::max(0.0, 1.0 + more / (1.0 + more / (50.0 + 5000.0 * std::pow(optical_depth, 9))));
+}
+
+} // namespace
+
+// Dilute layers collide 19 τ times an orbit, and more often where they swing faster. Particles that lose their speed
+// stay together and collide again, the more often the less they keep and the more crowded they are. Where sizes differ,
+// small ones move too fast for slow contacts. Spheres that keep nothing hop at the least rebound (v_cut/1000),
+// thousands of times an orbit.
+ContactRates contact_rates(double optical_depth, double restitution, double crowding, double spread,
+                           double vertical_ratio) {
+  const double dilute = dilute_rate(optical_depth, vertical_ratio);
+  const double flat = crowding + vertical_crowding(optical_depth, vertical_ratio);
+  const double fast = dilute * (1.0 + 4.5 * std::exp(-7.2 * restitution) * flat);
+  const double slow = dilute * vertical_press(optical_depth, restitution, vertical_ratio) *
+                      (34.0 * std::exp(-13.0 * restitution) * (1.0 / (spread * spread * spread) + crowding / 7.0) +
+                       0.12 / (restitution + 7e-5) * std::exp(-30.0 * restitution));
   return {saturating(fast, most_fast), saturating(slow, most_slow)};
 }
 
 SceneContacts scene_contacts(const Scene& scene) {
   const double depth = scene.optical_depth(), spread = size_spread(scene.particles.sizes);
   const auto rates = [&](double crowding) {
-    return contact_rates(met_optical_depth(scene), typical_restitution(scene), layer_crowding(depth) + crowding,
-                         spread);
+    return contact_rates(met_optical_depth(scene), typical_restitution(scene), layer_crowding(depth) + crowding, spread,
+                         scene.planet.frequencies.nu);
   };
   if (!scene.gravity || !scene.gravity->by_pairs())
     return {rates(0.0), rates(0.0)};
   const double r_h = hill_parameter(scene.particles.density, distance_from_saturn(scene.planet));
   const double pressed = pressed_crowding(depth, r_h);
   return {rates(pressed), rates(has_room_for_wakes(scene) ? std::max(pressed, wake_crowding(depth, r_h)) : pressed)};
+}
+
+namespace {
+
+// The grains that a body holds: those of its lane of the patch that have come near, as many as its Hill sphere has room
+// for. Fits to what lies on moonlets of 10 to 30 m after 0.1 to 2 orbits.
+double grains_on(const PatchScale::Sphere& body, const PatchScale& patch, const Scene& scene, double orbits) {
+  const double hill = std::cbrt(newton_g(scene.planet.orbital_frequency) * body.mass / 3.0);
+  const double grain_radius = scene.particles.sizes.mean_power(3) / scene.particles.sizes.mean_power(2);
+  const double count = static_cast<double>(scene.particles.count), per_area = count / (patch.size_x * patch.size_y);
+  const double come = 24.0 * per_area * hill * hill * orbits * orbits / (orbits + 0.25);
+  const double lane = count * std::min(1.0, 5.0 * hill / patch.size_x);
+  const double room = 0.55 * (std::pow(0.85 * hill, 3) - std::pow(body.radius, 3)) / std::pow(grain_radius, 3);
+  return std::max(0.0, std::min({come, lane, room}));
+}
+
+// Bodies of a list of sizes are in the crowd of particles: the largest is one.
+std::vector<PatchScale::Sphere> large_bodies(const Scene& scene, const PatchScale& patch) {
+  std::vector<PatchScale::Sphere> bodies;
+  for (const MoonletSettings& moonlet : scene.moonlets)
+    bodies.push_back({moonlet.radius, moonlet.mass});
+  if (bodies.empty() && scene.particles.sizes.listed > 0)
+    bodies.push_back(patch.largest);
+  return bodies;
+}
+
+// Where all holds together, particles of thin rings that move more slowly than they escape from each other gather in
+// aggregates. In denser rings the rates of contacts in wakes know of them.
+double grains_in_aggregates(const Scene& scene, double orbits) {
+  constexpr double thin = 0.5;
+  const ParticleSettings& particles = scene.particles;
+  const double r_h = hill_parameter(particles.density, distance_from_saturn(scene.planet));
+  const double depth = scene.optical_depth(), escape = std::sqrt(24.0 * std::pow(r_h, 3)); // r Ω
+  if (r_h < aggregates || depth > thin || particles.velocity_dispersion > escape)
+    return 0.0;
+  const double half = 6.3 * std::sqrt(0.2 / depth); // orbits until most of them have
+  return static_cast<double>(particles.count) * orbits * orbits / (orbits * orbits + half * half);
+}
+
+// Grains in piles, summed over the time of a run.
+double grain_orbits(const Scene& scene, double orbits) {
+  constexpr int samples = 64;
+  double sum = 0.0;
+  for (int k = 0; k < samples; ++k)
+    sum += grains_in_piles(scene, orbits * (k + 0.5) / samples);
+  return orbits * sum / samples;
+}
+
+// A grain of a pile and orbit: it rattles from kick to kick, until it rests. Where contacts bounce it never does.
+double pile_ns(const Scene& scene, double dilute) {
+  constexpr double rattling = 8000.0, bouncing = 30.0; // contacts an orbit; a kick
+  if (!scene.gravity)
+    return 0.0;
+  const double kicks = kicks_an_orbit(scene), count = static_cast<double>(scene.particles.count);
+  const bool carries = scene.gravity->carries();
+  const ContactRates rates{carries ? rattling : bouncing * kicks, 0.0};
+  return contacts_ns(rates, dilute, count, scene) + (carries ? cost::resting * kicks : 0.0);
+}
+
+} // namespace
+
+double grains_in_piles(const Scene& scene, double orbits) {
+  if (!scene.gravity || !scene.gravity->by_pairs())
+    return 0.0;
+  const PatchScale patch = scale_of(scene);
+  double grains = grains_in_aggregates(scene, orbits);
+  for (const PatchScale::Sphere& body : large_bodies(scene, patch))
+    if (holds_grains(body, patch.grain, scene.planet))
+      grains += grains_on(body, patch, scene, orbits);
+  return std::min(grains, static_cast<double>(scene.particles.count));
 }
 
 std::array<RunEstimate::Part, 4> RunEstimate::parts() const {
@@ -259,13 +366,14 @@ RunEstimate estimate_run(const Scene& scene, double pair_ns) {
   const double orbits = static_cast<double>(scene.time.end_step) * scene.time.step;
   const double smooth = std::min(orbits, clumping_orbits);
   const SceneContacts contacts = scene_contacts(scene);
-  const double dilute = 19.0 * met_optical_depth(scene);
+  const double dilute = dilute_rate(met_optical_depth(scene), scene.planet.frequencies.nu);
   const double scale = 1e-9 * pair_ns / reference_pair_ns;
   RunEstimate estimate;
   estimate.start = scale * start_ns(scene) * count;
   estimate.drift = scale * count *
                    (smooth * drift_ns(contacts.smooth, dilute, count, scene) +
                     (orbits - smooth) * drift_ns(contacts.wakes, dilute, count, scene));
+  estimate.drift += scale * grain_orbits(scene, orbits) * pile_ns(scene, dilute);
   if (scene.gravity)
     estimate.gravity = scale * count * orbits * kicks_an_orbit(scene) * gravity_ns(scene);
   estimate.output = scale * output_ns(scene, count);

@@ -16,6 +16,7 @@
 #include <keeler/scene/derived.hpp>
 #include <keeler/scene/examples.hpp>
 #include <keeler/scene/keys.hpp>
+#include <keeler/scene/resting_choice.hpp>
 
 #include <fmt/format.h>
 
@@ -69,17 +70,6 @@ std::optional<GravitySettings> read_gravity(Settings& settings, const std::strin
     if (const std::string fault = radial_mesh_fault(size_x, gravity.shortest_wavelength); !fault.empty())
       fail_at(settings.place("gravity.shortest_wavelength"), fault);
   return gravity;
-}
-
-// Where nothing holds together for long, contacts are no more at rest than others, and cost nothing.
-void choose_resting_contacts(Scene& scene, Settings& settings) {
-  const char* const key = "gravity.resting_contacts";
-  if (!scene.gravity || !settings.has(key) || settings.text(key) != "auto")
-    return;
-  const double density = scene.particles.density; // 0: the particles come from elsewhere
-  scene.gravity->resting_contacts = density == 0.0 || !scene.moonlets.empty() || !scene.particles.aggregates.empty() ||
-                                    hill_parameter(density, distance_from_saturn(scene.planet)) >= 1.0;
-  settings.resolve(key, std::string(scene.gravity->resting_contacts ? "carried" : "bounced"));
 }
 
 // Where the box is known a force is made as a run makes it, to see what it says to its values.
@@ -163,7 +153,19 @@ void read_start(Scene& scene, Settings& settings, const std::string& name) {
   scene.start_keep_seed = static_cast<std::uint64_t>(settings.integer("start.keep_seed"));
 }
 
-enum class Purpose { start, go_on };
+enum class Purpose { start, table, go_on }; // table: the particles of the scene stand for others
+
+// A file or a table of particles decides later. A stored scene of a program that did not know the key bounced all
+// contacts.
+void read_resting_contacts(Scene& scene, Settings& settings, Purpose purpose) {
+  const char* const key = "gravity.resting_contacts";
+  if (!scene.gravity || !settings.has(key) || settings.text(key) != "auto")
+    return;
+  const bool known = purpose == Purpose::start && !scene.start_from;
+  scene.gravity->resting_contacts = known && choose_resting_contacts(scale_of(scene), scene).carried;
+  if (known || purpose == Purpose::go_on)
+    settings.resolve(key, std::string(scene.gravity->resting_contacts ? "carried" : "bounced"));
+}
 
 Scene read_scene(Document document, const std::string& name, Purpose purpose, std::vector<std::string> notices) {
   add_gravity_of_quality(document);
@@ -175,19 +177,19 @@ Scene read_scene(Document document, const std::string& name, Purpose purpose, st
   scene.planet = read_planet(settings);
   if (settings.has("start"))
     read_start(scene, settings, name);
-  else if (purpose == Purpose::start)
+  else if (purpose != Purpose::go_on)
     read_particles_and_box(scene, settings, name);
   else
     scene.particles.seed = static_cast<std::uint64_t>(settings.integer("particles.seed"));
   scene.moonlets = read_moonlets(settings, name);
-  if (purpose == Purpose::start && !scene.start_from)
+  if (purpose != Purpose::go_on && !scene.start_from)
     check_placed_bodies(scene, settings);
   scene.collisions = read_collisions(settings, name);
   scene.gravity = read_gravity(settings, name, scene.size_x);
-  choose_resting_contacts(scene, settings);
   scene.external_forces = read_external_forces(scene, settings, name);
   resolve_times_of_quality(scene, settings);
   read_times(scene, settings);
+  read_resting_contacts(scene, settings, purpose);
   scene.output.collisions = read_contact_log(settings);
   scene.resolved = settings.resolved();
   scene.motion = settings.motion();
@@ -243,7 +245,7 @@ TableScene parse_table_scene(const std::string& text, const std::string& name,
   apply_overrides(document, overrides, notices);
   const bool has_density = find_entry(document, "particles.density") != nullptr;
   apply_table(document);
-  TableScene of{read_scene(std::move(document), name, Purpose::start, std::move(notices)), {}};
+  TableScene of{read_scene(std::move(document), name, Purpose::table, std::move(notices)), {}};
   if (has_density)
     of.density = of.scene.particles.density;
   return of;

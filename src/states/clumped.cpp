@@ -4,6 +4,7 @@
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/diagnostics/viscosity.hpp>
+#include <keeler/scene/resting_choice.hpp>
 #include <keeler/simulation/simulation.hpp>
 #include <keeler/states/broken.hpp>
 #include <keeler/states/initial.hpp>
@@ -95,7 +96,8 @@ ClumpedState clumped_state(const Scene& scene, const SettleCriterion& criterion,
   require_room_to_settle(criterion);
   double seconds = 0.0;
   const Stopwatch watch(seconds);
-  Simulation simulation(scene, initial_patch(scene));
+  const Patch start = initial_patch(scene);
+  Simulation simulation(decided_by(scene, scale_of(start)), start);
   require_visible_wakes(simulation.patch());
 
   Clumping clumping;

@@ -198,25 +198,38 @@ Patch patch_from_snapshot(Patch patch, const std::string& path, const Scene& sce
   return patch;
 }
 
+namespace {
+
+// The largest of all ranks' bodies, and of such the heaviest.
+PatchScale::Sphere largest_of(const Patch& patch, const Ranks& ranks) {
+  PatchScale::Sphere largest;
+  for (const double radius : patch.radii)
+    largest.radius = std::max(largest.radius, radius);
+  largest.radius = ranks.largest(largest.radius);
+  for (std::size_t k = 0; k < patch.size(); ++k)
+    if (patch.radii[k] == largest.radius)
+      largest.mass = std::max(largest.mass, patch.masses[k]);
+  largest.mass = ranks.largest(largest.mass);
+  return largest;
+}
+
+} // namespace
+
 PatchScale scale_of(const Patch& patch, const Ranks& ranks) {
-  const auto total = [&](const std::function<double(std::size_t)>& term) {
+  const auto total_of = [&](const auto& term) {
     return exact_total<ExactSum>(patch.size(), [&](ExactSum& sum, std::size_t k) { sum += term(k); });
   };
-  auto masses = total([&](std::size_t k) { return patch.masses[k]; });
-  auto squares = total([&](std::size_t k) { return std::pow(patch.radii[k], 2); });
-  auto cubes = total([&](std::size_t k) { return std::pow(patch.radii[k], 3); });
-  ranks.merge({&masses, &squares, &cubes});
-  const double mass = masses.value(), area = patch.box.area();
-  PatchScale scale;
-  scale.particle_count = ranks.sum(patch.size());
-  scale.size_x = patch.box.size_x;
-  scale.size_y = patch.box.size_y;
-  scale.lambda_cr = critical_wavelength(newton_g(patch.orbital_frequency), mass / area, patch.frequencies.kappa);
-  scale.density = mass / (4.0 / 3.0 * pi * cubes.value());
-  scale.optical_depth = pi * squares.value() / area;
-  scale.largest_radius =
-      ranks.largest(patch.radii.empty() ? 0.0 : *std::max_element(patch.radii.begin(), patch.radii.end()));
-  return scale;
+  const auto total_of_power = [&](int power) {
+    return total_of([&](std::size_t k) { return std::pow(patch.radii[k], power); });
+  };
+  ExactSum masses = total_of([&](std::size_t k) { return patch.masses[k]; });
+  ExactSum squares = total_of_power(2), cubes = total_of_power(3), sixths = total_of_power(6);
+  ranks.merge({&masses, &squares, &cubes, &sixths});
+  const double mass = masses.value();
+  const BodySums sums{mass, squares.value(), cubes.value(), sixths.value(), largest_of(patch, ranks)};
+  return scale_of(
+      sums, ranks.sum(patch.size()), patch.box.size_x, patch.box.size_y,
+      critical_wavelength(newton_g(patch.orbital_frequency), mass / patch.box.area(), patch.frequencies.kappa));
 }
 
 namespace {

@@ -1,6 +1,7 @@
 #include "growth.hpp"
 
 #include <keeler/bench/yardsticks.hpp>
+#include <keeler/scene/resting_choice.hpp>
 #include <keeler/simulation/simulation.hpp>
 #include <keeler/states/initial.hpp>
 
@@ -43,8 +44,10 @@ void run_until(Simulation& simulation, double orbits, PhaseProgress& progress) {
 
 GrownScene grow(const Scene& scene, double orbits, PhaseProgress& progress) {
   progress.begin("the state that is probed", orbits);
-  Simulation simulation(coarse(scene), initial_patch(scene));
+  const Patch start = initial_patch(scene);
   GrownScene growth;
+  growth.scene = decided_by(scene, scale_of(start));
+  Simulation simulation(coarse(growth.scene), start);
   const double last = std::min(1.0, 0.5 * orbits), begin = bench_seconds();
   double begin_last = begin, from = 0.0;
   std::uint64_t contacts = 0;

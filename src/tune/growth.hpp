@@ -10,6 +10,7 @@
 namespace keeler {
 
 struct GrownScene {
+  Scene scene;                 ///< with what its start decides
   std::vector<Patch> states;   ///< of its last orbit, the last one at its end: in a small box wakes come and go
   double orbits = 0.0;         ///< its age
   double contact_rate = 0.0;   ///< of a particle, in the last orbit

@@ -33,6 +33,7 @@ GravityChoice choice(const Scene& scene, GravitySettings::Solver solver, std::si
   GravitySettings settings;
   settings.solver = solver;
   settings.images = scene.gravity->images;
+  settings.resting_contacts = scene.gravity->resting_contacts;
   if (solver == GravitySettings::Solver::tree)
     settings.opening_angle = parameter;
   else if (solver == GravitySettings::Solver::fft)
@@ -176,11 +177,11 @@ Tuning tune(const Scene& scene, const TuneSettings& settings) {
   Tuning tuning;
   tuning.particles = growth.states.back().size();
   tuning.orbits = growth.orbits;
-  Scene chosen = scene;
+  Scene chosen = growth.scene;
   double interval = 0.1 / kicks_of_tenth.back();
   if (scene.gravity) {
     tuning.gravity =
-        bench_gravity_of(growth.states.back(), gravity_candidates(scene, tuning.particles, settings.force_error),
+        bench_gravity_of(growth.states.back(), gravity_candidates(growth.scene, tuning.particles, settings.force_error),
                          gravity_repeats, progress)
             .rows;
     choose_gravity(tuning, margin_for_seeds * settings.force_error);

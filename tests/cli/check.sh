@@ -19,7 +19,7 @@ for scene in "$source_dir"/examples/*/scene.toml; do
   prints "$scene" "steps"
   accepts "$scene as JSON" check "$scene" --json
   for key in particle_count optical_depth surface_density lambda_cr_m toomre_q hill_parameter midplane_filling box_m \
-    steps step_orbits kick_interval_orbits memory_mb estimated_s estimate start_s drift_s gravity_s output_s notices doubts costs; do
+    steps step_orbits kick_interval_orbits resting_contacts memory_mb estimated_s estimate contacts_per_particle_orbit grains_in_piles start_s drift_s gravity_s output_s notices doubts costs; do
     prints "$scene as JSON" "\"$key\":"
   done
 done

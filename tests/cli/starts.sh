@@ -58,7 +58,7 @@ prints "an aggregate overlaps nothing" "largest overlap      0 of"
 runs 0 generate "$work/scene.toml" --set particles.density=3000 --set "$(aggregate 200 0.5)" -o "$work/heavy.hdf"
 runs 0 check "$work/scene.toml" --set "start.from='$work/heavy.hdf'" --set 'gravity={solver="direct",kick_every=20}'
 prints "check of a start from a file" "Hill parameter r_h 1.22 of its particles"
-prints "check of a start from a file" "contacts at rest   carried (as is the default of any start from a file"
+prints "check of a start from a file" "contacts at rest   carried (aggregates last at r_h 1.22)"
 prints "check of a start from a file" "note: kicks are 0.02 orbits apart: aggregates last at r_h 1.2 and cannot rest"
 runs 0 check "$work/scene.toml" --set "$(aggregate 200 0.5)"
 prints "check" "aggregate 1        ids "
@@ -70,6 +70,47 @@ refuses "an aggregate wider than the box" "across (more than a side of the box" 
   generate "$work/scene.toml" --set "$(aggregate 200 0.0001)" -o "$work/none.hdf"
 refuses "an aggregate in a moonlet" "particles.aggregate[1] and moonlet[1] overlap" generate "$work/scene.toml" \
   --set "$(aggregate 200 0.5)" --set 'moonlet=[{ radius = 11.0, density = 900.0 }]' -o "$work/none.hdf"
+
+# Whether contacts at rest are carried follows from the particles and the kick interval, wherever they come from.
+cat >"$work/layer.toml" <<END
+[planet]
+preset = "saturn-a-ring"
+[box]
+size = [25, 25]
+[particles]
+optical_depth = 2.0
+density = 600.0
+velocity_dispersion = 8.0
+sizes = { law = "equal", radius = 1.0 }
+[gravity]
+solver = "direct"
+kick_every = 5
+[time]
+step = 1e-3
+end = 0.01
+END
+# rests WORD [OPTION]...: in a fresh run, one from its first snapshot, one from a table of that, and one that goes on
+rests() {
+  local word=$1 folder
+  shift
+  runs 0 check "$work/layer.toml" "$@"
+  prints "check" "contacts at rest   $word ("
+  accepts "a fresh run" run "$work/layer.toml" "$@" -o "$work/rests" --force
+  local first=$work/rests/snap_000000.hdf
+  runs 0 check "$work/layer.toml" "$@" --set "start.from='$first'"
+  prints "check of a snapshot" "contacts at rest   $word ("
+  accepts "a run from a snapshot" run "$work/layer.toml" "$@" --from "$first" -o "$work/rests-from" --force
+  accepts "a run that goes on" resume "$work/rests-from" --until 0.02
+  accepts "a table" convert "$first" --to csv -o "$work/first.csv" --force
+  accepts "a start from it" generate "$work/layer.toml" "$@" --from-table "$work/first.csv" -o "$work/table.hdf" --force
+  accepts "a run from that" run "$work/layer.toml" "$@" --from "$work/table.hdf" -o "$work/rests-table" --force
+  for folder in rests rests-from rests-table; do
+    grep -qx "resting_contacts = \"$word\"" "$work/$folder/scene.toml" || fail "$folder $*: not $word"
+  done
+}
+rests bounced --set particles.density=204
+rests carried --set particles.density=597
+rests bounced --set particles.density=597 --set gravity.kick_every=1 --set time.step=2e-4
 
 printf '[planet]\norbital_frequency = 1.95e-4\n[start]\nfrom = "1.hdf"\n[time]\nend = 0.002\n' >"$work/share.toml"
 for share in 1.0 0.5; do

@@ -35,6 +35,21 @@ class Scenes(unittest.TestCase):
         self.assertEqual(by_table.state_hash, by_key.state_hash)
         self.assertNotEqual(by_table.state_hash, keeler.Simulation(RING).state_hash)
 
+    def test_contacts_at_rest_are_chosen_by_the_particles_wherever_they_come_from(self):
+        for r_h, word in ((0.65, "bounced"), (0.93, "carried")):
+            dense = ring(
+                box={"size": [25.0, 25.0]},
+                particles={"optical_depth": 2.0, "density": 742.9 * r_h**3, "velocity_dispersion": 8.0,
+                           "sizes": {"law": "equal", "radius": 1.0}},
+                gravity={"solver": "direct"},
+                time={"step": 5e-3, "end": 0.01},
+            )
+            fresh = keeler.Simulation(dense)
+            start = fresh.snapshot()
+            by_arrays = keeler.from_arrays(dense, start.positions, start.radii, start.velocities, start.masses)
+            for sim in (fresh, keeler.Simulation(dense, start=start), by_arrays):
+                self.assertIn(f'resting_contacts = "{word}"', sim.scene)
+
     def test_numbers_of_numpy_are_numbers(self):
         size = np.array([60.0, 60.0])
         sim = keeler.Simulation(RING, box={"size": size}, particles={"seed": np.int64(1)}, time={"step": np.float64(2e-3)})

@@ -12,13 +12,29 @@ namespace keeler {
 
 /// How large a patch is, and of what.
 struct PatchScale {
+  struct Sphere {
+    double radius = 0.0, mass = 0.0; ///< m, kg
+  };
   std::size_t particle_count = 0;
   double size_x = 0.0, size_y = 0.0; ///< m
   double lambda_cr = 0.0;            ///< m
   double density = 0.0;              ///< of the particles themselves, kg m^-3: asked where the scene does not give it
+  double mass = 0.0;                 ///< of all, kg
   double optical_depth = 0.0;        ///< Σ π r² / area
-  double largest_radius = 0.0;       ///< m
+  Sphere largest;                    ///< the largest body
+  Sphere grain;                      ///< a particle of the others: R = ⟨r³⟩/⟨r²⟩, of the density of all
 };
+
+/// Sums over the bodies of a patch from which its scale follows.
+struct BodySums {
+  double mass = 0.0;                               ///< kg
+  double squares = 0.0, cubes = 0.0, sixths = 0.0; ///< of radii, m², m³, m⁶
+  PatchScale::Sphere largest;
+};
+PatchScale scale_of(const BodySums& sums, std::size_t particle_count, double size_x, double size_y, double lambda_cr);
+
+/// The scale of a fresh start, moonlets included.
+PatchScale scale_of(const Scene& scene);
 
 /// A line each, with numbers; none where nothing is amiss.
 std::vector<std::string> doubts(const Scene& scene, const PatchScale& patch);

@@ -24,8 +24,10 @@ double pressed_crowding(double optical_depth, double hill_parameter);
 double wake_crowding(double optical_depth, double hill_parameter);
 
 /// In a patch of that optical depth, for a coefficient of restitution that holds for all impacts and sizes of that
-/// ⟨r²⟩/⟨r⟩².
-ContactRates contact_rates(double optical_depth, double restitution, double crowding, double spread = 1.0);
+/// ⟨r²⟩/⟨r⟩². `vertical_ratio`, ν/Ω, adds its own crowding: a layer that is pulled to its mid-plane is flatter, and its
+/// particles cross it more often.
+ContactRates contact_rates(double optical_depth, double restitution, double crowding, double spread = 1.0,
+                           double vertical_ratio = 1.0);
 
 /// Contacts of a scene near its equilibrium: before wakes stand, and when they do. Equal without self-gravity, and in a
 /// box that is too small for wakes.
@@ -33,6 +35,10 @@ struct SceneContacts {
   ContactRates smooth, wakes;
 };
 SceneContacts scene_contacts(const Scene& scene);
+
+/// Grains that lie in piles that many orbits after a fresh start: on the moonlets of a scene that hold grains
+/// (scene/resting_choice.hpp), or on the largest body of a list of sizes, and in aggregates of a thin ring.
+double grains_in_piles(const Scene& scene, double orbits);
 
 /// Processor time, s.
 struct RunEstimate {

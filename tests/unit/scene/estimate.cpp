@@ -36,6 +36,38 @@ TEST_CASE("contact rates are those of equilibria without self-gravity") {
     check_near(contact_rates(depth, 0.5, layer_crowding(depth)).all(), rate, 1.1);
 }
 
+TEST_CASE("contact rates follow the vertical frequency") {
+  // docs/dev/estimate.md: fast and slow together, counted in runs of 300 particles over an orbit, from the second on
+  struct Case {
+    double vertical_ratio, optical_depth, restitution, counted;
+  };
+  for (const Case& c : {Case{2.0, 0.5, 0.5, 31.1}, Case{2.0, 1.0, 0.5, 76.5}, Case{2.0, 1.64, 0.5, 143.5},
+                        Case{2.0, 2.5, 0.5, 322.0}, Case{3.6, 0.5, 0.5, 126.5}, Case{3.6, 1.0, 0.5, 668.7},
+                        Case{3.6, 1.64, 0.5, 1089.6}, Case{3.6, 2.5, 0.5, 2314.0}, Case{3.6, 2.5, 0.3, 17923.7},
+                        Case{2.0, 1.64, 0.1, 3861.7}, Case{6.0, 1.64, 0.9, 244.6}, Case{0.5, 1.0, 0.5, 10.1}}) {
+    CAPTURE(c.vertical_ratio);
+    CAPTURE(c.optical_depth);
+    CAPTURE(c.restitution);
+    const double crowding = layer_crowding(c.optical_depth);
+    check_near(contact_rates(c.optical_depth, c.restitution, crowding, 1.0, c.vertical_ratio).all(), c.counted, 2.0);
+  }
+  const Scene waves = load_scene(KEELER_SOURCE_DIR "/examples/overstability/scene.toml");
+  check_near(scene_contacts(waves).smooth.all(), 1100.0, 1.5);
+}
+
+TEST_CASE("grains gather on a moonlet and in aggregates, and make most of the work there") {
+  const Scene scene = load_scene(KEELER_SOURCE_DIR "/examples/moonlet/scene.toml");
+  // pairs at rest after 0.25, 0.5 and 1 orbit, 2.5 a grain
+  check_near(grains_in_piles(scene, 0.25), 1775 / 2.5, 1.5);
+  check_near(grains_in_piles(scene, 0.5), 5379 / 2.5, 1.5);
+  check_near(grains_in_piles(scene, 1.0), 10757 / 2.5, 1.5);
+  CHECK(std::string(estimate_run(scene).dominating()) == "drift");
+  check_near(estimate_run(scene).total(), 102.0 * reference_pair_ns / 9.0, 2.0);
+  CHECK(grains_in_piles(a_ring(), 3.0) == 0.0);
+  const Scene ring = load_scene(KEELER_SOURCE_DIR "/examples/aggregates/scene.toml");
+  check_near(grains_in_piles(ring, 2.0), 481 / 2.5, 1.5);
+}
+
 TEST_CASE("contact rates in wakes are those of the study of solvers") {
   // docs/theory/gravity.md: 218 to 247 collisions a particle and orbit, over orbits 1 to 4
   check_near(scene_contacts(a_ring()).wakes.fast, 230.0, 1.25);
