@@ -116,7 +116,7 @@ void add_bench_drift(CLI::App& bench_command, Action& action) {
   drift.add_option("--step", s.step_orbits, "step in orbits (default: 0.001)")
       ->check(positive_number(find_key("time.step")->range.high));
   drift.add_option("--optical-depth", s.optical_depth, "optical depth, up to 10 (default: 0.5)")
-      ->check(CLI::Range(1e-6, 10.0).description(""));
+      ->check(number_between(1e-6, 10.0, "an optical depth"));
   one_of(drift.add_option("--sizes", options->sizes,
                           "equal: all of 1 m; power: n(r) ~ r^-3 from 1 m to 100 m; moonlet: 1 m, and one of 100 m "
                           "(default: equal)"),

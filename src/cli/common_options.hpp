@@ -28,7 +28,7 @@ inline CLI::Validator positive_number(double most = std::numeric_limits<double>:
   const auto refusal = [most](const std::string& text) {
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
-    return *end == '\0' && end != text.c_str() && value > 0.0 && value <= most
+    return *end == '\0' && end != text.c_str() && value > 0.0 && std::isfinite(value) && value <= most
                ? std::string()
                : "'" + text + "' is not a number above 0" + (std::isfinite(most) ? ", up to " + figures(most) : "");
   };

@@ -167,7 +167,7 @@ void add_generate(CLI::App& program, Action& action, const std::vector<std::stri
   command
       .add_option("--most-orbits", options->criterion.most_orbits,
                   "give up when wakes have not settled by then (default: 30)")
-      ->check(CLI::Range(0.0, 200.0).description(""))
+      ->check(number_between(0.0, 200.0, "a number of orbits"))
       ->needs(&clumped);
   CLI::Option& table = *command.add_option("--from-table", options->table,
                                            "the particles are those of this table (CSV or HDF5) in the scene's box");

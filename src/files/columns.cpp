@@ -104,9 +104,29 @@ private:
         field = trimmed(field.substr(1, field.size() - 2));
       columns_.names.emplace_back(field);
     });
+    require_names(number);
     columns_.values.resize(columns_.names.size());
     columns_.header_line = number;
   }
+
+  void require_names(std::size_t line) {
+    const std::vector<std::string>& names = columns_.names;
+    const auto nameless = std::find(names.begin(), names.end(), std::string());
+    if (nameless == names.end())
+      return;
+    number_ = line;
+    if (nameless + 1 == names.end())
+      fail(fmt::format("the last column has no name (the line ends with a '{0}'); remove that '{0}', and those at the "
+                       "ends of the rows",
+                       separator_));
+    if (nameless == names.begin())
+      fail("the first column has no name (pandas writes its index so); write the table with index=False, or remove "
+           "the column");
+    fail(fmt::format("column {} has no name; name it or remove it", nameless - names.begin() + 1));
+  }
+
+  // Behind the last column there is nothing but a separator.
+  bool ends_with_separator() const { return separator_ != ' ' && line_.back() == separator_; }
 
   void read_row() {
     const std::size_t count = columns_.names.size();
@@ -124,6 +144,9 @@ private:
       }
       ++column;
     });
+    if (column == count + 1 && ends_with_separator())
+      fail(fmt::format("the row ends with a '{0}' (line {1} names {2} columns, and does not); remove that '{0}'",
+                       separator_, columns_.header_line, count));
     if (column != count)
       fail(fmt::format("the row has {} of {} values (line {} names the columns); correct or remove it", column, count,
                        columns_.header_line));

@@ -2,12 +2,14 @@
 
 #include "apart.hpp"
 #include "hdf5.hpp"
+#include "stated_units.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/interrupt.hpp>
 #include <keeler/files/columns.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/files/new_file.hpp>
+#include <keeler/files/writers.hpp>
 
 #include <fmt/format.h>
 
@@ -46,6 +48,17 @@ constexpr std::array<Column, 11> known = {{{"x", "m"},
                                            {"sz", "rad_s"}}};
 constexpr std::size_t first_velocity = 3, radius = 6, mass = 7, first_spin = 8;
 constexpr const char* id_column = "id";
+
+// Of a column that may be an array of HDF5; none for an id.
+std::string unit_of(const std::string& name) {
+  const auto is_named = [&](const Column& column) { return name == column.name || name == column.with_unit(); };
+  const auto column = std::find_if(known.begin(), known.end(), is_named);
+  if (column == known.end())
+    return {};
+  std::string unit = column->unit;
+  std::replace(unit.begin(), unit.end(), '_', '/');
+  return unit;
+}
 
 // By column of `known`; empty where the table does not have it.
 using KnownColumns = std::array<std::vector<double>, known.size()>;
@@ -113,11 +126,23 @@ ParticleTable read_text_table(std::span<const std::byte> bytes, const std::strin
   return table_of(file, sort_out(columns.names, std::move(columns.values), header), std::move(columns.lines));
 }
 
+void require_no_snapshot(const std::vector<std::string>& names, const std::string& file) {
+  const auto has = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+  const auto has_particles = [](const std::string& name) { return name.starts_with("PartType"); };
+  if (std::none_of(names.begin(), names.end(), has_particles))
+    return;
+  if (has("Code") && has("RingBox"))
+    throw UsageError(fmt::format("{}: it is a snapshot, not a table; start from it by start.from or --from", file));
+  throw UsageError(fmt::format("{}: it is a snapshot of another program, not a table (no /RingBox tells of its patch); "
+                               "write x, y, z, vx, vy, vz, r and m of its particles in SI units as arrays in the root "
+                               "of an HDF5 file, or as CSV",
+                               file));
+}
+
 ParticleTable read_hdf5_table(std::span<const std::byte> bytes, const std::string& file) {
   const hdf5::Handle image = hdf5::open_image(bytes);
   const std::vector<std::string> names = hdf5::names_in(image);
-  if (std::find(names.begin(), names.end(), "PartType1") != names.end())
-    throw UsageError(fmt::format("{}: it is a snapshot, not a table; start from it by start.from or --from", file));
+  require_no_snapshot(names, file);
   sort_out(names, std::vector<std::vector<double>>(names.size()), file); // before anything is taken to be an array
   std::vector<std::vector<double>> values;
   for (const std::string& name : names) {
@@ -128,6 +153,8 @@ ParticleTable read_hdf5_table(std::span<const std::byte> bytes, const std::strin
     if (!numbers || layout.shape.size() != 1)
       throw UsageError(
           fmt::format("{}: {} is no list of numbers (an array of one dimension); write it as such", file, name));
+    if (const std::string unit = unit_of(name); !unit.empty())
+      require_stated_unit(dataset, name, unit);
     if (!values.empty() && values.front().size() != layout.count())
       throw UsageError(fmt::format("{}: {} has {} values, {} has {} (a value a particle); make them equally long", file,
                                    name, layout.count(), names.front(), values.front().size()));
@@ -163,6 +190,8 @@ ParticleTable read_particle_table(const std::filesystem::path& file) {
   if (!text.starts_with(signature))
     return read_text_table(bytes, file.string());
   const std::string what = fmt::format("read '{}' as HDF5", file.string());
+  if (is_being_written(file))
+    throw IoError(fmt::format("cannot {}: {}", what, being_written));
   ParticleTable table = read_apart<ParticleTable>(what, limits_for(bytes.size()), [&] {
     try {
       return read_hdf5_table(bytes, file.string());

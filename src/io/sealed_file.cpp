@@ -1,6 +1,7 @@
 #include "sealed_file.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/files/writers.hpp>
 #include <keeler/io/hash.hpp>
 
 #include <fmt/format.h>
@@ -20,7 +21,13 @@ std::string_view as_text(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+void require_not_written(const std::filesystem::path& file) {
+  if (is_being_written(file))
+    throw IoError(fmt::format("cannot read '{}': {}", file.string(), being_written));
+}
+
 [[noreturn]] void damaged(const std::filesystem::path& file, const std::string& reason) {
+  require_not_written(file);
   throw IoError(fmt::format("'{}' is damaged: {}", file.string(), reason));
 }
 
@@ -135,8 +142,10 @@ hdf5::Handle open_sealed(const std::filesystem::path& file, const std::string& s
 FileContent load_content(const std::filesystem::path& file) {
   FileContent content{read_file(file), false};
   const std::size_t size = content.bytes.size();
-  if (size < seal_size || !as_text(std::span(content.bytes).last(seal_size)).starts_with(mark))
+  if (size < seal_size || !as_text(std::span(content.bytes).last(seal_size)).starts_with(mark)) {
+    require_not_written(file); // it may be half of something
     return content;
+  }
   const std::string seal(as_text(std::span(content.bytes).last(seal_size)));
   content.bytes.resize(size - seal_size);
   require_match(file, seal, seal_of(content.bytes));

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cassert>
 #include <charconv>
+#include <cmath>
 #include <fcntl.h>
 
 namespace keeler {
@@ -110,6 +111,20 @@ const std::vector<double>& SeriesTable::of(const std::string& name) const {
   return *column;
 }
 
+namespace {
+
+// Rates are taken between rows; only impact_speeds.csv has none of these.
+void require_rising_times(const SeriesTable& table, const std::filesystem::path& file) {
+  const std::vector<double>* const times = table.find("time_orbits");
+  double last = 0.0;
+  for (std::size_t k = 0; times && k < times->size(); last = (*times)[k], ++k)
+    if (!((*times)[k] >= last && std::isfinite((*times)[k])))
+      throw IoError(fmt::format("line {} of '{}' has time_orbits {} after {}; the file is damaged", k + 2,
+                                file.string(), (*times)[k], last));
+}
+
+} // namespace
+
 SeriesTable read_series(const std::filesystem::path& file) {
   const std::string whole = read_text(file);
   const std::string_view text = without_byte_order_mark(whole);
@@ -138,6 +153,7 @@ SeriesTable read_series(const std::filesystem::path& file) {
   }
   if (line == 0)
     throw IoError(fmt::format("'{}' is empty; there is no series to measure", file.string()));
+  require_rising_times(table, file);
   return table;
 }
 

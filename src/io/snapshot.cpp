@@ -4,10 +4,13 @@
 #include "formats.hpp"
 #include "provenance_attributes.hpp"
 #include "sealed_file.hpp"
+#include "snapshot_header.hpp"
+#include "stated_units.hpp"
 
 #include <keeler/core/error.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <concepts>
@@ -43,10 +46,28 @@ void read_ring_box(const hdf5::Handle& image, Patch& patch) {
   patch.time_orbits = number("time_orbits");
 }
 
-void check_format(const hdf5::Handle& code) {
+void require_format(const hdf5::Handle& code) {
   if (hdf5::read_text_attribute(code, "format") != snapshot_format)
     throw IoError("it is not a Keeler snapshot");
   require_version(code, code, {snapshot_version, snapshot_version}, "");
+}
+
+// A file of GADGET's own has arrays of particles, and nothing that tells of a ring.
+void require_groups(const hdf5::Handle& image) {
+  const std::vector<std::string> names = hdf5::names_in(image);
+  std::vector<std::string> missing;
+  for (const char* group : {"Code", "RingBox", "Parameters", particles_group})
+    if (std::find(names.begin(), names.end(), group) == names.end())
+      missing.push_back(fmt::format("/{}", group));
+  if (missing.empty())
+    return;
+  const auto has_particles = [](const std::string& name) { return name.starts_with("PartType"); };
+  if (std::none_of(names.begin(), names.end(), has_particles))
+    throw IoError("it is not a Keeler snapshot");
+  throw IoError(fmt::format("it is not a Keeler snapshot but one of another program: it lacks {}. To start from its "
+                            "particles, write their x, y, z, vx, vy, vz, r and m in SI units as a table (CSV, or HDF5 "
+                            "with an array of each in the root) for keeler generate SCENE --from-table",
+                            fmt::join(missing, ", ")));
 }
 
 void read_clumping(const hdf5::Handle& image, SnapshotMeta& meta) {
@@ -66,11 +87,13 @@ struct Part {
   std::size_t end(std::size_t rows) const { return rows * (number + 1) / of; }
 };
 
-// A part of an array of rows whose shape must be `shape`.
+// A part of an array of rows whose shape must be `shape`. Without a unit it may state any.
 template<class T, class Row>
-std::vector<Row> read_array(const hdf5::Handle& group, const std::string& name, const hdf5::Shape& shape,
-                            const Part& part) {
+std::vector<Row> read_array(const hdf5::Handle& group, const std::string& name, const std::string& unit,
+                            const hdf5::Shape& shape, const Part& part) {
   const hdf5::Handle dataset = hdf5::open_dataset(group, name);
+  if (!unit.empty())
+    require_stated_unit(dataset, name, unit);
   const hdf5::Shape found = hdf5::layout_of_dataset(dataset).shape;
   if (found != shape)
     throw IoError(fmt::format("{} has the shape [{}], not [{}]", name, fmt::join(found, ", "), fmt::join(shape, ", ")));
@@ -83,29 +106,34 @@ std::vector<Row> read_array(const hdf5::Handle& group, const std::string& name, 
 
 void read_particles(const hdf5::Handle& image, const Part& part, Patch& patch) {
   const hdf5::Handle group = hdf5::open_group(image, particles_group);
+  for (const char* name : {"Coordinates", "Velocities", "Masses", "ParticleIDs", "Radius"})
+    if (!hdf5::exists(group, name))
+      throw IoError(
+          fmt::format("it lacks /{}/{} (docs/formats.md has what stands there); add it", particles_group, name));
   const hsize_t count = hdf5::layout_of_dataset(hdf5::open_dataset(group, "ParticleIDs")).count();
-  patch.positions = read_array<double, Vec3>(group, "Coordinates", {count, 3}, part);
-  patch.velocities = read_array<double, Vec3>(group, "Velocities", {count, 3}, part);
-  patch.masses = read_array<double, double>(group, "Masses", {count}, part);
-  patch.ids = read_array<std::uint64_t, std::uint64_t>(group, "ParticleIDs", {count}, part);
-  patch.radii = read_array<double, double>(group, "Radius", {count}, part);
+  require_header_fits(image, patch, count);
+  patch.positions = read_array<double, Vec3>(group, "Coordinates", "m", {count, 3}, part);
+  patch.velocities = read_array<double, Vec3>(group, "Velocities", "m/s", {count, 3}, part);
+  patch.masses = read_array<double, double>(group, "Masses", "kg", {count}, part);
+  patch.ids = read_array<std::uint64_t, std::uint64_t>(group, "ParticleIDs", "", {count}, part);
+  patch.radii = read_array<double, double>(group, "Radius", "m", {count}, part);
   if (hdf5::exists(group, "Spins"))
-    patch.spins = read_array<double, Vec3>(group, "Spins", {count, 3}, part);
+    patch.spins = read_array<double, Vec3>(group, "Spins", "rad/s", {count, 3}, part);
   for (std::vector<Vec3>* const rates : {&patch.velocities, &patch.spins})
     for (Vec3& rate : *rates)
       rate /= patch.orbital_frequency;
 }
 
 Snapshot snapshot_in(const hdf5::Handle& image, const Part& part = {}) {
-  if (!hdf5::exists(image, "Code"))
-    throw IoError("it is not a Keeler snapshot");
-  const hdf5::Handle code = hdf5::open_group(image, "Code");
-  check_format(code);
+  std::optional<hdf5::Handle> code;
+  if (hdf5::exists(image, "Code"))
+    require_format(code.emplace(hdf5::open_group(image, "Code")));
+  require_groups(image);
   Snapshot snapshot;
   read_ring_box(image, snapshot.patch);
   read_particles(image, part, snapshot.patch);
   snapshot.meta.scene = hdf5::read_text_attribute(hdf5::open_group(image, "Parameters"), "scene");
-  snapshot.meta.provenance = read_provenance(code);
+  snapshot.meta.provenance = read_provenance(*code);
   snapshot.meta.provenance.erase("format");
   read_clumping(image, snapshot.meta);
   return snapshot;

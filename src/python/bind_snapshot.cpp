@@ -19,6 +19,7 @@
 #include <keeler/states/clumped.hpp>
 #include <keeler/states/from_table.hpp>
 #include <keeler/states/initial.hpp>
+#include <keeler/states/possible.hpp>
 #include <keeler/states/tiled.hpp>
 
 #include <pybind11/stl.h>
@@ -33,6 +34,7 @@ PythonSnapshot read(const fs::path& file, bool is_a_start) {
   require_own_threads();
   const Unlocked unlocked;
   Snapshot snapshot = read_snapshot(file);
+  require_possible(snapshot.patch, file.string());
   return {std::move(snapshot.patch), std::move(snapshot.meta.scene), is_a_start};
 }
 
@@ -163,6 +165,7 @@ void bind_snapshot(py::module_& module) {
       .def_readonly("scene", &PythonSnapshot::scene)
       .def_readonly("is_a_start", &PythonSnapshot::is_a_start)
       .def("save", &write, py::arg("file"), py::arg("as_it_is") = false)
+      .def("start_doubts", [](Self self) { return doubts(scale_of(self.patch).start); })
       .def("analyze", &analyze_snapshot)
       .def("tile", &tile, py::arg("nx"), py::arg("ny"), py::arg("name"))
       .def("render", &render, py::arg("file"), py::arg("title"), py::arg("width"));

@@ -1,6 +1,7 @@
 #include <keeler/runs/run.hpp>
 
 #include "broken_state.hpp"
+#include "edited_scene.hpp"
 #include "recorder.hpp"
 #include "runner.hpp"
 #include "shared_request.hpp"
@@ -113,6 +114,7 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
 
 struct Loaded {
   StoredRun run;
+  std::string scene_text; // as the checkpoint has it
   OutputCounters counters;
 };
 
@@ -120,7 +122,8 @@ struct Loaded {
 Loaded load(const std::filesystem::path& file, const Ranks& ranks = {}) {
   Loaded loaded;
   const Checkpoint checkpoint(file, ranks);
-  ranks.together([&] { loaded.run.scene = parse_stored_scene(checkpoint.header().scene, file.string()); });
+  loaded.scene_text = checkpoint.header().scene;
+  ranks.together([&] { loaded.run.scene = parse_stored_scene(loaded.scene_text, file.string()); });
   loaded.run.state = SimulationState(loaded.run.scene);
   FieldTable table = loaded.run.state.fields();
   loaded.counters.list_fields(table, loaded.run.scene);
@@ -259,6 +262,17 @@ std::filesystem::path newest_checkpoint(const RunOptions& options) {
   return options.folder / name;
 }
 
+void tell_edited_scene(const RunFolder& folder, const Scene& scene, const Loaded& loaded, const RunOptions& options,
+                       bool goes_on) {
+  std::optional<EditedScene> edited = EditedScene::in(folder, loaded.scene_text, scene);
+  if (!edited)
+    return;
+  if (goes_on)
+    edited->keep_apart();
+  if (options.notice)
+    options.notice(edited->notice(folder.snapshot(std::max<std::int64_t>(loaded.counters.snapshots - 1, 0))));
+}
+
 RunResult go_on(const RunOptions& options, RunRequests& requests) {
   Start start;
   const Ranks& ranks = options.ranks;
@@ -274,6 +288,7 @@ RunResult go_on(const RunOptions& options, RunRequests& requests) {
   const std::int64_t step = start.checkpoint_step = loaded.run.state.step;
   ranks.first_does([&] { folder.cut_log(); });
   if (step >= scene.time.end_step && ranks.from_first(says_finished(folder.summary()))) {
+    ranks.first_does([&] { tell_edited_scene(folder, scene, loaded, options, false); });
     if (options.notice)
       options.notice(fmt::format("the run in '{}' is finished, nothing was changed; --until with a later orbit than "
                                  "{:.6g} goes on",
@@ -282,6 +297,7 @@ RunResult go_on(const RunOptions& options, RunRequests& requests) {
   }
   Simulation simulation(scene, std::move(loaded.run.state), ranks);
   ranks.first_does([&] {
+    tell_edited_scene(folder, scene, loaded, options, true);
     folder.cut_snapshots(loaded.counters.snapshots);
     folder.remove_summary();
     prune_checkpoints(newest);

@@ -69,7 +69,8 @@ const SeriesColumn all_columns[] = {
     {"kick_work_j", "J", "work of all forces' kicks on the motion beyond the shear since the run began",
      [](Sample s) { return joule(s, s.balance.kick_work); }},
     {"resting_work_j", "J",
-     "work of the impulses of contacts at rest on the motion along their lines of centres since the run began",
+     "work of the impulses of contacts at rest on the motion along their lines of centres since the run began; only "
+     "with `[gravity]` where contacts at rest carry its kicks (`gravity.resting_contacts`)",
      [](Sample s) { return joule(s, s.balance.resting_work); }, carries},
     {"random_energy_j", "J", "Σ m (½c² + ½ν²z²), c the velocity beyond the shear, and the energy of spins",
      [](Sample s) { return joule(s, s.balance.energy); }},
@@ -89,7 +90,8 @@ const SeriesColumn all_columns[] = {
        return s.means.random_stress / s.scene.planet.frequencies.shear() * s.scene.planet.orbital_frequency;
      }},
     {"gravitational_viscosity_m2_s", "m²/s",
-     "gravity's shear stress dΦ/dγ over M S at this instant; nan where it was not measured (`output.stress_every`)",
+     "gravity's shear stress dΦ/dγ over M S at this instant; nan where it was not measured; only with `[gravity]`, "
+     "`output.stress_every` above 0, and not with `gravity.images = \"rings\"`",
      [](Sample s) {
        return s.gravity ? s.gravity->stress / (s.means.mass * s.scene.planet.frequencies.shear()) *
                               s.scene.planet.orbital_frequency
@@ -97,17 +99,20 @@ const SeriesColumn all_columns[] = {
      },
      measures_gravity},
     {"potential_energy_j", "J",
-     "Φ of the patch in its own gravity, images included, from an arbitrary zero; nan where it was not measured",
+     "Φ of the patch in its own gravity, images included, from an arbitrary zero; nan where it was not measured; only "
+     "together with `gravitational_viscosity_m2_s`",
      [](Sample s) { return s.gravity ? joule(s, s.gravity->potential) : not_measured; }, measures_gravity},
     {"mean_spin_omega", "Ω", "mean spin about the vertical, against the stars; only with `[collisions.friction]`",
      [](Sample s) { return s.means.spin.mean.z(); }, has_spins},
-    {"spin_dispersion_omega", "Ω", "√⟨(ω − ⟨ω⟩)²⟩ of the spins, weighted by mass",
+    {"spin_dispersion_omega", "Ω", "√⟨(ω − ⟨ω⟩)²⟩ of the spins, weighted by mass; only with `[collisions.friction]`",
      [](Sample s) { return s.means.spin.dispersion; }, has_spins},
     {"spin_energy_ratio", "1",
-     "Σ ½ I (ω − ⟨ω⟩)² over ½ M (c_x² + c_y² + c_z²) of the dispersions: spins against the random motion",
+     "Σ ½ I (ω − ⟨ω⟩)² over ½ M (c_x² + c_y² + c_z²) of the dispersions: spins against the random motion; only with "
+     "`[collisions.friction]`",
      [](Sample s) { return s.means.spin.random_energy / (0.5 * s.means.mass * s.means.dispersion.squaredNorm()); },
      has_spins},
-    {"spin_energy_j", "J", "Σ ½ I (ω − Ω)² of the spins: the part of `random_energy_j` that they hold",
+    {"spin_energy_j", "J",
+     "Σ ½ I (ω − Ω)² of the spins: the part of `random_energy_j` that they hold; only with `[collisions.friction]`",
      [](Sample s) { return joule(s, s.means.spin.energy); }, has_spins},
     {"step_orbits", "orbits", "length of the step to come; only with `time.step = \"auto\"`",
      [](Sample s) { return state(s).step_length / two_pi; }, [](const Scene& scene) { return scene.time.automatic; }},

@@ -112,8 +112,9 @@ Found check_series(const std::string& file) {
   const SeriesTable table = read_series(file);
   const std::vector<double>& steps = table.columns.front();
   const bool one_a_step = fs::path(file).filename() == "series.csv";
-  for (std::size_t k = 1; k < steps.size(); ++k)
-    if (steps[k] < steps[k - 1] || (one_a_step && steps[k] == steps[k - 1]))
+  const auto follows = [&](double step, double last) { return one_a_step ? step > last : step >= last; };
+  for (std::size_t k = 0; k < steps.size(); ++k)
+    if (!std::isfinite(steps[k]) || (k > 0 && !follows(steps[k], steps[k - 1])))
       throw IoError(fmt::format("line {} of '{}' is not of its place", k + 2, file));
   return {};
 }

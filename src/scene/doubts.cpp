@@ -44,6 +44,16 @@ void doubt_room_for_wakes(const PatchScale& patch, Lines& lines) {
                     figures(spans, 2), enough, enough));
 }
 
+void doubt_step(const Scene& scene, Lines& lines) {
+  const double held = oscillations_a_step(scene);
+  if (!(held > few_oscillations))
+    return;
+  lines.push_back(fmt::format("a step of {} orbits holds {} of a particle's oscillations: beyond {:g} searches for "
+                              "contacts take several times as long; {} orbits hold so many",
+                              figures(scene.time.step), figures(held, 3), few_oscillations,
+                              figures(few_oscillations * scene.time.step / held, 3)));
+}
+
 // `density`: of the particles, 0 where only a start file knows it.
 void doubt_kicks(const Scene& scene, double density, Lines& lines) {
   constexpr double resolved = 0.02; // orbits
@@ -101,6 +111,23 @@ void doubt_satellite(const Scene& scene, Lines& lines) {
     lines.push_back(in_words(*passage));
 }
 
+// Of a fresh patch, before there is one.
+StartScale start_of(const Scene& scene) {
+  const ParticleSettings& particles = scene.particles;
+  const double largest = particles.sizes.largest;
+  StartScale start;
+  start.particle_count = particles.count;
+  start.optical_depth = scene.optical_depth();
+  start.mean_radius = particles.sizes.mean_power(1);
+  start.usual_dispersion =
+      usual_dispersion(largest, 4.0 / 3.0 * pi * particles.density * std::pow(largest, 3), scene.surface_density(),
+                       newton_g(scene.planet.orbital_frequency), scene.planet.frequencies.kappa);
+  start.dispersion = particles.velocity_dispersion * start.mean_radius;
+  start.orbital_frequency = scene.planet.orbital_frequency;
+  start.shear = scene.planet.frequencies.shear();
+  return start;
+}
+
 } // namespace
 
 double critical_restitution(double optical_depth) {
@@ -124,17 +151,24 @@ std::string in_words(const SatellitePassage& passage) {
       figures(passage.orbits, 4), figures(passage.drag, 2), doubtful_drag);
 }
 
+double oscillations_a_step(const Scene& scene) {
+  const Frequencies& frequencies = scene.planet.frequencies;
+  return scene.time.automatic ? 0.0 : scene.time.step * std::max(frequencies.kappa, frequencies.nu);
+}
+
 std::vector<std::string> doubts(const Scene& scene, const PatchScale& patch) {
-  Lines lines;
+  Lines lines = doubts(patch.start);
   doubt_number(patch.particle_count, lines);
-  if (scene.particles.density > 0.0 && scene.particles.density < 50.0) // 0: the particles come from elsewhere
+  const double density = scene.start_from ? patch.density : scene.particles.density;
+  if (density > 0.0 && density < 50.0)
     lines.push_back("the density is in kg/m^3: water ice has 917");
   doubt_room(patch, lines);
   doubt_equilibrium(scene, patch, lines);
   if (scene.gravity && scene.gravity->by_pairs())
     doubt_room_for_wakes(patch, lines);
+  doubt_step(scene, lines);
   if (scene.gravity)
-    doubt_kicks(scene, scene.start_from ? patch.density : scene.particles.density, lines);
+    doubt_kicks(scene, density, lines);
   doubt_satellite(scene, lines);
   return lines;
 }
@@ -170,14 +204,17 @@ PatchScale scale_of(const Scene& scene) {
     if (moonlet.radius > sums.largest.radius)
       sums.largest = {moonlet.radius, moonlet.mass};
   }
-  return scale_of(sums, particles.count, scene.size_x, scene.size_y,
-                  critical_wavelength(scene.surface_density(), scene.planet));
+  PatchScale scale = scale_of(sums, particles.count, scene.size_x, scene.size_y,
+                              critical_wavelength(scene.surface_density(), scene.planet));
+  scale.start = start_of(scene);
+  return scale;
 }
 
 std::vector<std::string> doubts(const Scene& scene) {
   if (!scene.start_from)
     return doubts(scene, scale_of(scene));
   Lines lines;
+  doubt_step(scene, lines);
   if (scene.gravity)
     doubt_kicks(scene, 0.0, lines);
   doubt_satellite(scene, lines);

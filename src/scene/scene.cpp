@@ -14,6 +14,7 @@
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/gravity/axisymmetric.hpp>
 #include <keeler/scene/derived.hpp>
+#include <keeler/scene/doubts.hpp>
 #include <keeler/scene/examples.hpp>
 #include <keeler/scene/keys.hpp>
 #include <keeler/scene/resting_choice.hpp>
@@ -124,6 +125,20 @@ std::int64_t whole_kicks(Scene& scene, Settings& settings, const std::string& ke
   return steps;
 }
 
+// Searches for contacts slow down with the oscillations that a step holds: 3 times at one, 15 times at one and a half,
+// beyond all bounds at two (docs/dev/drift.md).
+void refuse_many_oscillations(const Scene& scene, const Settings& settings) {
+  const Frequencies& frequencies = scene.planet.frequencies;
+  const double fastest = std::max(frequencies.kappa, frequencies.nu);
+  if (oscillations_a_step(scene) > most_oscillations)
+    fail_at(settings.place("time.step"),
+            fmt::format("time.step = {} holds {} {} oscillations of {} Omega (searches for contacts would not end in "
+                        "reasonable time beyond 1.5); let it be {} orbits at most",
+                        figures(scene.time.step), figures(oscillations_a_step(scene), 3),
+                        frequencies.nu < frequencies.kappa ? "radial" : "vertical", figures(fastest),
+                        figures(few_oscillations / fastest, 3)));
+}
+
 void read_times(Scene& scene, Settings& settings) {
   scene.time.automatic = settings.is_word("time.step");
   scene.time.step = scene.time.automatic ? 1.0 / TimeSettings::ticks_per_orbit : settings.number("time.step");
@@ -190,6 +205,8 @@ Scene read_scene(Document document, const std::string& name, Purpose purpose, st
   resolve_times_of_quality(scene, settings);
   read_times(scene, settings);
   read_resting_contacts(scene, settings, purpose);
+  if (purpose == Purpose::start)
+    refuse_many_oscillations(scene, settings);
   scene.output.collisions = read_contact_log(settings);
   scene.resolved = settings.resolved();
   scene.motion = settings.motion();

@@ -2,6 +2,7 @@
 
 #include "aggregate.hpp"
 #include "placing.hpp"
+#include "start_scale.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/exact_sum.hpp>
@@ -28,7 +29,7 @@ namespace {
 // Epicycles of one planet are no epicycles of another: the shear would be wrong everywhere.
 void require_same_planet(const Patch& patch, const Scene& scene, const std::string& path) {
   const PlanetSettings& planet = scene.planet;
-  const auto differ = [](double a, double b) { return std::fabs(a - b) > 1e-6 * std::fabs(b); };
+  const auto differ = [](double a, double b) { return !(std::fabs(a - b) <= 1e-6 * std::fabs(b)); };
   if (differ(patch.orbital_frequency, planet.orbital_frequency) ||
       differ(patch.frequencies.kappa, planet.frequencies.kappa) || differ(patch.frequencies.nu, planet.frequencies.nu))
     throw UsageError(
@@ -182,8 +183,8 @@ Patch patch_from_snapshot(const std::string& path, const Scene& scene) {
 Patch patch_from_snapshot(Patch patch, const std::string& path, const Scene& scene, const Ranks& ranks) {
   const std::size_t count = ranks.sum(patch.size());
   ranks.first_does([&] {
-    require_same_planet(patch, scene, path);
     require_possible_frame(patch, count, path);
+    require_same_planet(patch, scene, path);
   });
   ranks.together([&] { require_possible_particles(patch, path); });
   // Velocities are stored in m/s; the scene's orbital frequency decides what they are in its own time.
@@ -227,9 +228,11 @@ PatchScale scale_of(const Patch& patch, const Ranks& ranks) {
   ranks.merge({&masses, &squares, &cubes, &sixths});
   const double mass = masses.value();
   const BodySums sums{mass, squares.value(), cubes.value(), sixths.value(), largest_of(patch, ranks)};
-  return scale_of(
+  PatchScale scale = scale_of(
       sums, ranks.sum(patch.size()), patch.box.size_x, patch.box.size_y,
       critical_wavelength(newton_g(patch.orbital_frequency), mass / patch.box.area(), patch.frequencies.kappa));
+  scale.start = start_scale_of(patch, mass, ranks);
+  return scale;
 }
 
 namespace {

@@ -14,6 +14,42 @@
 #include <cmath>
 
 namespace keeler {
+namespace {
+
+// A number of the frame, as /RingBox of a snapshot has it.
+struct FrameNumber {
+  const char* what;
+  double value;
+  const char* unit;
+  KeyRange range;
+};
+
+void require_in_range(const FrameNumber& number, const std::string& path) {
+  if (!number.range.contains(number.value))
+    throw InvariantError(fmt::format("'{}' has {} of {}{} (possible is {}); correct it or take another state", path,
+                                     number.what, figures(number.value, 4), number.unit, number.range.words()));
+}
+
+void require_possible_orbits(const Patch& patch, const std::string& path) {
+  constexpr double longest_run = 1e15; // orbits
+  const Frequencies& frequencies = patch.frequencies;
+  require_in_range({"an Omega", patch.orbital_frequency, " rad/s", find_key("planet.orbital_frequency")->range}, path);
+  require_in_range({"a kappa_over_Omega", frequencies.kappa, "", find_key("planet.epicyclic_ratio")->range}, path);
+  require_in_range({"a nu_over_Omega", frequencies.nu, "", find_key("planet.vertical_ratio")->range}, path);
+  require_in_range({"a time_orbits", patch.time_orbits, "", {.low = 0.0, .high = longest_run}}, path);
+  if (!(std::fabs(patch.box.shear - frequencies.shear()) <= 1e-6 * frequencies.shear()))
+    throw InvariantError(fmt::format("'{}' has a shear_over_Omega of {}, where its kappa_over_Omega makes that {} "
+                                     "(2 - kappa^2/2); correct one of them or take another state",
+                                     path, figures(patch.box.shear, 7), figures(frequencies.shear(), 7)));
+}
+
+void require_possible_offsets(const Patch& patch, const std::string& path) {
+  const KeyRange within_box = {.low = 0.0, .high = patch.box.size_y};
+  require_in_range({"a shear_offset", patch.offset, " m, modulo L_y", within_box}, path);
+  require_in_range({"a shear_offset_at_start", patch.box.first_offset, " m, modulo L_y", within_box}, path);
+}
+
+} // namespace
 
 std::string particle_fault(const Patch& patch, std::size_t k) {
   static const KeyRange radii = find_key("particles.sizes.radius")->range,
@@ -72,10 +108,7 @@ void require_possible(const Patch& patch, const std::string& path) {
 void require_possible_frame(const Patch& patch, std::size_t count, const std::string& path) {
   if (count == 0)
     throw UsageError(fmt::format("'{}' holds no particles; choose another state", path));
-  const KeyRange& frequencies = find_key("planet.orbital_frequency")->range;
-  if (!frequencies.contains(patch.orbital_frequency))
-    throw InvariantError(fmt::format("'{}' has an Omega of {} rad/s (possible is {}); take another state", path,
-                                     figures(patch.orbital_frequency, 4), frequencies.words()));
+  require_possible_orbits(patch, path);
   const KeyRange& sizes = find_key("box.size")->range;
   if (!sizes.contains(patch.box.size_x) || !sizes.contains(patch.box.size_y))
     throw InvariantError(fmt::format("the box of '{}' is {} m x {} m (a patch has sizes {}); take another state", path,
@@ -87,6 +120,7 @@ void require_possible_frame(const Patch& patch, std::size_t count, const std::st
         fmt::format("the box of '{}' is {} m x {} m, more than {:g} times as long as wide; take another "
                     "state",
                     path, figures(patch.box.size_x, 4), figures(patch.box.size_y, 4), most_oblong));
+  require_possible_offsets(patch, path);
 }
 
 void require_possible_particles(const Patch& patch, const std::string& path) {

@@ -91,6 +91,20 @@ for command in info analyze render; do
   refuses_with 4 "$command, not HDF5" "good.toml" $command "$work/good.toml"
   refuses "$command of nothing" "required" $command
 done
+# What is no number passes no comparison, whichever way round it is written, and no length of time or place is infinite.
+for number in nan -nan inf; do
+  refuses "a limit of $number" "--most-orbits" generate "$work/scene.toml" --clumped -o "$none" --most-orbits $number
+  refuses "an optical depth of $number" "--optical-depth" bench drift --count 100 --optical-depth $number
+  refuses "a step of $number" "--step" bench drift --count 100 --step $number
+  refuses "a wall time of $number" "--wall-time" run "$work/scene.toml" -o "$none" --wall-time $number
+  refuses "an end of $number" "--until" resume "$work/taken" --until $number
+  refuses "a gap of $number" "--cluster-gap" analyze "$work/taken" --cluster-gap $number
+  refuses "a footprint of $number" "--footprint" analyze "$work/taken" --elevation 20 --footprint $number
+  refuses "an azimuth of $number" "--azimuth" analyze "$work/taken" --elevation 20 --azimuth $number
+done
+refuses "a part until nan" "is no number" analyze "$work/taken" --until nan
+refuses "a part since nan" "is no number" analyze "$work/taken" --since nan
+
 refuses "an elevation of 0" "'0' is not an elevation from 0.1 to 90" analyze "$work/taken" --elevation 0
 refuses "an elevation in words" "'steep' is not an elevation" analyze "$work/taken" --elevation 10,steep
 refuses "an azimuth alone" "--elevation" analyze "$work/taken" --azimuth 10

@@ -63,6 +63,8 @@ for file in checkpoint_000001.h5 snap_000001.hdf collisions_000000.h5; do
 done
 damaged "a torn checkpoint" "its end is missing" checkpoint_000002.h5 "truncate -s -9 checkpoint_000002.h5"
 damaged "a row of the series" "values in" series.csv "sed -i '3s/,/;/' series.csv"
+damaged "a step that is no number" "line 3 of" series.csv "sed -i '3s/^[0-9]*,/nan,/' series.csv"
+damaged "a time that is no number" "line 3 of" series.csv "sed -Ei '3s/^([0-9]*),[^,]*,/\1,nan,/' series.csv"
 damaged "exchanged rows" "line 3 of" series.csv "sed -i '2{h;d};3{G}' series.csv"
 damaged "the scene" "not TOML" scene.toml "echo '[' >>scene.toml"
 damaged "the summary" "not the summary" summary.json "echo '{' >summary.json"
@@ -100,6 +102,33 @@ edited "an older version" "f['Code'].attrs['format_version'] = 0"
 refused "an older version" "use the older Keeler"
 edited "a newer version" "f['Code'].attrs['format_version'] = 99"
 refused "a newer version" "use the newer Keeler"
+
+# docs/formats.md says of everything on which setting it depends.
+cat >"$work/minimal.toml" <<'END'
+planet.preset = "saturn-a-ring"
+box.size = [18, 18]
+particles = { count = 20, density = 600.0, sizes = { law = "equal", radius = 1.0 } }
+time.end = 0.02
+END
+cp "$work/minimal.toml" "$work/full.toml"
+cat >>"$work/full.toml" <<'END'
+[[moonlet]]
+radius = 2.0
+density = 900.0
+[collisions]
+finder = "newton-relative"
+[collisions.friction]
+tangential_restitution = 0.5
+[gravity]
+solver = "tree"
+resting_contacts = "carried"
+[constant_acceleration]
+radial = 1e-9
+END
+runs 0 run "$work/minimal.toml" -o "$work/minimal"
+runs 0 run "$work/full.toml" --set time.step=auto --set output.collisions.share=1.0 -o "$work/full"
+/usr/bin/python3 "$(dirname "$0")/formats_page.py" "$source_dir" "$work/minimal" "$work/full" >"$work/out" ||
+  fail "docs/formats.md: $(cat "$work/out")"
 
 mkdir "$work/empty"
 runs 4 info --verify "$work/empty"

@@ -48,6 +48,27 @@ diff -r "$work/copy" "$work/threads" || fail "a finished run, resumed: files wer
 runs 0 resume "$work/copy" --until 1.1
 [ "$(text steps "$work/copy/summary.json")" -eq 550 ] || fail "a finished run did not go on to a later end"
 
+# A scene.toml that was edited is no part of the run: its text is kept, and the user hears the command for it.
+runs 0 run "$work/scene.toml" -o "$work/edited" --set time.end=0.5
+cp "$work/edited/scene.toml" "$work/written.toml"
+sed -i 's/^end = .*/end = 1.0 # longer/' "$work/edited/scene.toml"
+cp "$work/edited/scene.toml" "$work/longer.toml"
+runs 0 resume "$work/edited"
+grep -qF "'$work/edited/scene.toml' was edited, and a run goes on with the scene that it began with: \"keeler resume $work/edited --until 1\"" \
+  "$work/err" || fail "an edited scene of a finished run: $(cat "$work/err")"
+cmp "$work/edited/scene.toml" "$work/longer.toml" || fail "a finished run: its edited scene was changed"
+runs 0 resume "$work/edited" --until 1
+grep -qF "the edited text is now '$work/edited/scene_edited.toml'" "$work/err" || fail "an edited scene: $(cat "$work/err")"
+cmp "$work/edited/scene_edited.toml" "$work/longer.toml" || fail "an edited scene: its text is lost"
+cmp "$work/edited/scene.toml" "$work/written.toml" || fail "an edited scene: scene.toml is not that of the run"
+same "an edited scene" "$work/edited"
+sed -i 's/^elastic_below = .*/elastic_below = 0.05/' "$work/edited/scene.toml"
+runs 0 resume "$work/edited" --until 1.02
+grep -qF "\"keeler run $work/edited/scene_edited_2.toml --from $work/edited/snap_" "$work/err" || fail "edited physics: $(cat "$work/err")"
+grep -qF "(elastic_below = 0.05)" "$work/err" || fail "edited physics: $(cat "$work/err")"
+runs 0 resume "$work/edited" --until 1.04
+grep -q "was edited" "$work/err" && fail "a scene as it was written is called edited: $(cat "$work/err")"
+
 interrupted KILL 137 "$work/killed"
 [ -e "$work/killed/summary.json" ] && fail "killed after its end"
 runs 0 resume "$work/killed"

@@ -80,6 +80,54 @@ prints "relaxed" "2 pairs of particles overlap"
 prints "relaxed" "moved 4 particles apart, by "
 runs 0 run "$work/scene.toml" --from "$work/relaxed.hdf" -o "$work/relaxed"
 
+# A scene's own table, and what is far from any ring: velocities without the shear, in other units, lengths in km.
+python3 - "$work" <<'END'
+import random, sys
+random.seed(3)
+spots = [(x, y) for x in range(-28, 30, 4) for y in range(-18, 20, 4)]
+places = [(x, y, random.gauss(0, 0.3)) for x, y in spots]
+omega = 1.95e-4
+motions = [(random.gauss(0, 2 * omega), random.gauss(0, omega), random.gauss(0, 1.3 * omega)) for _ in places]
+def table(name, velocities, length=1.0):
+    with open(f"{sys.argv[1]}/{name}.csv", "w") as file:
+        file.write("x,y,z,vx,vy,vz,r\n")
+        for p, v in zip(places, velocities):
+            file.write(",".join(map(repr, [c * length for c in p] + list(v) + [length])) + "\n")
+ring = [(u, v - 1.5 * omega * x, w) for (x, _, _), (u, v, w) in zip(places, motions)]
+table("ring", ring)
+table("still", motions)
+table("mirrored", [(u, v + 1.5 * omega * x, w) for (x, _, _), (u, v, w) in zip(places, motions)])
+table("cm_s", [tuple(100 * c for c in v) for v in ring])
+table("hot", [(u + random.gauss(0, 99 * omega), v, w) for u, v, w in ring])
+table("km", ring, 1e-3)
+END
+generated() { runs 0 generate "$work/scene.toml" --set particles.density=900 --from-table "$work/$1.csv" -o "$work/$1.hdf" --force; }
+far() { # NAME WORDS: said by generate, by check and by run of a start from it
+  generated "$1"
+  prints "$1, generate" "$2"
+  runs 0 check "$work/scene.toml" --set start.from="$work/$1.hdf"
+  prints "$1, check" "$2"
+  runs 0 run "$work/scene.toml" --from "$work/$1.hdf" --set time.end=0.001 -o "$work/$1"
+  grep -qF "$2" "$work/err" || fail "$1, run: $(cat "$work/err")"
+}
+far still "the velocities lack the shear: v_y changes with x by "
+far mirrored "the shear of the velocities has the wrong sign"
+far cm_s "as much as on circular orbits (-2.925e-4): are lengths in m and velocities in m/s"
+far hot "mean r Omega), where collisions and self-gravity keep up some 1: are velocities in m/s"
+far km "all particles are in the middle 0.093 % of the box: are their lengths in m"
+generated ring
+grep -q "shear\|are lengths\|are velocities" "$work/out" && fail "a ring is doubted: $(cat "$work/out")"
+runs 0 check "$source_dir/examples/two-body/scene.toml"
+grep -q "shear\|are lengths\|are velocities" "$work/out" && fail "two bodies are doubted: $(cat "$work/out")"
+runs 0 check "$work/scene.toml" --set particles.density=900 --set particles.count=50 --set particles.sizes.law=equal \
+  --set particles.sizes.radius=1 --set particles.velocity_dispersion=200
+prints "a hot fresh start" "the velocity dispersion is 39 mm/s (200 mean r Omega), where"
+
+made x,y,z,r,m, 0,0,0,1,4000,
+refused 2 "a trailing comma" "table.csv:1: the last column has no name (the line ends with a ','); remove that ','"
+made ,x,y,z,r,m 0,0,0,0,1,4000
+refused 2 "an index of pandas" "table.csv:1: the first column has no name (pandas writes its index so); write the table with index=False"
+
 made x,y,z,r,m,sx,sy,sz 0,0,0,1,4000,1e-4,0,-2e-4 10,10,0,1,4000,0,0,3e-4
 refused 2 "spins of smooth particles" "table.csv: sx sy sz are spins, but the scene's particles are smooth"
 runs 0 generate "$work/scene.toml" --set collisions.friction.tangential_restitution=0.5 --from-table "$work/table.csv" \

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <vector>
 
 namespace keeler::fuzz {
@@ -83,7 +84,7 @@ void read_series_file(std::string_view input, const std::filesystem::path& folde
   if (enough_rows(series))
     transport(series, {.mass = 1e3, .orbital_frequency = 1e-4}, {});
   Series::resume(file, {series.names.begin() + 1, series.names.end()}, 3)
-      .append(4, std::vector<double>(series.names.size() - 1));
+      .append(4, std::vector<double>(series.names.size() - 1, std::numeric_limits<double>::max())); // later than all
   read_series(file);
 }
 

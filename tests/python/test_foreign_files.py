@@ -82,6 +82,8 @@ class ForeignFiles(unittest.TestCase):
         def ring(name, value):
             def how(file, _):
                 file["RingBox"].attrs[name] = value
+                if name == "L_x":
+                    file["Header"].attrs["BoxSize"] = value
 
             return how
 
@@ -93,6 +95,17 @@ class ForeignFiles(unittest.TestCase):
             (one("Radius", 3, 1e9), "a radius (m) of 1e9"),
             (one("Radius", 3, np.nan), "a radius that is not positive"),
             (ring("L_x", 1e9), "the box of"),
+            (ring("shear_offset", np.nan), "a shear_offset of nan m, modulo L_y (possible is from 0 to 30)"),
+            (ring("shear_offset", 1e18), "a shear_offset of 1e18"),
+            (ring("shear_offset", np.inf), "a shear_offset of inf"),
+            (ring("shear_offset", -1.0), "a shear_offset of -1"),
+            (ring("shear_offset_at_start", np.nan), "a shear_offset_at_start of nan"),
+            (ring("kappa_over_Omega", np.nan), "a kappa_over_Omega of nan"),
+            (ring("kappa_over_Omega", np.inf), "a kappa_over_Omega of inf"),
+            (ring("nu_over_Omega", np.nan), "a nu_over_Omega of nan"),
+            (ring("nu_over_Omega", 1e9), "a nu_over_Omega of 1e9"),
+            (ring("shear_over_Omega", 0.0), "a shear_over_Omega of 0, where its kappa_over_Omega makes that 1.50"),
+            (ring("shear_over_Omega", np.nan), "a shear_over_Omega of nan"),
         ):
             with self.subTest(words):
                 self.change(how)
@@ -123,6 +136,92 @@ class ForeignFiles(unittest.TestCase):
             with self.subTest(words), self.assertRaisesRegex(ring.UsageError, words):
                 make()
 
+    def test_time(self):
+        for value in (np.nan, np.inf, -1.0):
+            def how(file, _, value=value):
+                file["RingBox"].attrs["time_orbits"] = value
+                del file["Header"].attrs["Time"]
+
+            self.change(how)
+            self.refused(3, "a time_orbits of")
+            with self.assertRaises(ring.InvariantError):
+                ring.read(self.file)
+
+    def test_header_that_says_something_else(self):
+        """GADGET's header and the attributes of arrays: other units and parts of a whole are refused by name."""
+
+        def header(name, value):
+            return lambda file, _: file["Header"].attrs.__setitem__(name, value)
+
+        def array(name, attribute, value):
+            return lambda _, part: part[name].attrs.__setitem__(attribute, value)
+
+        def six(name, kind, value):
+            def how(file, _):
+                numbers = np.array(file["Header"].attrs[name])
+                numbers[kind] = value
+                file["Header"].attrs[name] = numbers
+
+            return how
+
+        for how, words in (
+            (header("UnitLength_in_cm", 1e5), "/Header has UnitLength_in_cm 100000, not 100 (Keeler takes SI"),
+            (header("UnitMass_in_g", 1.0), "UnitMass_in_g 1, not 1000"),
+            (header("UnitVelocity_in_cm_per_s", np.nan), "UnitVelocity_in_cm_per_s nan, not 100"),
+            (header("NumFilesPerSnapshot", 2), "NumFilesPerSnapshot 2, not 1 (a start is one whole file"),
+            (header("BoxSize", 0.03), "BoxSize 0.03, not 30"),
+            (header("Time", 1e7), "Time 1e+07, not 0"),
+            (six("NumPart_Total", 1, 7), "NumPart_Total 7 for type 1"),
+            (six("NumPart_ThisFile", 0, 5), "NumPart_ThisFile 5 for type 0, not 0"),
+            (six("NumPart_Total_HighWord", 1, 1), "NumPart_Total_HighWord 1 for type 1, not 0"),
+            (six("MassTable", 1, 4e3), "MassTable 4000 for type 1, not 0"),
+            (array("Coordinates", "unit", "km"), "Coordinates is in another unit (its attribute unit is 'km')"),
+            (array("Velocities", "units", "cm/s"), "Velocities is in another unit (its attribute units is 'cm/s')"),
+            (array("Masses", "to_cgs", 1.0), "Masses is in another unit (its attribute to_cgs is 1)"),
+            (array("Radius", "CGSConversionFactor", 1e5), "Radius is in another unit"),
+        ):
+            with self.subTest(words):
+                self.change(how)
+                self.refused(4, words)
+        for how in (header("UnitLength_in_cm", 100), array("Coordinates", "unit", "metre"), array("Velocities", "unit", "m s^-1"),
+                    array("Masses", "to_cgs", 1000.0), lambda file, _: file.__delitem__("Header")):
+            self.change(how)
+            done = keeler("analyze", self.file)
+            self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_a_file_that_is_open_for_writing(self):
+        """h5py holds a lock meanwhile; the file on the disk may be half of it."""
+        self.change(lambda file, part: None)
+        table = self.folder / "table.h5"
+        with h5py.File(self.file, "r+") as file, h5py.File(table, "w") as particles:
+            for name in "xyz":
+                particles[name] = [0.0]
+            particles["r"] = [1.0]
+            file.flush()
+            self.refused(4, "another program has it open for writing")
+            done = keeler("generate", self.scene, "--from-table", table, "-o", self.folder / "none.hdf")
+            self.assertEqual(done.returncode, 4)
+            self.assertIn(b"another program has it open for writing", done.stderr)
+        with h5py.File(self.file, "r"):  # to read beside a reader is no harm
+            self.assertEqual(keeler("analyze", self.file).returncode, 0)
+
+    def test_a_file_of_gadgets_own(self):
+        """Each way in says what the file lacks and what can be done, and none sends it to the other."""
+        gadget = self.folder / "gadget.hdf5"
+        with h5py.File(gadget, "w") as file:
+            file.create_group("Header").attrs["NumPart_ThisFile"] = [0, 1, 0, 0, 0, 0]
+            for name, values in (("Coordinates", [[0.0, 0.0, 0.0]]), ("Masses", [1.0]), ("ParticleIDs", [1])):
+                file[f"PartType1/{name}"] = values
+        done = keeler("run", self.scene, "--from", gadget, "-o", self.folder / "run")
+        self.assertEqual(done.returncode, 4)
+        self.assertIn(b"it lacks /Code, /RingBox, /Parameters. To start from its particles, write their x, y, z", done.stderr)
+        done = keeler("generate", self.scene, "--from-table", gadget, "-o", self.folder / "none.hdf")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(b"a snapshot of another program, not a table", done.stderr)
+        self.assertNotIn(b"--from", done.stderr)
+        self.replace("Radius", lambda part, count: None)
+        self.refused(4, "it lacks /PartType1/Radius")
+
     def test_no_particles(self):
         def how(file, part):
             del file["VTKHDF"]
@@ -130,6 +229,8 @@ class ForeignFiles(unittest.TestCase):
                 shape, kind = (0,) + part[name].shape[1:], part[name].dtype
                 del part[name]
                 part.create_dataset(name, shape=shape, dtype=kind)
+            for name in ("NumPart_ThisFile", "NumPart_Total"):
+                file["Header"].attrs[name] = [0] * 6
 
         self.change(how)
         self.refused(2, "holds no particles")

@@ -132,7 +132,7 @@ def start_from_arrays(scene, positions, radii, velocities=None, masses=None, spi
 
 
 def read(file):
-    """The snapshot in a file. Raises IoError."""
+    """The snapshot in a file. Raises IoError; InvariantError for what no ring has."""
     if not isinstance(file, (str, os.PathLike)) or not Path(file).is_file():
         raise UsageError(f"'{file}' is no file; name a snapshot, snap_NNNNNN.hdf")
     return Snapshot(_core.read_snapshot(file), str(file))

@@ -53,4 +53,15 @@ TEST_CASE("a row that is not like the others is named") {
   CHECK(fault("a,b\n,2\n") == "t.csv:2: a has no value (every row needs all columns); fill it in or remove the row");
   CHECK(fault("1,2\n") ==
         "t.csv:1: the first row has numbers (it must name the columns); put a line of names above it");
+  CHECK(fault("a,b,\n1,2,\n") ==
+        "t.csv:1: the last column has no name (the line ends with a ','); remove that ',', and "
+        "those at the ends of the rows");
+  CHECK(fault("# a;b;\n1;2;\n").find("t.csv:1: the last column has no name (the line ends with a ';')") == 0);
+  CHECK(fault(",a,b\n0,1,2\n") ==
+        "t.csv:1: the first column has no name (pandas writes its index so); write the table with "
+        "index=False, or remove the column");
+  CHECK(fault("\"\",\"a\"\n0,1\n").find("t.csv:1: the first column has no name") == 0);
+  CHECK(fault("a,,b\n0,1,2\n") == "t.csv:1: column 2 has no name; name it or remove it");
+  CHECK(fault("a,b\n1,2,\n") ==
+        "t.csv:2: the row ends with a ',' (line 1 names 2 columns, and does not); remove that ','");
 }

@@ -128,3 +128,12 @@ TEST_CASE("a full disk is noticed at the row that does not fit, which leaves not
   append(series, 5);
   CHECK(read_text(file) == before + "5,0.005,0.3333333333333333\n");
 }
+
+TEST_CASE("a series whose times do not rise is damaged") {
+  const TemporaryFolder folder;
+  const auto file = folder / "series.csv";
+  for (const std::string time : {"nan", "inf", "0.05", "-1"}) {
+    write_text(file, "step,time_orbits,energy\n0,0,1\n100,0.1,nan\n200," + time + ",1\n");
+    CHECK_THROWS_WITH_AS(read_series(file), doctest::Contains("line 4 of '"), IoError);
+  }
+}

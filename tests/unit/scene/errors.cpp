@@ -105,6 +105,15 @@ TEST_CASE("values out of range are told with the range") {
   CHECK(with("[100, 50.0]", "[100, -50.0]").find("box.size is [100.0, -50.0], but must be") != std::string::npos);
   CHECK(with("2e-4", "2e-4\nepicyclic_ratio = 2").find("must be a number above 0.1 and below 2") != std::string::npos);
   CHECK(with("end = 2", "end = 2\nstep = 0.3").empty());
+  const auto oscillating = [](const char* step) {
+    return fault(changed(changed(least, "2e-4", "2e-4\nvertical_ratio = 100"), "end = 2",
+                         "end = 2\nstep = " + std::string(step)));
+  };
+  CHECK(oscillating("1e-3").empty());
+  CHECK(oscillating("\"auto\"").empty());
+  CHECK(oscillating("0.02") == "s.toml:12:8: time.step = 0.02 holds 2 vertical oscillations of 100 Omega (searches for "
+                               "contacts would not end in "
+                               "reasonable time beyond 1.5); let it be 0.005 orbits at most");
   CHECK(with("end = 2", "end = 2\nstep = 0.31") ==
         "s.toml:11:8: time.step is 0.31, but must be a number from 1e-9 to 0.3, or \"auto\" (length of a step; with "
         "\"auto\" it follows the state, in orbits); write for example step = 1e-3");

@@ -65,6 +65,13 @@ TEST_CASE("a start file's particles must be possible; the first that is not is n
   says([](Patch& p) { p.velocities[7].x() = 2000.0 / p.orbital_frequency; }, "a speed (m/s, beyond the shear) of 2000");
   CHECK(fault([](Patch& p) { p.positions[7].x() = NAN; }).find("particle 7 has a place") == 0);
   CHECK(fault([](Patch& p) { p.box.size_y = 1e12; }).find("50 m x 1e12 m") != std::string::npos);
+  CHECK(fault([](Patch& p) {
+          p.offset = NAN;
+        }).find("a shear_offset of nan m, modulo L_y (possible is from 0 to 40)") != std::string::npos);
+  CHECK(fault([](Patch& p) { p.box.first_offset = -1.0; }).find("a shear_offset_at_start of -1") != std::string::npos);
+  CHECK(fault([](Patch& p) { p.box.shear = 0.0; }).find("a shear_over_Omega of 0") != std::string::npos);
+  CHECK(fault([](Patch& p) { p.time_orbits = NAN; }).find("a time_orbits of nan") != std::string::npos);
+  CHECK(fault([](Patch& p) { p.frequencies.nu = NAN; }).find("a nu_over_Omega of nan") != std::string::npos);
   CHECK(fault([](Patch& p) { p.box.size_y = 6e4; }).find("more than 1000 times as long as wide") != std::string::npos);
 }
 
@@ -143,6 +150,47 @@ TEST_CASE("a box of a few diameters is doubted, a moonlet's included") {
   CHECK(first({"moonlet=[{ radius = 5.0, density = 600.0 }]", "box.size=[100, 100]"}).empty());
   CHECK(first({"moonlet=[{ radius = 5.0, density = 600.0 }]", "box.size=[100, 80]"}) ==
         "the box spans 8 diameters of its largest particle");
+}
+
+TEST_CASE("starts far from any ring are doubted, and others are not, however they move") {
+  const auto said = [](const Patch& patch) { return doubts(scale_of(patch).start); };
+  const auto of = [](const std::vector<std::string>& overrides) { return initial_patch(scene(overrides)); };
+  const std::string many = "particles.optical_depth=0.3", wide = "box.size=[400,100]";
+  // Streamlines that nearly cross, in a box many times as wide as particles are; and a ball that turns with its orbit.
+  for (const std::vector<std::string>& overrides : std::vector<std::vector<std::string>>{
+           {},
+           {many, wide},
+           {many, wide, "particles.streamlines.bunching=0.8"},
+           {many, wide, "particles.streamlines.bunching=0.8", "particles.streamlines.waves=7"},
+           {many, "particles.velocity_dispersion=20"}}) {
+    const std::vector<std::string> lines = said(of(overrides));
+    CAPTURE(overrides.size());
+    CAPTURE((lines.empty() ? "" : lines.front()));
+    CHECK(lines.empty());
+  }
+  const Patch ring = of({many, wide});
+  const auto changed = [&](const std::function<void(Patch&, std::size_t)>& change) {
+    Patch patch = ring;
+    for (std::size_t k = 0; k < patch.size(); ++k)
+      change(patch, k);
+    const std::vector<std::string> lines = said(patch);
+    REQUIRE(lines.size() == 1);
+    return lines.front();
+  };
+  CHECK(changed([](Patch& p, std::size_t k) {
+          p.velocities[k].y() += 1.5 * p.positions[k].x();
+        }).find("the velocities lack the shear: v_y changes with x by ") == 0);
+  CHECK(changed([](Patch& p, std::size_t k) {
+          p.velocities[k].y() += 3.0 * p.positions[k].x();
+        }).find("the shear of the velocities has the wrong sign") == 0);
+  CHECK(changed([](Patch& p, std::size_t k) { p.velocities[k].x() *= 20.0; }).find("the velocity dispersion is") == 0);
+  CHECK(changed([](Patch& p, std::size_t k) { p.positions[k].z() *= 40.0; }).find("the layer is") == 0);
+  CHECK(changed([](Patch& p, std::size_t k) { p.radii[k] *= 1e-3; }).find("the optical depth is") == 0);
+  CHECK(changed([](Patch& p, std::size_t k) {
+          p.positions[k] *= 1e-3;
+          p.velocities[k] *= 1e-3;
+          p.radii[k] *= 1e-3;
+        }).find("all particles are in the middle 0.") == 0);
 }
 
 TEST_CASE("of a start from a file the kick interval is judged by the file's own density") {
