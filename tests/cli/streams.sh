@@ -1,6 +1,6 @@
 #!/bin/bash
 # streams.sh KEELER SOURCE_DIR: results onto devices, pipes and standard output are written to what is there, which stays
-# what it is; names of results that others use (planted links, files of other programs, a second command) harm nobody.
+# what it is; names of results that others use (planted links, files of other programs, a second command) do no harm.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
@@ -32,7 +32,7 @@ for command in "${commands[@]}" "${refused[@]}"; do
   runs "$code" "${words[@]}" "$work/link"
   [ "$code" -eq 0 ] || : >"$work/pipe" # its reader ends
   wait "$reader"
-  [ -p "$work/pipe" ] && [ -h "$work/link" ] || fail "$command: the pipe was replaced"
+  if [ ! -p "$work/pipe" ] || [ ! -h "$work/link" ]; then fail "$command: the pipe was replaced"; fi
   rm "$work/pipe" "$work/link"
   for name in - /dev/stdout; do
     if [ "$code" -eq 2 ]; then

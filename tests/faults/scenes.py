@@ -95,7 +95,7 @@ def _same_arrays(file, other, group):
 
 
 def same_results(file, other):
-    """Equal arrays of HDF5, whose attributes say which command made them; other files by their bytes."""
+    """Equal arrays of HDF5 (its attributes say which command made them); other files by their bytes."""
     if file.suffix not in (".hdf", ".h5"):
         return file.read_bytes() == other.read_bytes()
     group = "PartType1" if file.suffix == ".hdf" else "Contacts"
