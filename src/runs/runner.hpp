@@ -40,8 +40,8 @@ private:
   void record();
   void tell_of_passage();
   bool checkpoint_due_by_clock() const;
-  // The exact sum is over pairs, wherever they are. A particle alone has its own images, whose pulls cancel: nothing that
-  // an error could be a part of.
+  // The exact sum is over pairs, wherever they are. A particle alone has its own images, whose pulls cancel: nothing
+  // that an error could be a part of.
   bool has_force_checks() const {
     return scene_.gravity && scene_.gravity->by_pairs() && !ranks().many() && simulation_.count() > 1;
   }

@@ -47,8 +47,9 @@ struct Transport {
   std::optional<Estimate> gravitational; ///< none: not measured; without self-gravity 0
   std::optional<Estimate> total;         ///< none: without the gravitational one
   Estimate from_loss;                    ///< (loss + d(U + Φ)/dt) / (M S²): what the total must be
-  std::optional<Estimate> balance;       ///< from_loss over total: 1; none in a driven run, and where its error is larger than it
-  std::optional<WaveGrowth> waves;       ///< none: not in the series, or too few rows
+  std::optional<Estimate>
+      balance; ///< from_loss over total: 1; none in a driven run, and where its error is larger than it
+  std::optional<WaveGrowth> waves; ///< none: not in the series, or too few rows
 };
 
 /// Whether there is a viscosity to be had of all rows: at least three (of those with gravity's stress, where it is
