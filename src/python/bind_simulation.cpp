@@ -39,7 +39,7 @@ template<class Make> std::unique_ptr<Held> from_patch(const Scene& scene, const 
 }
 
 std::unique_ptr<Held> from_scene(const Scene& scene) {
-  return begun(scene, [&] {
+  return from_patch(scene, [&] {
     if (!scene.start_from)
       require_memory_for(scene, scene.particles.count);
     return initial_patch(scene);

@@ -136,7 +136,7 @@ void render(const PythonSnapshot& snapshot, const fs::path& file, const std::str
 
 void write_bytes(const fs::path& file, const std::string& content) {
   require_own_threads();
-  const py::gil_scoped_release unlocked;
+  const Unlocked unlocked;
   write_text(file, content);
 }
 

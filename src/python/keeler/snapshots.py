@@ -3,6 +3,7 @@
 import json
 import os
 import tempfile
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -122,13 +123,17 @@ def start_from_arrays(scene, positions, radii, velocities=None, masses=None, spi
 
     positions (N, 3) m, velocities (N, 3) m/s or None (circular orbits), radii (N,) m or one number, masses (N,) kg or
     one number or None (of the scene's density), spins (N, 3) rad/s against the stars where the scene has friction.
-    Particle k gets the id k. ``relax`` moves particles that overlap apart.
+    Particle k gets the id k. ``relax`` moves particles that overlap apart. Warns (UserWarning) of a start that is far from
+    any ring: velocities without the shear, tables in km.
     Raises UsageError, naming the row, for particles that no ring has, and for masked entries; InvariantError for overlaps.
     """
     text, scene_name = scenes.source(scene)
     given = {"positions": positions, "velocities": velocities, "radii": radii, "masses": masses, "spins": spins}
     arrays = [None if a is None else np.asarray(scenes.unmasked(a, name), dtype=float) for name, a in given.items()]
-    return Snapshot(_core.from_arrays(text, scene_name, scenes.overrides_of(overrides), *arrays, relax), "the arrays")
+    start = _core.from_arrays(text, scene_name, scenes.overrides_of(overrides), *arrays, relax)
+    for doubt in start.start_doubts():
+        warnings.warn(doubt, stacklevel=2)
+    return Snapshot(start, "the arrays")
 
 
 def read(file):
