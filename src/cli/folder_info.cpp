@@ -4,6 +4,7 @@
 
 #include <keeler/batch/run_folders.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/core/words.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/io/describe.hpp>
@@ -70,7 +71,7 @@ std::optional<FileDescription> description_of(const fs::path& file) {
 
 // What is no number is null: files of others may hold anything.
 Json number_in(const std::string& text) {
-  const Json number = Json::parse(text, nullptr, false);
+  const Json number = json_of<Json>(text);
   return number.is_number() ? number : Json(nullptr);
 }
 
@@ -189,7 +190,7 @@ Json describe_many(const fs::path& folder) {
   const fs::path study = folder / "study.json";
   Json json = {{"folder", folder.string()}, {"kind", fs::exists(study) ? "study" : "sweep"}};
   if (fs::exists(study)) {
-    const Json begun = Json::parse(read_text(study), nullptr, false);
+    const Json begun = json_of<Json>(read_text(study));
     json["study"] = begun.is_object() && begun.contains("study") ? begun["study"] : Json(nullptr);
   }
   if (fs::is_directory(folder / "runs"))

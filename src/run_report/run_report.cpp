@@ -306,7 +306,7 @@ std::string RunPage::html() {
   look_at_snapshots();
   const fs::path file = folder_ / "summary.json";
   if (fs::exists(file))
-    summary_ = Json::parse(read_text(file), nullptr, false);
+    summary_ = json_of<Json>(read_text(file));
   const std::string told = using_json_of<Json>(file, [&] { return accuracy(); });
   const std::string facts_of_run = using_json_of<Json>(file, [&] { return facts(); });
   MeasuredPart part = measured_part(folder_, {});

@@ -3,6 +3,7 @@
 #include "run_folder.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/runs/folder_lock.hpp>
 
@@ -61,7 +62,7 @@ void take_event(RunView& view, const nlohmann::json& line) {
 void read_log(RunView& view, const fs::path& file) {
   std::istringstream lines(read_text(file));
   for (std::string text; std::getline(lines, text);) {
-    const nlohmann::json line = nlohmann::json::parse(text, nullptr, false);
+    const nlohmann::json line = json_of<nlohmann::json>(text);
     if (line.is_object())
       take_event(view, line);
   }

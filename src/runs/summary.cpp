@@ -1,6 +1,7 @@
 #include "summary.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/core/memory.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/files/files.hpp>
@@ -86,7 +87,7 @@ bool says_finished(const std::filesystem::path& summary) {
   std::error_code unknown;
   if (!std::filesystem::exists(summary, unknown))
     return false;
-  const nlohmann::json json = nlohmann::json::parse(read_text(summary), nullptr, false);
+  const nlohmann::json json = json_of<nlohmann::json>(read_text(summary));
   return json.is_object() && json.contains("finished") && json["finished"] == true;
 }
 

@@ -4,6 +4,7 @@
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/io/contacts.hpp>
 #include <keeler/io/describe.hpp>
@@ -124,7 +125,7 @@ Found check_scene(const std::string& file) {
 }
 
 Found check_summary(const std::string& file) {
-  const auto json = nlohmann::json::parse(read_text(file), nullptr, false);
+  const auto json = json_of<nlohmann::json>(read_text(file));
   if (!json.is_object() || !json.contains("state_hash") || !json["state_hash"].is_string())
     throw IoError(fmt::format("'{}' is not the summary of a run", file));
   return {{}, json["state_hash"].get<std::string>()};
@@ -136,7 +137,7 @@ Found check_log(const std::string& file) {
   std::size_t line = 0;
   for (std::size_t begin = 0, end; (end = text.find('\n', begin)) != text.npos; begin = end + 1) {
     ++line;
-    const auto json = nlohmann::json::parse(text.substr(begin, end - begin), nullptr, false);
+    const auto json = json_of<nlohmann::json>(text.substr(begin, end - begin));
     if (!json.is_object() || !json.contains("event") || !json["event"].is_string())
       throw IoError(fmt::format("line {} of '{}' is not one of a log", line, file));
   }

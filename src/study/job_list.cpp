@@ -19,7 +19,7 @@ JobList::JobList(const std::filesystem::path& file) : file_(file) {
   std::ifstream in(file);
   std::string text;
   for (std::string line; std::getline(in, line);) {
-    const Json entry = Json::parse(line, nullptr, false);
+    const Json entry = json_of<Json>(line);
     if (!entry.is_object() || !entry.contains("job") || !entry["job"].is_string() || !entry.contains("result"))
       continue;
     results_[entry["job"].get<std::string>()] = entry["result"];

@@ -45,7 +45,7 @@ Json open_study_folder(const fs::path& folder, const Json& options, const std::m
     write_text(file, json_text(begun, 2) + "\n");
     return begun;
   }
-  const Json before = Json::parse(read_text(file), nullptr, false);
+  const Json before = json_of<Json>(read_text(file));
   for (const auto& [key, value] : options.items())
     if (!before.is_object() || !before.contains(key) || before[key] != value)
       throw UsageError(fmt::format("'{}' holds a study with another {} ({}); give the same options or name another "

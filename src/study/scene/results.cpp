@@ -2,6 +2,7 @@
 
 #include <keeler/batch/quantities.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/occultation.hpp>
 #include <keeler/files/files.hpp>
@@ -80,7 +81,7 @@ Maybe transmission_of(const fs::path& folder) {
 }
 
 std::vector<Maybe> values_of(const StudyPlan& plan, const PlannedRun& run, const fs::path& folder) {
-  const Json summary = Json::parse(read_text(folder / "summary.json"), nullptr, false);
+  const Json summary = json_of<Json>(read_text(folder / "summary.json"));
   const SeriesTable series = read_series(folder / "series.csv");
   std::map<std::string, Maybe> known;
   const Maybe cpu = number_in(summary, "cpu_s"), orbits = number_in(summary, "orbits_done"),
