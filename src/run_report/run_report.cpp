@@ -305,8 +305,14 @@ std::string scripts() {
 std::string RunPage::html() {
   look_at_snapshots();
   const fs::path file = folder_ / "summary.json";
-  if (fs::exists(file))
+  if (fs::exists(file)) {
     summary_ = json_of<Json>(read_text(file));
+    if (!summary_.is_object())
+      throw IoError(
+          fmt::format("'{}' is not the summary of a run (it is damaged); restore it, or remove it to have the "
+                      "page without it",
+                      file.string()));
+  }
   const std::string told = using_json_of<Json>(file, [&] { return accuracy(); });
   const std::string facts_of_run = using_json_of<Json>(file, [&] { return facts(); });
   MeasuredPart part = measured_part(folder_, {});

@@ -83,6 +83,23 @@ refuses_with 3 "2,000 equal rows" "are a heap" generate "$work/scene.toml" --fro
   -o "$work/none.hdf"
 refuses "a file that does not end" "File too large" check /dev/zero
 
+runs 0 run "$work/scene.toml" -o "$work/deep" --set time.end=0.02
+python3 - "$work/deep/summary.json" <<'END'
+import sys
+from pathlib import Path
+file = Path(sys.argv[1])
+text = file.read_text()
+deep = "[" * 200000 + "]" * 200000
+file.write_text(text.replace('"ns_per_particle_step": {', '"ns_per_particle_step": ' + deep + ', "was": {', 1))
+END
+refuses_with 4 "deep JSON, report" "is not the summary of a run" report "$work/deep" -o "$work/none.html"
+for command in "info --json" "analyze" "resume"; do
+  code=0
+  # shellcheck disable=SC2086 # a command and its option
+  "$keeler" $command "$work/deep" >"$work/out" 2>"$work/err" || code=$?
+  [ "$code" -lt 128 ] || fail "deep JSON, $command: exit $code"
+done
+
 # What a person would write.
 accepts "a count with an exponent" check "$work/scene.toml" --set particles.count=1e2
 prints "a count with an exponent" "particles          100"
