@@ -4,8 +4,8 @@
 #include "scene_arguments.hpp"
 
 #include <keeler/bench/yardsticks.hpp>
-#include <keeler/core/memory.hpp>
 #include <keeler/core/json_of_files.hpp>
+#include <keeler/core/memory.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
@@ -163,7 +163,7 @@ void print_start(const Scene& scene, const PatchScale& start) {
   print("box and particles  from {}\n", *scene.start_from);
   print("optical depth      {}\n", figures(start.optical_depth, 4));
   print("Hill parameter r_h {:.3g} of its particles\n",
-             hill_parameter(start.density, distance_from_saturn(scene.planet)));
+        hill_parameter(start.density, distance_from_saturn(scene.planet)));
 }
 
 // What the default would be, and why, stands beside a choice of the scene's own.
@@ -172,8 +172,8 @@ void print_resting_contacts(const Scene& scene, const PatchScale& start) {
     return;
   const RestingChoice choice = choose_resting_contacts(start, scene);
   const char* const otherwise = choice.carried ? "by default they are carried: " : "by default they bounce: ";
-  fmt::print("contacts at rest   {} ({}{})\n", resting_word(scene),
-             choice.carried == scene.gravity->carries() ? "" : otherwise, choice.reason);
+  print("contacts at rest   {} ({}{})\n", resting_word(scene),
+        choice.carried == scene.gravity->carries() ? "" : otherwise, choice.reason);
 }
 
 void print_text(const Scene& scene, const Derived& d, const std::optional<RunEstimate>& cost, const PatchScale& start,

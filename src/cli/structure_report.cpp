@@ -36,10 +36,9 @@ void print_spins(const SpinAnalysis& s) {
 
 void print_epicyclic_waves(const WaveAnalysis& w) {
   const auto& c = w.dispersion_m_s;
-  fmt::print(
-      "box-long waves       {:.2g} of the epicyclic energy, axisymmetric; without them Toomre Q {:.3g}, dispersion "
-      "{:.3g} {:.3g} {:.3g} m/s\n",
-      w.energy_fraction, w.toomre_q, c[0], c[1], c[2]);
+  print("box-long waves       {:.2g} of the epicyclic energy, axisymmetric; without them Toomre Q {:.3g}, dispersion "
+        "{:.3g} {:.3g} {:.3g} m/s\n",
+        w.energy_fraction, w.toomre_q, c[0], c[1], c[2]);
 }
 
 void print_local(const Analysis& a) {
