@@ -175,7 +175,11 @@ std::vector<std::string> doubts(const Scene& scene, const PatchScale& patch) {
 
 // A body that holds much of the mass by itself is not counted with the grains, as in crowd_of().
 PatchScale scale_of(const BodySums& sums, std::size_t particle_count, double size_x, double size_y, double lambda_cr) {
-  PatchScale scale{particle_count, size_x, size_y, lambda_cr};
+  PatchScale scale;
+  scale.particle_count = particle_count;
+  scale.size_x = size_x;
+  scale.size_y = size_y;
+  scale.lambda_cr = lambda_cr;
   scale.mass = sums.mass;
   scale.density = sums.mass / (4.0 / 3.0 * pi * sums.cubes);
   scale.optical_depth = pi * sums.squares / (size_x * size_y);
