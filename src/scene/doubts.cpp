@@ -100,8 +100,9 @@ void doubt_room(const PatchScale& patch, Lines& lines) {
   const double side = std::min(patch.size_x, patch.size_y), spans = side / (2.0 * patch.largest.radius);
   if (patch.largest.radius > 0.0 && spans < enough)
     lines.push_back(
-        fmt::format("the box spans {} diameters of its largest particle: below {:g} particles feel their own "
-                    "images, and velocity dispersion and viscosity depend on the box; widen it",
+        fmt::format("the box spans {} diameters of its largest particle: below {:g} a particle, its neighbours and "
+                    "their images move together, and nothing longer than the box can form; widen it, or compare with "
+                    "a wider one",
                     figures(spans, 2), enough));
 }
 
