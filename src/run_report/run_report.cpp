@@ -23,6 +23,7 @@
 #include <keeler/runs/run_view.hpp>
 #include <keeler/scene/derived.hpp>
 #include <keeler/scene/doubts.hpp>
+#include <keeler/states/initial.hpp>
 #include <keeler/states/possible.hpp>
 
 #include <fmt/format.h>
@@ -255,8 +256,9 @@ std::string RunPage::scene_section() const {
   std::string words;
   for (const std::string& notice : scene_->notices)
     words += note("Note: " + notice);
-  for (const std::string& doubt : doubts(
-           *scene_, {last.size(), last.box.size_x, last.box.size_y, critical_wavelength(last), material_density(last)}))
+  PatchScale scale = scale_of(last);
+  scale.start = {}; // a later state is not judged as a start
+  for (const std::string& doubt : doubts(*scene_, scale))
     words += note("Note: " + doubt);
   return section("scene", "The scene",
                  derived_table(*scene_, last) + words +
