@@ -13,6 +13,7 @@
 #include <keeler/scene/derived.hpp>
 #include <keeler/scene/doubts.hpp>
 #include <keeler/scene/estimate.hpp>
+#include <keeler/scene/grain_piles.hpp>
 #include <keeler/scene/resting_choice.hpp>
 #include <keeler/states/initial.hpp>
 
@@ -61,7 +62,7 @@ nlohmann::ordered_json as_json(const RunEstimate& estimate, const Scene& scene) 
     json[fmt::format("{}_s", part.name)] = part.seconds;
   json["dominates"] = estimate.dominating();
   json["contacts_per_particle_orbit"] = scene_contacts(scene).wakes.all();
-  json["grains_in_piles"] = grains_in_piles(scene, static_cast<double>(scene.time.end_step) * scene.time.step);
+  json["grains_in_piles"] = GrainPiles(scene).grains(static_cast<double>(scene.time.end_step) * scene.time.step);
   return json;
 }
 

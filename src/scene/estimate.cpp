@@ -5,7 +5,7 @@
 #include <keeler/gravity/fft.hpp>
 #include <keeler/gravity/near_image_count.hpp>
 #include <keeler/scene/derived.hpp>
-#include <keeler/scene/resting_choice.hpp>
+#include <keeler/scene/grain_piles.hpp>
 
 #include <fmt/format.h>
 
@@ -257,50 +257,6 @@ SceneContacts scene_contacts(const Scene& scene) {
 
 namespace {
 
-// The grains that a body holds: those of its lane of the patch that have come near, as many as its Hill sphere has room
-// for. Fits to what lies on moonlets of 10 to 30 m after 0.1 to 2 orbits.
-double grains_on(const PatchScale::Sphere& body, const PatchScale& patch, const Scene& scene, double orbits) {
-  const double hill = std::cbrt(newton_g(scene.planet.orbital_frequency) * body.mass / 3.0);
-  const double grain_radius = scene.particles.sizes.mean_power(3) / scene.particles.sizes.mean_power(2);
-  const double count = static_cast<double>(scene.particles.count), per_area = count / (patch.size_x * patch.size_y);
-  const double come = 24.0 * per_area * hill * hill * orbits * orbits / (orbits + 0.25);
-  const double lane = count * std::min(1.0, 5.0 * hill / patch.size_x);
-  const double room = 0.55 * (std::pow(0.85 * hill, 3) - std::pow(body.radius, 3)) / std::pow(grain_radius, 3);
-  return std::max(0.0, std::min({come, lane, room}));
-}
-
-// Bodies of a list of sizes are in the crowd of particles: the largest is one.
-std::vector<PatchScale::Sphere> large_bodies(const Scene& scene, const PatchScale& patch) {
-  std::vector<PatchScale::Sphere> bodies;
-  for (const MoonletSettings& moonlet : scene.moonlets)
-    bodies.push_back({moonlet.radius, moonlet.mass});
-  if (bodies.empty() && scene.particles.sizes.listed > 0)
-    bodies.push_back(patch.largest);
-  return bodies;
-}
-
-// Where all holds together, particles of thin rings that move more slowly than they escape from each other gather in
-// aggregates. In denser rings the rates of contacts in wakes know of them.
-double grains_in_aggregates(const Scene& scene, double orbits) {
-  constexpr double thin = 0.5;
-  const ParticleSettings& particles = scene.particles;
-  const double r_h = hill_parameter(particles.density, distance_from_saturn(scene.planet));
-  const double depth = scene.optical_depth(), escape = std::sqrt(24.0 * std::pow(r_h, 3)); // r Ω
-  if (r_h < aggregates || depth > thin || particles.velocity_dispersion > escape)
-    return 0.0;
-  const double half = 6.3 * std::sqrt(0.2 / depth); // orbits until most of them have
-  return static_cast<double>(particles.count) * orbits * orbits / (orbits * orbits + half * half);
-}
-
-// Grains in piles, summed over the time of a run.
-double grain_orbits(const Scene& scene, double orbits) {
-  constexpr int samples = 64;
-  double sum = 0.0;
-  for (int k = 0; k < samples; ++k)
-    sum += grains_in_piles(scene, orbits * (k + 0.5) / samples);
-  return orbits * sum / samples;
-}
-
 // A grain of a pile and orbit: it rattles from kick to kick, until it rests. Where contacts bounce it never does.
 double pile_ns(const Scene& scene, double dilute) {
   constexpr double rattling = 8000.0, bouncing = 30.0; // contacts an orbit; a kick
@@ -313,17 +269,6 @@ double pile_ns(const Scene& scene, double dilute) {
 }
 
 } // namespace
-
-double grains_in_piles(const Scene& scene, double orbits) {
-  if (!scene.gravity || !scene.gravity->by_pairs())
-    return 0.0;
-  const PatchScale patch = scale_of(scene);
-  double grains = grains_in_aggregates(scene, orbits);
-  for (const PatchScale::Sphere& body : large_bodies(scene, patch))
-    if (holds_grains(body, patch.grain, scene.planet))
-      grains += grains_on(body, patch, scene, orbits);
-  return std::min(grains, static_cast<double>(scene.particles.count));
-}
 
 std::array<RunEstimate::Part, 4> RunEstimate::parts() const {
   return {{{"start", start}, {"drift", drift}, {"gravity", gravity}, {"output", output}}};
@@ -373,7 +318,7 @@ RunEstimate estimate_run(const Scene& scene, double pair_ns) {
   estimate.drift = scale * count *
                    (smooth * drift_ns(contacts.smooth, dilute, count, scene) +
                     (orbits - smooth) * drift_ns(contacts.wakes, dilute, count, scene));
-  estimate.drift += scale * grain_orbits(scene, orbits) * pile_ns(scene, dilute);
+  estimate.drift += scale * GrainPiles(scene).grain_orbits(orbits) * pile_ns(scene, dilute);
   if (scene.gravity)
     estimate.gravity = scale * count * orbits * kicks_an_orbit(scene) * gravity_ns(scene);
   estimate.output = scale * output_ns(scene, count);

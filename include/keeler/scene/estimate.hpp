@@ -36,10 +36,6 @@ struct SceneContacts {
 };
 SceneContacts scene_contacts(const Scene& scene);
 
-/// Grains that lie in piles that many orbits after a fresh start: on the moonlets of a scene that hold grains
-/// (scene/resting_choice.hpp), or on the largest body of a list of sizes, and in aggregates of a thin ring.
-double grains_in_piles(const Scene& scene, double orbits);
-
 /// Processor time, s.
 struct RunEstimate {
   double start = 0.0;   ///< making the initial state

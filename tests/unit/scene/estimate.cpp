@@ -2,6 +2,7 @@
 
 #include <keeler/scene/derived.hpp>
 #include <keeler/scene/estimate.hpp>
+#include <keeler/scene/grain_piles.hpp>
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -58,14 +59,14 @@ TEST_CASE("contact rates follow the vertical frequency") {
 TEST_CASE("grains gather on a moonlet and in aggregates, and make most of the work there") {
   const Scene scene = load_scene(KEELER_SOURCE_DIR "/examples/moonlet/scene.toml");
   // pairs at rest after 0.25, 0.5 and 1 orbit, 2.5 a grain
-  check_near(grains_in_piles(scene, 0.25), 1775 / 2.5, 1.5);
-  check_near(grains_in_piles(scene, 0.5), 5379 / 2.5, 1.5);
-  check_near(grains_in_piles(scene, 1.0), 10757 / 2.5, 1.5);
+  check_near(GrainPiles(scene).grains(0.25), 1775 / 2.5, 1.5);
+  check_near(GrainPiles(scene).grains(0.5), 5379 / 2.5, 1.5);
+  check_near(GrainPiles(scene).grains(1.0), 10757 / 2.5, 1.5);
   CHECK(std::string(estimate_run(scene).dominating()) == "drift");
   check_near(estimate_run(scene).total(), 102.0 * reference_pair_ns / 9.0, 2.0);
-  CHECK(grains_in_piles(a_ring(), 3.0) == 0.0);
+  CHECK(GrainPiles(a_ring()).grains(3.0) == 0.0);
   const Scene ring = load_scene(KEELER_SOURCE_DIR "/examples/aggregates/scene.toml");
-  check_near(grains_in_piles(ring, 2.0), 481 / 2.5, 1.5);
+  check_near(GrainPiles(ring).grains(2.0), 481 / 2.5, 1.5);
 }
 
 TEST_CASE("contact rates in wakes are those of the study of solvers") {
