@@ -97,20 +97,21 @@ nlohmann::ordered_json Sights::json() const {
 }
 
 void Sights::print() const {
-  print("lines of sight       {} rays, footprints of {} x {} m\n", rays_.size(), figures(rays_.footprint_x(), 3),
-        figures(rays_.footprint_y(), 3));
+  keeler::print("lines of sight       {} rays, footprints of {} x {} m\n", rays_.size(),
+                figures(rays_.footprint_x(), 3), figures(rays_.footprint_y(), 3));
   for (const Elevation& e : elevations_) {
     for (std::size_t k = 0; k < e.looks.size(); ++k) {
       const Occultation& o = e.looks[k];
-      print("  B {:<5} phi {:<5} T {:.4f} +- {:.4f}, normal optical depth {}; flicker: variance {}, skewness {}, "
-            "kurtosis {}\n",
-            figures(e.degrees, 3), figures(e.azimuths[k], 3), *o.transmission.value, o.ray_error,
-            known(o.normal_optical_depth, 4), figures(o.flicker.variance, 3), known(o.flicker.skewness, 3),
-            known(o.flicker.kurtosis, 3));
+      keeler::print(
+          "  B {:<5} phi {:<5} T {:.4f} +- {:.4f}, normal optical depth {}; flicker: variance {}, skewness {}, "
+          "kurtosis {}\n",
+          figures(e.degrees, 3), figures(e.azimuths[k], 3), *o.transmission.value, o.ray_error,
+          known(o.normal_optical_depth, 4), figures(o.flicker.variance, 3), known(o.flicker.skewness, 3),
+          known(o.flicker.kurtosis, 3));
     }
     if (const auto asymmetry = azimuthal_asymmetry(e.looks))
-      print("  B {:<5} azimuthal asymmetry {:.3g}, brightest at {} degrees\n", figures(e.degrees, 3),
-            asymmetry->amplitude, figures(asymmetry->brightest_azimuth / degree, 4));
+      keeler::print("  B {:<5} azimuthal asymmetry {:.3g}, brightest at {} degrees\n", figures(e.degrees, 3),
+                    asymmetry->amplitude, figures(asymmetry->brightest_azimuth / degree, 4));
   }
 }
 
