@@ -22,11 +22,12 @@ failing.allocations.restype = ctypes.c_long
 FOREVER = 2**62
 
 FRICTION = {"restitution": {"law": "constant", "value": 0.5}, "friction": {"tangential_restitution": 0.5}}
+SMALL = {"size": [40.0, 40.0]}
 SCENES = {
-    "no gravity": ring(collisions=FRICTION),
-    "tree": ring(gravity={"solver": "tree", "resting_contacts": "carried"}),
-    "mesh": ring(gravity={"solver": "fft", "kick_every": 2}),
-    "radial": ring(gravity={"solver": "axisymmetric", "shortest_wavelength": 5.0}),
+    "no gravity": ring(box=SMALL, collisions=FRICTION),
+    "tree": ring(box=SMALL, gravity={"solver": "tree", "resting_contacts": "carried"}),
+    "mesh": ring(box=SMALL, gravity={"solver": "fft", "kick_every": 2}),
+    "radial": ring(box=SMALL, gravity={"solver": "axisymmetric", "shortest_wavelength": 5.0}),
 }
 
 
@@ -82,7 +83,7 @@ class EachAllocationFails(unittest.TestCase):
                 keeler.set_threads(threads)
                 with self.subTest(scene=name, threads=threads):
                     failed = self.all_in_turn(
-                        lambda start=start, scene=scene: keeler.Simulation(scene, start), lambda sim: sim.step(2), every=3
+                        lambda start=start, scene=scene: keeler.Simulation(scene, start), lambda sim: sim.step(2), every=2
                     )
                     self.assertGreater(failed, 10)
 
@@ -113,13 +114,6 @@ class EachAllocationFails(unittest.TestCase):
         self.assertGreater(len(wanted), 10)
         for at in (1, 5, 20, 40, 60):
             np.testing.assert_array_equal(rows_of(keeler.Simulation(SCENES["no gravity"]), at), wanted)
-
-    def test_a_simulation_that_is_made(self):
-        for at in range(1, 400, 7):
-            made, _ = attempt(lambda scene: keeler.Simulation(scene), SCENES["tree"], at, at)
-            if made:
-                break
-        self.assertEqual(len(keeler.Simulation(SCENES["tree"])), len(keeler.Simulation(SCENES["no gravity"])))
 
 
 if __name__ == "__main__":

@@ -204,8 +204,8 @@ class Course(unittest.TestCase):
         self.assertLess(time.monotonic() - begin, 10.0)
         sim.step()
 
-    def interrupted(self, presses):
-        sim = keeler.Simulation(ring(box={"size": [300.0, 300.0]}, time={"step": 5e-4, "end": 500.0}))
+    def interrupted(self, presses, **tables):
+        sim = keeler.Simulation(ring(box={"size": [300.0, 300.0]}, time={"step": 5e-4, "end": 500.0}, **tables))
 
         def press():
             for _ in range(presses):
@@ -229,6 +229,13 @@ class Course(unittest.TestCase):
         end = sim.orbits + 0.01
         again = keeler.Simulation(ring(box={"size": [300.0, 300.0]}, time={"step": 5e-4, "end": 500.0})).run(end)
         self.assertEqual(sim.run(end).state_hash, again.state_hash)
+
+    def test_a_second_ctrl_c_gives_up_the_steps_at_hand_and_the_state_is_that_of_before(self):
+        kicks = {"gravity": {"solver": "tree", "kick_every": 1000}}  # seconds from one to the next
+        scene = ring(box={"size": [300.0, 300.0]}, time={"step": 5e-4, "end": 500.0}, **kicks)
+        sim = self.interrupted(presses=2, **kicks)
+        self.assertEqual((sim.orbits, sim.state_hash), (0.0, keeler.Simulation(scene).state_hash))
+        self.assertGreater(len(sim.snapshot()), 1000)
 
     def test_two_simulations_in_two_threads(self):
         sims = [keeler.Simulation(RING, particles={"seed": seed}) for seed in (1, 2)]
@@ -339,7 +346,7 @@ class Changes(unittest.TestCase):
     def test_a_place_a_little_outside_is_one_inside(self):
         with self.sim.edit() as state:
             state.positions[:, 0] += 1.0
-        self.assertLess(np.abs(self.sim.positions[:, 0]).max(), 33.0)
+        self.assertLess(np.abs(self.sim.positions[:, 0]).max(), 40.0)  # its guiding centre is inside
         self.sim.run(0.1)
 
     def test_a_simulation_that_moves_on_within_is_refused(self):

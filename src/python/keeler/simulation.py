@@ -37,7 +37,7 @@ class Simulation:
     stays as it was when the simulation moves on (which costs a copy of the state, once).
     """
 
-    __slots__ = ("_core", "_motion", "_recording", "_changes", "__weakref__")
+    __slots__ = ("_core", "_scene", "_motion", "_recording", "_changes", "__weakref__")
 
     def __init__(self, scene, start=None, **overrides):
         if start is None:
@@ -49,6 +49,7 @@ class Simulation:
 
     def _begin(self, core):
         self._core = core
+        self._scene = core.scene  # once: to make it may need memory that a step then has not
         self._motion = None
         self._recording = False
         self._changes = 0
@@ -80,17 +81,17 @@ class Simulation:
     @property
     def scene(self):
         """The resolved scene as text: every key, with what was filled in."""
-        return self._core.scene.text
+        return self._scene.text
 
     @property
     def remarks(self):
         """What the program would remark about the scene, a line each."""
-        return self._core.scene.remarks
+        return self._scene.remarks
 
     @property
     def orbital_frequency(self):
         """Omega, rad/s: velocities and frequencies of the elements are in units of it."""
-        return self._core.scene.orbital_frequency
+        return self._scene.orbital_frequency
 
     @property
     def box(self):
@@ -183,7 +184,7 @@ class Simulation:
         Raises InvariantError when a step comes to what cannot be. The simulation then does not go on, but its arrays and
         snapshot() can be looked at: they are of the last contact in the step, or of the step's end.
         """
-        core, scene = self._core, self._core.scene
+        core, scene = self._core, self._scene
         interval = scene.kick_interval
         end = _ticks(scene.end if until is None else until, "until", scene)
         if end < core.tick:
@@ -216,7 +217,7 @@ class Simulation:
         """``count`` kick intervals: the shortest time after which a state can be looked at."""
         count = scenes.whole_number(count, "count", 0, 10**12)
         self._motion = None
-        self._core.advance(self._core.tick + count * self._core.scene.kick_interval)
+        self._core.advance(self._core.tick + count * self._scene.kick_interval)
         return self
 
     @contextmanager
