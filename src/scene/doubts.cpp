@@ -83,7 +83,8 @@ void doubt_equilibrium(const Scene& scene, const PatchScale& patch, Lines& lines
   constexpr double fast = 100.0; // m/s: far above any speed in a ring
   if (scene.collisions.friction || patch.particle_count < 2)
     return;
-  const bool fresh = !scene.start_from; // then moonlets do not count
+  // A scene of particles that it makes leaves moonlets out; a stored one does not know the law of its sizes.
+  const bool fresh = !scene.start_from && scene.particles.sizes.mean_power;
   const double depth = fresh ? scene.optical_depth() : patch.optical_depth;
   const double radius = fresh ? scene.particles.sizes.largest : patch.largest.radius;
   const double kept = scene.collisions.restitution({fast, radius, radius});
