@@ -49,6 +49,7 @@ class ForeignFiles(unittest.TestCase):
             lines = [line for line in done.stderr.decode().splitlines() if "takes its place" not in line]
             self.assertEqual((done.returncode, len(lines)), (code, 1), (command[0], lines[:3]))
             self.assertIn(words, lines[0])
+            self.assertIn("changed.hdf", lines[0])
         self.assertFalse((self.folder / "picture.png").exists())
         self.assertFalse((self.folder / "run").exists())
 
@@ -114,6 +115,16 @@ class ForeignFiles(unittest.TestCase):
         done = keeler("analyze", self.file)
         self.assertEqual(done.returncode, 3)
         self.assertIn(b"an Omega of 1 rad/s", done.stderr)
+
+    def test_overlaps(self):
+        def how(_, part):
+            part["Coordinates"][1] = part["Coordinates"][0]
+
+        self.change(how)
+        for command in (("run", self.scene, "--from", self.file), ("run", self.scene, "--set", f"start.from='{self.file}'")):
+            done = keeler(*command, "-o", self.folder / "run")
+            self.assertEqual(done.returncode, 3)
+            self.assertRegex(done.stderr.decode(), r"particles 0 and 1 of '.*changed\.hdf' overlap by")
 
     def test_deep_scenes(self):
         """In a snapshot, a text, a dictionary and overrides."""
