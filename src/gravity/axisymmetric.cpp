@@ -75,7 +75,7 @@ double radial_mesh_nodes(double size_x, double shortest_wavelength) {
 }
 
 std::string radial_mesh_fault(double size_x, double shortest_wavelength) {
-  constexpr double most_nodes = 0x1p30; // FFTW counts them by an int
+  constexpr double most_nodes = 0x1p27; // 10⁷ waves, of a metre in the widest box that there is
   const double nodes = radial_mesh_nodes(size_x, shortest_wavelength);
   const bool too_long = !(waves_in(size_x, shortest_wavelength) >= 1.0);
   if (!too_long && nodes <= most_nodes)

@@ -162,7 +162,7 @@ Derived derive(const Scene& scene) {
 
 void require_memory_for(const Scene& scene, std::size_t count) {
   require_memory(run_bytes(scene, count), fmt::format("a run of {} particles", figures(static_cast<double>(count))),
-                 "take fewer, or a machine that has more");
+                 "take fewer, a coarser mesh, or a machine that has more");
 }
 
 std::string in_words(const GravitySettings& gravity) {
