@@ -47,7 +47,7 @@ RestingChoice choose_resting_contacts(const PatchScale& patch, const Scene& scen
       scene.time.automatic ? automatic_interval : scene.time.step * static_cast<double>(scene.kick_interval());
   const double excess = excess_of_bouncing(patch.optical_depth, r_h, interval);
   return {excess >= allowed_excess,
-          fmt::format("bounced, they lose about {} % more than the shear gives", figures(100.0 * excess, 2))};
+          fmt::format("bouncing loses about {} % more than the shear gives", figures(100.0 * excess, 2))};
 }
 
 bool leaves_resting_open(const Scene& scene) {
