@@ -69,11 +69,13 @@ double mesh_memory(const Scene& scene, std::size_t count, double size_x, double 
   return mesh_bytes(box, spacing * distance, 2.0 * highest * height, count);
 }
 
-// Beside the program itself.
+// Beside the program itself. Of a patch from a file the mesh is not known before it is made, with a check of its own.
 double run_bytes(const Scene& scene, std::size_t count) {
+  const double particles = bytes_per_particle(scene, count) * static_cast<double>(count);
+  if (scene.start_from || scene.particles.count == 0 || count == 0)
+    return particles;
   const double larger = std::sqrt(static_cast<double>(count) / static_cast<double>(scene.particles.count));
-  return bytes_per_particle(scene, count) * static_cast<double>(count) +
-         mesh_memory(scene, count, larger * scene.size_x, larger * scene.size_y);
+  return particles + mesh_memory(scene, count, larger * scene.size_x, larger * scene.size_y);
 }
 
 } // namespace

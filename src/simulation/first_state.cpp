@@ -2,6 +2,7 @@
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/scene/derived.hpp>
 
 #include <fmt/format.h>
 
@@ -20,8 +21,9 @@ void require_room(const ShearingBox& box, double largest, const std::string& nam
 }
 
 // Collective.
-void require_fit(const Patch& start, const std::string& name, const Ranks& ranks) {
+void require_fit(const Scene& scene, const Patch& start, const std::string& name, const Ranks& ranks) {
   ranks.together([&] {
+    require_memory_for(scene, start.size());
     require_sound(start);
     if (!ranks.many())
       require_apart(start, name);
@@ -76,7 +78,7 @@ std::string start_name(const Scene& scene) {
 }
 
 SimulationState first_state(const Scene& scene, const Patch& start, const Ranks& ranks) {
-  require_fit(start, start_name(scene), ranks);
+  require_fit(scene, start, start_name(scene), ranks);
   SimulationState state(scene);
   if (scene.time.automatic)
     state.control = StepControl::automatic(!state.forces.empty());
