@@ -38,8 +38,6 @@ class Border(unittest.TestCase):
         calls = {
             "save": lambda: sim.save(5),
             "save ": lambda: start.save(None),
-            "tile": lambda: start.tile("a", 2),
-            "render": lambda: start.plot(self.folder / "a.png", width="wide"),
             "load": lambda: keeler.load(5),
             "resume": lambda: keeler.resume(None),
             "analyze": lambda: keeler.Run.analyze(type("Other", (), {"folder": 5})(), "x"),
