@@ -9,6 +9,7 @@ import sys
 import time
 import tempfile
 import unittest
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -176,6 +177,23 @@ class Starts(InAFolder):
             with self.assertRaises(keeler.UsageError) as caught:
                 keeler.from_arrays(RING, **wrong)
             self.assertNotIn("\n", str(caught.exception))
+
+    def test_starts_far_from_any_ring_are_warned_of(self):
+        scene = ring(box={"size": [200.0, 200.0]})
+        sim = keeler.Simulation(scene)
+        places, velocities = sim.by_id(sim.positions), sim.by_id(sim.velocities)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            keeler.from_arrays(scene, places, 1.0, velocities)
+        no_shear = velocities + np.outer(1.5 * sim.orbital_frequency * places[:, 0], [0.0, 1.0, 0.0])
+        for words, arrays in [
+            ("lack the shear", (places, 1.0, no_shear)),
+            ("are their lengths in m", (1e-3 * places, 1e-3, 1e-3 * velocities)),
+        ]:
+            for make in (keeler.from_arrays, keeler.start_from_arrays):
+                with self.assertWarnsRegex(UserWarning, words) as caught:
+                    make(scene, *arrays)
+                self.assertEqual(caught.filename, __file__)
 
     def test_masks_are_not_lost(self):
         places = np.array([[-10.0, 0.0, 0.0], [10.0, 5.0, 1.0]])

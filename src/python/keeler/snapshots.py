@@ -2,6 +2,7 @@
 
 import json
 import os
+import sys
 import tempfile
 import warnings
 from pathlib import Path
@@ -131,9 +132,17 @@ def start_from_arrays(scene, positions, radii, velocities=None, masses=None, spi
     given = {"positions": positions, "velocities": velocities, "radii": radii, "masses": masses, "spins": spins}
     arrays = [None if a is None else np.asarray(scenes.unmasked(a, name), dtype=float) for name, a in given.items()]
     start = _core.from_arrays(text, scene_name, scenes.overrides_of(overrides), *arrays, relax)
-    for doubt in start.start_doubts():
-        warnings.warn(doubt, stacklevel=2)
+    _warn(start.start_doubts())
     return Snapshot(start, "the arrays")
+
+
+def _warn(lines):
+    """Warns of each line, at the place outside of the package from where it was called."""
+    frame, level = sys._getframe(1), 2
+    while frame.f_back and frame.f_globals["__name__"].partition(".")[0] == __package__:
+        frame, level = frame.f_back, level + 1
+    for line in lines:
+        warnings.warn(line, stacklevel=level)
 
 
 def read(file):
