@@ -84,6 +84,11 @@ void add_gravity_of_quality(Document& document) {
     add("gravity.opening_angle", quality->opening_angle);
 }
 
+void name_quality_of_stored(Document& document, const std::string& name) {
+  if (!find_entry(document, "quality"))
+    document.push_back({"quality", name, name, std::string("custom"), false});
+}
+
 void resolve_times_of_quality(Scene& scene, Settings& settings) {
   const Quality* const quality = quality_of(settings.text("quality"));
   if (!quality || settings.is_word("time.step"))

@@ -277,7 +277,9 @@ Scene load_varied_scene(const std::string& path, const std::vector<Override>& ov
 }
 
 Scene parse_stored_scene(const std::string& text, const std::string& name) {
-  return read_scene(parse_document(text, name), name, Purpose::go_on, {});
+  Document document = parse_document(text, name);
+  name_quality_of_stored(document, name);
+  return read_scene(std::move(document), name, Purpose::go_on, {});
 }
 
 Scene load_scene(const std::string& path, const std::vector<std::string>& overrides,

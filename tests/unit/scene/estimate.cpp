@@ -12,12 +12,18 @@ using namespace keeler::test;
 
 namespace {
 
+// Steps of 1e-3 orbit, each with a kick by the tree.
+std::vector<std::string> custom(std::vector<std::string> overrides) {
+  overrides.insert(overrides.begin(), "quality=custom");
+  return overrides;
+}
+
 Scene with(const std::vector<std::string>& overrides) {
-  return parse_scene(least, "s.toml", overrides);
+  return parse_scene(least, "s.toml", custom(overrides));
 }
 
 Scene a_ring(const std::vector<std::string>& overrides = {}) {
-  return load_scene(KEELER_SOURCE_DIR "/examples/a-ring-wakes/scene.toml", overrides);
+  return load_scene(KEELER_SOURCE_DIR "/examples/a-ring-wakes/scene.toml", custom(overrides));
 }
 
 // Within a factor.

@@ -45,9 +45,28 @@ TEST_CASE("each quality gives a scene its numbers") {
   }
 }
 
-TEST_CASE("custom is the default and changes nothing") {
-  CHECK(a_ring({}).resolved == a_ring({"quality=custom"}).resolved);
-  CHECK(a_ring({}).gravity->kick_every == 1);
+TEST_CASE("a scene that names no quality is balanced") {
+  CHECK(a_ring({}).resolved == a_ring({"quality=balanced"}).resolved);
+  CHECK(without_gravity({}).resolved == without_gravity({"quality=balanced"}).resolved);
+  CHECK(a_ring({}).gravity->solver == GravitySettings::Solver::automatic);
+}
+
+TEST_CASE("custom gives the keys their own defaults") {
+  const Scene custom = a_ring({"quality=custom"});
+  CHECK(custom.time.step == 1e-3);
+  CHECK(custom.gravity->kick_every == 1);
+  CHECK(custom.gravity->solver == GravitySettings::Solver::tree);
+  CHECK(custom.gravity->opening_angle == 0.6);
+  CHECK(a_ring({"quality=custom", "gravity.solver=fft"}).gravity->force_error == 2e-3);
+}
+
+// A scene that names all that a quality gives has the same bits under any.
+TEST_CASE("a scene that names its choices is the same by any quality") {
+  const std::vector<std::string> named = {"time.step=1e-3", "gravity={solver=\"tree\",opening_angle=0.6,kick_every=1}"};
+  const Scene before = a_ring({"quality=custom", named[0], named[1]});
+  for (const char* const quality : {"fast", "balanced", "strict"})
+    CHECK(a_ring({std::string("quality=") + quality, named[0], named[1]}).motion == before.motion);
+  CHECK(a_ring(named).motion == before.motion);
 }
 
 TEST_CASE("what a scene says itself stands") {
