@@ -37,7 +37,7 @@ void doubt_shear(const StartScale& start, Lines& lines) {
 
 // A start that is to cool may well be some times hotter than a ring (examples/quaoar: three escape speeds).
 void doubt_motions(const StartScale& start, Lines& lines) {
-  constexpr double hot = 30.0;
+  constexpr double hot = 15.0;
   const double usual = start.usual_dispersion, unit = start.mean_radius;
   if (start.dispersion > hot * usual)
     lines.push_back(fmt::format("the velocity dispersion is {} mm/s ({} mean r Omega), where collisions and "

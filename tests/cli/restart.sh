@@ -7,6 +7,7 @@ for tool in h5dump h5ls; do
   command -v "$tool" >/dev/null || { echo "'$tool' is missing: scripts/setup test installs it"; exit 1; }
 done
 small_scene
+sed -i 's/^solver = "tree"/&\nkick_every = 1/' "$work/scene.toml" # halves and quarters of an orbit are whole kicks
 
 # same NAME FOLDER: all that the run left equals what the uninterrupted run left
 same() {
@@ -135,7 +136,7 @@ same "rough particles, kill -9" "$work/rough-killed"
 mv "$work/smooth.toml" "$work/scene.toml"
 
 # Kicks every third step: ends and schedules are rounded to whole kicks, and no restart falls between two halves.
-sed -i 's/^solver.*/&\nkick_every = 3/; s/^snapshot_every.*/snapshot_every = 0.13/; s/^checkpoint_every.*/checkpoint_every = 0.07/' \
+sed -i 's/^kick_every.*/kick_every = 3/; s/^snapshot_every.*/snapshot_every = 0.13/; s/^checkpoint_every.*/checkpoint_every = 0.07/' \
   "$work/scene.toml"
 rm -rf "$work/whole"
 runs 0 run "$work/scene.toml" -o "$work/whole"

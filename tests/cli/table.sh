@@ -112,8 +112,8 @@ far() { # NAME WORDS: said by generate, by check and by run of a start from it
 }
 far still "the velocities lack the shear: v_y changes with x by "
 far mirrored "the shear of the velocities has the wrong sign"
-far cm_s "as much as on circular orbits (-2.925e-4): are lengths in m and velocities in m/s"
-far hot "mean r Omega), where collisions and self-gravity keep up some 1: are velocities in m/s"
+far cm_s "as much as on circular orbits (-0.0002925): are lengths in m and velocities in m/s"
+far hot "mean r Omega), where collisions and self-gravity keep up some 3.6: are velocities in m/s"
 far km "all particles are in the middle 0.093 % of the box: are their lengths in m"
 generated ring
 grep -q "shear\|are lengths\|are velocities" "$work/out" && fail "a ring is doubted: $(cat "$work/out")"
