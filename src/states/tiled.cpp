@@ -56,7 +56,8 @@ struct Tiles {
   // outside the patch's cell, by the drift of half a step, counts as on its edge: it keeps its row.
   Image first_in(std::size_t column, double guiding_y) const {
     const auto nx = static_cast<std::int32_t>(first_column + static_cast<std::int64_t>(column));
-    const double edge = 0.5 * patch.size_y, last = edge * (1.0 - 0x1p-50); // nextafter() would round to a whole box below
+    const double edge = 0.5 * patch.size_y,
+                 last = edge * (1.0 - 0x1p-50); // nextafter() would round to a whole box below
     const double inside = std::clamp(guiding_y, -edge, last);
     const double low = -0.5 * whole.size_y - (inside - nx * offset);
     return {nx, static_cast<std::int32_t>(std::ceil(low / patch.size_y))};
