@@ -6,7 +6,7 @@ import stat
 import threading
 import time
 
-from program import Broken
+from program import DEADLINE, Broken
 from rows import Fault
 from scenes import RICH, same_results
 
@@ -121,15 +121,15 @@ def _pipes(commands, draw, folder, number):
     streams = ending != "hdf"
     reader = None
     if way < 2 and streams:
-        reader = threading.Thread(target=lambda: result.write_bytes(pipe.read_bytes()))
+        reader = threading.Thread(target=lambda: result.write_bytes(pipe.read_bytes()), daemon=True)
         reader.start()
     ended = commands.program.run(*words, name).must_be(0 if streams else 2)
-    if reader:
-        reader.join()
-    elif streams:
-        result.write_bytes(ended.out)
     if not stat.S_ISFIFO(pipe.stat().st_mode) or (way == 1 and not name.is_symlink()):
         raise Broken("lost", f"a pipe was replaced: {ended.described()}")
+    if reader:
+        reader.join(DEADLINE)
+    elif streams:
+        result.write_bytes(ended.out)
     if streams:
         commands.require_whole(ending, result, (0,))
 

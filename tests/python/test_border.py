@@ -75,10 +75,10 @@ class Border(unittest.TestCase):
     def test_pipes_are_written_to_where_the_format_allows_it(self):
         pipe, got = self.folder / "pipe", []
         os.mkfifo(pipe)
-        reader = threading.Thread(target=lambda: got.append(pipe.read_bytes()))
+        reader = threading.Thread(target=lambda: got.append(pipe.read_bytes()), daemon=True)
         reader.start()
         picture = self.start.plot(pipe, width=400)
-        reader.join()
+        reader.join(20.0)
         self.assertEqual(got, [picture.data])
         self.refused(keeler.UsageError, "cannot take HDF5", lambda: self.start.save(pipe))
         self.refused(keeler.UsageError, "cannot take HDF5", lambda: self.sim.save(pipe))
