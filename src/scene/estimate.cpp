@@ -24,6 +24,7 @@ constexpr double lists = 11.0;      // a particle and step: lines and neighbour 
 constexpr double left_list = 230.0; // a particle's contact: new lists, since who is hit leaves its slack
 constexpr double contact = 800.0;   // with all searches; in a patch of 10⁴ particles, whose lines stay in the cache
 constexpr double kick = 20.0;       // a particle and kick
+constexpr double external = 80.0;   // a particle and step, of a force from outside
 constexpr double tree = 273.0, tree_opened = 44.5; // a particle and kick: the latter over the opening angle squared
 constexpr double mesh = 100.0, mesh_height = 75.0; // a particle and kick: the latter for each spacing of the layer's H
 constexpr double mesh_cut = 52.0;                  // a particle and kick, for each spacing that the cut spans
@@ -39,6 +40,7 @@ constexpr double closing = 1000.0;                      // a particle: overlaps,
 constexpr double force_check = 1500.0;                  // a particle; they also take half a per cent of the run
 } // namespace cost
 
+constexpr double usual_step = 1e-3;       // orbits, of the scenes that times were measured on
 constexpr double clumping_orbits = 0.9;   // after which wakes stand
 constexpr double least_wavelengths = 0.5; // of λ_cr along a side of a box that wakes can grow in: the fastest at Q = 1
 constexpr double aggregates = 1.1;        // the Hill parameter beyond which all hold together
@@ -87,9 +89,10 @@ double drift_ns(const ContactRates& rates, double dilute, double count, const Sc
   const double step = step_in(scene, rates);
   const double contacts = rates.all() * step; // of a particle in a step
   const double spread = size_spread(scene.particles.sizes);
-  const double kicks = cost::kick * static_cast<double>(scene.external_forces.size());
-  const double lists = (cost::lists + cost::left_list * std::min(contacts, 0.3)) * spread;
-  return (cost::advance + kicks + lists) / step + contacts_ns(rates, dilute, count, scene);
+  const double forces = cost::external * static_cast<double>(scene.external_forces.size());
+  const double lifetimes = 0.4 + 0.6 * step / usual_step; // lists last for a time, whatever the number of steps
+  const double lists = (cost::lists * lifetimes + cost::left_list * std::min(contacts, 0.3)) * spread;
+  return (cost::advance + forces + lists) / step + contacts_ns(rates, dilute, count, scene);
 }
 
 // Height of the layer at the start in mean distances of particles in the plane. More than one where the layer is dense,
