@@ -87,21 +87,51 @@ private:
 };
 
 std::size_t bin_of(double guiding_x, double box_length) {
-  const double turns = guiding_x / box_length + 0.5;
-  return std::min(bins - 1, static_cast<std::size_t>((turns - std::floor(turns)) * static_cast<double>(bins)));
+  const double turns = guiding_x / box_length + 0.5, width = static_cast<double>(bins);
+  return static_cast<std::size_t>(std::min(width - 1.0, (turns - std::floor(turns)) * width));
 }
 
-// Amplitude of exp(ikX) in a sum over bins, (2/M) Σ value(b) exp(−ikX), the width of the bins divided out.
-template<class Value> Complex amplitude(int n, double mass, const Value& value) {
-  const double phase = two_pi * n / static_cast<double>(bins); // from bin to bin
-  double sine = 0.0, cosine = 1.0;
-  Complex sum;
+// Σ m (e cos φ, e sin φ) of each bin about the mean motion, kg m, at the epoch.
+struct EccentricityField {
+  std::array<double, bins> cosine{}, sine{};
+};
+
+EccentricityField about_mean(const Binned& sums, const Unit& kilogram, const Unit& moment, double mass) {
+  EccentricityField field;
+  double mean_cosine = 0.0, mean_sine = 0.0;
   for (std::size_t b = 0; b < bins; ++b) {
-    sine_cosine(phase * (static_cast<double>(b) + 0.5 * (1.0 - static_cast<double>(bins))), sine, cosine);
-    sum += value(b) * Complex(cosine, -sine);
+    field.cosine[b] = moment.value(sums.cosine[b]);
+    field.sine[b] = moment.value(sums.sine[b]);
+    mean_cosine += field.cosine[b] / mass;
+    mean_sine += field.sine[b] / mass;
   }
-  sine_cosine(0.5 * phase, sine, cosine);
-  return 2.0 / mass * (0.5 * phase / sine) * sum;
+  for (std::size_t b = 0; b < bins; ++b) {
+    field.cosine[b] -= mean_cosine * kilogram.value(sums.mass[b]);
+    field.sine[b] -= mean_sine * kilogram.value(sums.mass[b]);
+  }
+  return field;
+}
+
+// Of the velocities in the modes after a rotation. An amplitude is (2/M) Σ exp(−ikX) over the bins, whose width is
+// divided out.
+Squares squares_of(const EccentricityField& field, double mass, double kappa, const Rotation& rotation) {
+  Squares squares;
+  for (int n = 1; n <= box_long_modes; ++n) {
+    const double phase = two_pi * n / static_cast<double>(bins); // from bin to bin
+    double sine = 0.0, cosine = 1.0;
+    Complex e_cos, e_sin;
+    for (std::size_t b = 0; b < bins; ++b) {
+      sine_cosine(phase * (static_cast<double>(b) + 0.5 * (1.0 - static_cast<double>(bins))), sine, cosine);
+      const Complex wave(cosine, -sine);
+      e_cos += field.cosine[b] * wave;
+      e_sin += field.sine[b] * wave;
+    }
+    sine_cosine(0.5 * phase, sine, cosine);
+    const double scale = 2.0 / mass * (0.5 * phase / sine);
+    squares.add(scale * kappa * (e_sin * rotation.cos_e + e_cos * rotation.sin_e),
+                scale * 0.5 * kappa * kappa * (e_cos * rotation.cos_e - e_sin * rotation.sin_e));
+  }
+  return squares;
 }
 
 } // namespace
@@ -136,24 +166,9 @@ std::optional<EpicyclicWaves> epicyclic_waves(const Particles& particles, double
     total.mass_squares += square.count(mass * mass);
   });
   sums.merge(ranks);
-  double mean_cosine = 0.0, mean_sine = 0.0;
-  for (std::size_t b = 0; b < bins; ++b) {
-    mean_cosine += moment.value(sums.cosine[b]) / means.mass;
-    mean_sine += moment.value(sums.sine[b]) / means.mass;
-  }
-  const Rotation rotation(frequencies, after);
-  const double kappa = frequencies.kappa;
-  Squares squares;
-  for (int n = 1; n <= box_long_modes; ++n) {
-    const auto about = [&](const Binned::Numbers& numbers, double mean) {
-      return amplitude(n, means.mass,
-                       [&](std::size_t b) { return moment.value(numbers[b]) - mean * kilogram.value(sums.mass[b]); });
-    };
-    const Complex cosine = about(sums.cosine, mean_cosine), sine = about(sums.sine, mean_sine);
-    squares.add(kappa * (sine * rotation.cos_e + cosine * rotation.sin_e),
-                0.5 * kappa * kappa * (cosine * rotation.cos_e - sine * rotation.sin_e));
-  }
-  return waves_of(squares, means.dispersion, kappa, 2.0 * std::sqrt(square.value(sums.mass_squares)) / means.mass);
+  const EccentricityField field = about_mean(sums, kilogram, moment, means.mass);
+  return waves_of(squares_of(field, means.mass, frequencies.kappa, Rotation(frequencies, after)), means.dispersion,
+                  frequencies.kappa, 2.0 * std::sqrt(square.value(sums.mass_squares)) / means.mass);
 }
 
 } // namespace keeler

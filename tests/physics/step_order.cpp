@@ -132,15 +132,15 @@ TEST_CASE("first order in the step with collisions") {
 }
 
 TEST_CASE("a rebound errs by (1 + ε) g h/√12, rms over the phases of the contact in the kick interval") {
-  for (const double restitution : {0.2, 0.5, 1.0})
+  for (const double restitution : {0.2, 1.0})
     for (const double interval : {4e-3, 1e-3}) {
-      const test::ReboundErrors errors = test::rebound_errors(300, interval, restitution);
+      const test::ReboundErrors errors = test::rebound_errors(100, interval, restitution);
       CAPTURE(restitution);
       CAPTURE(interval);
-      CHECK(errors.rms == doctest::Approx(errors.law).epsilon(0.05)); // 2 % of 300 phases, and the second order
-      CHECK(std::fabs(errors.mean) < 0.1 * errors.law);               // of either sign
+      CHECK(errors.rms == doctest::Approx(errors.law).epsilon(0.05)); // of 100 phases, and the second order
+      CHECK(std::fabs(errors.mean) < 50.0 * interval * errors.law);   // of either sign: the mean is of second order
     }
-  const test::ReboundErrors drifts = test::rebound_errors(300, 4e-3, 0.5, 4); // the interval counts, not the step
+  const test::ReboundErrors drifts = test::rebound_errors(100, 4e-3, 0.5, 4); // the interval counts, not the step
   CHECK(drifts.rms == doctest::Approx(drifts.law).epsilon(0.05));
 }
 

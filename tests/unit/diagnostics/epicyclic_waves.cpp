@@ -144,7 +144,8 @@ TEST_CASE("patch and particles give what the definition does") {
       CAPTURE(after);
       const EpicyclicWaves expected = by_definition(particles, after);
       check_equal(*of_patch(particles, after), expected, 1e-11);
-      check_equal(*of_particles(particles, after), expected, 3e-4); // of the bins' width
+      // in a bin the phase of mode 4 is off by 0.028, rms: twice that in a square, at random over the particles
+      check_equal(*of_particles(particles, after), expected, 0.06 / std::sqrt(3001.0));
     }
   }
 }
