@@ -44,7 +44,7 @@ assert len(notes) == 1 and notes[0].startswith("the satellite's passage at orbit
 assert json.load(open(f"{work}/before/summary.json"))["notes"] == []
 END
 
-# One particle, and two that never meet: nothing is divided by nothing.
+# One particle, and two that never meet: nothing is divided by nothing, and no error is of rounding.
 for count in 1 2; do
   few=("$work/scene.toml" --set "particles.count=$count" --set output.series_every=0.05 --set output.stress_every=0.05)
   for more in "gravity.solver=tree" "gravity.solver=fft" "gravity.solver=direct" "collisions.friction.tangential_restitution=0.5"; do
@@ -54,7 +54,9 @@ for count in 1 2; do
     runs 0 analyze "$work/$name"
     cat "$work/printed" "$work/out" >"$work/all"
     runs 0 report "$work/$name"
-    grep -qE '[^a-z]-?(nan|inf)([^a-z]|$)|energy balance|left out of gravity' "$work/all" && fail "$name: $(cat "$work/all")"
+    ratios='[^a-z]-?(nan|inf)([^a-z]|$)|left out of gravity'
+    [ "$count" -eq 1 ] && ratios+='|energy balance|error of gravity' # of two it may be right
+    grep -qE "$ratios" "$work/all" && fail "$name: $(cat "$work/all")"
     grep -qiE '>-?(nan|inf)<' "$work/$name"/report.html && fail "$name: the report"
     runs 0 analyze "$work/$name" --json
     python3 - "$work/out" "$work/$name/summary.json" "$count" <<'END' || fail "$name: $(cat "$work/out")"
@@ -62,9 +64,8 @@ import json, sys
 def no_constant(name):
     raise ValueError(name)
 analysis, summary = (json.load(open(file), parse_constant=no_constant) for file in sys.argv[1:3])
-assert analysis["energy_balance"] is None
-assert summary["energy_balance"] is None or summary["energy_balance"]["ratio"] is None
-assert sys.argv[3] != "1" or summary["force_error"] is None
+if sys.argv[3] == "1":
+    assert analysis["energy_balance"] is None and summary["energy_balance"] is None and summary["force_error"] is None
 END
   done
 done
