@@ -15,10 +15,11 @@ namespace {
 constexpr double density_at_1 = 742.9; // kg/m³ of the A ring's preset at r_h = 1
 
 std::string ring(double optical_depth, double r_h, double kick_interval, const std::string& more = "") {
-  return fmt::format("[planet]\npreset = \"saturn-a-ring\"\n[box]\nsize = [60, 60]\n[particles]\noptical_depth = {}\n"
-                     "density = {}\nvelocity_dispersion = 14\nsizes = {{ law = \"equal\", radius = 1.0 }}\n[gravity]\n"
-                     "[time]\nstep = {}\nend = 1\n{}",
-                     optical_depth, density_at_1 * std::pow(r_h, 3), kick_interval, more);
+  return fmt::format(
+      "[planet]\npreset = \"saturn-a-ring\"\n[box]\nsize = [60, 60]\n[particles]\noptical_depth = {}\n"
+      "density = {}\nvelocity_dispersion = 14\nsizes = {{ law = \"equal\", radius = 1.0 }}\n[gravity]\nkick_every = 1\n"
+      "[time]\nstep = {}\nend = 1\n{}",
+      optical_depth, density_at_1 * std::pow(r_h, 3), kick_interval, more);
 }
 
 bool carries(double optical_depth, double r_h, double kick_interval, const std::string& more = "") {
