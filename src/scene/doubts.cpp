@@ -100,11 +100,11 @@ void doubt_room(const PatchScale& patch, Lines& lines) {
   constexpr double enough = 10.0; // diameters
   const double side = std::min(patch.size_x, patch.size_y), spans = side / (2.0 * patch.largest.radius);
   if (patch.largest.radius > 0.0 && spans < enough)
-    lines.push_back(
-        fmt::format("the box spans {} diameters of its largest particle: below {:g} a particle, its neighbours and "
-                    "their images move together, and nothing longer than the box can form; widen it, or compare with "
-                    "a wider one",
-                    figures(spans, 2), enough));
+    lines.push_back(fmt::format(
+        "the box spans {} diameters of its largest body: below {:g} this body, its neighbours and "
+        "their images act on each other, and nothing longer than the box can form; widen it, or compare with "
+        "a wider one",
+        figures(spans, 2), enough));
 }
 
 void doubt_satellite(const Scene& scene, Lines& lines) {

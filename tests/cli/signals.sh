@@ -40,7 +40,7 @@ for signal in INT TERM HUP USR1; do
 done
 # other commands end as any program
 code=0
-timeout 60 python3 -c "$pending" SIGUSR1 "$keeler" check "$work/scene.toml" >"$work/out" || code=$?
+{ timeout 60 python3 -c "$pending" SIGUSR1 "$keeler" check "$work/scene.toml" >"$work/out" || code=$?; } 2>/dev/null
 [ "$code" -eq 138 ] || fail "early USR1, keeler check: exit $code"
 
 runs 75 "${endless[@]}" -o "$work/wall" --wall-time 0.5

@@ -12,7 +12,7 @@ prints "elastic" "Goldreich & Tremaine 1978"
 accepts "frost" check "$work/scene.toml"
 grep -q "however fast" "$work/out" && fail "frost: $(cat "$work/out")"
 accepts "a narrow box" check "$work/scene.toml" --set 'box.size=[8, 50]' --set particles.count=30
-prints "a narrow box" "note: the box spans 4 diameters of its largest particle"
+prints "a narrow box" "note: the box spans 4 diameters of its largest body"
 runs 0 run "$work/scene.toml" "${elastic[@]}" --set time.end=0.01 -o "$work/elastic"
 grep -q '^keeler: note: the coefficient of restitution is 0.9' "$work/err" || fail "a run: $(cat "$work/err")"
 

@@ -146,10 +146,10 @@ TEST_CASE("a box of a few diameters is doubted, a moonlet's included") {
     return std::string();
   };
   CHECK(first({}).empty());
-  CHECK(first({"box.size=[19, 40]", "particles.count=9"}) == "the box spans 9.5 diameters of its largest particle");
+  CHECK(first({"box.size=[19, 40]", "particles.count=9"}) == "the box spans 9.5 diameters of its largest body");
   CHECK(first({"moonlet=[{ radius = 5.0, density = 600.0 }]", "box.size=[100, 100]"}).empty());
   CHECK(first({"moonlet=[{ radius = 5.0, density = 600.0 }]", "box.size=[100, 80]"}) ==
-        "the box spans 8 diameters of its largest particle");
+        "the box spans 8 diameters of its largest body");
 }
 
 TEST_CASE("starts far from any ring are doubted, and others are not, however they move") {
