@@ -139,7 +139,7 @@ def start_from_arrays(scene, positions, radii, velocities=None, masses=None, spi
 def _warn(lines):
     """Warns of each line, at the place outside of the package from where it was called."""
     frame, level = sys._getframe(1), 2
-    while frame.f_back and frame.f_globals["__name__"].partition(".")[0] == __package__:
+    while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
         frame, level = frame.f_back, level + 1
     for line in lines:
         warnings.warn(line, stacklevel=level)
