@@ -187,7 +187,7 @@ std::vector<Row> bound_pairs() {
 std::vector<Row> rebounds() {
   std::vector<Row> rows;
   for (const double interval : {8e-3, 4e-3, 2e-3, 1e-3, 5e-4}) {
-    const test::ReboundErrors errors = test::rebound_errors(1000, interval, 0.5);
+    const test::ReboundErrors errors = test::rebound_errors(300, interval, 0.5);
     rows.push_back(
         {.what = fmt::format("rebound under gravity: rms error of its speed, r Omega, kicks of {}", interval),
          .measured = errors.rms,
@@ -195,7 +195,7 @@ std::vector<Row> rebounds() {
          .tolerance = 0.05 * errors.law,
          .tolerance_is = "5 %, what is of second order at the longest interval",
          .source = "(1 + eps) g h/sqrt(12), a contact at any phase of the kick interval h",
-         .command = "1000 pairs of spheres of 1 m and 900 kg/m^3 that fall from 3 to 4 m, eps 0.5"});
+         .command = "300 pairs of spheres of 1 m and 900 kg/m^3 that fall from 3 to 4 m, eps 0.5"});
   }
   return rows;
 }
