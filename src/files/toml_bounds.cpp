@@ -11,6 +11,14 @@ namespace {
 
 constexpr std::size_t most_bytes = std::size_t{64} << 20; // parsed, a text takes some 50 times its size
 
+// No TOML goes on behind a control character: a file that is no text is called that.
+std::string_view text_before_control(std::string_view text) {
+  const auto is_control = [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r';
+  };
+  return text.substr(0, static_cast<std::size_t>(std::find_if(text.begin(), text.end(), is_control) - text.begin()));
+}
+
 // Counts the dots since anything that ends a name, and the brackets that are open. Names and values are not told apart:
 // no value has more than one dot.
 class Nesting {
@@ -91,7 +99,7 @@ std::optional<TomlExcess> toml_excess(std::string_view text) {
                       fmt::format("the text has more than {} MB (a table of numbers goes into a file of its own); "
                                   "shorten it",
                                   most_bytes >> 20)};
-  return Nesting(text).excess();
+  return Nesting(text_before_control(text)).excess();
 }
 
 void require_bounded_toml(std::string_view text, const std::string& name) {

@@ -4,6 +4,9 @@
 
 #include <doctest/doctest.h>
 
+#include <string>
+#include <vector>
+
 using namespace keeler;
 
 namespace {
@@ -35,15 +38,19 @@ TEST_CASE("names and lists may be so deep and no deeper") {
 
 TEST_CASE("strings and comments are read as TOML does") {
   const std::string deep = dotted(40) + nested(40);
-  for (const std::string text : {"# " + deep + "\n", "a = \"" + deep + "\"\n", "a = '" + deep + "'\n",
-                                 "a = \"\\\"" + deep + "\"\n", "a = \"\"\"\n" + deep + "\"\"" + deep + "\"\"\"\"\"\n",
-                                 "a = '''" + deep + "'" + deep + "'''\n", "a = \"\" # " + deep + "\n"}) {
+  for (const std::string& text :
+       std::vector<std::string>{"# " + deep + "\n", "a = \"" + deep + "\"\n", "a = '" + deep + "'\n",
+                                "a = \"\\\"" + deep + "\"\n", "a = \"\"\"\n" + deep + "\"\"" + deep + "\"\"\"\"\"\n",
+                                "a = '''" + deep + "'" + deep + "'''\n", "a = \"\" # " + deep + "\n"}) {
     CAPTURE(text);
     CHECK_FALSE(toml_excess(text));
     CHECK(toml_excess(text + deep)); // behind it the text is read again
   }
   CHECK(toml_excess("a = '\\' # \n" + deep)); // no escapes there
   CHECK_FALSE(toml_excess("a = \""));
+  CHECK_FALSE(toml_excess("\x7f"
+                          "ELF\x02" +
+                          deep)); // no text
   CHECK_FALSE(toml_excess(""));
   CHECK(toml_excess(std::string(std::size_t{65} << 20, ' ')));
 }

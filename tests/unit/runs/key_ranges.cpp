@@ -3,6 +3,7 @@
 #include "unit/files/disk.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/threads.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/scene/keys.hpp>
@@ -30,7 +31,10 @@ const std::map<std::string, std::string> fitting = {
     {"moonlet.mass", "3e4"},
     {"moonlet.place", "[5.0, 5.0, 0.0]"},
     {"particles.aggregate.count", "8"},
+    {"particles.count", "60"},
     {"particles.sizes.path", "[[1.0]]"},
+    {"particles.sizes.table", "[[1.0, 1]]"},
+    {"particles.sizes.populations", "[[1.0, 1, 450.0]]"},
     {"particles.wake.wavelength", "25.0"},
     {"particles.optical_depth", "0.1"},
     {"particles.surface_density", "100.0"},
@@ -125,8 +129,7 @@ std::vector<std::string> with_each_replaced(const std::string& list, const std::
 }
 
 std::vector<std::string> tried_values(const Key& key) {
-  std::vector<std::string> numbers = {"1e300", "-1e300", "1e-300", "-1e-300", "nan",  "inf", "-inf",
-                                      "0.0",   "1e30",   "-1e30",  "5e-324",  "1e15", "-1e7"};
+  std::vector<std::string> numbers = {"1e300", "-1e300", "1e-300", "nan", "inf", "-inf", "0.0", "1e30", "-1e30"};
   for (const double end : {key.range.low, key.range.high})
     numbers.push_back(fmt::format("{}", end));
   if (key.type == KeyType::integer)
@@ -154,7 +157,8 @@ std::string outcome(const std::string& text, const std::filesystem::path& folder
   }
   if (scene.particles.count > 10000) // as large as the machine allows
     return "";
-  scene.time.end_step = 2 * scene.kick_interval();
+  const std::int64_t kick = scene.kick_interval();
+  scene.time.end_step = kick == 1 ? 2 : kick;
   RunRequests requests;
   RunOptions options;
   options.folder = folder;
@@ -180,6 +184,7 @@ TEST_CASE("every number has both ends of a range") {
 }
 
 TEST_CASE("an absurd number is refused with its place, or two steps go well") {
+  set_threads(1); // hundreds of runs of an instant
   const TemporaryFolder work;
   const std::string snapshot = (work / "start.hdf").string();
   const Key& size = *find_key("box.size");

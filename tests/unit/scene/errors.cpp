@@ -195,7 +195,9 @@ TEST_CASE("impossible requests are told") {
             .find("particles.sizes: min = 2 is not below max = 1") != std::string::npos);
   CHECK(with("[100, 50.0]\n[particles]\ncount = 300", "[2000, 1]\n[particles]\ncount = 300")
             .find("times as long as wide") != std::string::npos);
-  CHECK(with("end = 2", "end = 1e300").find("time.end = 1e+300 is too long") != std::string::npos);
+  CHECK(with("end = 2", "end = 1e300").find("time.end is 1e+300, but must be a number above 0 and at most 1e12") !=
+        std::string::npos);
+  CHECK(with("end = 2", "end = 1e12\nstep = 1e-9").find("time.end = 1000000000000 is too long") != std::string::npos);
 }
 
 TEST_CASE("modes that fit no box, or would make streamlines cross, are told") {
