@@ -71,6 +71,7 @@ count = 400
 density = 600.0
 sizes = { law = "equal", radius = 1.0 }
 [gravity]
+kick_every = 1
 solver = "tree"
 [time]
 step = 2e-3

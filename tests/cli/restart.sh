@@ -7,7 +7,6 @@ for tool in h5dump h5ls; do
   command -v "$tool" >/dev/null || { echo "'$tool' is missing: scripts/setup test installs it"; exit 1; }
 done
 small_scene
-sed -i 's/^solver = "tree"/&\nkick_every = 1/' "$work/scene.toml" # halves and quarters of an orbit are whole kicks
 
 # same NAME FOLDER: all that the run left equals what the uninterrupted run left
 same() {
