@@ -75,6 +75,12 @@ Json number_in(const std::string& text) {
   return number.is_number() ? number : Json(nullptr);
 }
 
+// As above, with a point in it also when it is whole.
+Json real_number_in(const std::string& text) {
+  const Json number = number_in(text);
+  return number.is_number() ? Json(number.get<double>()) : number;
+}
+
 // Empty where the file has none.
 std::string attribute_of(const FileDescription& file, const std::string& name) {
   const auto found = file.attributes.find(name);
@@ -94,7 +100,7 @@ void add_mark(Json& line, const std::optional<FileDescription>& file) {
   if (!file)
     return;
   if (file->kind == FileKind::snapshot)
-    line["time_orbits"] = number_in(attribute_of(*file, "RingBox/time_orbits"));
+    line["time_orbits"] = real_number_in(attribute_of(*file, "RingBox/time_orbits"));
   else if (file->kind == FileKind::checkpoint)
     line["steps"] = value_of_field(*file, "steps");
   else
