@@ -86,7 +86,7 @@ void add_gravity_of_quality(Document& document) {
 
 void name_quality_of_stored(Document& document, const std::string& name) {
   if (!find_entry(document, "quality"))
-    document.push_back({"quality", name, name, std::string("custom"), false});
+    document.add({"quality", name, name, std::string("custom"), false});
 }
 
 void resolve_times_of_quality(Scene& scene, Settings& settings) {

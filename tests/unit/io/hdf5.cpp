@@ -15,7 +15,7 @@ using namespace keeler::test;
 namespace {
 
 hdf5::Handle new_file(const std::filesystem::path& path) {
-  return hdf5::create_on(std::make_shared<hdf5::Disk>(Descriptor(path, O_RDWR | O_CREAT), 0));
+  return hdf5::create_on(std::make_shared<hdf5::Disk>(std::make_shared<Descriptor>(path, O_RDWR | O_CREAT), 0));
 }
 
 } // namespace
