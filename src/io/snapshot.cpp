@@ -230,7 +230,10 @@ Snapshot read_snapshot(const std::filesystem::path& file, const Ranks& ranks) {
 }
 
 std::string snapshot_seal(const std::filesystem::path& file) {
-  return has_seal(file) ? seal_in(file) : "";
+  if (!has_seal(file))
+    return {};
+  const std::string seal = seal_in(file);
+  return seal.substr(0, seal.find_last_not_of(" \n") + 1);
 }
 
 } // namespace keeler

@@ -215,7 +215,8 @@ uniform="run $work/uniform.toml -o $work/none"
 differ 'rank 1 is asked for something else than rank 0: it has title = "wakes", and rank 0 has title = "uniform"' \
   "$uniform" "run $work/wakes.toml -o $work/none"
 differ 'it has time.end = 0.3, and rank 0 has time.end = 0.2' "$uniform" "$uniform --set time.end=0.3"
-differ 'and rank 0 has gravity.solver = "fft"' "$uniform --set gravity.solver=fft" "$uniform"
+differ 'it has no gravity.' "$uniform --set gravity.solver=fft" "$uniform"
+differ 'and rank 0 has no gravity.' "$uniform" "$uniform --set gravity.solver=fft"
 differ "it has the folder = $work/b/none, and rank 0 has the folder = $work/none" "$uniform" \
   "run $work/uniform.toml -o none"
 differ 'it has --force = given' "$uniform" "$uniform --force"
