@@ -60,8 +60,8 @@ void write_snapshot(const std::filesystem::path& file, const Patch& patch, const
 /// rank gets all of it and the others nothing.
 Snapshot read_snapshot(const std::filesystem::path& file, const Ranks& ranks = {});
 
-/// Returns the seal at the end of a snapshot, without what ends its line, which tells its content from another one's;
-/// empty where there is none, or no such file.
+/// Returns the seal at the end of a snapshot, which tells its content from another one's; empty where there is none, or
+/// no such file.
 std::string snapshot_seal(const std::filesystem::path& file);
 
 } // namespace keeler
