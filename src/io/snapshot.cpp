@@ -232,7 +232,7 @@ Snapshot read_snapshot(const std::filesystem::path& file, const Ranks& ranks) {
 std::string snapshot_seal(const std::filesystem::path& file) {
   if (!has_seal(file))
     return {};
-  const std::string seal = seal_in(file);
+  const std::string seal = seal_in(file); // a line
   return seal.substr(0, seal.find_last_not_of(" \n") + 1);
 }
 
