@@ -31,7 +31,7 @@ TEST_CASE("names and lists may be so deep and no deeper") {
   CHECK(toml_excess("a = " + nested(most_toml_depth + 1)));
   CHECK_FALSE(toml_excess("a = [" + nested(3) + "," + nested(3) + "]\nb = 1.0\nc.d = [1.0, 2.0, 3.0]\n"));
   CHECK_THROWS_WITH_AS(require_bounded_toml("é = 1\n[é." + dotted(20) + "]\n", "s.toml"),
-                       "s.toml:2:34: a name of more than 16 parts (nothing that is read here has more than a few); "
+                       "s.toml:2:33: a name of more than 16 parts (nothing that is read here has more than a few); "
                        "shorten it",
                        UsageError);
 }
