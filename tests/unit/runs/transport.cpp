@@ -102,6 +102,10 @@ TEST_CASE("a balance whose error is larger than it, or that is nothing over noth
     return series.columns[static_cast<std::size_t>(std::find(series.names.begin(), series.names.end(), name) -
                                                    series.names.begin())];
   };
+  const std::vector<double> dispersions = column("dispersion_x_m_s");
+  std::fill(column("dispersion_x_m_s").begin(), column("dispersion_x_m_s").end(), 0.0); // of a particle alone
+  CHECK(!balanced(series));
+  column("dispersion_x_m_s") = dispersions;
   for (std::size_t k = 0; k < series.rows(); ++k) // a loss of either sign
     column("energy_lost_j")[k] = std::sin(12.9898 * static_cast<double>(k * k));
   CHECK(!balanced(series));
