@@ -95,18 +95,55 @@ Estimate ratio_of(const Values& above, const Values& below) {
   return {ratio, block_mean(rest).error / std::fabs(block_mean(below).value)};
 }
 
-// A particle alone has no dispersion: what it loses and gains is the rounding of its forces.
-bool moves_at_random(const SeriesTable& series, const std::vector<std::size_t>& rows) {
-  const Values dispersions = picked(series.of("dispersion_x_m_s"), rows);
-  return std::any_of(dispersions.begin(), dispersions.end(), [](double c) { return c > 0.0; });
-}
-
 // None where it says nothing: where its error is larger than it, or all is zero.
 std::optional<Estimate> balance_of(const Rates& rates) {
   const Estimate ratio = ratio_of(rates.loss, rates.total);
   if (!std::isfinite(ratio.value) || ratio.error >= std::fabs(ratio.value))
     return std::nullopt;
   return ratio;
+}
+
+Values picked(const Values& column, const std::vector<std::size_t>& rows) {
+  Values values;
+  for (const std::size_t k : rows)
+    values.push_back(column[k]);
+  return values;
+}
+
+bool all_finite(const Values& values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+// c_x of the random motion: waves as long as the box go on growing when it is steady. Series of former versions, and
+// those of few particles, have only the dispersion about the mean motion.
+Values random_motion(const SeriesTable& series, const std::vector<std::size_t>& rows) {
+  if (const Values* const without_waves = series.find("dispersion_without_waves_x_m_s"))
+    if (Values values = picked(*without_waves, rows); all_finite(values))
+      return values;
+  return picked(series.of("dispersion_x_m_s"), rows);
+}
+
+std::optional<WaveGrowth> waves_in(const SeriesTable& series, const std::vector<std::size_t>& rows) {
+  constexpr double sure = 3.0; // errors
+  const Values* const column = series.find("epicyclic_wave_fraction");
+  if (!column || rows.size() < least_for_steady)
+    return std::nullopt;
+  const Values fractions = picked(*column, rows);
+  if (!all_finite(fractions))
+    return std::nullopt;
+  const std::span<const double> all(fractions);
+  const std::size_t half = all.size() / 2;
+  WaveGrowth waves{block_mean(all.first(half)), block_mean(all.last(half))};
+  const double first = waves.first_half.value, last = waves.last_half.value;
+  waves.steady = std::max(first, last) < small_waves ||
+                 std::fabs(last - first) <= sure * std::hypot(waves.first_half.error, waves.last_half.error);
+  return waves;
+}
+
+// A particle alone has no dispersion: what it loses and gains is the rounding of its forces.
+bool moves_at_random(const SeriesTable& series, const std::vector<std::size_t>& rows) {
+  const Values dispersions = picked(series.of("dispersion_x_m_s"), rows);
+  return std::any_of(dispersions.begin(), dispersions.end(), [](double c) { return c > 0.0; });
 }
 
 } // namespace
