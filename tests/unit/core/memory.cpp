@@ -32,6 +32,6 @@ TEST_CASE("sizes are checked before they are ones") {
   CHECK_THROWS_AS(affordable_size(-1.0, 8.0, "a mesh", ""), UsageError);
   CHECK_THROWS_AS(affordable_size(0x1p60, 0.0, "a mesh", ""), UsageError); // of nothing, and no index has so many
   CHECK_THROWS_WITH_AS(require_memory(1e20, "a mesh", "make it coarser"),
-                       doctest::Contains("a mesh needs 1e+11 GB of memory, and "), UsageError);
+                       doctest::Contains("a mesh needs 1e11 GB of memory, and "), UsageError);
   require_memory(1.0, "a byte", "");
 }
