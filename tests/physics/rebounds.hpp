@@ -7,6 +7,7 @@
 // mean 0 and the rms (1 + ε) g h/√12: first order in h. The place of the contact errs in second order only.
 #pragma once
 
+#include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/simulation/simulation.hpp>
 
@@ -40,6 +41,8 @@ time = {{ step = {:.17g}, end = 10.0 }}
                                   "two spheres");
   ReboundErrors errors;
   errors.law = (1.0 + restitution) * attraction / (contact * contact) * two_pi * kick_interval / std::sqrt(12.0);
+  const int threads_before = threads();
+  set_threads(1); // two particles
   for (int k = 0; k < pairs; ++k) {
     // the golden ratio spreads the contacts evenly over the phases of the interval
     const double distance = 3.0 + std::fmod(0.6180339887498949 * (k + 1), 1.0);
@@ -65,6 +68,7 @@ time = {{ step = {:.17g}, end = 10.0 }}
     errors.mean += error / pairs;
     errors.rms += error * error / pairs;
   }
+  set_threads(threads_before);
   errors.rms = std::sqrt(errors.rms);
   return errors;
 }
