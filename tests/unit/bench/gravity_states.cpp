@@ -43,7 +43,7 @@ TEST_CASE("the bench's patch is the example's, two critical wavelengths wide or 
     CHECK(scene->particles.velocity_dispersion == example.particles.velocity_dispersion);
     CHECK(scene->collisions.restitution({.speed = 0.02}) == example.collisions.restitution({.speed = 0.02}));
     CHECK(scene->gravity->opening_angle == example.gravity->opening_angle);
-    CHECK(scene->time.step == example.time.step);
+    CHECK(scene->time.step == 1e-3); // what a step costs is said of this one, whatever an example takes
   }
 }
 

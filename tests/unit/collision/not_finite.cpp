@@ -86,7 +86,7 @@ count = 20
 density = 900.0
 sizes = { law = "equal", radius = 1.0 }
 [gravity]
-solver = ")") + solver + "\"\n[time]\nstep = 1e-3\nend = 1.0\n",
+solver = ")") + solver + "\"\nkick_every = 1\n[time]\nstep = 1e-3\nend = 1.0\n",
                                       "test scene");
       std::vector<Sphere> spheres;
       for (int k = 0; k < 20; ++k)

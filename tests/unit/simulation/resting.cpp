@@ -23,7 +23,7 @@ Scene scene_of_two(double density, double step, const std::string& more) {
   return parse_scene(
       fmt::format("planet.orbital_frequency = {}\nbox.size = [200, 200]\n"
                   "particles = {{ count = 2, density = {}, sizes = {{ law = \"equal\", radius = 1.0 }} }}\n"
-                  "gravity = {{ solver = \"direct\", images = \"rings\", image_rings = 0 }}\n"
+                  "gravity = {{ solver = \"direct\", images = \"rings\", image_rings = 0, kick_every = 1 }}\n"
                   "time = {{ step = {}, end = 10.0 }}\n{}",
                   omega, density, step, more),
       "test scene");

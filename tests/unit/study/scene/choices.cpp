@@ -72,7 +72,7 @@ TEST_CASE("a study of steps holds the kick interval as far as steps divide it") 
 
 TEST_CASE("a study of kicks has its intervals whatever the scene's step is, and needs gravity") {
   for (const char* const step : {"time.step=1e-3", "time.step=3e-4", "time.step=\"auto\""}) {
-    const Scene scene = scene_with({"gravity.solver=\"tree\"", step});
+    const Scene scene = scene_with({"gravity.solver=\"tree\"", "gravity.kick_every=1", step});
     const StudyChoices all = study_choices(SceneStudyKind::kicks, scene, false);
     const std::size_t own = all.choices.size() - 6; // 3e-4, which is not among the study's
     REQUIRE(own == (scene.time.step == 3e-4 ? 1 : 0));
