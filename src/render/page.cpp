@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <new>
 
-
 namespace keeler {
 namespace {
 

@@ -122,7 +122,7 @@ std::string beside(const std::string& path, const std::string& other) {
   return declared_path(path) == path ? other : Key{.path = path}.section() + "." + Key{.path = other}.name();
 }
 
-void check_contradictions(const Document& document) {
+void check_contradictions(const SceneDocument& document) {
   for (const Entry& entry : document) {
     if (const Section* section = find_section(entry.path))
       if (!section->replaced_by.empty() && find_entry(document, section->replaced_by))
@@ -145,7 +145,8 @@ void check_contradictions(const Document& document) {
 }
 
 // `path`: the key's own, or in one table of a list.
-void check_key_present(const Document& document, const Key& key, const std::string& path, const std::string& place) {
+void check_key_present(const SceneDocument& document, const Key& key, const std::string& path,
+                       const std::string& place) {
   const auto given = [&](const std::string& other) { return find_entry(document, beside(path, other)) != nullptr; };
   if (given(path) || !key.fallback.empty() || !condition_holds(document, key.path) ||
       std::any_of(key.alternatives.begin(), key.alternatives.end(), given))
@@ -157,7 +158,7 @@ void check_key_present(const Document& document, const Key& key, const std::stri
           fmt::format("{} is missing ({}); add for example {}{}", path, meaning_of(key), sample_of(key), other_ways));
 }
 
-void check_complete(const Document& document, const std::string& name) {
+void check_complete(const SceneDocument& document, const std::string& name) {
   for (const Section& section : scene_sections()) {
     const Entry* entry = find_entry(document, section.path);
     if (!entry && (!section.needed || (!section.replaced_by.empty() && find_entry(document, section.replaced_by))))
@@ -176,7 +177,7 @@ void check_complete(const Document& document, const std::string& name) {
 
 } // namespace
 
-bool condition_holds(const Document& document, const std::string& path) {
+bool condition_holds(const SceneDocument& document, const std::string& path) {
   const Key& key = *find_key(path);
   if (key.only_with.key.empty())
     return true;
@@ -189,7 +190,7 @@ bool condition_holds(const Document& document, const std::string& path) {
   return word && key.only_with.allows(*word);
 }
 
-void check_document(const Document& document, const std::string& name) {
+void check_document(const SceneDocument& document, const std::string& name) {
   for (const Entry& entry : document)
     check_entry(entry);
   check_contradictions(document);

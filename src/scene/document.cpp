@@ -128,11 +128,11 @@ public:
   }
 
   /// In the order of the file.
-  Document document() && {
+  SceneDocument document() && {
     std::stable_sort(entries_.begin(), entries_.end(), [](const Positioned& a, const Positioned& b) {
       return std::tie(a.position.line, a.position.column) < std::tie(b.position.line, b.position.column);
     });
-    Document document;
+    SceneDocument document;
     for (Positioned& positioned : entries_)
       document.add(std::move(positioned.entry));
     return document;
@@ -177,24 +177,24 @@ toml::table parsed(const std::string& text, const std::string& name) {
 
 } // namespace
 
-const Entry* Document::find(const std::string& path) const {
+const Entry* SceneDocument::find(const std::string& path) const {
   const auto found = positions_.find(path);
   return found == positions_.end() ? nullptr : &entries_[found->second];
 }
 
-void Document::add(Entry entry) {
+void SceneDocument::add(Entry entry) {
   [[maybe_unused]] const bool is_new = positions_.emplace(entry.path, entries_.size()).second;
   assert(is_new);
   entries_.push_back(std::move(entry));
 }
 
-void Document::number() {
+void SceneDocument::number() {
   positions_.clear();
   for (const Entry& entry : entries_)
     positions_.emplace(entry.path, positions_.size());
 }
 
-std::vector<std::string> tables_of(const Document& document, const std::string& section) {
+std::vector<std::string> tables_of(const SceneDocument& document, const std::string& section) {
   const Entry* const entry = find_entry(document, section);
   if (!entry)
     return {};
@@ -205,7 +205,7 @@ std::vector<std::string> tables_of(const Document& document, const std::string& 
   return list ? tables : std::vector{section};
 }
 
-Document parse_document(const std::string& text, const std::string& name) {
+SceneDocument parse_document(const std::string& text, const std::string& name) {
   const toml::table table = parsed(text, name);
   Flattening flattening(name);
   flattening.add_table(table, "");
@@ -239,9 +239,9 @@ Value value_of_word(const std::string& word, const std::string& path) {
 
 } // namespace
 
-Document parse_override_value(const std::string& text, const std::string& path, const std::string& key_place,
-                              const std::string& value_place) {
-  const Document word = {{path, key_place, value_place, value_of_word(text, path), true}};
+SceneDocument parse_override_value(const std::string& text, const std::string& path, const std::string& key_place,
+                                   const std::string& value_place) {
+  const SceneDocument word = {{path, key_place, value_place, value_of_word(text, path), true}};
   const std::string line = "value = " + text;
   if (const std::optional<TomlExcess> excess = toml_excess(line)) {
     const std::size_t begin = text.find_first_not_of(" \t");
@@ -249,7 +249,7 @@ Document parse_override_value(const std::string& text, const std::string& path, 
       fail_at(value_place, excess->what);
     return word; // ../../a.hdf
   }
-  Document document;
+  SceneDocument document;
   try {
     const toml::table table = toml::parse(line);
     if (table.size() != 1)
@@ -260,7 +260,7 @@ Document parse_override_value(const std::string& text, const std::string& path, 
   } catch (const toml::parse_error&) {
     return word;
   }
-  Document overrides;
+  SceneDocument overrides;
   for (const Entry& entry : document)
     overrides.add({entry.path, entry.path == path ? key_place : value_place, value_place, entry.value, true});
   return overrides;

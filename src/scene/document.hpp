@@ -40,10 +40,10 @@ struct Entry {
 
 /// In the order of the file, overrides last. No path occurs twice. What no scene has is not looked into: an unknown
 /// table is an entry, and its keys are none.
-class Document {
+class SceneDocument {
 public:
-  Document() = default;
-  Document(std::initializer_list<Entry> entries) {
+  SceneDocument() = default;
+  SceneDocument(std::initializer_list<Entry> entries) {
     for (const Entry& entry : entries)
       add(entry);
   }
@@ -70,14 +70,14 @@ private:
 };
 
 /// The paths of the tables that a document has of a section: none, its own, or those of its list.
-std::vector<std::string> tables_of(const Document& document, const std::string& section);
+std::vector<std::string> tables_of(const SceneDocument& document, const std::string& section);
 
-inline const Entry* find_entry(const Document& document, const std::string& path) {
+inline const Entry* find_entry(const SceneDocument& document, const std::string& path) {
   return document.find(path);
 }
 
 /// Throws UsageError where the text is not TOML; `name` stands for the file.
-Document parse_document(const std::string& text, const std::string& name);
+SceneDocument parse_document(const std::string& text, const std::string& name);
 
 /// Bytes of a text, the end not included.
 struct TextRange {
@@ -91,8 +91,8 @@ std::optional<TextRange> range_in(const std::string& text, const std::string& na
 /// The value of an override: TOML, or else the text itself as a string (of a key that takes a number as that number,
 /// where the text reads as one). All entries are overridden and have the places. Throws UsageError where the value
 /// nests too deep.
-Document parse_override_value(const std::string& text, const std::string& path, const std::string& key_place,
-                              const std::string& value_place);
+SceneDocument parse_override_value(const std::string& text, const std::string& path, const std::string& key_place,
+                                   const std::string& value_place);
 
 /// Throws UsageError "place: message".
 [[noreturn]] void fail_at(const std::string& place, const std::string& message);

@@ -105,7 +105,7 @@ void take_out(std::string& text, const TextRange& value, const std::string& path
 }
 
 bool stands(const std::string& text, const std::string& name, const KeyChange& change) {
-  const Document document = parse_document(text, name);
+  const SceneDocument document = parse_document(text, name);
   const Entry* const entry = find_entry(document, change.path);
   if (!entry || !change.value)
     return !entry && !change.value;

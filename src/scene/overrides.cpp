@@ -24,12 +24,12 @@ bool is_dotted_name(const std::string& path) {
          path.find("..") == std::string::npos;
 }
 
-void erase_within(Document& document, const std::string& table) {
+void erase_within(SceneDocument& document, const std::string& table) {
   document.remove_if([&](const Entry& entry) { return is_within(entry.path, table); });
 }
 
 // Drops what the file (never another override) says at a path.
-void drop_from_file(Document& document, const std::string& path, const std::string& place,
+void drop_from_file(SceneDocument& document, const std::string& path, const std::string& place,
                     std::vector<std::string>& notices) {
   const Entry* entry = find_entry(document, path);
   if (!entry || entry->overridden)
@@ -38,7 +38,7 @@ void drop_from_file(Document& document, const std::string& path, const std::stri
   erase_within(document, path);
 }
 
-void drop_contradictions(Document& document, const Entry& by, std::vector<std::string>& notices) {
+void drop_contradictions(SceneDocument& document, const Entry& by, std::vector<std::string>& notices) {
   const Key* overriding = find_key(by.path);
   if (!overriding)
     return;
@@ -57,7 +57,7 @@ void drop_contradictions(Document& document, const Entry& by, std::vector<std::s
   }
 }
 
-void add_parent_tables(Document& document, const std::string& path, const std::string& place) {
+void add_parent_tables(SceneDocument& document, const std::string& path, const std::string& place) {
   if (static_cast<std::size_t>(std::count(path.begin(), path.end(), '.')) >= most_toml_depth)
     fail_at(place, fmt::format("unknown key (it has more than {} parts, and no key has more than a few); "
                                "\"keeler check --defaults\" lists every key",
@@ -67,7 +67,7 @@ void add_parent_tables(Document& document, const std::string& path, const std::s
       document.add({path.substr(0, dot), place, place, Table{}, true});
 }
 
-void apply(Document& document, const std::string& path, const Document& entries, const std::string& place,
+void apply(SceneDocument& document, const std::string& path, const SceneDocument& entries, const std::string& place,
            std::vector<std::string>& notices) {
   erase_within(document, path);
   add_parent_tables(document, path, place);
@@ -94,12 +94,12 @@ Override from_command_line(const std::string& text) {
 
 } // namespace
 
-void apply_start(Document& document, const std::string& snapshot, std::vector<std::string>& notices) {
+void apply_start(SceneDocument& document, const std::string& snapshot, std::vector<std::string>& notices) {
   const std::string path = "start.from", place = "--from " + snapshot;
   apply(document, path, {{path, place, place, snapshot, true}}, place, notices);
 }
 
-void apply_table(Document& document) {
+void apply_table(SceneDocument& document) {
   if (const Entry* entry = find_entry(document, "start.from"))
     fail_at(entry->value_place, "start.from cannot stand beside a table of particles (either is the start); remove one "
                                 "of the two");
@@ -118,12 +118,13 @@ void apply_table(Document& document) {
     set("particles.density", "1000.0");
 }
 
-void apply_override(Document& document, const Override& by, std::vector<std::string>& notices) {
+void apply_override(SceneDocument& document, const Override& by, std::vector<std::string>& notices) {
   apply(document, by.key, parse_override_value(by.value, by.key, by.key_place, by.value_place), by.value_place,
         notices);
 }
 
-void apply_overrides(Document& document, const std::vector<std::string>& overrides, std::vector<std::string>& notices) {
+void apply_overrides(SceneDocument& document, const std::vector<std::string>& overrides,
+                     std::vector<std::string>& notices) {
   for (const std::string& text : overrides)
     apply_override(document, from_command_line(text), notices);
 }

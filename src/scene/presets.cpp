@@ -18,7 +18,7 @@ PlanetSettings find_preset(const std::string& name) {
   const auto& presets = preset_texts();
   const auto preset = std::find_if(presets.begin(), presets.end(), [&](const PresetText& p) { return p.name == name; });
   assert(preset != presets.end());
-  const Document document = parse_document(std::string(preset->toml), "preset " + name);
+  const SceneDocument document = parse_document(std::string(preset->toml), "preset " + name);
   const auto number = [&](const char* key) { return std::get<double>(find_entry(document, key)->value); };
   return {name, number("orbital_frequency"), {number("epicyclic_ratio"), number("vertical_ratio")}};
 }

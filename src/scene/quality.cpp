@@ -50,13 +50,13 @@ const Quality* quality_of(const std::string& name) {
   return found == qualities.end() ? nullptr : &*found;
 }
 
-const std::string* word_in(const Document& document, const std::string& path) {
+const std::string* word_in(const SceneDocument& document, const std::string& path) {
   const Entry* const entry = find_entry(document, path);
   return entry ? std::get_if<std::string>(&entry->value) : nullptr;
 }
 
 // Returns null for "custom", and for what check_document() will refuse.
-const Quality* quality_in(const Document& document) {
+const Quality* quality_in(const SceneDocument& document) {
   if (!find_entry(document, "quality"))
     return quality_of(default_quality);
   const std::string* const name = word_in(document, "quality");
@@ -65,7 +65,7 @@ const Quality* quality_in(const Document& document) {
 
 } // namespace
 
-void add_gravity_of_quality(Document& document) {
+void add_gravity_of_quality(SceneDocument& document) {
   const Quality* const quality = quality_in(document);
   if (!quality || !find_entry(document, "gravity"))
     return;
@@ -84,7 +84,7 @@ void add_gravity_of_quality(Document& document) {
     add("gravity.opening_angle", quality->opening_angle);
 }
 
-void name_quality_of_stored(Document& document, const std::string& name) {
+void name_quality_of_stored(SceneDocument& document, const std::string& name) {
   if (!find_entry(document, "quality"))
     document.add({"quality", name, name, std::string("custom"), false});
 }

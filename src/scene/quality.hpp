@@ -10,11 +10,11 @@
 namespace keeler {
 
 /// Adds the keys of [gravity]. The document need not be checked yet.
-void add_gravity_of_quality(Document& document);
+void add_gravity_of_quality(SceneDocument& document);
 
 /// Names the quality "custom" in the scene of a run from before there were qualities. Any other names all that a
 /// quality gives.
-void name_quality_of_stored(Document& document, const std::string& name);
+void name_quality_of_stored(SceneDocument& document, const std::string& name);
 
 /// Sets the step and the kick interval; all but the times has been read.
 void resolve_times_of_quality(Scene& scene, Settings& settings);

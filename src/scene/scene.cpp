@@ -182,7 +182,7 @@ void read_resting_contacts(Scene& scene, Settings& settings, Purpose purpose) {
     settings.resolve(key, std::string(scene.gravity->resting_contacts ? "carried" : "bounced"));
 }
 
-Scene read_scene(Document document, const std::string& name, Purpose purpose, std::vector<std::string> notices) {
+Scene read_scene(SceneDocument document, const std::string& name, Purpose purpose, std::vector<std::string> notices) {
   add_gravity_of_quality(document);
   check_document(document, name);
   Settings settings(std::move(document));
@@ -243,7 +243,7 @@ double Scene::bunched_optical_depth() const {
 
 Scene parse_scene(const std::string& text, const std::string& name, const std::vector<std::string>& overrides,
                   const std::optional<std::string>& from) {
-  Document document = parse_document(text, name);
+  SceneDocument document = parse_document(text, name);
   std::vector<std::string> notices;
   apply_overrides(document, overrides, notices);
   if (from)
@@ -257,7 +257,7 @@ TableScene load_table_scene(const std::string& path, const std::vector<std::stri
 
 TableScene parse_table_scene(const std::string& text, const std::string& name,
                              const std::vector<std::string>& overrides) {
-  Document document = parse_document(text, name);
+  SceneDocument document = parse_document(text, name);
   std::vector<std::string> notices;
   apply_overrides(document, overrides, notices);
   const bool has_density = find_entry(document, "particles.density") != nullptr;
@@ -269,7 +269,7 @@ TableScene parse_table_scene(const std::string& text, const std::string& name,
 }
 
 Scene load_varied_scene(const std::string& path, const std::vector<Override>& overrides) {
-  Document document = parse_document(read_scene_text(path), path);
+  SceneDocument document = parse_document(read_scene_text(path), path);
   std::vector<std::string> notices;
   for (const Override& by : overrides)
     apply_override(document, by, notices);
@@ -277,7 +277,7 @@ Scene load_varied_scene(const std::string& path, const std::vector<Override>& ov
 }
 
 Scene parse_stored_scene(const std::string& text, const std::string& name) {
-  Document document = parse_document(text, name);
+  SceneDocument document = parse_document(text, name);
   name_quality_of_stored(document, name);
   return read_scene(std::move(document), name, Purpose::go_on, {});
 }

@@ -47,7 +47,7 @@ NumberRows read_rows(const std::string& path, const Key& key, const std::string&
 
 } // namespace
 
-Settings::Settings(Document document) : document_(std::move(document)) {
+Settings::Settings(SceneDocument document) : document_(std::move(document)) {
   for (const Key& key : scene_keys())
     for (const std::string& path : paths_of(key)) {
       if (has(path) || key.fallback.empty() || !condition_holds(document_, path))

@@ -16,7 +16,7 @@ namespace keeler {
 class Settings {
 public:
   /// The document has passed check_document.
-  explicit Settings(Document document);
+  explicit Settings(SceneDocument document);
 
   bool has(const std::string& path) const { return find_entry(document_, path) != nullptr; }
   double number(const std::string& path) const;
@@ -62,7 +62,7 @@ private:
   Parameters::Value parameter(const Key& key, const std::string& scene_name);
 
   static constexpr const char* default_place = "default";
-  Document document_;
+  SceneDocument document_;
 };
 
 /// The law of a registry that a table of the scene names, made from the table's values.
