@@ -26,7 +26,7 @@ planet.preset = "saturn-a-ring"
 box.size = [60.0, 60.0]
 particles = { optical_depth = 0.4, density = 450.0, sizes = { law = "power", min = 0.5, max = 2.0, exponent = 3.0 } }
 collisions = { restitution = { law = "constant", value = 0.5 }, friction = { tangential_restitution = 0.2 } }
-gravity.solver = "tree"
+gravity = { solver = "tree", kick_every = 1 }
 time = { step = 2e-3, end = 1.0 }
 output = { snapshot_every = 0.2, series_every = 0.002, stress_every = 0.02 }
 """
