@@ -47,7 +47,7 @@ TEST_CASE("the energy budget of a self-gravitating patch closes to rounding, and
     // roundings of thousands of collisions
     CHECK(std::fabs(b.residual) < 1e-12 * b.lost);
     const double shear = scene.planet.frequencies.shear();
-    const double gained = shear * (b.translational_flux + b.collisional_flux) + b.kick_work - b.lost;
+    const double gained = shear * (b.translational_flux + b.collisional_flux) + b.kick_work + b.resting_work - b.lost;
     CHECK(b.energy - b.start == doctest::Approx(gained).epsilon(1e-10));
     CHECK(largest_overlap(simulation.patch()).depth < 1e-9);
   }
@@ -66,7 +66,7 @@ TEST_CASE("with rough spheres the spins' energy is in the budget, and it closes"
     CHECK(std::fabs(means.spin.energy - simulation.state().energy.spin) > 1e-3 * b.lost);
     CHECK(std::fabs(b.residual) < 1e-12 * b.lost);
     const double shear = scene.planet.frequencies.shear();
-    const double gained = shear * (b.translational_flux + b.collisional_flux) + b.kick_work - b.lost;
+    const double gained = shear * (b.translational_flux + b.collisional_flux) + b.kick_work + b.resting_work - b.lost;
     CHECK(b.energy - b.start == doctest::Approx(gained).epsilon(1e-10));
   }
 }

@@ -53,7 +53,7 @@ Scene without_images(double side, std::size_t count, double step) {
 planet.orbital_frequency = {}
 box.size = [{}, {}]
 particles = {{ count = {}, density = 900, sizes = {{ law = "equal", radius = 1.0 }} }}
-gravity = {{ solver = "direct", images = "rings", image_rings = 0 }}
+gravity = {{ solver = "direct", images = "rings", image_rings = 0, kick_every = 1 }}
 time = {{ step = {}, end = 1000.0 }}
 )",
                                  omega, side, side, count, step),
