@@ -11,7 +11,7 @@ namespace keeler {
 bool is_being_written(const std::filesystem::path& file) {
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0)
-    return false; // who reads it says why
+    return false; // the reader of the file says why
   const bool locked = flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   close(descriptor); // gives the lock back
   return locked;

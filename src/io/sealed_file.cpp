@@ -124,7 +124,7 @@ bool has_seal(const std::filesystem::path& file) {
   try {
     return end_of(Descriptor(file, O_RDONLY)).starts_with(mark);
   } catch (const IoError&) {
-    return false; // who reads it says why
+    return false; // the reader of the file says why
   }
 }
 

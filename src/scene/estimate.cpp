@@ -24,7 +24,7 @@ constexpr double lists = 11.0;      // a particle and step: lines and neighbour 
 constexpr double left_list = 230.0; // a particle's contact: new lists, since who is hit leaves its slack
 constexpr double contact = 800.0;   // with all searches; in a patch of 10⁴ particles, whose lines stay in the cache
 constexpr double kick = 20.0;       // a particle and kick
-constexpr double external = 80.0;   // a particle and step, of a force from outside
+constexpr double external = 80.0;   // per particle and step, of an external force
 constexpr double tree = 273.0, tree_opened = 44.5; // a particle and kick: the latter over the opening angle squared
 constexpr double mesh = 100.0, mesh_height = 75.0; // a particle and kick: the latter for each spacing of the layer's H
 constexpr double mesh_cut = 52.0;                  // a particle and kick, for each spacing that the cut spans

@@ -168,7 +168,7 @@ void read_start(Scene& scene, Settings& settings, const std::string& name) {
   scene.start_keep_seed = static_cast<std::uint64_t>(settings.integer("start.keep_seed"));
 }
 
-enum class Purpose { start, table, go_on }; // table: the particles of the scene stand for others
+enum class Purpose { start, table, go_on }; // table: the scene's particles are placeholders
 
 // A file or a table of particles decides later. A stored scene of a program that did not know the key bounced all
 // contacts.

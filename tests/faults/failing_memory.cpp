@@ -29,7 +29,7 @@ void* allocated_or_thrown(std::size_t size, std::size_t alignment) {
 
 extern "C" {
 
-/// Counts anew from 1; the calls from `from` to `to` fail.
+/// Restarts the count at 1; the calls from `from` to `to` fail.
 void fail_allocations(long from, long to) {
   calls = 0;
   first = from;
