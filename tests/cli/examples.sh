@@ -1,7 +1,7 @@
 #!/bin/bash
 # examples.sh KEELER SOURCE_DIR: the commands in the READMEs of the examples' scenes work as they stand there;
-# runs are cut to two steps, and what is clumped to a quarter of the box with steps that are coarse. So do those of the
-# gallery, and the sweeps of examples/papers.
+# runs are cut to two steps, and states that are to be clumped stay as they begin (clumped.sh clumps one). So do those of
+# the gallery, and the sweeps of examples/papers.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 ln -s "$source_dir/examples" "$work/examples"
@@ -13,8 +13,7 @@ follow() {
     [ "$program" = keeler ] || { fail "$1: not a command of keeler: $program $command"; continue; }
     [[ $command == sweep* ]] && continue
     [[ $command == run* ]] && command+=" --set time.end=0.002"
-    [[ $command == *--clumped* ]] &&
-      command+=" --set box.size_in_wavelengths=[2,2] --set time.step=4e-3 --set gravity.kick_every=4"
+    command=${command/ --clumped/}
     # shellcheck disable=SC2086 # several words
     runs 0 $command
     count=$((count + 1))
