@@ -204,13 +204,15 @@ class Course(unittest.TestCase):
         self.assertLess(time.monotonic() - begin, 10.0)
         sim.step()
 
-    def interrupted(self, presses, **tables):
-        sim = keeler.Simulation(ring(box={"size": [300.0, 300.0]}, time={"step": 5e-4, "end": 500.0}, **tables))
+    def interrupted(self, presses, side=300.0, **tables):
+        sim = keeler.Simulation(ring(box={"size": [side, side]}, time={"step": 5e-4, "end": 500.0}, **tables))
 
+        # The second at once, while the steps at hand are still on their way, and both before the run can have ended.
         def press():
+            time.sleep(0.2)
             for _ in range(presses):
-                time.sleep(0.2)
                 os.kill(os.getpid(), signal.SIGINT)
+                time.sleep(0.02)
 
         thread = threading.Thread(target=press)
         thread.start()
@@ -231,9 +233,9 @@ class Course(unittest.TestCase):
         self.assertEqual(sim.run(end).state_hash, again.state_hash)
 
     def test_a_second_ctrl_c_gives_up_the_steps_at_hand_and_the_state_is_that_of_before(self):
-        kicks = {"gravity": {"solver": "tree", "kick_every": 1000}}  # seconds from one to the next
-        scene = ring(box={"size": [300.0, 300.0]}, time={"step": 5e-4, "end": 500.0}, **kicks)
-        sim = self.interrupted(presses=2, **kicks)
+        kicks = {"gravity": {"solver": "tree", "kick_every": 1000}}  # many seconds from one to the next in so large a box
+        scene = ring(box={"size": [900.0, 900.0]}, time={"step": 5e-4, "end": 500.0}, **kicks)
+        sim = self.interrupted(presses=2, side=900.0, **kicks)
         self.assertEqual((sim.orbits, sim.state_hash), (0.0, keeler.Simulation(scene).state_hash))
         self.assertGreater(len(sim.snapshot()), 1000)
 
