@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+namespace resting_choice_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -33,19 +35,20 @@ std::string moonlet(double radius, double density) {
 } // namespace
 
 TEST_CASE("the excess of bouncing is that of docs/hard-spheres.md within a factor of 2.2") {
-  const double tables[][4] = {
-      // optical depth, r_h, kick interval, lost over the work of the shear − 1
-      {1, 0.80, 1e-3, 0.001}, {1, 0.80, 2e-3, 0.003}, {1, 0.80, 5e-3, 0.014}, {1, 0.93, 5e-3, 0.029},
-      {1, 1.10, 1e-3, 0.013}, {1, 1.10, 2e-3, 0.028}, {1, 1.10, 5e-3, 0.077}, {1, 1.20, 5e-3, 0.204},
-      {2, 0.60, 5e-3, 0.002}, {2, 0.80, 5e-3, 0.033}, {2, 0.93, 5e-3, 0.081}, {2, 1.10, 5e-3, 0.196},
-      {2, 1.20, 5e-3, 0.338}, {3, 0.60, 5e-3, 0.004}, {3, 0.80, 5e-3, 0.037}, {3, 0.93, 5e-3, 0.130},
-      {3, 1.10, 5e-3, 0.45},  {3, 1.20, 5e-3, 1.294}, {1, 1.10, 10e-3, 0.323}};
-  for (const auto& [optical_depth, r_h, interval, excess] : tables) {
-    CAPTURE(optical_depth);
-    CAPTURE(r_h);
-    CAPTURE(interval);
-    CHECK(excess_of_bouncing(optical_depth, r_h, interval) < 2.2 * excess);
-    CHECK(excess_of_bouncing(optical_depth, r_h, interval) > excess / 2.2);
+  struct Row {
+    double optical_depth, r_h, interval, excess; // the excess: lost over the work of the shear − 1
+  };
+  const Row table[] = {{1, 0.80, 1e-3, 0.001}, {1, 0.80, 2e-3, 0.003}, {1, 0.80, 5e-3, 0.014}, {1, 0.93, 5e-3, 0.029},
+                       {1, 1.10, 1e-3, 0.013}, {1, 1.10, 2e-3, 0.028}, {1, 1.10, 5e-3, 0.077}, {1, 1.20, 5e-3, 0.204},
+                       {2, 0.60, 5e-3, 0.002}, {2, 0.80, 5e-3, 0.033}, {2, 0.93, 5e-3, 0.081}, {2, 1.10, 5e-3, 0.196},
+                       {2, 1.20, 5e-3, 0.338}, {3, 0.60, 5e-3, 0.004}, {3, 0.80, 5e-3, 0.037}, {3, 0.93, 5e-3, 0.130},
+                       {3, 1.10, 5e-3, 0.45},  {3, 1.20, 5e-3, 1.294}, {1, 1.10, 10e-3, 0.323}};
+  for (const Row& row : table) {
+    CAPTURE(row.optical_depth);
+    CAPTURE(row.r_h);
+    CAPTURE(row.interval);
+    CHECK(excess_of_bouncing(row.optical_depth, row.r_h, row.interval) < 2.2 * row.excess);
+    CHECK(excess_of_bouncing(row.optical_depth, row.r_h, row.interval) > row.excess / 2.2);
   }
 }
 
@@ -106,3 +109,5 @@ TEST_CASE("a start from a file decides by what it holds, as a fresh start of the
 TEST_CASE("a table of particles leaves the choice to its particles") {
   CHECK(leaves_resting_open(parse_table_scene(ring(3.0, 0.93, 5e-3), "s.toml").scene));
 }
+
+} // namespace resting_choice_test

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <set>
 
+namespace plan_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -85,8 +87,8 @@ TEST_CASE("a grid of too many runs, too deep a one or one with too many keys is 
         "grid.toml:1:1: the grid makes 1000000 runs (a sweep takes 100000 at most); give it fewer seeds or values, or "
         "make several grids");
   std::string crossed = scene;
-  for (const char* const key : {"a", "b", "c", "d", "e"})
-    crossed += std::string("[[axis]]\nkey = \"") + key + "\"\nvalues = " + list(10000) + "\n";
+  for (const char* const letter : {"a", "b", "c", "d", "e"})
+    crossed += std::string("[[axis]]\nkey = \"") + letter + "\"\nvalues = " + list(10000) + "\n";
   CHECK(GridFile(crossed).fault().rfind("grid.toml:1:1: the grid makes 1e20 runs", 0) == 0);
   std::string dots;
   for (int k = 0; k < 100000; ++k)
@@ -104,3 +106,5 @@ TEST_CASE("a grid of too many runs, too deep a one or one with too many keys is 
   CHECK(GridFile(scene + "seeds = [18446744073709551615]\n").fault().find("the number is too large") !=
         std::string::npos);
 }
+
+} // namespace plan_test
