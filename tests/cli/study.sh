@@ -5,7 +5,7 @@ source "$(dirname "$0")/helpers.sh"
 folder=$work/study
 
 # Stopped once in the middle, then continued.
-"$keeler" study finders --quick --count 300 -o "$folder" >"$work/out" 2>"$work/err" &
+"$keeler" study finders --quick --count 100 -o "$folder" >"$work/out" 2>"$work/err" &
 process=$!
 until grep -q '"job":"audit' "$folder/measurements.jsonl" 2>/dev/null || ! kill -0 "$process" 2>/dev/null; do
   sleep 0.05
@@ -16,8 +16,8 @@ wait "$process" || code=$?
 [ "$code" -eq 75 ] || fail "a stopped study: exit $code: $(tail -n 3 "$work/err")"
 grep -q "the same command goes on from here" "$work/err" || fail "a stopped study does not say how to go on"
 head -n 3 "$folder/measurements.jsonl" >"$work/kept"
-refuses "another count" "another count (300)" study finders --quick --count 301 -o "$folder"
-runs 0 study finders --quick --count 300 -o "$folder"
+refuses "another count" "another count (100)" study finders --quick --count 101 -o "$folder"
+runs 0 study finders --quick --count 100 -o "$folder"
 head -n 3 "$folder/measurements.jsonl" | cmp - "$work/kept" || fail "a continued study does measurements again"
 for name in report.md report.html finders.csv finders.json figures; do
   prints "study" "$folder/$name"

@@ -10,9 +10,9 @@ small_grid() {
   cat >"$work/grid.toml" <<END
 scene = "scene.toml"
 seeds = [${1:-1, 2}]
-since = 0.5
+since = 0.2
 [set]
-"time.end" = 2.0
+"time.end" = 0.8
 [[axis]]
 key = "particles.density"
 values = [300.0, 600.0]
@@ -63,7 +63,7 @@ column() {
 
 # What a row says is what analyze says, and a run by hand is the same run.
 name=density-300_seed-1
-runs 0 analyze "$work/whole/runs/$name" --since 0.5 --json
+runs 0 analyze "$work/whole/runs/$name" --since 0.2 --json
 for number in total_viscosity_m2_s total_viscosity_error_m2_s translational_viscosity_r2_omega energy_balance \
   energy_balance_error since_orbit wake_contrast; do
   value=$(column "$number" 2 "$work/whole/sweep.csv")
@@ -71,7 +71,7 @@ for number in total_viscosity_m2_s total_viscosity_error_m2_s translational_visc
 done
 runs 0 run "$work/whole/scenes/$name.toml" -o "$work/by_hand"
 same_state "by hand" "$work/whole/runs/$name" "$work/by_hand"
-runs 0 run "$work/scene.toml" -o "$work/by_set" --set time.end=2.0 --set particles.density=300.0
+runs 0 run "$work/scene.toml" -o "$work/by_set" --set time.end=0.8 --set particles.density=300.0
 same_state "by --set" "$work/whole/runs/$name" "$work/by_set"
 
 # Killed twice, the runs with it, first early and then between two runs.
@@ -170,7 +170,7 @@ stat -c '%n %Y %s' "$work"/whole/runs/*/* | sort | comm -13 - <(sort "$work/befo
 small_grid 1
 runs 0 sweep "$work/grid.toml" -o "$work/whole"
 grep -q "4 runs in .* that this grid does not have" "$work/err" || fail "fewer seeds: $(cat "$work/err")"
-sed -i 's/2\.0$/3.0/' "$work/grid.toml"
+sed -i 's/0\.8$/3.0/' "$work/grid.toml"
 # A folder whose name begins with a dash is a folder to the runs too.
 cat >"$work/small.toml" <<END
 scene = "scene.toml"
@@ -192,7 +192,7 @@ wait "$many" || code=$?
 [ "$code" -eq 75 ] || fail "INT while runs are planned: exit $code: $(tail -n 3 "$work/err")"
 [ -e "$work/many" ] && fail "INT while runs are planned: a folder was made"
 
-refuses "another end" "was made with time.end = 2.0 and now has time.end = 3.0" sweep "$work/grid.toml" -o "$work/whole"
+refuses "another end" "was made with time.end = 0.8 and now has time.end = 3.0" sweep "$work/grid.toml" -o "$work/whole"
 refuses "another's folder" "holds no sweep" sweep "$work/grid.toml" -o "$work/by_hand"
 refuses "a file" "is a file" sweep "$work/grid.toml" -o "$work/scene.toml"
 refuses "no grid" "cannot be read" sweep "$work/none.toml" -o "$work/none"
