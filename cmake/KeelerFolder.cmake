@@ -35,5 +35,13 @@ function(keeler_folder name)
   foreach(library IN LISTS ARG_PRIVATE_LIBRARIES)
     target_link_libraries(keeler_${name} PRIVATE ${library})
   endforeach()
+  if(name IN_LIST KEELER_COLD_FOLDERS)
+    keeler_cold(keeler_${name})
+  endif()
   set_property(GLOBAL APPEND PROPERTY KEELER_TARGETS keeler_${name})
+endfunction()
+
+# Compiles a target with fewer optimisations, a third faster: nothing in it runs once a particle and step.
+function(keeler_cold target)
+  target_compile_options(${target} PRIVATE "$<$<CONFIG:Release>:-O1>")
 endfunction()

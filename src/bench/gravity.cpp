@@ -19,9 +19,9 @@ constexpr double reference_pairs = 5e9; // as many as seconds allow
 constexpr double least_sample = 500.0, most_sample = 2000.0;
 constexpr double edge_width = 5.0; // m, of a box of more than 120 m
 constexpr std::size_t least_at_edge = 64;
-constexpr std::size_t reference_block = 128; // targets between two looks at the progress
-constexpr double least_seconds = 0.05;       // of solves, in one repeat
-constexpr std::size_t most_direct = 10000;   // particles, unless it is asked for
+constexpr std::size_t reference_block = 128;  // targets between two looks at the progress
+constexpr double least_repeat_seconds = 0.05; // of solves, in one repeat
+constexpr std::size_t most_direct = 10000;    // particles, unless it is asked for
 
 // The patch in the order of places, as a run has its particles.
 Patch in_memory_order(const Patch& patch) {
@@ -62,7 +62,7 @@ std::vector<double> solve_times(GravitySolver& solver, const GravityProblem& pro
   const double start = bench_seconds();
   solver.accelerate(problem, accelerations);
   const double first = std::max(1e-9, bench_seconds() - start);
-  const int solves = static_cast<int>(std::ceil(std::min(1e6, least_seconds / first)));
+  const int solves = static_cast<int>(std::ceil(std::min(1e6, least_repeat_seconds / first)));
   std::vector<double> times;
   for (int repeat = 0; repeat < repeats; ++repeat) {
     const double before = bench_seconds();

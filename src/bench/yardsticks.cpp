@@ -8,7 +8,7 @@
 namespace keeler {
 namespace {
 
-constexpr double least_seconds = 0.03; // of work, for one measurement
+constexpr double least_yardstick_seconds = 0.03; // of work, for one measurement
 
 // Time of one call of work(), s; the first one is not counted.
 template<class Work> double seconds_of(const Work& work, double (*clock)()) {
@@ -16,7 +16,7 @@ template<class Work> double seconds_of(const Work& work, double (*clock)()) {
   const double start = clock();
   double spent = 0.0;
   int times = 0;
-  while (spent < least_seconds) {
+  while (spent < least_yardstick_seconds) {
     work();
     ++times;
     spent = clock() - start;

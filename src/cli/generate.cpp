@@ -104,7 +104,7 @@ void part(Patch& patch, const GenerateOptions& options, const ParticleTable& tab
   print("{}; moved {} apart, by {} m at most\n", found, counted(moved.moved, "particle"), figures(moved.farthest, 3));
 }
 
-void print_written(const Patch& patch, const std::string& output) {
+void print_state(const Patch& patch, const std::string& output) {
   print("{} in {} m x {} m, no overlaps: {}\n", counted(patch.size(), "particle"), figures(patch.box.size_x, 5),
         figures(patch.box.size_y, 5), output);
 }
@@ -122,7 +122,7 @@ ExitCode generate_from_table(const GenerateOptions& options, const std::vector<s
       decided_by(parse_scene(of.scene.resolved, options.scene.path, {}, options.output), scale_of(patch));
   print_doubts(scene, patch);
   write_snapshot(options.output, patch, {scene.resolved, collect_provenance(arguments)});
-  print_written(patch, options.output);
+  print_state(patch, options.output);
   return ExitCode::done;
 }
 
@@ -149,7 +149,7 @@ ExitCode generate(const GenerateOptions& options, const std::vector<std::string>
   print_doubts(scene, patch);
   meta.scene = decided_by(scene, scale_of(patch)).resolved;
   write_snapshot(options.output, patch, meta);
-  print_written(patch, options.output);
+  print_state(patch, options.output);
   return ExitCode::done;
 }
 

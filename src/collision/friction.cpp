@@ -9,13 +9,13 @@ namespace {
 
 constexpr double rolling = 2.0 / 7.0; // the effective mass along the surfaces, in reduced masses: 1/(1 + 5/2)
 constexpr double inertia = 2.0 / 5.0; // m r²
-const Vec3 frame(0.0, 0.0, 1.0);      // the spin of Hill's frame, Ω
+const Vec3 frame_spin(0.0, 0.0, 1.0); // the spin of Hill's frame, Ω
 
 } // namespace
 
 Sliding slide(const Friction& friction, const Touch& touch, double normal_impulse) {
   const Body &a = touch.a, &b = touch.b;
-  const Vec3 spins = a.radius * (touch.spin_a - frame) + b.radius * (touch.spin_b - frame);
+  const Vec3 spins = a.radius * (touch.spin_a - frame_spin) + b.radius * (touch.spin_b - frame_spin);
   const Vec3 slip = touch.velocity - touch.velocity.dot(touch.normal) * touch.normal - spins.cross(touch.normal);
   const double speed = slip.norm();
   if (!(speed > 0.0))

@@ -10,11 +10,11 @@
 namespace keeler {
 namespace {
 
-struct Sums {
+struct PatchSums {
   ExactSum mass, energy, azimuthal, product, heights;
   ExactVec3 velocities, squares;
 
-  Sums& operator+=(const Sums& more) {
+  PatchSums& operator+=(const PatchSums& more) {
     mass += more.mass;
     energy += more.energy;
     azimuthal += more.azimuthal;
@@ -96,7 +96,7 @@ ParticleMeans particle_means(const Particles& particles, const Frequencies& freq
     return {};
   const Rotation rotation(frequencies, after);
   const Vec3 near = one_velocity(particles, frequencies, rotation, ranks);
-  Sums sums = exact_total<Sums>(particles.size(), [&](Sums& total, std::size_t k) {
+  PatchSums sums = exact_total<PatchSums>(particles.size(), [&](PatchSums& total, std::size_t k) {
     particles.prefetch_after(k);
     const Body& body = particles.bodies[k];
     const Elements& el = body.elements;

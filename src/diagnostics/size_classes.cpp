@@ -10,12 +10,12 @@
 namespace keeler {
 namespace {
 
-struct Sums {
+struct ClassSums {
   std::size_t count = 0;
   double mass = 0.0, heights = 0.0;
   Vec3 squares = Vec3::Zero();
 
-  Sums& operator+=(const Sums& more) {
+  ClassSums& operator+=(const ClassSums& more) {
     count += more.count;
     mass += more.mass;
     heights += more.heights;
@@ -25,7 +25,7 @@ struct Sums {
 };
 
 SizeClass size_class(const Patch& patch, double smallest, double largest, bool last, const Vec3& mean) {
-  const Sums sums = ordered_total<Sums>(patch.size(), [&](Sums& total, std::size_t k) {
+  const ClassSums sums = ordered_total<ClassSums>(patch.size(), [&](ClassSums& total, std::size_t k) {
     const double r = patch.radii[k], m = patch.masses[k], z = patch.positions[k].z();
     if (r < smallest || (last ? r > largest : r >= largest))
       return;

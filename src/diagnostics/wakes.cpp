@@ -10,7 +10,7 @@ namespace keeler {
 namespace {
 
 constexpr double least_amplitude = 0.02; // relative density waves of 20 %: no published wake is weaker
-constexpr double least_significance = 5.0;
+constexpr double least_ridge_significance = 5.0;
 constexpr double inner_end = 0.5, outer_end = 1.5; // parts of the crest, in λ_cr from zero lag
 constexpr std::size_t least_rows = 3;              // of a part whose direction is fitted
 
@@ -173,7 +173,7 @@ Wakes find_wakes(const AutocorrelationMap& map, double critical_wavelength) {
   const int count = static_cast<int>(map.half_width() * (2.0 / 3.0) / wakes.profile_spacing) + 1;
   for (int k = 0; k < count; ++k)
     wakes.profile.push_back(line_mean(map, k * wakes.profile_spacing, pitch, wakes.reach));
-  if (ridge.amplitude < std::max(least_amplitude, least_significance * line_noise))
+  if (ridge.amplitude < std::max(least_amplitude, least_ridge_significance * line_noise))
     return wakes;
 
   wakes.pitch_degrees = pitch * 180.0 / pi;

@@ -11,7 +11,7 @@
 namespace keeler {
 namespace {
 
-constexpr char group_name[] = "Contacts";
+constexpr char contacts_group[] = "Contacts";
 
 // Calls column(name, unit, about, member) for each: the one list of what a row holds. `member` returns a reference to
 // the number in a row.
@@ -53,7 +53,7 @@ template<class Member>
 using StoredType = typename Stored<std::remove_cvref_t<std::invoke_result_t<Member, ContactRow&>>>::type;
 
 void write_into(const hdf5::Handle& root, std::span<const ContactRow> rows, const ContactMeta& meta) {
-  const hdf5::Handle group = hdf5::create_group(root, group_name);
+  const hdf5::Handle group = hdf5::create_group(root, contacts_group);
   hdf5::write_attribute(group, "first_row", meta.first_row);
   hdf5::write_attribute(group, "Omega", meta.orbital_frequency);
   for_each_column([&](const std::string& name, std::string_view unit, std::string_view about, const auto& member) {
@@ -83,9 +83,9 @@ void write_contacts(const std::filesystem::path& file, std::span<const ContactRo
 ContactFile read_contacts(const std::filesystem::path& file) {
   const hdf5::Handle image = open_sealed(file);
   try {
-    if (!hdf5::exists(image, "Code") || !hdf5::exists(image, group_name))
+    if (!hdf5::exists(image, "Code") || !hdf5::exists(image, contacts_group))
       throw IoError("it is not a file of contacts");
-    const hdf5::Handle code = hdf5::open_group(image, "Code"), group = hdf5::open_group(image, group_name);
+    const hdf5::Handle code = hdf5::open_group(image, "Code"), group = hdf5::open_group(image, contacts_group);
     require_version(code, code, {contacts_version, contacts_version}, "");
     ContactFile read;
     read.meta.first_row = hdf5::read_attribute<std::int64_t>(group, "first_row");

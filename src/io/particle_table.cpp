@@ -35,33 +35,33 @@ struct Column {
   std::string with_unit() const { return fmt::format("{}_{}", name, unit); }
 };
 
-constexpr std::array<Column, 11> known = {{{"x", "m"},
-                                           {"y", "m"},
-                                           {"z", "m"},
-                                           {"vx", "m_s"},
-                                           {"vy", "m_s"},
-                                           {"vz", "m_s"},
-                                           {"r", "m"},
-                                           {"m", "kg"},
-                                           {"sx", "rad_s"},
-                                           {"sy", "rad_s"},
-                                           {"sz", "rad_s"}}};
-constexpr std::size_t first_velocity = 3, radius = 6, mass = 7, first_spin = 8;
+constexpr std::array<Column, 11> known_columns = {{{"x", "m"},
+                                                   {"y", "m"},
+                                                   {"z", "m"},
+                                                   {"vx", "m_s"},
+                                                   {"vy", "m_s"},
+                                                   {"vz", "m_s"},
+                                                   {"r", "m"},
+                                                   {"m", "kg"},
+                                                   {"sx", "rad_s"},
+                                                   {"sy", "rad_s"},
+                                                   {"sz", "rad_s"}}};
+constexpr std::size_t first_velocity = 3, radius_column = 6, mass = 7, first_spin = 8;
 constexpr const char* id_column = "id";
 
 // Of a column that may be an array of HDF5; none for an id.
 std::string unit_of(const std::string& name) {
   const auto is_named = [&](const Column& column) { return name == column.name || name == column.with_unit(); };
-  const auto column = std::find_if(known.begin(), known.end(), is_named);
-  if (column == known.end())
+  const auto column = std::find_if(known_columns.begin(), known_columns.end(), is_named);
+  if (column == known_columns.end())
     return {};
   std::string unit = column->unit;
   std::replace(unit.begin(), unit.end(), '_', '/');
   return unit;
 }
 
-// By column of `known`; empty where the table does not have it.
-using KnownColumns = std::array<std::vector<double>, known.size()>;
+// By column of `known_columns`; empty where the table does not have it.
+using KnownColumns = std::array<std::vector<double>, known_columns.size()>;
 
 // `place` is where the names stand.
 KnownColumns sort_out(const std::vector<std::string>& names, std::vector<std::vector<double>> values,
@@ -69,7 +69,7 @@ KnownColumns sort_out(const std::vector<std::string>& names, std::vector<std::ve
   const auto fail = [&](const std::string& message) {
     throw UsageError(fmt::format("{}: {} (the columns are x y z vx vy vz r, m, and sx sy sz)", place, message));
   };
-  std::array<bool, known.size()> has{};
+  std::array<bool, known_columns.size()> has{};
   KnownColumns columns;
   for (std::size_t k = 0; k < names.size(); ++k) {
     if (names[k] == id_column)
@@ -77,8 +77,9 @@ KnownColumns sort_out(const std::vector<std::string>& names, std::vector<std::ve
     const auto is_named = [&](const Column& column) {
       return names[k] == column.name || names[k] == column.with_unit();
     };
-    const auto column = static_cast<std::size_t>(std::find_if(known.begin(), known.end(), is_named) - known.begin());
-    if (column == known.size())
+    const auto column = static_cast<std::size_t>(std::find_if(known_columns.begin(), known_columns.end(), is_named) -
+                                                 known_columns.begin());
+    if (column == known_columns.size())
       fail(fmt::format("unknown column '{}'; rename or remove it", names[k]));
     if (has[column])
       fail(fmt::format("two columns '{}'; remove one of them", names[k]));
@@ -87,12 +88,12 @@ KnownColumns sort_out(const std::vector<std::string>& names, std::vector<std::ve
   }
   const auto any = [&](std::size_t first) { return has[first] || has[first + 1] || has[first + 2]; };
   const auto needed = [&](std::size_t column) { // places, the radius, and whole vectors
-    return column < first_velocity || column == radius || (column < radius && any(first_velocity)) ||
+    return column < first_velocity || column == radius_column || (column < radius_column && any(first_velocity)) ||
            (column >= first_spin && any(first_spin));
   };
-  for (std::size_t column = 0; column < known.size(); ++column)
+  for (std::size_t column = 0; column < known_columns.size(); ++column)
     if (!has[column] && needed(column))
-      fail(fmt::format("the column '{}' is missing; add it", known[column].name));
+      fail(fmt::format("the column '{}' is missing; add it", known_columns[column].name));
   return columns;
 }
 
@@ -104,12 +105,12 @@ std::vector<Vec3> as_vectors(const KnownColumns& columns, std::size_t first) {
 }
 
 ParticleTable table_of(const std::string& file, KnownColumns columns, std::vector<std::size_t> lines) {
-  if (columns[radius].empty())
+  if (columns[radius_column].empty())
     throw UsageError(fmt::format("{}: the table is empty (a start needs a particle); add a row for each", file));
   return {file,
           as_vectors(columns, 0),
           as_vectors(columns, first_velocity),
-          std::move(columns[radius]),
+          std::move(columns[radius_column]),
           std::move(columns[mass]),
           std::move(lines),
           as_vectors(columns, first_spin)};
@@ -213,8 +214,8 @@ void write_particle_table(const std::filesystem::path& file, const Patch& patch)
     text.clear();
   };
   fmt::format_to(std::back_inserter(text), "{}", id_column);
-  for (std::size_t column = 0; column < (patch.spins.empty() ? first_spin : known.size()); ++column)
-    fmt::format_to(std::back_inserter(text), ",{}", known[column].with_unit());
+  for (std::size_t column = 0; column < (patch.spins.empty() ? first_spin : known_columns.size()); ++column)
+    fmt::format_to(std::back_inserter(text), ",{}", known_columns[column].with_unit());
   for (std::size_t k = 0; k < patch.size(); ++k) {
     fmt::format_to(std::back_inserter(text), "\n{}", patch.ids[k]);
     append_vector(text, patch.positions[k]);

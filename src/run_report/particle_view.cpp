@@ -66,7 +66,7 @@ bool all_equal(const std::vector<double>& values) {
   return std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) == values.end();
 }
 
-Json json_of(const ColourRange& range) {
+Json numbers_of_range(const ColourRange& range) {
   return {{"low", range.low}, {"middle", range.middle()}, {"high", range.high}};
 }
 
@@ -108,7 +108,7 @@ Json ParticleView::fields() const {
   Json all = Json::array();
   for (std::size_t k = 0; k < fields_.size(); ++k) {
     const Field& f = fields_[k];
-    Json field = {{"name", f.name}, {"label", label_of(f.field)}, {"range", json_of(f.range)}};
+    Json field = {{"name", f.name}, {"label", label_of(f.field)}, {"range", numbers_of_range(f.range)}};
     for (const Shown& shown : snapshots_)
       field["bytes"].push_back(digits_of(shares(shown.values[k], f.range)));
     all.push_back(field);
@@ -117,7 +117,7 @@ Json ParticleView::fields() const {
     const ColourRange range = colour_range(radii_, ColourField::size);
     all.push_back({{"name", "size"},
                    {"label", label_of(ColourField::size)},
-                   {"range", json_of(range)},
+                   {"range", numbers_of_range(range)},
                    {"bytes", {digits_of(shares(radii_, range))}}});
   }
   return all;

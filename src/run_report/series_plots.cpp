@@ -124,23 +124,23 @@ Json binned(const Points& points) {
   return all;
 }
 
-Json json_of(const Estimate& mean) {
+Json numbers_of_estimate(const Estimate& mean) {
   return {{"value", or_null(mean.value)}, {"error", or_null(mean.error)}};
 }
 
 // A viscosity is the one of the tables; of anything else the mean of the rows in the window, null where there are none.
 Json steady_mean(const Curve& curve, const Points& points, const Transport& steady) {
   if (curve.column == "translational_flux_kg_m2_s")
-    return json_of(steady.translational);
+    return numbers_of_estimate(steady.translational);
   if (curve.column == "collisional_flux_kg_m2_s")
-    return json_of(steady.collisional);
+    return numbers_of_estimate(steady.collisional);
   if (curve.column == "gravitational_viscosity_m2_s")
-    return steady.gravitational ? json_of(*steady.gravitational) : Json(nullptr);
+    return steady.gravitational ? numbers_of_estimate(*steady.gravitational) : Json(nullptr);
   std::vector<double> values;
   for (std::size_t k = 0; k < points.times.size(); ++k)
     if (points.times[k] >= steady.since_orbit && points.times[k] <= steady.until_orbit)
       values.push_back(points.values[k]);
-  return values.empty() || curve.drawn == Drawn::total ? Json(nullptr) : json_of(block_mean(values));
+  return values.empty() || curve.drawn == Drawn::total ? Json(nullptr) : numbers_of_estimate(block_mean(values));
 }
 
 } // namespace

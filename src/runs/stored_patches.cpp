@@ -23,7 +23,7 @@ bool earlier(const fs::path& a, const fs::path& b) {
 
 constexpr double rounding = 1.0 + 1e-9; // of times in orbits
 
-Snapshot load(const fs::path& file) {
+Snapshot load_snapshot(const fs::path& file) {
   Snapshot snapshot = read_snapshot(file);
   require_possible(snapshot.patch, file.string());
   return snapshot;
@@ -66,7 +66,7 @@ StoredPatches load_patches(const fs::path& path, double orbits) {
   const std::vector<fs::path> files = fs::is_directory(path) ? snapshots_in(path) : std::vector<fs::path>{path};
   StoredPatches stored;
   for (auto file = files.rbegin(); file != files.rend(); ++file) {
-    Snapshot snapshot = load(*file);
+    Snapshot snapshot = load_snapshot(*file);
     if (!stored.patches.empty() && snapshot.patch.time_orbits < stored.patches.back().time_orbits - orbits * rounding)
       break;
     take(stored, std::move(snapshot), *file);
@@ -78,7 +78,7 @@ StoredPatches load_patches(const fs::path& path, double orbits) {
 StoredPatches load_patches_between(const fs::path& folder, double since, double until) {
   StoredPatches stored;
   for (const fs::path& file : snapshots_in(folder)) {
-    Snapshot snapshot = load(file);
+    Snapshot snapshot = load_snapshot(file);
     if (snapshot.patch.time_orbits > until * rounding)
       break;
     if (snapshot.patch.time_orbits * rounding >= since)

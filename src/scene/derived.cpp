@@ -46,7 +46,7 @@ double bytes_per_particle(const Scene& scene, std::size_t count) {
 }
 
 // In heights of the layer, above and below: nearly all of 10⁷ particles are within.
-constexpr double highest = 5.0;
+constexpr double mesh_scale_heights = 5.0;
 
 // Of the mesh that gravity or the measurement of its energy makes for so many particles in a box of that size.
 double mesh_memory(const Scene& scene, std::size_t count, double size_x, double size_y) {
@@ -66,7 +66,7 @@ double mesh_memory(const Scene& scene, std::size_t count, double size_x, double 
   const double height = layer_height(scene.optical_depth(), crowd_of(scene.particles),
                                      scene.particles.velocity_dispersion, scene.planet.frequencies.nu);
   const double spacing = pairwise ? cheapest_spacing : gravity.mesh_spacing;
-  return mesh_bytes(box, spacing * distance, 2.0 * highest * height, count);
+  return mesh_bytes(box, spacing * distance, 2.0 * mesh_scale_heights * height, count);
 }
 
 // Beside the program itself. Of a patch from a file the mesh is not known before it is made, with a check of its own.

@@ -11,7 +11,7 @@ namespace keeler {
 namespace {
 
 constexpr double aggregates_last = 1.1; // r_h
-constexpr double thin = 0.5; // optical depth: in denser rings the rates of contacts in wakes know of aggregates
+constexpr double thin_ring = 0.5; // optical depth: in denser rings the rates of contacts in wakes know of aggregates
 
 // Bodies of a list of sizes are in the crowd of particles: the largest is one.
 std::vector<PatchScale::Sphere> large_bodies(const Scene& scene, const PatchScale& patch) {
@@ -52,7 +52,7 @@ void GrainPiles::add_aggregates(const Scene& scene) {
   const ParticleSettings& particles = scene.particles;
   const double r_h = hill_parameter(particles.density, distance_from_saturn(scene.planet));
   const double depth = scene.optical_depth(), escape = std::sqrt(24.0 * std::pow(r_h, 3)); // r Ω
-  if (r_h < aggregates_last || depth > thin || particles.velocity_dispersion > escape)
+  if (r_h < aggregates_last || depth > thin_ring || particles.velocity_dispersion > escape)
     return;
   gathering_ = count_;
   half_orbits_ = 6.3 * std::sqrt(0.2 / depth);

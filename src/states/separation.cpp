@@ -15,8 +15,8 @@ namespace {
 
 // In the smaller radius of a pair: what it is pushed apart to beyond contact, and what is enough at the end.
 constexpr double clearance = 2e-3, enough = 2e-5;
-constexpr double strength = 0.5; // of a push, of the missing distance
-constexpr double momentum = 0.7; // of a move, kept in the next
+constexpr double strength = 0.5;      // of a push, of the missing distance
+constexpr double kept_momentum = 0.7; // of a move, kept in the next
 constexpr double first_tether = 0.3, tether_decay = 0.95, last_tether = 1e-4;
 constexpr double skin = 0.3;     // of its radius, that a sphere may move between lists
 constexpr int sweeps_a_list = 8; // at least: a few spheres that would go far wait for the others
@@ -72,7 +72,7 @@ private:
       bool overlapping = false;
       Vec3 shift = push_on(i, overlapping);
       shift.z() += tether_ * (spheres_[i].height - spheres_[i].place.z());
-      moves_[i] = momentum * moves_[i] + strength * shift;
+      moves_[i] = kept_momentum * moves_[i] + strength * shift;
       if (overlapping)
         overlaps.store(true, std::memory_order_relaxed);
     });

@@ -11,19 +11,19 @@
 namespace keeler {
 namespace {
 
-struct Pair {
+struct SpherePair {
   std::uint32_t larger;
   Neighbour smaller;
 };
-using Blocks = std::vector<std::vector<Pair>>; // a block of larger partners each
+using PairBlocks = std::vector<std::vector<SpherePair>>; // a block of larger partners each
 
 // Each sphere looks for smaller ones: it meets of the order of r² N / area of them, τ N in all, whatever the sizes.
-Blocks find_pairs(const std::vector<Sphere>& spheres, std::size_t own, const ShearingBox& box, double offset,
-                  double skin) {
+PairBlocks find_pairs(const std::vector<Sphere>& spheres, std::size_t own, const ShearingBox& box, double offset,
+                      double skin) {
   constexpr std::size_t block = 1024;
   const std::size_t count = spheres.size();
   const SizeLevels levels(spheres, box, offset);
-  const auto find_for = [&](std::size_t i, std::vector<Pair>& pairs) {
+  const auto find_for = [&](std::size_t i, std::vector<SpherePair>& pairs) {
     const Sphere& sphere = spheres[i];
     const auto consider = [&](std::size_t j, const Image& image) {
       const Sphere& other = spheres[j];
@@ -36,7 +36,7 @@ Blocks find_pairs(const std::vector<Sphere>& spheres, std::size_t own, const She
     };
     levels.visit_near(sphere.place, sphere.radius, 1.0 + skin, levels.level_of(sphere.radius), consider);
   };
-  Blocks blocks((count + block - 1) / block);
+  PairBlocks blocks((count + block - 1) / block);
   parallel_for(
       blocks.size(),
       [&](std::size_t b) {
@@ -51,17 +51,17 @@ Blocks find_pairs(const std::vector<Sphere>& spheres, std::size_t own, const She
 
 void SphereNeighbours::build(const std::vector<Sphere>& spheres, std::size_t own, const ShearingBox& box, double offset,
                              double skin) {
-  Blocks blocks = find_pairs(spheres, own, box, offset, skin);
+  PairBlocks blocks = find_pairs(spheres, own, box, offset, skin);
   first_.assign(spheres.size() + 2, 0); // a counting sort: first_[i + 1] is where the next neighbour of i goes
-  for (const std::vector<Pair>& block : blocks)
-    for (const Pair& pair : block) {
+  for (const std::vector<SpherePair>& block : blocks)
+    for (const SpherePair& pair : block) {
       ++first_[pair.larger + 2];
       ++first_[pair.smaller.sphere + 2];
     }
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
   entries_.resize(first_.back());
-  for (std::vector<Pair>& block : blocks) {
-    for (const Pair& pair : block) {
+  for (std::vector<SpherePair>& block : blocks) {
+    for (const SpherePair& pair : block) {
       entries_[first_[pair.larger + 1]++] = pair.smaller;
       entries_[first_[pair.smaller.sphere + 1]++] = {pair.larger, -pair.smaller.image};
     }

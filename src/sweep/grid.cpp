@@ -25,7 +25,7 @@ constexpr const char* seed_key = "particles.seed";
   throw UsageError(place + ": " + message);
 }
 
-std::string quoted(const std::string& text) {
+std::string in_double_quotes(const std::string& text) {
   std::string out = "\"";
   for (const char c : text)
     out += c == '"' || c == '\\'                  ? fmt::format("\\{}", c)
@@ -97,7 +97,7 @@ private:
   // A value as TOML on one line; files are named relative to the grid.
   std::string toml_of(const toml::node& node, const std::string& path) const {
     if (const auto* const text = node.as_string())
-      return quoted(names_file(path) && !text->get().empty() ? absolute(text->get()) : text->get());
+      return in_double_quotes(names_file(path) && !text->get().empty() ? absolute(text->get()) : text->get());
     if (const auto* const flag = node.as_boolean())
       return flag->get() ? "true" : "false";
     if (const auto* const integer = node.as_integer())
@@ -150,7 +150,7 @@ private:
       fail_at(place(*scene),
               fmt::format("the scene {} is not there (looked for as {}); correct the path, which is relative to this "
                           "file",
-                          quoted(scene->get()), grid_.scene.string()));
+                          in_double_quotes(scene->get()), grid_.scene.string()));
   }
 
   void read_since(const toml::table& table) {
@@ -308,8 +308,8 @@ private:
         return std::find(axis.keys.begin(), axis.keys.end(), x->get()) != axis.keys.end();
       });
       if (!on_axis)
-        fail_at(place(*x),
-                fmt::format("x = {} is no key of an axis (only these change); name one of them", quoted(x->get())));
+        fail_at(place(*x), fmt::format("x = {} is no key of an axis (only these change); name one of them",
+                                       in_double_quotes(x->get())));
     }
     if (const auto* const y = find<std::string>(*plot, "y", "a column of sweep.csv, in quotes")) {
       grid_.plot.y = y->get();

@@ -10,7 +10,7 @@
 namespace keeler {
 namespace {
 
-constexpr double force_error = 1e-2;
+constexpr double growth_force_error = 1e-2;
 constexpr int instants = 3; // of the last orbit, or of the last half of a shorter time
 
 // The same physics, to get somewhere.
@@ -21,7 +21,7 @@ Scene coarse(Scene scene) {
     scene.gravity->kick_every = 1;
     if (scene.gravity->images.far) {
       scene.gravity->solver = GravitySettings::Solver::automatic;
-      scene.gravity->force_error = force_error;
+      scene.gravity->force_error = growth_force_error;
     }
   }
   return scene;

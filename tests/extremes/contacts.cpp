@@ -5,7 +5,7 @@
 namespace keeler::extremes {
 namespace {
 
-std::vector<Row> shown() {
+std::vector<Row> contacts_shown() {
   const std::string extremes = "collision/extremes.cpp", plain = "to the bit as the plain algorithm has it; ";
   return {
       shown_by("grazing contacts, to 1e-13 of a radius", extremes,
@@ -29,7 +29,7 @@ std::vector<Row> shown() {
 } // namespace
 
 std::vector<Subject> contact_subjects() {
-  return {{"contacts", "Contacts", rows::Length::quick, shown}};
+  return {{"contacts", "Contacts", rows::Length::quick, contacts_shown}};
 }
 
 } // namespace keeler::extremes

@@ -16,7 +16,7 @@ namespace {
 using test::Ring;
 using test::Sphere;
 
-constexpr const char* section = "Density and restitution";
+constexpr const char* density_section = "Density and restitution";
 
 std::vector<Row> depths() {
   struct Case {
@@ -139,11 +139,11 @@ std::vector<Row> restitution(double value) {
 
 std::vector<Subject> dense_subjects() {
   using rows::Length;
-  return {{"depths", section, Length::usual, depths},
-          {"lattice", section, Length::usual, lattice},
-          {"jammed", section, Length::usual, jammed},
-          {"elastic", section, Length::usual, [] { return restitution(1.0); }},
-          {"inelastic", section, Length::usual, [] { return restitution(0.0); }}};
+  return {{"depths", density_section, Length::usual, depths},
+          {"lattice", density_section, Length::usual, lattice},
+          {"jammed", density_section, Length::usual, jammed},
+          {"elastic", density_section, Length::usual, [] { return restitution(1.0); }},
+          {"inelastic", density_section, Length::usual, [] { return restitution(0.0); }}};
 }
 
 } // namespace keeler::extremes

@@ -18,7 +18,7 @@
 namespace keeler::extremes {
 namespace {
 
-constexpr const char* section = "Self-gravity";
+constexpr const char* gravity_section = "Self-gravity";
 
 const std::vector<std::string> small_ring = {"particles.count=300", "box.size=[45,45]", "time.end=0.1"};
 
@@ -140,10 +140,10 @@ std::vector<Row> aggregate() {
 
 std::vector<Subject> gravity_subjects() {
   using rows::Length;
-  return {{"no-g", section, Length::quick, without_g},
-          {"oblong-forces", section, Length::usual, oblong_boxes},
-          {"moonlet", section, Length::usual, moonlet},
-          {"aggregate", section, Length::usual, aggregate}};
+  return {{"no-g", gravity_section, Length::quick, without_g},
+          {"oblong-forces", gravity_section, Length::usual, oblong_boxes},
+          {"moonlet", gravity_section, Length::usual, moonlet},
+          {"aggregate", gravity_section, Length::usual, aggregate}};
 }
 
 } // namespace keeler::extremes

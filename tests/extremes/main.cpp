@@ -13,7 +13,7 @@ std::string in_a_cell(std::string text) {
   return text;
 }
 
-rows::Shown shown(const Row& row) {
+rows::Shown shown_row(const Row& row) {
   const rows::Verdict verdict = row.holds ? rows::Verdict::holds : rows::Verdict::fails;
   return {verdict,
           fmt::format("{}: {}, bound {}", row.what, row.measured, row.bound),
@@ -25,7 +25,7 @@ rows::Subject shown(const Subject& subject) {
   return {subject.name, subject.section, subject.length, [subject] {
             std::vector<rows::Shown> all;
             for (const Row& row : subject.measure())
-              all.push_back(shown(row));
+              all.push_back(shown_row(row));
             return all;
           }};
 }

@@ -16,7 +16,7 @@ namespace {
 using test::Ring;
 using test::Sphere;
 
-constexpr const char* section = "Orbits and numbers";
+constexpr const char* orbit_section = "Orbits and numbers";
 constexpr double denormal = std::numeric_limits<double>::denorm_min();
 
 // On circles in one plane, in rows that the shear drives past each other.
@@ -115,11 +115,11 @@ std::vector<Row> least_numbers() {
 
 std::vector<Subject> orbit_subjects() {
   using rows::Length;
-  return {{"circles", section, Length::quick, circular},
-          {"rest", section, Length::usual, at_rest},
-          {"frequencies", section, Length::quick, frequencies},
-          {"frequencies-runs", section, Length::usual, frequencies_of_runs},
-          {"denormals", section, Length::quick, least_numbers}};
+  return {{"circles", orbit_section, Length::quick, circular},
+          {"rest", orbit_section, Length::usual, at_rest},
+          {"frequencies", orbit_section, Length::quick, frequencies},
+          {"frequencies-runs", orbit_section, Length::usual, frequencies_of_runs},
+          {"denormals", orbit_section, Length::quick, least_numbers}};
 }
 
 } // namespace keeler::extremes

@@ -18,7 +18,7 @@ namespace {
 using test::Ring;
 using test::Sphere;
 
-constexpr const char* section = "Scales";
+constexpr const char* scale_section = "Scales";
 
 std::vector<std::string> thin(double step) {
   return {"particles.count=100", "box.size=[80,80]", "time.end=0.3", fmt::format("time.step={}", step)};
@@ -103,7 +103,7 @@ std::vector<Row> large_box() {
   return rows_of(e.state, follow(e.scene, 200, 2), 100);
 }
 
-std::vector<Row> oblong_boxes() {
+std::vector<Row> runs_in_oblong_boxes() {
   std::vector<Row> rows;
   for (const char* size : {"[10,1000]", "[1000,10]"}) {
     const Example e = example(fmt::format("a box of {} radii", size), "equilibrium",
@@ -155,14 +155,14 @@ std::vector<Row> few() {
 
 std::vector<Subject> scale_subjects() {
   using rows::Length;
-  return {{"steps", section, Length::usual, steps},
-          {"long-steps", section, Length::quick, long_steps},
-          {"sizes", section, Length::usual, sizes},
-          {"masses", section, Length::quick, masses},
-          {"small-boxes", section, Length::quick, small_boxes},
-          {"large-box", section, Length::usual, large_box},
-          {"oblong-boxes", section, Length::usual, oblong_boxes},
-          {"few", section, Length::quick, few}};
+  return {{"steps", scale_section, Length::usual, steps},
+          {"long-steps", scale_section, Length::quick, long_steps},
+          {"sizes", scale_section, Length::usual, sizes},
+          {"masses", scale_section, Length::quick, masses},
+          {"small-boxes", scale_section, Length::quick, small_boxes},
+          {"large-box", scale_section, Length::usual, large_box},
+          {"oblong-boxes", scale_section, Length::usual, runs_in_oblong_boxes},
+          {"few", scale_section, Length::quick, few}};
 }
 
 } // namespace keeler::extremes

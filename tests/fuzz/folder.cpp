@@ -16,18 +16,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array names = {"scene.toml",
-                              "series.csv",
-                              "log.jsonl",
-                              "summary.json",
-                              "moonlets.csv",
-                              "collisions_000000.h5",
-                              "impact_speeds.csv",
-                              "snap_000000.hdf",
-                              "checkpoint_000000.h5",
-                              "checkpoint_000001.h5",
-                              "checkpoint_000001.h5.keeler-0123456789abcdef.tmp",
-                              "snap_000001.hdf"};
+constexpr std::array file_names = {"scene.toml",
+                                   "series.csv",
+                                   "log.jsonl",
+                                   "summary.json",
+                                   "moonlets.csv",
+                                   "collisions_000000.h5",
+                                   "impact_speeds.csv",
+                                   "snap_000000.hdf",
+                                   "checkpoint_000000.h5",
+                                   "checkpoint_000001.h5",
+                                   "checkpoint_000001.h5.keeler-0123456789abcdef.tmp",
+                                   "snap_000001.hdf"};
 
 std::map<std::string, std::string> files_in(const fs::path& folder) {
   std::map<std::string, std::string> files;
@@ -84,7 +84,7 @@ void resume_folder(std::string_view input, const fs::path& folder) {
   Draw draw(input);
   const bool further = draw.byte() % 2 == 0;
   while (!draw.empty())
-    change(run / names[draw.below(names.size())], draw);
+    change(run / file_names[draw.below(file_names.size())], draw);
   for (const auto look :
        {+[](const fs::path& path) { view_run(path); }, +[](const fs::path& path) { load_newest_patch(path); }})
     try {

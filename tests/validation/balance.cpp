@@ -8,7 +8,7 @@
 namespace keeler::validation {
 namespace {
 
-constexpr const char* law = "conservation of energy";
+constexpr const char* energy_law = "conservation of energy";
 
 Row balance_row(const std::string& what, const Ran& ran, double since) {
   const Transport t = transport_since(ran, since);
@@ -18,7 +18,7 @@ Row balance_row(const std::string& what, const Ran& ran, double since) {
           .expected = 1.0,
           .tolerance = 0.03,
           .tolerance_is = "several times what rounding and kicks leave open",
-          .source = law,
+          .source = energy_law,
           .command = fmt::format("{}; keeler analyze DIR --since {}", ran.command, since)};
 }
 

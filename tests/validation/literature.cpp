@@ -34,17 +34,6 @@ std::vector<std::string> wakes(double hill, int seed, double orbits) {
 
 namespace {
 
-double mean_since(const Ran& ran, const char* column, double orbit) {
-  const std::vector<double>&values = ran.series.of(column), &orbits = ran.series.of("time_orbits");
-  double sum = 0.0, count = 0.0;
-  for (std::size_t k = 0; k < values.size(); ++k)
-    if (orbits[k] >= orbit) {
-      sum += values[k];
-      count += 1.0;
-    }
-  return sum / count;
-}
-
 std::vector<Row> equilibria() {
   struct Known {
     double depth;

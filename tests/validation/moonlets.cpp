@@ -12,7 +12,7 @@
 namespace keeler::validation {
 namespace {
 
-constexpr double settled = 2.0; // orbits
+constexpr double settled_moonlet = 2.0; // orbits
 
 // ⟨(X(t + lag) − X(t))²⟩ of a moonlet's guiding centre.
 double mean_square_step(const Ran& ran, double lag) {
@@ -20,7 +20,7 @@ double mean_square_step(const Ran& ran, double lag) {
   const auto ahead = static_cast<std::size_t>(std::lround(lag / (orbits[1] - orbits[0])));
   double sum = 0.0, count = 0.0;
   for (std::size_t k = 0; k + ahead < x.size(); ++k)
-    if (orbits[k] >= settled) {
+    if (orbits[k] >= settled_moonlet) {
       sum += (x[k + ahead] - x[k]) * (x[k + ahead] - x[k]);
       count += 1.0;
     }
@@ -40,7 +40,7 @@ std::vector<Row> walk() {
   const Ran collisions = run_example(
       "equilibrium", {"box.size=[200,300]", "moonlet=[{ radius = 25.0, density = 900.0 }]", "time.step=4e-3",
                       "time.end=60", "output.series_every=0.1", "output.snapshot_every=60"});
-  const double wander = std::sqrt(100.0 * mean_square_step(wakes, 1.0)), orbits_seen = 8.0 - settled;
+  const double wander = std::sqrt(100.0 * mean_square_step(wakes, 1.0)), orbits_seen = 8.0 - settled_moonlet;
   const double step = mean_square_step(collisions, 1.0);
   return {{.what = "wander of a moonlet of 25 m in 100 orbits, m, from its steps of one orbit",
            .measured = wander,
@@ -52,7 +52,7 @@ std::vector<Row> walk() {
            .command = wakes.command},
           {.what = "mean square step of a moonlet that only collides, over the impulses of what the shear brings",
            .measured = step / by_impulses(0.5, 1.0, 25.0),
-           .error = step / by_impulses(0.5, 1.0, 25.0) * std::sqrt(2.0 / (60.0 - settled)),
+           .error = step / by_impulses(0.5, 1.0, 25.0) * std::sqrt(2.0 / (60.0 - settled_moonlet)),
            .expected = 1.25,
            .tolerance = 0.75,
            .tolerance_is = "a factor of two, as good as the paper's own estimates are",
@@ -129,7 +129,7 @@ Propeller propeller(std::vector<std::string> overrides, double hill) {
   Propeller found;
   double count = 0.0;
   for (const Patch& patch : ran.snapshots)
-    if (patch.time_orbits > settled - 1e-9) {
+    if (patch.time_orbits > settled_moonlet - 1e-9) {
       const Surroundings around(patch, hill);
       const std::vector<double> beside = around.beside();
       const double lobes = mean_of(around.lobes()), mean = mean_of(beside);

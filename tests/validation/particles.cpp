@@ -10,17 +10,6 @@
 namespace keeler::validation {
 namespace {
 
-double mean_since(const Ran& ran, const char* column, double since) {
-  const std::vector<double>&orbits = ran.series.of("time_orbits"), &values = ran.series.of(column);
-  double sum = 0.0, count = 0.0;
-  for (std::size_t k = 0; k < orbits.size(); ++k)
-    if (orbits[k] >= since) {
-      sum += values[k];
-      count += 1.0;
-    }
-  return sum / count;
-}
-
 // Between contacts the random velocities of a ring are an ellipsoid, 1 : 0.52 : 0.66 there. Contacts come as often as
 // |v| and rub with ⟨|v|³⟩/⟨|v|⟩, which is 6 % more than in a sphere of the same energy.
 std::vector<Row> spins() {

@@ -56,6 +56,9 @@ Ran run_example(const std::string& example, const std::vector<std::string>& over
 /// Keys for self-gravity wakes at a Hill parameter r_h: 8 x 8 critical wavelengths of the A ring, equal spheres of 1 m.
 std::vector<std::string> wakes(double hill, int seed, double orbits);
 
+/// Mean of a column of the series from an orbit on.
+double mean_since(const Ran& ran, const char* column, double orbit);
+
 /// Viscosities and balance from an orbit on.
 Transport transport_since(const Ran& ran, double orbit);
 

@@ -27,6 +27,17 @@ Ran run_example(const std::string& example, const std::vector<std::string>& over
   return ran;
 }
 
+double mean_since(const Ran& ran, const char* column, double orbit) {
+  const std::vector<double>&values = ran.series.of(column), &orbits = ran.series.of("time_orbits");
+  double sum = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (orbits[k] >= orbit) {
+      sum += values[k];
+      count += 1.0;
+    }
+  return sum / count;
+}
+
 Transport transport_since(const Ran& ran, double orbit) {
   return transport(ran.series, RingScale::of(ran.snapshots.back(), false), {.since = orbit, .until = {}});
 }

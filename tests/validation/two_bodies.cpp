@@ -15,7 +15,7 @@
 namespace keeler::validation {
 namespace {
 
-constexpr double omega = 1.3175e-4; // rad/s
+constexpr double a_ring_omega = 1.3175e-4; // rad/s
 
 struct Motion {
   Vec3 place = Vec3::Zero(), velocity = Vec3::Zero(); // of one body from the other, m and m per 1/Ω
@@ -56,7 +56,7 @@ particles = {{ count = {}, density = 900, sizes = {{ law = "equal", radius = 1.0
 gravity = {{ solver = "direct", images = "rings", image_rings = 0, kick_every = 1 }}
 time = {{ step = {}, end = 1000.0 }}
 )",
-                                 omega, side, side, count, step),
+                                 a_ring_omega, side, side, count, step),
                      "two bodies");
 }
 
@@ -75,7 +75,7 @@ void add(Patch& patch, const Motion& motion, double radius, double mass) {
 Patch patch_for(double side) {
   Patch patch;
   patch.box = {side, side, 1.5, 0.0};
-  patch.orbital_frequency = omega;
+  patch.orbital_frequency = a_ring_omega;
   return patch;
 }
 
@@ -83,7 +83,7 @@ Patch patch_for(double side) {
 // from the exact places they end, in Hill radii.
 double passing_error(double step) {
   constexpr double radius = 10.0, grain = 1e-3, orbits = 2.0;
-  const double attraction = newton_g(omega) * mass_of(radius, 900.0), hill = std::cbrt(attraction / 3.0);
+  const double attraction = newton_g(a_ring_omega) * mass_of(radius, 900.0), hill = std::cbrt(attraction / 3.0);
   const double width = 100.0 * hill;
   const Scene scene = without_images(width, 61, step);
   Patch patch = patch_for(width);
@@ -131,7 +131,7 @@ Pair bound_pair(double step) {
   constexpr double side = 100.0;
   const Scene scene = without_images(side, 2, step);
   Patch patch = patch_for(side);
-  const double attraction = 2.0 * newton_g(omega) * mass_of(1.0, 1800.0);
+  const double attraction = 2.0 * newton_g(a_ring_omega) * mass_of(1.0, 1800.0);
   Motion half;
   half.place = {1.05, 0.0, 0.0};
   half.velocity = {0.0, -3.75 * half.place.x(), 0.0};

@@ -1,6 +1,7 @@
 // The numbers that the finder study's report and figures are made of, taken from the measurements.
 #pragma once
 
+#include "json_value.hpp"
 #include "report.hpp"
 #include "step_law.hpp"
 
@@ -11,10 +12,6 @@ namespace keeler {
 
 using Row = std::vector<std::string>;
 using Rows = std::vector<Row>; ///< a table, its head first
-
-inline double of(const Json& json, const std::string& key) {
-  return json.at(key).get<double>();
-}
 
 std::string number(double value);  ///< three digits
 std::string percent(double share); ///< of one

@@ -1,5 +1,7 @@
 #include "report.hpp"
 
+#include "json_value.hpp"
+
 #include <keeler/files/files.hpp>
 #include <keeler/report/gnuplot.hpp>
 
@@ -14,12 +16,8 @@ namespace fs = std::filesystem;
 
 const std::vector<std::string> colours = {"#444444", "#c0392b", "#1f77b4", "#2e8b57", "#e67e22"};
 
-double of(const Json& row, const char* key) {
-  return row.at(key).get<double>();
-}
-
 // One block of a data file, with the columns asked for.
-std::string block(const std::vector<Json>& rows, const std::vector<const char*>& keys) {
+std::string data_block(const std::vector<Json>& rows, const std::vector<const char*>& keys) {
   std::string text;
   for (const Json& row : rows) {
     for (const char* key : keys)
@@ -31,11 +29,11 @@ std::string block(const std::vector<Json>& rows, const std::vector<const char*>&
 
 bool pareto_figure(const GravityStudyData& data, const fs::path& folder) {
   const std::vector<const char*> columns = {"ns_per_particle", "error_rms", "error_p999"};
-  std::string blocks = block(pareto_front(data.bench.at("rows")), columns);
+  std::string blocks = data_block(pareto_front(data.bench.at("rows")), columns);
   std::string curves = "'pareto.dat' index 0 using 1:2 with points pt 6 ps 2.5 lw 2 lc rgb '#999999' title 'front'";
   const std::vector<std::string> solvers = data.solvers();
   for (std::size_t k = 0; k < solvers.size(); ++k) {
-    blocks += block(data.rows_of(solvers[k]), columns);
+    blocks += data_block(data.rows_of(solvers[k]), columns);
     const std::string& colour = colours[k % colours.size()];
     curves += fmt::format(", '' index {0} using 1:2 with linespoints lw 2 pt 7 lc rgb '{1}' title '{2}, rms', '' index "
                           "{0} using 1:3 with lines lw 1 dt 2 lc rgb '{1}' title '{2}, 99.9 %'",
@@ -59,7 +57,7 @@ bool convergence_figure(const GravityStudyData& data, const fs::path& folder) {
     const std::string parameter = rows.front().at("parameter").get<std::string>();
     if (parameter.empty())
       continue;
-    blocks += block(rows, {"value", "error_rms", "error_p999", "edge_pull", "net_force"});
+    blocks += data_block(rows, {"value", "error_rms", "error_p999", "edge_pull", "net_force"});
     std::string curves;
     const char* const titles[] = {"rms", "99.9 %", "edge pull", "net force"};
     for (int k = 0; k < 4; ++k)

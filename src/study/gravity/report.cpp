@@ -1,5 +1,6 @@
 #include "report.hpp"
 
+#include "json_value.hpp"
 #include "runs.hpp"
 #include "study_folder.hpp"
 
@@ -19,10 +20,6 @@ namespace {
 
 using Row = std::vector<std::string>;
 using Rows = std::vector<Row>;
-
-double of(const Json& json, const char* key) {
-  return json.at(key).get<double>();
-}
 
 std::string text_of(const Json& json, const char* key) {
   return json.at(key).get<std::string>();

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t run_particles = 3750; // 2.5 λ_cr square
 constexpr int common_interval = 5;          // of all solvers: the sum over all pairs is dear
-constexpr int intervals[] = {1, 2, 5, 10};
-constexpr long block = 10;                               // steps: whole kick intervals of all
+constexpr int kick_intervals[] = {1, 2, 5, 10};
+constexpr long block_steps = 10;                         // steps: whole kick intervals of all
 constexpr double start_share = 0.375, forgetting = 0.25; // of the orbits measured
 constexpr double snapshots_per_orbit = 10.0;
 
@@ -27,10 +27,10 @@ GravityChoice with_interval(GravityChoice choice, int kick_every) {
 
 // Whole blocks, at least one.
 long steps_of(double orbits, const Scene& scene) {
-  return block * std::max(1L, std::lround(orbits / (scene.time.step * block)));
+  return block_steps * std::max(1L, std::lround(orbits / (scene.time.step * block_steps)));
 }
 
-void advance(Simulation& simulation, long steps) {
+void advance_steps(Simulation& simulation, long steps) {
   for (long k = 0; k < steps; ++k)
     simulation.advance();
 }
@@ -45,7 +45,7 @@ std::vector<GravityChoice> gravity_run_choices() {
   std::vector<GravityChoice> choices;
   for (const std::string& solver : gravity_solver_names())
     choices.push_back(with_interval(default_gravity_choice(solver), common_interval));
-  for (const int interval : intervals)
+  for (const int interval : kick_intervals)
     if (interval != common_interval)
       choices.push_back(with_interval(default_gravity_choice("tree"), interval));
   return choices;
@@ -65,7 +65,7 @@ std::vector<std::pair<std::string, std::string>> gravity_run_comparisons() {
   for (const std::string& solver : gravity_solver_names())
     if (solver != "direct")
       pairs.emplace_back(label(solver, common_interval), label("direct", common_interval));
-  for (const int interval : intervals)
+  for (const int interval : kick_intervals)
     if (interval != 1)
       pairs.emplace_back(label("tree", interval), label("tree", 1));
   return pairs;
@@ -97,14 +97,14 @@ Json gravity_run(const RunStart& start, const GravityChoice& choice, double orbi
   Scene scene = start.scene;
   scene.gravity = choice.settings;
   Simulation simulation(scene, start.patch);
-  advance(simulation, steps_of(forgetting * orbits, scene));
+  advance_steps(simulation, steps_of(forgetting * orbits, scene));
   const CollisionTally before = simulation.state().collisions;
   const double residual_before = simulation.balance().residual;
   const long steps = steps_of(orbits, scene), every = steps_of(1.0 / snapshots_per_orbit, scene);
   std::vector<Patch> patches;
-  for (long done = 0; done < steps; done += block) {
-    advance(simulation, block);
-    if ((done + block) % every == 0 || done + block == steps)
+  for (long done = 0; done < steps; done += block_steps) {
+    advance_steps(simulation, block_steps);
+    if ((done + block_steps) % every == 0 || done + block_steps == steps)
       patches.push_back(simulation.patch());
   }
   const Analysis a = analyze(patches);

@@ -15,8 +15,8 @@
 namespace keeler {
 namespace {
 
-constexpr Frequencies frequencies{1.0, 1.0};
-constexpr double orbital_frequency = 1.95e-4; // rad/s; a constant restitution does not see it
+constexpr Frequencies unit_frequencies{1.0, 1.0};
+constexpr double ring_frequency = 1.95e-4; // rad/s; a constant restitution does not see it
 
 struct Ring {
   Particles particles;
@@ -27,8 +27,8 @@ struct Ring {
 Ring make_ring(const PerturbedRing& settings, double step) {
   const double side = std::sqrt(pi * static_cast<double>(settings.count) / settings.optical_depth);
   UniformRequest request;
-  request.box = {side, side, frequencies.shear(), 0.0};
-  request.frequencies = frequencies;
+  request.box = {side, side, unit_frequencies.shear(), 0.0};
+  request.frequencies = unit_frequencies;
   request.radii.assign(settings.count, 1.0);
   request.dispersion_x = settings.dispersion;
   request.dispersion_z = 0.65 * settings.dispersion; // as in equilibria without self-gravity
@@ -51,11 +51,11 @@ std::complex<double> pattern_amplitude(const Ring& ring, double epoch) {
 // pattern, the other half turns against it and comes to nothing in the mean over X.
 void drive(Ring& ring, double epoch, double step) {
   const std::complex<double> missing = ring.pattern.eccentricity - pattern_amplitude(ring, epoch);
-  const Rotation start(frequencies, -0.5 * step);
+  const Rotation start(unit_frequencies, -0.5 * step);
   for (Body& body : ring.particles.bodies) {
     const double phase = epoch - 0.5 * step + ring.pattern.wave_number * body.elements.guiding_x;
     const double impulse = 2.0 * std::imag(missing * std::polar(1.0, phase));
-    kick(body.elements, Vec3(impulse, 0.0, 0.0), frequencies, start);
+    kick(body.elements, Vec3(impulse, 0.0, 0.0), unit_frequencies, start);
   }
 }
 
@@ -77,8 +77,8 @@ public:
   void collided(const CollisionRecord& record) override { time_ = record.time; }
 
   void changed(std::size_t k) override {
-    const State first = state_at(orbits_[k], frequencies, Rotation(frequencies, since_[k]));
-    const State now = state_at(orbits_[k], frequencies, Rotation(frequencies, time_));
+    const State first = state_at(orbits_[k], unit_frequencies, Rotation(unit_frequencies, since_[k]));
+    const State now = state_at(orbits_[k], unit_frequencies, Rotation(unit_frequencies, time_));
     const Vec3 beside = first.position + (time_ - since_[k]) * first.velocity - now.position;
     guiding_x += 4.0 * beside.x();
     vertical += beside.z() * std::sin(epoch + time_);
@@ -100,11 +100,11 @@ public:
     CollisionSettings settings;
     settings.restitution = constant_restitution(ring.restitution);
     if (path == straight_path || path == control_path) {
-      straight_.emplace(settings, frequencies, orbital_frequency, step);
+      straight_.emplace(settings, unit_frequencies, ring_frequency, step);
       return;
     }
     settings.finder = path;
-    curved_.emplace(settings, frequencies, orbital_frequency, step);
+    curved_.emplace(settings, unit_frequencies, ring_frequency, step);
     curved_->observe(&forecast);
   }
 
@@ -165,7 +165,7 @@ Drift perturbed_ring_drift(const PerturbedRing& request, const std::string& path
   const auto steps = std::llround(settings.orbits / settings.step_orbits);
   Ring ring = make_ring(settings, step);
   Mover mover(settings, path, step);
-  const Rebase rebase(frequencies, step);
+  const Rebase rebase(unit_frequencies, step);
   const Means first = means_of(ring, 0.5 * step);
   Drift drift;
   std::int64_t wraps = 0;

@@ -6,6 +6,8 @@
 
 #include <memory>
 
+namespace claims_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -26,3 +28,5 @@ TEST_CASE("a name is claimed by one at a time, and free again when its claimant 
   Claims third(work / "claims");
   CHECK_FALSE(third.take("b"));
 }
+
+} // namespace claims_test

@@ -7,6 +7,8 @@
 
 #include <set>
 
+namespace quantities_test {
+
 using namespace keeler;
 
 TEST_CASE("every number of a batch has a name of its own; docs/formats.md has the table") {
@@ -21,3 +23,5 @@ TEST_CASE("every number of a batch has a name of its own; docs/formats.md has th
   INFO("docs/formats.md must hold this table:\n" << table);
   CHECK(page.find(table) != page.npos);
 }
+
+} // namespace quantities_test

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+namespace drift_test {
+
 using namespace keeler;
 
 TEST_CASE("the bench times an equilibrium") {
@@ -23,3 +25,5 @@ TEST_CASE("the bench times an equilibrium") {
   CHECK(all.calls_per_particle_step > 10.0 * few.calls_per_particle_step);
   CHECK(all.timed.collisions == few.timed.collisions); // the same collisions
 }
+
+} // namespace drift_test

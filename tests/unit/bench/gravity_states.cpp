@@ -11,6 +11,8 @@
 
 #include <doctest/doctest.h>
 
+namespace gravity_states_test {
+
 using namespace keeler;
 
 namespace {
@@ -78,3 +80,5 @@ TEST_CASE("every gravity solver on the list is found by its name") {
       CHECK_FALSE(choice.text.empty());
     }
 }
+
+} // namespace gravity_states_test

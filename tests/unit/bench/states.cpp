@@ -8,6 +8,8 @@
 
 #include <algorithm>
 
+namespace states_test {
+
 using namespace keeler;
 
 namespace {
@@ -63,3 +65,5 @@ TEST_CASE("sizes of a bench") {
     CHECK_THROWS_AS(state_of(BenchSizes::moonlet, 1000, 5.0), UsageError);
   }
 }
+
+} // namespace states_test

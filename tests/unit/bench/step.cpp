@@ -9,6 +9,8 @@
 
 #include <doctest/doctest.h>
 
+namespace step_test {
+
 using namespace keeler;
 
 namespace {
@@ -124,3 +126,5 @@ TEST_CASE("settings of gravity are named after what they do") {
   settings.solver = GravitySettings::Solver::mesh;
   CHECK(choice_of(settings, 1000).text == "mesh_spacing 1.6");
 }
+
+} // namespace step_test

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+namespace shearing_box_test {
+
 using namespace keeler;
 
 TEST_CASE("the shear offset is exact after any number of steps") {
@@ -74,3 +76,5 @@ TEST_CASE("a free particle wraps 10^6 times without loss") {
   CHECK(el.i_sin == first.i_sin);
   CHECK(el.i_cos == first.i_cos);
 }
+
+} // namespace shearing_box_test

@@ -7,6 +7,8 @@
 #include <set>
 #include <tuple>
 
+namespace grid_test {
+
 using namespace keeler;
 
 TEST_CASE("a query visits exactly the images inside its window, each once") {
@@ -38,3 +40,5 @@ TEST_CASE("a query visits exactly the images inside its window, each once") {
     }
   }
 }
+
+} // namespace grid_test

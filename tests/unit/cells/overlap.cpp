@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace overlap_test {
+
 using namespace keeler;
 
 namespace {
@@ -43,3 +45,5 @@ TEST_CASE("the largest overlap is that of all pairs and images") {
   }
   CHECK(largest_overlap(Patch{}).depth == 0.0);
 }
+
+} // namespace overlap_test

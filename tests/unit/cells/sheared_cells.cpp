@@ -8,6 +8,8 @@
 #include <set>
 #include <tuple>
 
+namespace sheared_cells_test {
+
 using namespace keeler;
 
 TEST_CASE("a walk meets every point of a window whose height changes from column to column, and no cell twice") {
@@ -43,3 +45,5 @@ TEST_CASE("a walk meets every point of a window whose height changes from column
     }
   }
 }
+
+} // namespace sheared_cells_test

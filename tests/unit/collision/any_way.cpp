@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+namespace any_way_test {
+
 using namespace keeler;
 using test::Ring;
 using test::Scenario;
@@ -212,3 +214,5 @@ end = 1.0
   }
   set_threads(before);
 }
+
+} // namespace any_way_test

@@ -9,6 +9,8 @@
 
 #include <doctest/doctest.h>
 
+namespace audit_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -103,3 +105,5 @@ TEST_CASE("the plain search rules nobody out by the guiding centre of whom an im
   CHECK(near > 5000);
   CHECK(ruled_out > 3000);
 }
+
+} // namespace audit_test

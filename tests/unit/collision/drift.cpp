@@ -10,6 +10,8 @@
 
 #include <doctest/doctest.h>
 
+namespace drift_test {
+
 using namespace keeler;
 
 namespace {
@@ -256,3 +258,5 @@ TEST_CASE("a state of perfectly inelastic spheres runs") {
   }
   CHECK(tally.fast > 100);
 }
+
+} // namespace drift_test

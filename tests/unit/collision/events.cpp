@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <vector>
 
+namespace events_test {
+
 using namespace keeler;
 
 namespace {
@@ -105,3 +107,5 @@ TEST_CASE("of the events known at the start it tells which come up, and of no ot
   CHECK(queue.ahead(0) == nullptr);
   CHECK(queue.empty());
 }
+
+} // namespace events_test

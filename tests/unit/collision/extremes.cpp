@@ -6,6 +6,8 @@
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
 
+namespace extremes_test {
+
 using namespace keeler;
 using test::Ring;
 using test::Scenario;
@@ -327,3 +329,5 @@ TEST_CASE("a storm of contacts ends with a message, not in a hang") {
     CHECK(text.find("collisions.elastic_below") != std::string::npos);
   }
 }
+
+} // namespace extremes_test

@@ -5,6 +5,8 @@
 
 #include <keeler/core/threads.hpp>
 
+namespace far_and_fast_test {
+
 using namespace keeler;
 using test::RandomVectors;
 using test::Ring;
@@ -233,3 +235,5 @@ TEST_CASE("the same bits as the plain twin: everything drawn at random") {
   CHECK(collisions > 20000);
   CHECK(images > 8000);
 }
+
+} // namespace far_and_fast_test

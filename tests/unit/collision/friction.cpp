@@ -8,6 +8,8 @@
 
 #include <cmath>
 
+namespace friction_test {
+
 using namespace keeler;
 
 namespace {
@@ -32,7 +34,7 @@ private:
 };
 
 // Everything about two spheres before and after a contact, in the rotating frame, a at the origin.
-struct Pair {
+struct SpherePair {
   Body a, b;
   Vec3 normal, velocity_a, velocity_b, spin_a, spin_b;
 
@@ -65,8 +67,8 @@ struct Pair {
   }
 };
 
-Pair random_pair(Draw& draw) {
-  Pair pair;
+SpherePair random_pair(Draw& draw) {
+  SpherePair pair;
   pair.a.radius = draw.uniform(0.1, 3.0);
   pair.b.radius = draw.uniform(0.1, 3.0);
   pair.a.mass = draw.uniform(0.1, 10.0);
@@ -85,8 +87,8 @@ TEST_CASE("a rough contact: the slip becomes eps_t of it; momenta stay and the l
   Draw draw(1);
   for (int k = 0; k < 1000; ++k) {
     const double restitution = draw.uniform(-1.0, 1.0);
-    Pair pair = random_pair(draw);
-    const Pair before = pair;
+    SpherePair pair = random_pair(draw);
+    const SpherePair before = pair;
     const Sliding sliding = slide({.tangential_restitution = restitution}, pair.touch(), 1.0);
     pair.apply(sliding.impulse, true);
     CHECK((pair.slip() - restitution * before.slip()).norm() < 1e-13 * (1.0 + before.slip().norm()));
@@ -102,8 +104,8 @@ TEST_CASE("Coulomb's law holds the impulse back, and the loss with it") {
   Draw draw(2);
   int sliding_pairs = 0;
   for (int k = 0; k < 1000; ++k) {
-    Pair pair = random_pair(draw);
-    const Pair before = pair;
+    SpherePair pair = random_pair(draw);
+    const SpherePair before = pair;
     const Friction rough{.tangential_restitution = 0.0}, limited{.tangential_restitution = 0.0, .coefficient = 0.3};
     const double normal_impulse = draw.uniform(0.1, 3.0);
     const Sliding free = slide(rough, pair.touch(), normal_impulse),
@@ -119,7 +121,7 @@ TEST_CASE("Coulomb's law holds the impulse back, and the loss with it") {
 }
 
 TEST_CASE("spheres that roll on each other in the rotating frame do not rub") {
-  Pair pair;
+  SpherePair pair;
   pair.a = {{}, 1.0, 2.0};
   pair.b = {{}, 0.5, 3.0};
   pair.normal = Vec3(0.6, 0.8, 0.0);
@@ -142,7 +144,7 @@ TEST_CASE("spins of a thin rough ring: E_rot/E_kin = 2(1 - eps_t)/(14 - 5(1 - ep
     const auto gain = [&](double spins) {
       double sum = 0.0, weights = 0.0, exchanged = 0.0;
       for (int k = 0; k < 400000; ++k) {
-        Pair pair;
+        SpherePair pair;
         pair.a = pair.b = {{}, 1.0, 1.0};
         pair.normal = Vec3::UnitX();
         pair.velocity_a = draw.normals();
@@ -168,3 +170,5 @@ TEST_CASE("spins of a thin rough ring: E_rot/E_kin = 2(1 - eps_t)/(14 - 5(1 - ep
     CHECK(gain(1.1 * spin) < -0.02);
   }
 }
+
+} // namespace friction_test

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+namespace kernels_test {
+
 using namespace keeler;
 
 namespace {
@@ -247,3 +249,5 @@ TEST_CASE("of a list of pairs those are kept, in their order, of which one line 
   CHECK(contacts > 5000);
   CHECK(given > 2 * kept);
 }
+
+} // namespace kernels_test

@@ -15,6 +15,8 @@
 #include <limits>
 #include <vector>
 
+namespace kernels_follow_test {
+
 using namespace keeler;
 
 namespace {
@@ -243,3 +245,5 @@ TEST_CASE("whoever is not finite leaves its reference, and nobody beside it") {
         body = before;
       }
 }
+
+} // namespace kernels_follow_test

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+namespace line_cells_test {
+
 using namespace keeler;
 
 namespace {
@@ -179,3 +181,5 @@ TEST_CASE("a line that would reach around the box is told, be it there from the 
   sorted.cells.build(sorted.lines, sorted.box, 0.0, sorted.half, 0.025);
   CHECK_FALSE(sorted.cells.one_image());
 }
+
+} // namespace line_cells_test

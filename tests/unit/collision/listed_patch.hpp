@@ -18,9 +18,9 @@
 namespace keeler::test {
 
 // A pair that may touch: places, the lower first, and the image of the higher.
-using Pair = std::tuple<std::size_t, std::size_t, std::int32_t, std::int32_t>;
+using FoundPair = std::tuple<std::size_t, std::size_t, std::int32_t, std::int32_t>;
 
-inline Pair pair_of(std::size_t i, std::size_t j, const Image& image) {
+inline FoundPair pair_of(std::size_t i, std::size_t j, const Image& image) {
   const Image of_higher = i < j ? image : -image;
   return {std::min(i, j), std::max(i, j), of_higher.nx, of_higher.ny};
 }
@@ -39,7 +39,7 @@ struct Setting {
 };
 
 // A patch that drifts as in a run. Spheres may overlap: nobody asks when they touch.
-struct Patch {
+struct ListedPatch {
   Setting setting;
   RandomStream random;
   Particles particles;
@@ -49,7 +49,7 @@ struct Patch {
   NeighbourLists lists;
   std::vector<std::uint32_t> buffer;
 
-  Patch(const Setting& s, std::uint64_t seed)
+  ListedPatch(const Setting& s, std::uint64_t seed)
       : setting(s), random(seed, RandomPurpose::position, 0), lists(s.frequencies, s.step) {
     double area = 0.0;
     for (std::size_t k = 0; k < s.count; ++k) {
@@ -126,16 +126,16 @@ struct Patch {
   }
 
   // Through images beside the nearest, too, where it takes too long now and then only.
-  std::vector<Pair> all_pairs() const {
-    std::vector<Pair> all;
+  std::vector<FoundPair> all_pairs() const {
+    std::vector<FoundPair> all;
     const int far = steps % 8 == 0 ? 1 : 0;
     for (std::size_t i = 0; i < particles.size(); ++i)
       for (std::size_t j = i + 1; j < particles.size(); ++j)
         visit_images(i, j, -half(), far, [&](const Image& image) { all.push_back(pair_of(i, j, image)); });
     return all;
   }
-  std::vector<Pair> visited(const NeighbourLists& by) const {
-    std::vector<Pair> all;
+  std::vector<FoundPair> visited(const NeighbourLists& by) const {
+    std::vector<FoundPair> all;
     for (std::size_t block = 0; block < by.blocks(); ++block)
       by.visit_block(block,
                      [&](std::size_t i, std::size_t j, const Image& image) { all.push_back(pair_of(i, j, image)); });
@@ -143,16 +143,16 @@ struct Patch {
     return all;
   }
 
-  std::vector<Pair> all_partners(std::size_t i, double start, int far = 0) const {
-    std::vector<Pair> all;
+  std::vector<FoundPair> all_partners(std::size_t i, double start, int far = 0) const {
+    std::vector<FoundPair> all;
     for (std::size_t j = 0; j < particles.size(); ++j)
       if (j != i)
         visit_images(i, j, start, far, [&](const Image& image) { all.push_back(pair_of(i, j, image)); });
     std::sort(all.begin(), all.end());
     return all;
   }
-  std::vector<Pair> visited_partners(std::size_t i, double start) {
-    std::vector<Pair> all;
+  std::vector<FoundPair> visited_partners(std::size_t i, double start) {
+    std::vector<FoundPair> all;
     const auto take = [&](std::size_t j, const Image& image) { all.push_back(pair_of(i, j, image)); };
     if (lists.reaches_far())
       lists.visit_everywhere(i, start, take);
@@ -163,7 +163,7 @@ struct Patch {
   }
 };
 
-inline bool once_each(const std::vector<Pair>& sorted) {
+inline bool once_each(const std::vector<FoundPair>& sorted) {
   return std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
 }
 
@@ -187,12 +187,12 @@ struct Seen {
 };
 
 // What a step begins with, told exactly and not.
-inline void check_begin(Patch& patch, Seen& seen) {
-  const std::vector<Pair> expected = patch.all_pairs();
+inline void check_begin(ListedPatch& patch, Seen& seen) {
+  const std::vector<FoundPair> expected = patch.all_pairs();
   patch.lists.visit_exactly(true);
   CHECK((patch.visited(patch.lists) == expected));
   patch.lists.visit_exactly(false);
-  const std::vector<Pair> more = patch.visited(patch.lists);
+  const std::vector<FoundPair> more = patch.visited(patch.lists);
   CHECK(once_each(more));
   CHECK(std::includes(more.begin(), more.end(), expected.begin(), expected.end()));
   patch.lists.visit_exactly(true);
@@ -202,7 +202,7 @@ inline void check_begin(Patch& patch, Seen& seen) {
 }
 
 // Pairs are hit at random times, some particles again and again; whoever is hit, and anybody else, finds its partners.
-inline void hit_some(Patch& patch, Seen& seen) {
+inline void hit_some(ListedPatch& patch, Seen& seen) {
   const std::size_t count = patch.particles.size();
   std::vector<double> times(static_cast<std::size_t>(0.5 * patch.setting.hits * static_cast<double>(count)));
   for (double& time : times)
@@ -217,7 +217,7 @@ inline void hit_some(Patch& patch, Seen& seen) {
       touched.push_back(static_cast<std::uint32_t>(i));
     }
     for (const std::size_t i : {both[0], both[1], patch.below(count)}) {
-      const std::vector<Pair> expected = patch.all_partners(i, time);
+      const std::vector<FoundPair> expected = patch.all_partners(i, time);
       CAPTURE(i);
       CAPTURE(time);
       CHECK((patch.visited_partners(i, time) == expected));
@@ -231,13 +231,13 @@ inline void hit_some(Patch& patch, Seen& seen) {
   patch.lists.touched(touched);
 }
 
-inline void kick_all(Patch& patch) {
+inline void kick_all(ListedPatch& patch) {
   for (std::size_t i = 0; i < patch.particles.size(); ++i)
     patch.change_velocity(i, -patch.half(), patch.random_velocity(0.02 * patch.setting.heat));
   patch.undisturbed = false;
 }
 
-inline void drift(Patch& patch, int steps, Seen& seen) {
+inline void drift(ListedPatch& patch, int steps, Seen& seen) {
   for (int step = 0; step < steps; ++step) {
     CAPTURE(patch.steps);
     REQUIRE(patch.begin());

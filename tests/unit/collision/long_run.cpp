@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace long_run_test {
+
 using namespace keeler;
 
 TEST_CASE("10^5 orbits without drift of phase or mean X") {
@@ -42,3 +44,5 @@ TEST_CASE("10^5 orbits without drift of phase or mean X") {
   // roundings of 3e-16 or so, some to a collision, that walk
   CHECK(std::fabs(std::remainder(sum() - start, ring.box.size_x)) < 5e-15 * std::sqrt(collisions));
 }
+
+} // namespace long_run_test

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+namespace many_steps_test {
+
 using namespace keeler;
 using test::Ring;
 using test::Scenario;
@@ -311,3 +313,5 @@ end = 1.0
     CHECK(collisions > 100);
   }
 }
+
+} // namespace many_steps_test

@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+namespace neighbour_lists_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -38,7 +40,7 @@ TEST_CASE("at every step, and after every hit, the lists visit whoever may touch
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
       CAPTURE(s);
       CAPTURE(seed);
-      Patch patch(settings[s], seed);
+      ListedPatch patch(settings[s], seed);
       drift(patch, 48, seen);
       built += patch.lists.built;
       anew += patch.lists.listed_anew;
@@ -54,7 +56,7 @@ TEST_CASE("at every step, and after every hit, the lists visit whoever may touch
 namespace {
 
 // What may happen to a patch besides drift, hits and kicks, for each of which nothing need be as it was.
-void change_places(Patch& patch, std::size_t swaps) {
+void change_places(ListedPatch& patch, std::size_t swaps) {
   for (std::size_t k = 0; k < swaps; ++k) {
     const std::size_t a = patch.below(patch.particles.size()), b = patch.below(patch.particles.size());
     std::swap(patch.particles.bodies[a], patch.particles.bodies[b]);
@@ -62,7 +64,7 @@ void change_places(Patch& patch, std::size_t swaps) {
   }
 }
 
-void carry_off(Patch& patch, std::size_t number) {
+void carry_off(ListedPatch& patch, std::size_t number) {
   for (std::size_t k = 0; k < number; ++k) {
     Elements& el = patch.particles.bodies[patch.below(patch.particles.size())].elements;
     el.guiding_x = patch.centred(patch.box.size_x);
@@ -70,13 +72,13 @@ void carry_off(Patch& patch, std::size_t number) {
   }
 }
 
-void grow(Patch& patch, std::size_t number) {
+void grow(ListedPatch& patch, std::size_t number) {
   for (std::size_t k = 0; k < number; ++k)
     patch.particles.bodies[patch.below(patch.particles.size())].radius *= 1.7;
 }
 
 // Some come and some go.
-void replace_some(Patch& patch, std::size_t number) {
+void replace_some(ListedPatch& patch, std::size_t number) {
   Particles& particles = patch.particles;
   for (std::size_t k = 0; k < number; ++k)
     if (particles.size() > patch.setting.count) {
@@ -96,7 +98,7 @@ TEST_CASE("who is carried off, grows, changes places, comes or goes between step
   std::uint64_t built = 0, anew = 0;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     CAPTURE(seed);
-    Patch patch({.count = 200, .ratio = seed % 2 ? 1.0 : 10.0, .heat = 0.3, .step = 0.01, .hits = 0.05}, seed);
+    ListedPatch patch({.count = 200, .ratio = seed % 2 ? 1.0 : 10.0, .heat = 0.3, .step = 0.01, .hits = 0.05}, seed);
     for (int change = 0; change < 20; ++change) {
       CAPTURE(change);
       drift(patch, 2, seen);
@@ -129,7 +131,7 @@ TEST_CASE("who is carried off, grows, changes places, comes or goes between step
 }
 
 TEST_CASE("a hit that changes nothing lists nobody anew, at an edge of the box neither") {
-  Patch patch({.count = 200, .heat = 0.5, .step = 0.01, .hits = 0.0}, 1);
+  ListedPatch patch({.count = 200, .heat = 0.5, .step = 0.01, .hits = 0.0}, 1);
   Seen seen;
   for (int step = 0; step < 40; ++step) {
     drift(patch, 1, seen);
@@ -148,7 +150,7 @@ TEST_CASE("a hit that changes nothing lists nobody anew, at an edge of the box n
 TEST_CASE("when particles go, so does what was known of their next steps") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
-    Patch patch({.count = 200, .heat = 0.01, .step = 0.005, .hits = 0.0}, seed);
+    ListedPatch patch({.count = 200, .heat = 0.01, .step = 0.005, .hits = 0.0}, seed);
     Seen seen;
     drift(patch, 9, seen); // windows are several steps long
     REQUIRE(patch.begin());
@@ -170,14 +172,14 @@ TEST_CASE("thousands of particles have the same lists and pairs for any number o
   std::size_t pairs = 0;
   for (const double ratio : {1.0, 10.0}) {
     const Setting setting{.count = 3500, .ratio = ratio, .heat = 0.5, .hits = 0.02, .kick_each = 3};
-    Patch one(setting, 1), three(setting, 1);
+    ListedPatch one(setting, 1), three(setting, 1);
     for (int step = 0; step < 10; ++step) {
       CAPTURE(step);
       set_threads(1);
       REQUIRE(one.begin());
       set_threads(3);
       REQUIRE(three.begin());
-      const std::vector<Pair> found = one.visited(one.lists);
+      const std::vector<FoundPair> found = one.visited(one.lists);
       CHECK((three.visited(three.lists) == found));
       pairs += found.size();
       if (step == 4)
@@ -188,7 +190,7 @@ TEST_CASE("thousands of particles have the same lists and pairs for any number o
                                           three.lists.list(i).begin(), three.lists.list(i).end());
       CHECK(different == 0);
       Seen seen;
-      for (Patch* patch : {&one, &three}) {
+      for (ListedPatch* patch : {&one, &three}) {
         hit_some(*patch, seen);
         patch->move_on();
         if (step % 3 == 2)
@@ -203,7 +205,7 @@ TEST_CASE("thousands of particles have the same lists and pairs for any number o
 }
 
 TEST_CASE("when a hit makes somebody so fast that it may meet others through several images, all are looked through") {
-  Patch patch({.count = 120, .step = 0.05, .hits = 0.1}, 1);
+  ListedPatch patch({.count = 120, .step = 0.05, .hits = 0.1}, 1);
   Seen seen;
   drift(patch, 3, seen);
   REQUIRE(patch.begin());
@@ -212,7 +214,7 @@ TEST_CASE("when a hit makes somebody so fast that it may meet others through sev
   CHECK(patch.lists.reaches_far());
   std::size_t partners = 0, through_several = 0;
   for (const std::size_t i : {std::size_t{7}, std::size_t{3}, std::size_t{100}}) {
-    const std::vector<Pair> expected = patch.all_partners(i, 0.0, 30);
+    const std::vector<FoundPair> expected = patch.all_partners(i, 0.0, 30);
     CHECK((patch.visited_partners(i, 0.0) == expected));
     partners += expected.size();
     for (std::size_t k = 1; k < expected.size(); ++k)
@@ -232,7 +234,7 @@ TEST_CASE("when a hit makes somebody so fast that it may meet others through sev
 }
 
 TEST_CASE("when a hit makes somebody too fast for the life of the lists, all are made anew for the step alone") {
-  Patch patch({.count = 400, .step = 0.05, .hits = 0.1}, 1);
+  ListedPatch patch({.count = 400, .step = 0.05, .hits = 0.1}, 1);
   Seen seen;
   drift(patch, 3, seen);
   REQUIRE(patch.begin());
@@ -242,7 +244,7 @@ TEST_CASE("when a hit makes somebody too fast for the life of the lists, all are
   REQUIRE_FALSE(patch.lists.reaches_far());
   std::size_t partners = 0;
   for (std::size_t i = 0; i < patch.particles.size(); ++i) {
-    const std::vector<Pair> expected = patch.all_partners(i, 0.0, 1);
+    const std::vector<FoundPair> expected = patch.all_partners(i, 0.0, 1);
     CHECK((patch.visited_partners(i, 0.0) == expected));
     partners += expected.size();
   }
@@ -256,7 +258,7 @@ TEST_CASE("when a hit makes somebody too fast for the life of the lists, all are
 }
 
 TEST_CASE("in a box so large that places are rounded by more than the slack, neighbours are found") {
-  Patch patch({.count = 60, .depth = 2e-16, .hits = 0.2}, 1);
+  ListedPatch patch({.count = 60, .depth = 2e-16, .hits = 0.2}, 1);
   for (Body& body : patch.particles.bodies) { // a clump
     body.elements.guiding_x = patch.centred(20.0);
     body.elements.guiding_y = patch.centred(20.0);
@@ -268,7 +270,7 @@ TEST_CASE("in a box so large that places are rounded by more than the slack, nei
 
 TEST_CASE("elements that are not finite are told, when the lists are made and later") {
   for (const int steps : {0, 1, 3}) {
-    Patch patch({.count = 100}, 1);
+    ListedPatch patch({.count = 100}, 1);
     Seen seen;
     drift(patch, steps, seen);
     patch.particles.bodies[40].elements.e_sin = std::numeric_limits<double>::quiet_NaN();
@@ -279,7 +281,7 @@ TEST_CASE("elements that are not finite are told, when the lists are made and la
 
 TEST_CASE("of nobody, and of one particle, there are no pairs") {
   for (const std::size_t count : {0, 1}) {
-    Patch patch({.count = 100}, 1);
+    ListedPatch patch({.count = 100}, 1);
     patch.particles.bodies.resize(count);
     patch.particles.ids.resize(count);
     for (int step = 0; step < 20; ++step) {
@@ -292,3 +294,5 @@ TEST_CASE("of nobody, and of one particle, there are no pairs") {
     }
   }
 }
+
+} // namespace neighbour_lists_test

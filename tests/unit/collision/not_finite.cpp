@@ -10,6 +10,8 @@
 #include <cmath>
 #include <limits>
 
+namespace not_finite_test {
+
 using namespace keeler;
 using test::Ring;
 using test::Sphere;
@@ -100,3 +102,5 @@ solver = ")") + solver + "\"\nkick_every = 1\n[time]\nstep = 1e-3\nend = 1.0\n",
       REQUIRE_THROWS_AS(again.advance(), InvariantError);
     }
 }
+
+} // namespace not_finite_test

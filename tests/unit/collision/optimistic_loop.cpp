@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace optimistic_loop_test {
+
 using namespace keeler;
 
 namespace {
@@ -102,3 +104,5 @@ TEST_CASE("what domains did is the same for any number of threads") {
   }
   set_threads(before);
 }
+
+} // namespace optimistic_loop_test

@@ -8,6 +8,8 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+namespace resting_test {
+
 using namespace keeler;
 using test::Sphere;
 
@@ -113,3 +115,5 @@ TEST_CASE("a pair at rest on each other stays so") {
     CHECK(s.radius < 1.1); // elastic ones hop, a random walk from kick to kick: 1.02 to 1.05 with other rounding
   }
 }
+
+} // namespace resting_test

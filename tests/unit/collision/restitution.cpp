@@ -7,6 +7,8 @@
 #include <cmath>
 #include <string>
 
+namespace restitution_test {
+
 using namespace keeler;
 
 TEST_CASE("restitution laws") {
@@ -173,3 +175,5 @@ TEST_CASE("a law of one's own is known by its name, and to the program that brou
   CHECK_THROWS_AS(add_own_restitution("bouncy", constant_restitution(1.1)), UsageError);
   CHECK_THROWS_AS(add_own_restitution("nothing", [](const Impact&) { return std::nan(""); }), UsageError);
 }
+
+} // namespace restitution_test

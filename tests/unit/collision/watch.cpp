@@ -4,6 +4,8 @@
 
 #include <keeler/core/threads.hpp>
 
+namespace watch_test {
+
 using namespace keeler;
 
 namespace {
@@ -64,3 +66,5 @@ TEST_CASE("the same searches, contacts and changes in the same order on 1, 2 and
   }
   set_threads(before);
 }
+
+} // namespace watch_test

@@ -11,8 +11,9 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <cstdlib>
 #include <vector>
+
+namespace certified_finder_test {
 
 using namespace keeler;
 using namespace keeler::test;
@@ -61,11 +62,6 @@ struct Comparison {
     wrong += !right;
   }
 };
-
-std::uint64_t pairs_asked_for() {
-  const char* text = std::getenv("KEELER_PAIRS");
-  return text ? std::strtoull(text, nullptr, 10) : 120000;
-}
 
 bool same_bits(const FinderResult& a, const FinderResult& b) {
   return a.exit == b.exit && std::bit_cast<std::uint64_t>(a.time) == std::bit_cast<std::uint64_t>(b.time) &&
@@ -244,3 +240,5 @@ TEST_CASE("every finder of the table answers many queries as one at a time") {
       CHECK(same_bits(results[k], finder->find(many.queries[k])));
   }
 }
+
+} // namespace certified_finder_test

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace documented_finder_test {
+
 using namespace keeler;
 
 TEST_CASE("the finder that the documentation adds is in the table and finds contacts") {
@@ -39,3 +41,5 @@ TEST_CASE("the finder that the documentation adds is in the table and finds cont
   CHECK(hits > 100);
   CHECK(misses > 100);
 }
+
+} // namespace documented_finder_test

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace finders_test {
+
 using namespace keeler;
 
 namespace {
@@ -204,3 +206,5 @@ TEST_CASE("linear-full finds ordinary contacts at a small step") {
   CHECK(all > 200);
   CHECK(found == all);
 }
+
+} // namespace finders_test

@@ -11,8 +11,9 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <string>
+
+namespace first_contacts_test {
 
 using namespace keeler;
 using namespace keeler::test;
@@ -117,11 +118,6 @@ private:
   std::unique_ptr<Finder> finder_;
   DriftStep step_{{}, 0.0, 0.0, 0.0};
 };
-
-std::uint64_t pairs_asked_for() {
-  const char* text = std::getenv("KEELER_PAIRS");
-  return text ? std::strtoull(text, nullptr, 10) : 120000;
-}
 
 std::string row(const char* name, const Tally& t) {
   return fmt::format("{:<16}{:>10}{:>10}{:>10}{:>10}{:>10}{:>7}{:>9.3f}{:>9.3f}{:>9.3f}{:>9.3f}{:>8}{:>8}\n", name,
@@ -235,3 +231,5 @@ TEST_CASE("the pairs pictured in docs/theory/finders.md") {
     CHECK(!ask("linear-full").contact());
   }
 }
+
+} // namespace first_contacts_test

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <vector>
 
+namespace motions_test {
+
 using namespace keeler;
 
 namespace {
@@ -129,3 +131,5 @@ TEST_CASE("the late cubic is the full motion at the start, and the cubic once th
     CHECK(late.at(0.0).d == CubicMotion(pair, m.step).at(0.0).d);
   });
 }
+
+} // namespace motions_test

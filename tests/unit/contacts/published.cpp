@@ -9,6 +9,8 @@
 
 #include <doctest/doctest.h>
 
+namespace published_test {
+
 using namespace keeler;
 
 namespace {
@@ -192,3 +194,5 @@ TEST_CASE("a buried pair is an event a little later in the step, never past its 
         CHECK(result.time == doctest::Approx(published < step.end ? published : start).epsilon(1e-12));
     }
 }
+
+} // namespace published_test

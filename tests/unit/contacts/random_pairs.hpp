@@ -10,8 +10,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 
 namespace keeler::test {
+
+// How many pairs of all families a test draws: so many, or what the environment says.
+inline std::uint64_t pairs_asked_for() {
+  const char* text = std::getenv("KEELER_PAIRS");
+  return text ? std::strtoull(text, nullptr, 10) : 120000;
+}
 
 enum class Family { neighbours, hit, grazing, inflexion, tidal, co_orbital, bounced };
 inline constexpr int families = 7;

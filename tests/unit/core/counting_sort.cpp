@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <numeric>
 
+namespace counting_sort_test {
+
 using namespace keeler;
 
 namespace {
@@ -58,3 +60,5 @@ TEST_CASE("items are sorted by cell and keep their order within one, for any num
   }
   set_threads(before);
 }
+
+} // namespace counting_sort_test

@@ -8,6 +8,8 @@
 #include <string>
 #include <system_error>
 
+namespace error_at_hand_test {
+
 using namespace keeler;
 
 namespace {
@@ -43,3 +45,5 @@ TEST_CASE("what libraries throw is said in words of Keeler") {
   CHECK(std::string(other.what()).find("map::at") == std::string::npos);
   CHECK(std::string(met(7).what()) == other.what());
 }
+
+} // namespace error_at_hand_test

@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+namespace exact_sum_test {
+
 using namespace keeler;
 
 namespace {
@@ -202,3 +204,5 @@ TEST_CASE("in words: added word by word, of any number of parts") {
   words.back() = 1; // one of them was not finite
   CHECK(std::isnan(ExactSum::of_words(words).value()));
 }
+
+} // namespace exact_sum_test

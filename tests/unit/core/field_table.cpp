@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+namespace field_table_test {
+
 using namespace keeler;
 
 TEST_CASE("a table reads and writes the data it is bound to") {
@@ -26,3 +28,5 @@ TEST_CASE("a table reads and writes the data it is bound to") {
   CHECK(table.find("step")->scalar);
   CHECK(table.find("absent") == nullptr);
 }
+
+} // namespace field_table_test

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace interrupt_test {
+
 using namespace keeler;
 
 TEST_CASE("a parallel loop ends soon after its flag is set, and only within the scope that names the flag") {
@@ -45,3 +47,5 @@ TEST_CASE("the inner scope counts, and then the outer one again") {
   }
   CHECK_THROWS_AS(throw_if_interrupted(), Interrupted);
 }
+
+} // namespace interrupt_test

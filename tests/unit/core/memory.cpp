@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+namespace memory_test {
+
 using namespace keeler;
 
 TEST_CASE("the peak of memory grows by what is held, and stays when it is given back") {
@@ -35,3 +37,5 @@ TEST_CASE("sizes are checked before they are ones") {
                        doctest::Contains("a mesh needs 1e11 GB of memory, and "), UsageError);
   require_memory(1.0, "a byte", "");
 }
+
+} // namespace memory_test

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace random_test {
+
 using namespace keeler;
 
 TEST_CASE("a stream depends on seed, purpose and id alone") {
@@ -31,3 +33,5 @@ TEST_CASE("uniform and normal have the moments of their distributions") {
   CHECK(std::fabs(n2 / count - 1) < 5 * std::sqrt(2.0 / count));
   CHECK(std::fabs(n4 / count - 3) < 5 * std::sqrt(96.0 / count));
 }
+
+} // namespace random_test

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+namespace suggest_test {
+
 using namespace keeler;
 
 TEST_CASE("a misspelt word has the closest name") {
@@ -19,3 +21,5 @@ TEST_CASE("a word that is far from every name has none") {
   CHECK(closest("run", {}).empty());
   CHECK(closest(std::string(101, 'r'), {std::string(100, 'r')}).empty());
 }
+
+} // namespace suggest_test

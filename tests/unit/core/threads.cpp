@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+namespace threads_test {
+
 using namespace keeler;
 
 TEST_CASE("sums have the same bits for any number of threads") {
@@ -86,3 +88,5 @@ TEST_CASE("absurd numbers of threads are refused") {
   CHECK_THROWS_AS(set_threads(most_threads + 1), UsageError);
   CHECK(threads() == 1);
 }
+
+} // namespace threads_test

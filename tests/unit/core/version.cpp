@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 
+namespace version_test {
+
 using namespace keeler;
 
 TEST_CASE("the build knows its version, commit, compiler and flags") {
@@ -19,3 +21,5 @@ TEST_CASE("the build knows its version, commit, compiler and flags") {
   // the flag on which the promise of equal bits rests
   CHECK(build_flags().find("-ffp-contract=off") != std::string::npos);
 }
+
+} // namespace version_test

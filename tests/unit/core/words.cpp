@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace words_test {
+
 using namespace keeler;
 
 TEST_CASE("numbers have no exponent where people write none") {
@@ -42,3 +44,5 @@ TEST_CASE("a line that repeats the words of others can be printed") {
   CHECK(whole.find('?') == std::string::npos);
   CHECK(printable_line(whole) == whole); // cut between characters
 }
+
+} // namespace words_test

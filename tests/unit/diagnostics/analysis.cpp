@@ -9,6 +9,8 @@
 
 #include <doctest/doctest.h>
 
+namespace analysis_test {
+
 using namespace keeler;
 
 namespace {
@@ -77,3 +79,5 @@ TEST_CASE("nothing to analyze is said so") {
   const std::vector<Patch> empty(1);
   CHECK_THROWS_AS(analyze(empty), UsageError);
 }
+
+} // namespace analysis_test

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace autocorrelation_test {
+
 using namespace keeler;
 
 namespace {
@@ -134,3 +136,5 @@ TEST_CASE("snapshots of different boxes are refused") {
   Autocorrelation sum(box, columns, rows);
   CHECK_THROWS_AS(sum.add(test::uniform({25.0, 40.0, 1.5, 0.0}, 0.0, 5, 1)), UsageError);
 }
+
+} // namespace autocorrelation_test

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <set>
 
+namespace clusters_test {
+
 using namespace keeler;
 
 namespace {
@@ -166,3 +168,5 @@ TEST_CASE("the bits do not depend on the threads") {
   CHECK(one.spin == two.spin);
   CHECK(one.largest_half_axes == two.largest_half_axes);
 }
+
+} // namespace clusters_test

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace dispersion_test {
+
 using namespace keeler;
 
 namespace {
@@ -61,3 +63,5 @@ TEST_CASE("an ensemble of epicycles has c_x = κ e/√2, c_y = κ² e/(2√2), c
   CHECK((velocity_si(patch, measured) - 2e-4 * measured).norm() < 1e-18);
   CHECK((velocity_in_radii(patch, measured) - 2.0 * measured).norm() < 1e-14);
 }
+
+} // namespace dispersion_test

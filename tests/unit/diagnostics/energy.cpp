@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace energy_test {
+
 using namespace keeler;
 
 TEST_CASE("the epicyclic energy is that of the velocities beyond the shear") {
@@ -27,3 +29,5 @@ TEST_CASE("the epicyclic energy is that of the velocities beyond the shear") {
   CHECK(energy.horizontal > 0.0);
   CHECK(energy.vertical > 0.0);
 }
+
+} // namespace energy_test

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <complex>
 
+namespace epicyclic_waves_test {
+
 using namespace keeler;
 
 namespace {
@@ -186,3 +188,5 @@ TEST_CASE("too few particles, and particles on circles, have no waves to speak o
     body.elements = {body.elements.guiding_x, 0.0, 0.0, 0.0, 0.0, 0.0};
   CHECK_FALSE(of_particles(circles, 0.0));
 }
+
+} // namespace epicyclic_waves_test

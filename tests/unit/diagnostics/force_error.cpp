@@ -8,6 +8,8 @@
 #include <numeric>
 #include <set>
 
+namespace force_error_test {
+
 using namespace keeler;
 
 namespace {
@@ -110,3 +112,5 @@ TEST_CASE("the net force is that of all particles") {
         doctest::Approx(std::sqrt(8.0) / 4.0).epsilon(rounding));
   CHECK(net_force(masses, std::vector<Vec3>(2, Vec3::Zero())) == 0.0);
 }
+
+} // namespace force_error_test

@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+namespace local_test {
+
 using namespace keeler;
 
 namespace {
@@ -127,3 +129,5 @@ TEST_CASE("one particle has no neighbours; the bits do not depend on the threads
   CHECK(local_motion(patch, local_radius(patch)).dispersion == one.dispersion);
   CHECK(crowding(patch, crowding_radius(patch)).optical_depth == crowd.optical_depth);
 }
+
+} // namespace local_test

@@ -4,6 +4,8 @@
 
 #include <array>
 
+namespace measured_test {
+
 using namespace keeler;
 
 TEST_CASE("the scatter is that of single snapshots, and needs two of them") {
@@ -19,3 +21,5 @@ TEST_CASE("directions are the same after half a turn") {
   const std::array angles{-89.0, 89.0, 90.0};
   CHECK(*measured_direction(90.0, angles).scatter == doctest::Approx(1.0).epsilon(1e-12)); // 91, 89, 90
 }
+
+} // namespace measured_test

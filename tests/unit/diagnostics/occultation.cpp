@@ -8,6 +8,8 @@
 
 #include <array>
 
+namespace occultation_test {
+
 using namespace keeler;
 
 namespace {
@@ -83,3 +85,5 @@ TEST_CASE("nothing passes a wall; wakes are brightest along their crests") {
   CHECK(std::fabs(asymmetry->brightest_azimuth - (pi / 2.0 + wave.pitch)) < 0.2); // trailing crests
   CHECK(!azimuthal_asymmetry(std::span(looks).first(1)));
 }
+
+} // namespace occultation_test

@@ -10,6 +10,8 @@
 
 #include <cmath>
 
+namespace particle_means_test {
+
 using namespace keeler;
 
 namespace {
@@ -109,3 +111,5 @@ TEST_CASE("without particles all means are zero") {
   CHECK(none.mass == 0.0);
   CHECK(none.dispersion == Vec3(0.0, 0.0, 0.0));
 }
+
+} // namespace particle_means_test

@@ -9,6 +9,8 @@
 
 #include <array>
 
+namespace radial_modes_test {
+
 using namespace keeler;
 
 namespace {
@@ -148,3 +150,5 @@ TEST_CASE("a growing epicyclic oscillation has its growth rate, whatever its pha
   CHECK(*modes[2].growth->error < 1e-4);
   CHECK(modes[2].speed == doctest::Approx(0.02 * 1.22 * patches[0].orbital_frequency).epsilon(0.1));
 }
+
+} // namespace radial_modes_test

@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+namespace radial_profile_test {
+
 using namespace keeler;
 
 namespace {
@@ -69,3 +71,5 @@ TEST_CASE("one bin is the patch, an image counts as its particle, an empty bin h
     empty += bin.count == 0 && bin.dispersion == Vec3::Zero() && bin.velocity == Vec3::Zero() ? 1 : 0;
   CHECK(empty == 3);
 }
+
+} // namespace radial_profile_test

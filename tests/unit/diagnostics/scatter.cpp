@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace scatter_test {
+
 using namespace keeler;
 
 TEST_CASE("mean and deviation") {
@@ -50,3 +52,5 @@ TEST_CASE("equal samples differ beyond the bound once in twenty") {
     CHECK(beyond == doctest::Approx(0.05 * trials).epsilon(0.1)); // √(19 / 20000) = 0.03: three deviations
   }
 }
+
+} // namespace scatter_test

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace size_classes_test {
+
 using namespace keeler;
 
 namespace {
@@ -56,3 +58,5 @@ TEST_CASE("one class has the dispersion of the patch, equal spheres have none") 
   CHECK(all[0].mass_share == doctest::Approx(1.0).epsilon(1e-12));
   CHECK(size_classes(test::uniform({60.0, 40.0, 1.5, 0.0}, 7.0, 50, 1)).empty());
 }
+
+} // namespace size_classes_test

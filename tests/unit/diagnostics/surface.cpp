@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace surface_test {
+
 using namespace keeler;
 
 TEST_CASE("optical depth, surface density and λ_cr of the standard A-ring patch") {
@@ -36,3 +38,5 @@ TEST_CASE("the mid-plane filling factor is the area of the circles that the plan
   patch.positions[2].z() = 1.5;  // above the plane
   CHECK(midplane_filling(patch) == doctest::Approx(pi * (4.0 + 2.56) / 100.0).epsilon(1e-12));
 }
+
+} // namespace surface_test

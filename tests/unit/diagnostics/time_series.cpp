@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+namespace time_series_test {
+
 using namespace keeler;
 
 namespace {
@@ -88,3 +90,5 @@ TEST_CASE("few values, or equal ones") {
   CHECK(steady_start(equal) == 0);
   CHECK(is_steady(equal));
 }
+
+} // namespace time_series_test

@@ -9,6 +9,8 @@
 
 #include <numeric>
 
+namespace transmission_test {
+
 using namespace keeler;
 
 namespace {
@@ -148,3 +150,5 @@ TEST_CASE("the bits do not depend on the threads") {
   CHECK(two.blocked(patch, {0.1, 1.0}) == alone);
   CHECK(two.place(77) == one.place(77));
 }
+
+} // namespace transmission_test

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace velocity_ellipsoid_test {
+
 using namespace keeler;
 
 TEST_CASE("axes and direction of a turned ellipsoid") {
@@ -35,3 +37,5 @@ TEST_CASE("epicycles have c_y/c_x = κ/2 and no vertex deviation; rest has no ax
   CHECK(e.vertex_deviation_degrees == 0.0);
   CHECK(velocity_ellipsoid({}).second_ratio == 0.0);
 }
+
+} // namespace velocity_ellipsoid_test

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace viscosity_test {
+
 using namespace keeler;
 
 TEST_CASE("translational viscosity is the flux of correlated velocities over the shear") {
@@ -27,3 +29,5 @@ TEST_CASE("epicycles of random phase carry no momentum") {
   const Patch patch = make_patch(particles, {60.0, 40.0, f.shear(), 0.0}, 7.0, f, 0.0);
   CHECK(std::fabs(translational_viscosity(patch)) < 1e-13);
 }
+
+} // namespace viscosity_test

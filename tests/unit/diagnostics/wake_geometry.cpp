@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace wake_geometry_test {
+
 using namespace keeler;
 
 namespace {
@@ -40,3 +42,5 @@ TEST_CASE("particles at random have neither sizes nor directions, and one snapsh
   CHECK(wake_geometry(one, lambda).wavelength.value);
   CHECK(!wake_geometry(one, lambda).wavelength.scatter);
 }
+
+} // namespace wake_geometry_test

@@ -6,6 +6,8 @@
 
 #include <complex>
 
+namespace wake_spectrum_test {
+
 using namespace keeler;
 
 namespace {
@@ -148,3 +150,5 @@ TEST_CASE("weak waves among particles that keep apart: the lengths leave out wha
   CHECK(*waves.radial_wavelength == doctest::Approx(60.0).epsilon(0.03));
   CHECK(std::fabs(*waves.angle_degrees) < 2.0);
 }
+
+} // namespace wake_spectrum_test

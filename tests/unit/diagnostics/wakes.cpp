@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace wakes_test {
+
 using namespace keeler;
 
 namespace {
@@ -99,3 +101,5 @@ TEST_CASE("a ridge that bends has an inner and an outer pitch") {
   CHECK(noisy.inner_pitch_degrees);
   CHECK(!noisy.outer_pitch_degrees);
 }
+
+} // namespace wakes_test

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+namespace columns_test {
+
 using namespace keeler;
 
 namespace {
@@ -65,3 +67,5 @@ TEST_CASE("a row that is not like the others is named") {
   CHECK(fault("a,b\n1,2,\n") ==
         "t.csv:2: the row ends with a ',' (line 1 names 2 columns, and does not); remove that ','");
 }
+
+} // namespace columns_test

@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+namespace files_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -65,3 +67,5 @@ TEST_CASE("what cannot be read is an error") {
   CHECK_THROWS_WITH_AS(read_text(folder / "absent"), doctest::Contains("absent': No such file"), IoError);
   CHECK_THROWS_AS(read_text(folder.path()), IoError);
 }
+
+} // namespace files_test

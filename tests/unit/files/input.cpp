@@ -11,6 +11,8 @@
 
 #include <sys/stat.h>
 
+namespace input_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -64,3 +66,5 @@ TEST_CASE("rows of numbers are told with their lines") {
   CHECK(rows[2].second[0] == 7.0);
   CHECK(std::isnan(rows[2].second[1]));
 }
+
+} // namespace input_test

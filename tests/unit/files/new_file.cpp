@@ -16,6 +16,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+namespace new_file_test {
+
 using namespace keeler;
 using namespace keeler::test;
 namespace fs = std::filesystem;
@@ -173,3 +175,5 @@ TEST_CASE("a pipe without a reader can be given up") {
   CHECK_THROWS_AS(write_text(pipe, std::string(200000, 'x')), Interrupted);
   close(reader);
 }
+
+} // namespace new_file_test

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+namespace toml_bounds_test {
+
 using namespace keeler;
 
 namespace {
@@ -54,3 +56,5 @@ TEST_CASE("strings and comments are read as TOML does") {
   CHECK_FALSE(toml_excess(""));
   CHECK(toml_excess(std::string(std::size_t{65} << 20, ' ')));
 }
+
+} // namespace toml_bounds_test

@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <complex>
 
+namespace axisymmetric_test {
+
 using namespace keeler;
 using namespace keeler_test;
 
@@ -140,3 +142,5 @@ TEST_CASE("a lone particle does not pull itself, and a box without waves is refu
   state.positions[0].x() = NAN;
   CHECK_THROWS_AS(accelerations(solver, state.problem()), InvariantError);
 }
+
+} // namespace axisymmetric_test

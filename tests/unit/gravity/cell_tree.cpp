@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace cell_tree_test {
+
 using namespace keeler;
 using namespace keeler_test;
 
@@ -143,3 +145,5 @@ TEST_CASE("the tree ends where no split is possible") {
   const CellTree deep = input.tree();
   CHECK(deep.cells().size() == 2 * CellTree::deepest + 1);
 }
+
+} // namespace cell_tree_test

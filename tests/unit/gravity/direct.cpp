@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace direct_test {
+
 using namespace keeler;
 using namespace keeler_test;
 
@@ -187,3 +189,5 @@ TEST_CASE("plain rings of images leave an error in the plane that falls slowly w
   }
   CHECK(rms_error(in_plane(1, true), exact) < 1e-4);
 }
+
+} // namespace direct_test

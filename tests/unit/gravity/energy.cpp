@@ -10,6 +10,8 @@
 
 #include <cmath>
 
+namespace energy_test {
+
 using namespace keeler;
 using namespace keeler_test;
 
@@ -80,3 +82,5 @@ TEST_CASE("the energy of a patch has the same bits for any number of threads") {
     CHECK(several.stress == one.stress);
   }
 }
+
+} // namespace energy_test

@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+namespace far_images_test {
+
 using namespace keeler;
 using namespace keeler_test;
 
@@ -91,3 +93,5 @@ TEST_CASE("a body high above the others feels the far images from the highest pl
   };
   CHECK(with_second_at(1000.0) == with_second_at(25.0));
 }
+
+} // namespace far_images_test

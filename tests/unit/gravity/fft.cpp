@@ -11,6 +11,8 @@
 #include <cmath>
 #include <string>
 
+namespace fft_test {
+
 using namespace keeler;
 using namespace keeler_test;
 
@@ -372,3 +374,5 @@ TEST_CASE("bodies at one place give nothing but numbers") {
   for (const Vec3& a : by_fft(state, {4.0, 2.25}))
     CHECK(a.allFinite());
 }
+
+} // namespace fft_test

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+namespace images_test {
+
 using namespace keeler;
 
 namespace {
@@ -41,3 +43,5 @@ TEST_CASE("any image of a place comes back into the cell as the same place") {
       CHECK(into_cell(box, offset, image) == place);
     }
 }
+
+} // namespace images_test

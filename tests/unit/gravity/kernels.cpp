@@ -10,6 +10,8 @@
 #include <cstring>
 #include <vector>
 
+namespace kernels_test {
+
 using namespace keeler;
 using namespace keeler_test;
 
@@ -157,3 +159,5 @@ TEST_CASE("kernels of all instruction sets give the same bits, for every number 
     }
   }
 }
+
+} // namespace kernels_test

@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+namespace lattice_test {
+
 using namespace keeler;
 
 namespace {
@@ -77,3 +79,5 @@ TEST_CASE("near a mass it attracts as Newton has it, far above as a sheet, and e
           1e-12 / box.area());
   CHECK(lattice.acceleration(Vec3::Zero()).norm() < 1e-15 / box.area());
 }
+
+} // namespace lattice_test

@@ -6,6 +6,8 @@
 
 #include <array>
 
+namespace local_expansion_test {
+
 using namespace keeler;
 using namespace keeler_test;
 
@@ -91,3 +93,5 @@ TEST_CASE("a completed expansion has no traces, and completing it again changes 
        std::vector<std::array<int, 3>>{{0, 3, 5}, {1, 6, 8}, {2, 7, 9}, {3, 10, 12}, {4, 11, 13}, {5, 12, 14}})
     CHECK(none(t4[a], t4[b], t4[c]));
 }
+
+} // namespace local_expansion_test

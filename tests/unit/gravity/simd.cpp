@@ -7,6 +7,8 @@
 
 #include <cstdlib>
 
+namespace simd_test {
+
 using namespace keeler;
 
 namespace {
@@ -57,3 +59,5 @@ TEST_CASE("KEELER_SIMD names the instruction set, and a wrong name is a usage er
 TEST_CASE("the portable kernels run everywhere") {
   CHECK(supports(InstructionSet::portable));
 }
+
+} // namespace simd_test

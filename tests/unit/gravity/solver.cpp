@@ -11,6 +11,8 @@
 
 #include <algorithm>
 
+namespace solver_test {
+
 using namespace keeler;
 using namespace keeler_test;
 
@@ -159,3 +161,5 @@ TEST_CASE("crossing the edge of the cell changes forces by no more than the fit 
     CHECK(others < bound * sheet);
   }
 }
+
+} // namespace solver_test

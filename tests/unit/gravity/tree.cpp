@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace tree_test {
+
 using namespace keeler;
 using namespace keeler_test;
 
@@ -140,3 +142,5 @@ TEST_CASE("particles at one place neither hang the tree nor give anything but nu
   for (const Vec3& a : by_direct(state))
     CHECK(a.allFinite());
 }
+
+} // namespace tree_test

@@ -13,6 +13,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+namespace apart_test {
+
 using namespace keeler;
 
 namespace {
@@ -108,3 +110,5 @@ TEST_CASE("who waits for a child can be interrupted") {
   CHECK_THROWS_AS(apart([] { return 1.0; }), Interrupted);
   CHECK(!has_children());
 }
+
+} // namespace apart_test

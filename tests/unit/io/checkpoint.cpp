@@ -11,6 +11,8 @@
 #include <cstring>
 #include <limits>
 
+namespace checkpoint_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -218,3 +220,5 @@ TEST_CASE("a full disk is an error and leaves the former checkpoint") {
   read_checkpoint(file, read.table());
   CHECK(read.same_bits(former));
 }
+
+} // namespace checkpoint_test

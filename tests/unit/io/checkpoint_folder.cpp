@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+namespace checkpoint_folder_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -96,3 +98,5 @@ TEST_CASE("pruning counts from the checkpoint that a run goes on from, and later
   CHECK(files[0] == newest);
   CHECK(files[1] == checkpoint_path(folder.path(), 20));
 }
+
+} // namespace checkpoint_folder_test

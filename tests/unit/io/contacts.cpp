@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace contacts_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -43,3 +45,5 @@ TEST_CASE("a file of contacts that is damaged or something else is an error") {
   CHECK_THROWS_WITH_AS(read_contacts(file), doctest::Contains("is damaged"), IoError);
   CHECK_THROWS_AS(read_contacts(folder / "none.h5"), IoError);
 }
+
+} // namespace contacts_test

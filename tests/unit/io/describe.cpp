@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+namespace describe_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -67,3 +69,5 @@ TEST_CASE("other files are errors") {
   CHECK_THROWS_AS(describe_file(folder / "absent"), IoError);
   CHECK_THROWS_AS(describe_file(folder.path()), IoError);
 }
+
+} // namespace describe_test

@@ -4,6 +4,8 @@
 
 #include <vector>
 
+namespace hash_test {
+
 using namespace keeler;
 
 TEST_CASE("the hash of nothing is XXH3's published one") {
@@ -32,3 +34,5 @@ TEST_CASE("texts are kept apart") {
   b.add_text("a"), b.add_text("bc");
   CHECK(a.hex() != b.hex());
 }
+
+} // namespace hash_test

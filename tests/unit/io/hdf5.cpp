@@ -9,6 +9,8 @@
 
 #include <fcntl.h>
 
+namespace hdf5_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -117,3 +119,5 @@ TEST_CASE("failures of HDF5 are errors with its reason, and it prints nothing it
   CHECK_THROWS_AS(hdf5::read_text_attribute(file, "list"), IoError);
   CHECK_THROWS_AS(hdf5::open_image(std::vector<std::byte>(1000)), IoError);
 }
+
+} // namespace hdf5_test

@@ -9,6 +9,8 @@
 
 #include <functional>
 
+namespace particle_table_test {
+
 using namespace keeler;
 
 namespace {
@@ -126,3 +128,5 @@ TEST_CASE("a table of other columns is refused") {
         }) == ": it is a snapshot, not a table; start from it by start.from or --from");
   std::filesystem::remove(file);
 }
+
+} // namespace particle_table_test

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace provenance_test {
+
 using namespace keeler;
 
 TEST_CASE("provenance says which program, on what, started how") {
@@ -19,3 +21,5 @@ TEST_CASE("provenance says which program, on what, started how") {
   CHECK(provenance.at("libraries").find("HDF5 1.") != std::string::npos);
   CHECK(provenance.at("started").size() == 20); // 2025-01-31T12:00:00Z
 }
+
+} // namespace provenance_test

@@ -8,6 +8,8 @@
 
 #include <optional>
 
+namespace sealed_file_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -78,3 +80,5 @@ TEST_CASE("no damage to a sealed file goes unnoticed") {
       CHECK_THROWS_AS(number_in(file, "number"), IoError);
   });
 }
+
+} // namespace sealed_file_test

@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace series_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -137,3 +139,5 @@ TEST_CASE("a series whose times do not rise is damaged") {
     CHECK_THROWS_WITH_AS(read_series(file), doctest::Contains("line 4 of '"), IoError);
   }
 }
+
+} // namespace series_test

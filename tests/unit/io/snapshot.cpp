@@ -13,6 +13,8 @@
 #include <cstring>
 #include <limits>
 
+namespace snapshot_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -279,3 +281,5 @@ TEST_CASE("a full disk is an error and leaves the former snapshot") {
   CHECK(read_snapshot(file).patch.size() == 10);
   CHECK(folder.file_count() == 1);
 }
+
+} // namespace snapshot_test

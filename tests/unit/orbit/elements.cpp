@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace elements_test {
+
 using namespace keeler;
 
 namespace {
@@ -134,3 +136,5 @@ TEST_CASE("re-basing 10^4 orbits of 1000 steps leaves a random walk of roundings
   CHECK(el.guiding_x == 0.0);
   CHECK(el.guiding_y == 3.0);
 }
+
+} // namespace elements_test

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+namespace toomre_test {
+
 using namespace keeler;
 
 TEST_CASE("Toomre's wavelength and Q have their published form in any units") {
@@ -13,3 +15,5 @@ TEST_CASE("Toomre's wavelength and Q have their published form in any units") {
   CHECK(toomre_q(newton_g(omega), sigma, 1.0, 0.01) ==
         doctest::Approx(toomre_q(newton_g_si, sigma, omega, 0.01 * omega)).epsilon(1e-12));
 }
+
+} // namespace toomre_test

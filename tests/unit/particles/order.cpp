@@ -8,6 +8,8 @@
 #include <limits>
 #include <numeric>
 
+namespace order_test {
+
 using namespace keeler;
 
 namespace {
@@ -36,3 +38,5 @@ TEST_CASE("particles in the order of any ids") {
     CHECK(order_by_id(ids) == twin(ids));
   }
 }
+
+} // namespace order_test

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace patch_test {
+
 using namespace keeler;
 
 TEST_CASE("a patch lists particles by id and gives the elements back") {
@@ -40,3 +42,5 @@ TEST_CASE("a patch that no run can start from is named") {
   patch.radii[0] = -1.0;
   CHECK_THROWS_AS(require_sound(patch), InvariantError);
 }
+
+} // namespace patch_test

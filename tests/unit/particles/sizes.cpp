@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace sizes_test {
+
 using namespace keeler;
 
 TEST_CASE("each row of populations has its number of particles, its radius and its density") {
@@ -122,3 +124,5 @@ TEST_CASE("whatever the count, each size of a list goes to one particle, and to 
         CHECK(std::fabs(its - seeds * share) < 4.5 * std::sqrt(seeds * share * (1.0 - share)));
   }
 }
+
+} // namespace sizes_test

@@ -5,6 +5,8 @@
 
 #include <keeler/core/error.hpp>
 
+namespace autocorrelation_picture_test {
+
 using namespace keeler;
 
 namespace {
@@ -47,3 +49,5 @@ TEST_CASE("a map without wakes, or without a resolved wavelength, is drawn too")
   }
   CHECK_THROWS_AS(render_autocorrelation(map, {}, 61.4, "/nowhere/at/all.png", "No room"), IoError);
 }
+
+} // namespace autocorrelation_picture_test

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <numeric>
 
+namespace colour_field_test {
+
 using namespace keeler;
 
 namespace {
@@ -173,3 +175,5 @@ TEST_CASE("pictures with one scale have one frame") {
   CHECK(layout_of(low, options).height == layout_of(high, options).height);
   CHECK(layout_of(low, options).half_height == layout_of(high, options).half_height);
 }
+
+} // namespace colour_field_test

@@ -7,6 +7,8 @@
 
 #include <cstdlib>
 
+namespace movie_test {
+
 using namespace keeler;
 
 namespace {
@@ -78,3 +80,5 @@ TEST_CASE("a movie that cannot be made leaves no file") {
   CHECK_THROWS_WITH_AS(render_movie(2, frame, "movie.gif", small()), doctest::Contains(".mp4"), UsageError);
   CHECK(!std::filesystem::exists(movie.path()));
 }
+
+} // namespace movie_test

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace patch_picture_test {
+
 using namespace keeler;
 using keeler::test::Picture;
 using keeler::test::TemporaryPng;
@@ -166,3 +168,5 @@ TEST_CASE("a picture that cannot be written is an input/output error, an empty p
   }
   CHECK_THROWS_AS(render_patch(spheres({}), "never.png"), UsageError);
 }
+
+} // namespace patch_picture_test

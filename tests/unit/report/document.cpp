@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace document_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -23,3 +25,5 @@ TEST_CASE("a document says the same in both forms") {
   CHECK(html.find("<td>&lt;2&gt;</td>") != std::string::npos);
   CHECK(html.find("data:image/png;base64,TWFu\"") != std::string::npos);
 }
+
+} // namespace document_test

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <optional>
 
+namespace bounded_impulses_test {
+
 using namespace keeler;
 
 namespace {
@@ -154,3 +156,5 @@ TEST_CASE("two joints that push one another and a third body into nothing are to
   BoundedImpulses solver(jammed.joints, jammed.inverse_masses);
   CHECK_FALSE(solver.solve(jammed.required, std::vector<double>(2, 1e-9), impulses));
 }
+
+} // namespace bounded_impulses_test

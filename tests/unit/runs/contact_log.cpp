@@ -12,6 +12,8 @@
 
 #include <cmath>
 
+namespace contact_log_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -271,3 +273,5 @@ TEST_CASE("a log that cannot be written ends the run before its first step; with
   resume_run(options, requests);
   CHECK((rows_in(work / "run") == rows_in(work / "whole")));
 }
+
+} // namespace contact_log_test

@@ -13,6 +13,8 @@
 
 #include <limits>
 
+namespace invariants_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -186,3 +188,5 @@ TEST_CASE("a neighbour that was missed is told") {
       "particle 4 may touch particle 17 (image 1, -1), 1.25 radius sums from it in the middle of the step, and is not "
       "among its neighbours when the step begins");
 }
+
+} // namespace invariants_test

@@ -17,6 +17,8 @@
 #include <string>
 #include <vector>
 
+namespace key_ranges_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -204,3 +206,5 @@ TEST_CASE("an absurd number is refused with its place, or two steps go well") {
     }
   }
 }
+
+} // namespace key_ranges_test

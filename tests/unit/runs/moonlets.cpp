@@ -14,6 +14,8 @@
 #include <cmath>
 #include <map>
 
+namespace moonlets_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -126,3 +128,5 @@ TEST_CASE("docs/formats.md has the table of moonlets.csv") {
   INFO("docs/formats.md must hold this table:\n" << table);
   CHECK(read_text(KEELER_SOURCE_DIR "/docs/formats.md").find(table) != std::string::npos);
 }
+
+} // namespace moonlets_test

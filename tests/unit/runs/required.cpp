@@ -19,6 +19,8 @@
 #include <optional>
 #include <utility>
 
+namespace required_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -166,3 +168,5 @@ TEST_CASE("a run of a scene that asks for nothing more spends no time on it and 
   CHECK(names == std::vector<std::string>{"checkpoint_000000.h5", "log.jsonl", "scene.toml", "series.csv",
                                           "snap_000000.hdf", "snap_000001.hdf", "summary.json"});
 }
+
+} // namespace required_test

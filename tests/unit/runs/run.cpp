@@ -11,6 +11,8 @@
 #include <map>
 #include <sstream>
 
+namespace run_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -128,3 +130,5 @@ TEST_CASE("a full disk: the message says how to go on, and going on leads to the
   }
   CHECK(resume_run(options, requests).state_hash == hash);
 }
+
+} // namespace run_test

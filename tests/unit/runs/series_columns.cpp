@@ -12,6 +12,8 @@
 #include <map>
 #include <set>
 
+namespace series_columns_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -102,3 +104,5 @@ TEST_CASE("every column has a name of its own and says what it is; docs/formats.
   INFO("docs/formats.md must hold this table:\n" << table);
   CHECK(page.find(table) != page.npos);
 }
+
+} // namespace series_columns_test

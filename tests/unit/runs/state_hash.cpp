@@ -18,6 +18,8 @@
 #include <map>
 #include <set>
 
+namespace state_hash_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -236,3 +238,5 @@ TEST_CASE("the field table holds all that a run needs to go on to the bit") {
       CHECK(column.value({scene, straight, k}) == column.value({scene, resumed, k}));
     }
 }
+
+} // namespace state_hash_test

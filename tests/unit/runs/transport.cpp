@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace transport_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -162,3 +164,5 @@ TEST_CASE("gravity's energy and stress are in the rows that are due, and a scene
   CHECK_FALSE(t.gravitational); // there was gravity, and nobody looked
   CHECK_FALSE(t.balance);
 }
+
+} // namespace transport_test

@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace aggregates_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -80,3 +82,5 @@ TEST_CASE("what is wrong with an aggregate is told with its number and line") {
             .find("s.toml:23:1: particles.aggregate[1] and moonlet[2] overlap") == 0);
   CHECK(fault(least + "[particles.aggregate]\ncount = 9\n").find("must be a list of tables") != std::string::npos);
 }
+
+} // namespace aggregates_test

@@ -8,6 +8,8 @@
 
 #include <cmath>
 
+namespace derived_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -166,3 +168,5 @@ TEST_CASE("the layer's height is that of the reference equilibria, and the filli
   }
   CHECK(dispersion_for_filling(0.1, equal, 1.0, 0.4) == 0.0);
 }
+
+} // namespace derived_test

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace edit_test {
+
 using namespace keeler;
 
 TEST_CASE("values change where they stand, new keys go below their header, comments stay") {
@@ -52,3 +54,5 @@ TEST_CASE("what cannot be edited is refused, and what is no TOML") {
                        doctest::Contains("write time.step = 1"), UsageError);
   CHECK_THROWS_WITH_AS(edit_scene("title = \n", "s.toml", {}), doctest::Contains("s.toml:1"), UsageError);
 }
+
+} // namespace edit_test

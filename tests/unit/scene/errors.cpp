@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace errors_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -298,3 +300,5 @@ TEST_CASE("whatever is cut from a scene, it is refused or read, never anything e
     }
   }
 }
+
+} // namespace errors_test

@@ -7,6 +7,8 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+namespace estimate_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -204,3 +206,5 @@ TEST_CASE("what makes a scene dear is said with how dear, and nothing of one tha
   CHECK(dear_choices(a_ring({"box.size=[10,10000]", "gravity.solver=fft"})).empty());
   says(with({"collisions.restitution={law=\"constant\",value=0}"}), "a restitution of 0 makes the drift about");
 }
+
+} // namespace estimate_test

@@ -9,6 +9,8 @@
 #include <set>
 #include <sstream>
 
+namespace keys_test {
+
 using namespace keeler;
 
 TEST_CASE("the key table is consistent") {
@@ -44,3 +46,5 @@ TEST_CASE("the text table has a line a key") {
   for (const Key& key : scene_keys())
     CHECK(table.find("\n" + key.path + " ") != std::string::npos);
 }
+
+} // namespace keys_test

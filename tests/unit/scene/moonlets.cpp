@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace moonlets_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -103,3 +105,5 @@ TEST_CASE("moonlets that overlap are refused, also across the edge") {
       changed(changed(two, "[[moonlet]]\n", "[[moonlet]]\nplace = [48, 0, 0]\n"), "[-20, 10, 0.5]", "[-48, 0, 0]");
   CHECK(fault(least + at_the_edge).find("overlap (their centres are 4 m apart") != std::string::npos);
 }
+
+} // namespace moonlets_test

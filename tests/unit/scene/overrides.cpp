@@ -4,6 +4,8 @@
 
 #include <filesystem>
 
+namespace overrides_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -79,3 +81,5 @@ TEST_CASE("a faulty override is told by its own text") {
   CHECK(fault(least, {"title=a\nb=2"}) == "");
   CHECK(fault(least, {"particles=3"}).find("particles is a whole number, but must be a table") != std::string::npos);
 }
+
+} // namespace overrides_test

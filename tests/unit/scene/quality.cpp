@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace quality_test {
+
 using namespace keeler;
 
 namespace {
@@ -119,3 +121,5 @@ TEST_CASE("a quality that is none is refused where it stands") {
   CHECK_THROWS_AS(a_ring({"quality=3"}), UsageError);
   CHECK_THROWS_AS(a_ring({"quality=fast", "gravity.solver=3"}), UsageError);
 }
+
+} // namespace quality_test

@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <fstream>
 
+namespace scene_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -367,3 +369,5 @@ checkpoint_every = 0.0
 checkpoint_every_minutes = 10.0
 )");
 }
+
+} // namespace scene_test

@@ -9,6 +9,8 @@
 
 #include <cstring>
 
+namespace automatic_step_test {
+
 using namespace keeler;
 
 namespace {
@@ -164,3 +166,5 @@ TEST_CASE("an automatic step is a word, and sets the kick interval itself") {
                        doctest::Contains("gravity.kick_every cannot stand beside time.step = \"auto\""), UsageError);
   CHECK(with("step = \"auto\"", "output.series_every = 0.02").output.series_every == 64);
 }
+
+} // namespace automatic_step_test

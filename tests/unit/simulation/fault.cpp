@@ -8,6 +8,8 @@
 #include <limits>
 #include <utility>
 
+namespace fault_test {
+
 using namespace keeler;
 
 TEST_CASE("a state whose parts do not fit each other or the scene has a fault") {
@@ -45,3 +47,5 @@ time = { step = "auto", end = 1.0 }
     CHECK_MESSAGE(fault.find(words) != std::string::npos, fault);
   }
 }
+
+} // namespace fault_test

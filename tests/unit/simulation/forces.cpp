@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace forces_test {
+
 using namespace keeler;
 
 namespace {
@@ -166,3 +168,5 @@ TEST_CASE("a scene has no energy of gravity without it, nor with some rings of i
     CHECK_FALSE(pushed.simulation.gravity_energy().has_value());
   }
 }
+
+} // namespace forces_test

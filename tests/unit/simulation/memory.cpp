@@ -10,6 +10,8 @@
 
 #include <cmath>
 
+namespace memory_test {
+
 using namespace keeler;
 
 namespace {
@@ -62,3 +64,5 @@ TEST_CASE("the drift phase holds no more than 460 bytes a particle, 660 on threa
     }
   set_threads(before);
 }
+
+} // namespace memory_test

@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+namespace memory_order_test {
+
 using namespace keeler;
 
 namespace {
@@ -120,3 +122,5 @@ TEST_CASE("no bit of a state depends on the order of particles in memory") {
 TEST_CASE("nor does one after the next ordering by place") {
   check_any_order(dense_scene("gravity.solver = \"fft\"\n"), 60); // sorted every 50 steps
 }
+
+} // namespace memory_order_test

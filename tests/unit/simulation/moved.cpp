@@ -7,6 +7,8 @@
 #include <cstring>
 #include <optional>
 
+namespace moved_test {
+
 using namespace keeler;
 
 TEST_CASE("a simulation that is moved goes on as if it had not been") {
@@ -37,3 +39,5 @@ time = { step = 2e-3, end = 1.0 }
   REQUIRE(a.size() == b.size());
   CHECK(std::memcmp(a.data(), b.data(), a.size() * sizeof(Body)) == 0);
 }
+
+} // namespace moved_test

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace radial_gravity_test {
+
 using namespace keeler;
 
 // The axisymmetric waves of a cold thin disc have ω² = κ² − 2π G Σ |k| (Toomre 1964; Binney & Tremaine 2008, eq. 6.52).
@@ -51,3 +53,5 @@ TEST_CASE("waves of a cold ring in its radial self-gravity swing at Toomre's fre
   CHECK(largest < 1e-3); // k A is 0.013: its square is 1.6e-4
   CHECK(simulation.state().collisions.fast + simulation.state().collisions.slow == 0);
 }
+
+} // namespace radial_gravity_test

@@ -7,6 +7,8 @@
 
 #include <cstring>
 
+namespace replace_test {
+
 using namespace keeler;
 
 namespace {
@@ -74,3 +76,5 @@ TEST_CASE("a state that cannot be is refused, and nothing has changed") {
   steps(simulation, 10), steps(untouched, 10);
   CHECK(same_bits(simulation.state().particles, untouched.state().particles));
 }
+
+} // namespace replace_test

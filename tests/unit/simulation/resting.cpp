@@ -12,6 +12,8 @@
 #include <cmath>
 #include <cstring>
 
+namespace resting_test {
+
 using namespace keeler;
 
 namespace {
@@ -232,3 +234,5 @@ TEST_CASE("piles have the same bits for any threads and over a restart, rough on
     set_threads(1);
   }
 }
+
+} // namespace resting_test

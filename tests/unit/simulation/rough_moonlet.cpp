@@ -8,6 +8,8 @@
 
 #include <cmath>
 
+namespace rough_moonlet_test {
+
 using namespace keeler;
 
 namespace {
@@ -107,3 +109,5 @@ TEST_CASE("a rough ring around moonlets has the same bits for 1 to 3 threads, sp
   }
   set_threads(before);
 }
+
+} // namespace rough_moonlet_test

@@ -13,6 +13,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace satellite_test {
+
 using namespace keeler;
 
 namespace {
@@ -299,3 +301,5 @@ TEST_CASE("the passages that drag particles along are those far from the time wh
   CHECK(dragging(once, doubtful_drag, 0.0, 1000.0)->orbits == 10.0);
   CHECK(!dragging(once, doubtful_drag, 11.0, 1000.0));
 }
+
+} // namespace satellite_test

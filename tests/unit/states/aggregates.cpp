@@ -10,6 +10,8 @@
 
 #include <doctest/doctest.h>
 
+namespace aggregates_test {
+
 using namespace keeler;
 
 namespace {
@@ -160,3 +162,5 @@ TEST_CASE("a start with aggregates has the same bits for any number of threads")
   }
   set_threads(before);
 }
+
+} // namespace aggregates_test

@@ -9,6 +9,8 @@
 #include <doctest/doctest.h>
 #include <fmt/ranges.h>
 
+namespace clumped_test {
+
 using namespace keeler;
 
 namespace {
@@ -129,3 +131,5 @@ TEST_CASE("a patch that does not settle is given up at the limit, not written") 
   criterion.standard_errors = 0.0;
   refused(scene(), criterion, "did not settle in 4 orbits");
 }
+
+} // namespace clumped_test

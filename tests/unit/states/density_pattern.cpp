@@ -10,6 +10,8 @@
 
 #include <complex>
 
+namespace density_pattern_test {
+
 using namespace keeler;
 
 namespace {
@@ -141,3 +143,5 @@ TEST_CASE("a pattern that the box does not hold is told") {
         std::string::npos);
   CHECK_THROWS_AS(scene_with("wake = { contrast = 0.9, wavelength = 60.0 }", "optical_depth = 2.0"), UsageError);
 }
+
+} // namespace density_pattern_test

@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+namespace from_table_test {
+
 using namespace keeler;
 
 namespace {
@@ -141,3 +143,5 @@ TEST_CASE("particles that overlap are counted, and moved apart with their random
   Patch apart = patch;
   CHECK(relax(apart).farthest == 0.0);
 }
+
+} // namespace from_table_test

@@ -8,6 +8,8 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+namespace initial_test {
+
 using namespace keeler;
 
 namespace {
@@ -92,3 +94,5 @@ TEST_CASE("a moonlet in a table of radii does not thicken the layer of the grain
   };
   CHECK(height(40.0) < 1.3 * height(1.0)); // with 94 % of the mass: ⟨r³⟩/⟨r²⟩ of all would make it 13 m
 }
+
+} // namespace initial_test

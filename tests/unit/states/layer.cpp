@@ -7,6 +7,8 @@
 #include <cmath>
 #include <initializer_list>
 
+namespace layer_test {
+
 using namespace keeler;
 
 TEST_CASE("a layer that is sparse enough is Gaussian, a denser one has the same height and the filling allowed") {
@@ -34,3 +36,5 @@ TEST_CASE("the density in the mid-plane is that of the two parts folded together
   }
   CHECK(profile.midplane_density() == doctest::Approx(sum).epsilon(1e-6));
 }
+
+} // namespace layer_test

@@ -5,6 +5,8 @@
 
 #include <doctest/doctest.h>
 
+namespace moonlets_test {
+
 using namespace keeler;
 
 namespace {
@@ -70,3 +72,5 @@ TEST_CASE("a start with moonlets has the same bits for any number of threads") {
   }
   set_threads(before);
 }
+
+} // namespace moonlets_test

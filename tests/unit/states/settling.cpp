@@ -8,6 +8,8 @@
 #include <functional>
 #include <vector>
 
+namespace settling_test {
+
 using namespace keeler;
 
 namespace {
@@ -152,3 +154,5 @@ TEST_CASE("without wakes nothing settles, however constant it is; weak ones need
   CHECK(first_settled({.standing = [](double t) { return std::fmod(t + 0.01, 0.2) < 0.06; }}).orbits == HUGE_VAL);
   CHECK(first_settled({.standing = [](double t) { return std::fmod(t + 0.01, 0.2) < 0.12; }}).orbits < HUGE_VAL);
 }
+
+} // namespace settling_test

@@ -11,6 +11,8 @@
 #include <filesystem>
 #include <functional>
 
+namespace start_file_test {
+
 using namespace keeler;
 
 namespace {
@@ -236,3 +238,5 @@ TEST_CASE("a share of a start file's particles is kept, the same ones of any sta
       UsageError);
   std::filesystem::remove(file);
 }
+
+} // namespace start_file_test

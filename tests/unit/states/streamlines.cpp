@@ -11,6 +11,8 @@
 
 #include <complex>
 
+namespace streamlines_test {
+
 using namespace keeler;
 
 namespace {
@@ -179,3 +181,5 @@ end = 1.0
   // two directions of c_x = 1.5 m/rad; guiding centres that differ from their streamline's turn the pattern a little
   CHECK(std::sqrt(e2 / 2.0) == doctest::Approx(1.5).epsilon(0.2));
 }
+
+} // namespace streamlines_test

@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <utility>
 
+namespace tiled_test {
+
 using namespace keeler;
 
 namespace {
@@ -196,3 +198,5 @@ TEST_CASE("copies of rough particles spin as these do") {
   for (std::size_t k = 0; k < tiled.size(); ++k)
     CHECK(tiled.spins[k] == patch.spins[k % patch.size()]);
 }
+
+} // namespace tiled_test

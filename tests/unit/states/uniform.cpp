@@ -11,6 +11,8 @@
 
 #include <algorithm>
 
+namespace uniform_test {
+
 using namespace keeler;
 
 namespace {
@@ -204,3 +206,5 @@ TEST_CASE("a request that no packing can meet is refused in words") {
   request.dispersion_z = 0.0; // a monolayer cannot hold τ = 1.2
   CHECK_THROWS_AS(uniform_patch(request), UsageError);
 }
+
+} // namespace uniform_test

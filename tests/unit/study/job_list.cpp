@@ -6,6 +6,8 @@
 
 #include <fstream>
 
+namespace job_list_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -39,3 +41,5 @@ TEST_CASE("a list of jobs stops, is continued, and does nothing twice") {
   CHECK(list.results().at("job 4").at("square") == 16);
   CHECK(JobList(file).results().size() == 5);
 }
+
+} // namespace job_list_test

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+namespace figure_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -52,3 +54,5 @@ TEST_CASE("words along x stand at their places") {
   CHECK(lines[0].points[0].x == 0.0);
   CHECK(lines[0].points[1].x == 1.0);
 }
+
+} // namespace figure_test

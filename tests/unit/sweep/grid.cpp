@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+namespace grid_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -103,3 +105,5 @@ TEST_CASE("each fault of a grid is one line with its place and what to do") {
     CHECK(fault.find('\n') == fault.npos);
   }
 }
+
+} // namespace grid_test

@@ -10,6 +10,8 @@
 #include <limits>
 #include <map>
 
+namespace tables_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -114,3 +116,5 @@ TEST_CASE("tables have finished and failed runs, with gaps where nothing is know
   CHECK(points[3].at("particles.optical_depth") == 0.2);
   CHECK(points[1].at("failed_runs") == 1);
 }
+
+} // namespace tables_test

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+namespace tune_test {
+
 using namespace keeler;
 
 namespace {
@@ -94,3 +96,5 @@ TEST_CASE("the keys say the choices, in the text of the scene") {
   for (const KeyChange& key : chosen_keys(none, {}, without))
     CHECK(key.path.find("gravity") == std::string::npos);
 }
+
+} // namespace tune_test

@@ -10,6 +10,8 @@
 
 #include <cmath>
 
+namespace audit_test {
+
 using namespace keeler;
 
 namespace {
@@ -141,3 +143,5 @@ TEST_CASE("on the pairs of a real step the dense scan finds what the certified f
   CHECK(contacts(all) > 30);
   CHECK(contacts(all) == contacts(left)); // the rejection loses none
 }
+
+} // namespace audit_test

@@ -4,6 +4,8 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+namespace claims_test {
+
 using namespace keeler;
 
 namespace {
@@ -139,3 +141,5 @@ TEST_CASE("each claim can be refuted") {
     CHECK(study.on("Straight paths") == std::vector<std::string>{"refuted"});
   }
 }
+
+} // namespace claims_test

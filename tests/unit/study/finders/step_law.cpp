@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+namespace step_law_test {
+
 using namespace keeler;
 
 TEST_CASE("the law of the step is found again from its own values") {
@@ -22,3 +24,5 @@ TEST_CASE("the law of the step is found again from its own values") {
     times[k] = 2e-3 / steps[k];
   CHECK(fit_step_law(steps, times).best_step == 0.0); // the longer, the better
 }
+
+} // namespace step_law_test

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace report_test {
+
 using namespace keeler;
 
 namespace {
@@ -29,3 +31,5 @@ TEST_CASE("the order of convergence is the power of the parameter") {
     rows.push_back(row(1.0, 0.02 * std::pow(value, 3.7), value));
   CHECK(convergence_order(rows) == doctest::Approx(3.7).epsilon(1e-12));
 }
+
+} // namespace report_test

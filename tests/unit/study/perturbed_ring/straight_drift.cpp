@@ -7,6 +7,8 @@
 
 #include <cstring>
 
+namespace straight_drift_test {
+
 using namespace keeler;
 
 namespace {
@@ -172,3 +174,5 @@ TEST_CASE("the same as looking at every pair and image after every event") {
     }
   CHECK(collisions > 100);
 }
+
+} // namespace straight_drift_test

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+namespace choices_test {
+
 using namespace keeler;
 
 namespace {
@@ -141,3 +143,5 @@ TEST_CASE("sizes are cut from below; densities and box stay") {
   CHECK_THROWS_WITH_AS(study_choices(SceneStudyKind::sizes, scene_with({}), true), doctest::Contains("one size, 1 m"),
                        UsageError);
 }
+
+} // namespace choices_test

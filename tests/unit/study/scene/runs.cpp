@@ -6,6 +6,8 @@
 
 #include <doctest/doctest.h>
 
+namespace runs_test {
+
 using namespace keeler;
 using namespace keeler::test;
 
@@ -79,3 +81,5 @@ TEST_CASE("boxes have starts of their own, and those with too few particles are 
   CHECK(runs[4].scene.particles.seed == 6);
   CHECK(runs[4].scene.time.end_step == 12000);
 }
+
+} // namespace runs_test

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <deque>
 
+namespace verdict_test {
+
 using namespace keeler;
 
 namespace {
@@ -114,3 +116,5 @@ TEST_CASE("where nothing was finished nothing is said") {
   CHECK(verdict_text(means).find("nothing can be said") != std::string::npos);
   CHECK(sensitivity_text(means).empty());
 }
+
+} // namespace verdict_test

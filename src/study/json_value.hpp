@@ -1,0 +1,14 @@
+// A number of a measurement by its key, as reports and figures ask for it.
+#pragma once
+
+#include "job_list.hpp"
+
+#include <string>
+
+namespace keeler {
+
+inline double of(const Json& json, const std::string& key) {
+  return json.at(key).get<double>();
+}
+
+} // namespace keeler
