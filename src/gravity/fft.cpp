@@ -61,6 +61,7 @@ FftSolver::Parts::Parts(const FftSettings& chosen, InstructionSet set)
       waves(split, chosen.cut / flatness, highest_wave * flatness), near(split, set) {}
 
 MeshShape FftSolver::Parts::choose_mesh(const ShearingBox& box, const Extent& z, std::size_t count) {
+  require_layer(box, z);
   const double spacing = affordable_spacing(box, settings.spacing, z, count);
   radius = settings.cut * spacing;
   const MeshShape shape = mesh_shape(box, spacing, flatness * spacing, z.low, z.high);

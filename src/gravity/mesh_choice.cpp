@@ -1,6 +1,9 @@
 #include "mesh_choice.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/words.hpp>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +20,16 @@ Extent extent_of(std::span<const Vec3> positions) {
     z.high = std::max(z.high, p.z());
   }
   return z;
+}
+
+void require_layer(const ShearingBox& box, const Extent& z) {
+  constexpr double highest = 1000.0; // sides of the box
+  const double farthest = std::max(-z.low, z.high), side = std::min(box.size_x, box.size_y);
+  if (farthest > highest * side)
+    throw InvariantError(
+        fmt::format("a particle is {} sides of the box away from the mid-plane, and gravity's mesh reaches to it "
+                    "(at most {} sides); remove it, or take a shorter time.step",
+                    figures(farthest / side, 3), highest));
 }
 
 double mesh_nodes(const ShearingBox& box, double spacing, const Extent& z) {

@@ -21,6 +21,9 @@ struct Extent {
 /// Throws InvariantError when a place is not finite.
 Extent extent_of(std::span<const Vec3> positions);
 
+/// Throws InvariantError when a particle is so far from the mid-plane that there is no layer to put a mesh over.
+void require_layer(const ShearingBox& box, const Extent& z);
+
 /// Nodes of a mesh with that spacing over the box and these heights, as a number that has no bound.
 double mesh_nodes(const ShearingBox& box, double spacing, const Extent& z);
 

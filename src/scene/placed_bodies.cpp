@@ -15,15 +15,19 @@ struct PlacedBody {
   std::string size_key; // what makes it large
   Vec3 place;
   double radius;
+  double height; // that it reaches, m from the mid-plane
 };
 
 std::vector<PlacedBody> placed_bodies(const Scene& scene) {
   std::vector<PlacedBody> bodies;
   for (const AggregateSettings& a : scene.particles.aggregates)
-    bodies.push_back({fmt::format("particles.aggregate[{}]", bodies.size() + 1), "count", a.place, a.radius});
+    bodies.push_back({fmt::format("particles.aggregate[{}]", bodies.size() + 1), "count", a.place, a.radius,
+                      std::fabs(a.place.z())});
   const std::size_t aggregates = bodies.size();
+  const double vertical = scene.planet.frequencies.nu * scene.planet.orbital_frequency; // rad/s
   for (const MoonletSettings& m : scene.moonlets)
-    bodies.push_back({fmt::format("moonlet[{}]", bodies.size() - aggregates + 1), "radius", m.place, m.radius});
+    bodies.push_back({fmt::format("moonlet[{}]", bodies.size() - aggregates + 1), "radius", m.place, m.radius,
+                      std::hypot(m.place.z(), m.velocity.z() / vertical)});
   return bodies;
 }
 
@@ -47,6 +51,12 @@ void check_in_box(const PlacedBody& body, const Scene& scene, const Settings& se
     fail_at(settings.place(place),
             fmt::format("{} is outside the box (it reaches {} m and {} m to each side of its middle); move it", place,
                         figures(0.5 * scene.size_x, 4), figures(0.5 * scene.size_y, 4)));
+  if (const double longer = std::max(scene.size_x, scene.size_y); !(body.height <= longer))
+    fail_at(
+        settings.place(body.table),
+        fmt::format("{} reaches {} m from the mid-plane (more than the longer side of the box, {} m: no part of this "
+                    "ring); lower its place and its vertical velocity",
+                    body.table, figures(body.height, 4), figures(longer, 4)));
 }
 
 } // namespace

@@ -4,7 +4,7 @@
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
-kicks=(study kicks "$work/scene.toml" --quick --grow 0.5 --orbits 1.5)
+kicks=(study kicks "$work/scene.toml" --quick --grow 0.3 --orbits 1.5)
 
 # without_cost FILE: without the columns of processor time and memory, which no two runs share
 without_cost() {

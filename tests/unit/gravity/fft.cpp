@@ -1,5 +1,6 @@
 #include <keeler/gravity/fft.hpp>
 
+#include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/gravity/direct.hpp>
 
@@ -74,6 +75,13 @@ ClumpedState pair_of(double distance, int k) {
 }
 
 } // namespace
+
+TEST_CASE("a particle far above any layer makes no mesh of gigabytes: it is refused") {
+  ClumpedState state = random_state(100, 1, {40.0, 30.0, 1.5, 0.0}, 4.0);
+  state.positions[3].z() = 1.001e3 * std::min(state.box.size_x, state.box.size_y);
+  CHECK_THROWS_WITH_AS(by_fft(state, {}), doctest::Contains("sides of the box away from the mid-plane"),
+                       InvariantError);
+}
 
 TEST_CASE("the mesh solver's error in even and in clumped states is what its settings promise, at any offset") {
   for (const bool clumped : {false, true}) {

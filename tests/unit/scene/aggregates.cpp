@@ -73,6 +73,8 @@ TEST_CASE("what is wrong with an aggregate is told with its number and line") {
         "the box or lower the count");
   CHECK(with_two("[30, 0, 0]", "[30, 30, 0]")
             .find("s.toml:17:9: particles.aggregate[2].place is outside the box (it reaches 50 m and 25 m") == 0);
+  CHECK(with_two("[30, 0, 0]", "[30, 0, 1e6]").find("particles.aggregate[2] reaches 1000000 m from the mid-plane") !=
+        std::string::npos);
   CHECK(with_two("[30, 0, 0]", "[-15, 0, 0]") ==
         "s.toml:14:1: particles.aggregate[1] and particles.aggregate[2] overlap (their centres are 7.141 m apart, "
         "their radii 5.04 m and 6.3 m); move one");

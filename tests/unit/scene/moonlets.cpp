@@ -77,6 +77,10 @@ TEST_CASE("what is wrong with a moonlet is told with its number and line") {
                   "numbers") != std::string::npos);
   CHECK(with_two("[-20, 10, 0.5]", "[-51, 10, 0]")
             .find("moonlet[2].place is outside the box (it reaches 50 m and 25 m") != std::string::npos);
+  CHECK(with_two("[-20, 10, 0.5]", "[-20, 10, -101]")
+            .find("moonlet[2] reaches 101 m from the mid-plane (more than the longer side of the box, 100 m") !=
+        std::string::npos);
+  CHECK(with_two("[0, 1e-3, 0]", "[0, 0, 1]").find("moonlet[2] reaches ") != std::string::npos);
   CHECK(with_two("radius = 5.0", "radius = 25.5")
             .find("moonlet[1] is 51 m across (more than a side of the box of 100 m "
                   "x 50 m)") != std::string::npos);
