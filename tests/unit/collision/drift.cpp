@@ -1,5 +1,6 @@
 #include <keeler/collision/drift.hpp>
 
+#include "draws.hpp"
 #include "unit/collision/brute_force.hpp"
 #include "unit/collision/scenario.hpp"
 
@@ -93,9 +94,9 @@ TEST_CASE("the same collisions as the brute-force twin: pairs, images, order, ti
     s.restitution = bridges_restitution(0.34);
     s.step = two_pi * 1e-2;
   }
-  for (std::uint64_t seed = 1; seed <= 12; ++seed)
+  for (std::uint64_t seed = 1; seed <= test::draws(12); ++seed)
     collisions += compare(s, seed, 400);
-  CHECK(collisions > 10); // the comparison is not empty
+  CHECK(collisions > test::draws(10)); // the comparison is not empty
 }
 
 TEST_CASE("two hundred particles against the twin") {

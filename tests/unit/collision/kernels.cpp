@@ -2,6 +2,7 @@
 // precision.
 #include "neighbours/kernels.hpp"
 
+#include "draws.hpp"
 #include "unit/collision/spheres.hpp"
 
 #include <doctest/doctest.h>
@@ -153,7 +154,7 @@ struct Row {
 
 TEST_CASE("no line that comes into contact is left out, and few others are kept") {
   std::size_t contacts = 0, across = 0, kept = 0;
-  for (std::uint64_t seed = 1; seed <= 4000; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::draws(4000); ++seed) {
     const Row row(seed);
     const std::vector<std::uint32_t> found = row.sweep(InstructionSet::portable, 0, number);
     for (std::uint32_t k = 0; k < number; ++k) {
@@ -175,7 +176,7 @@ TEST_CASE("no line that comes into contact is left out, and few others are kept"
 }
 
 TEST_CASE("all instruction sets leave out the same lines, of any stretch of a row") {
-  for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::draws(2000); ++seed) {
     Row row(seed);
     const std::size_t begin = row.below(number), some = begin + row.below(number + 1 - begin);
     const std::size_t end = seed % 3 ? std::min(begin + seed % 20, number) : some;
@@ -191,7 +192,7 @@ TEST_CASE("all instruction sets leave out the same lines, of any stretch of a ro
 
 TEST_CASE("a group of lines finds what each of them finds, and each pair within it once") {
   std::size_t pairs = 0;
-  for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::draws(2000); ++seed) {
     Row row(seed);
     for (Line& line : row.others)
       line.size *= 20.0f; // they stand about the one line, and few would touch each other
@@ -219,7 +220,7 @@ TEST_CASE("a group of lines finds what each of them finds, and each pair within 
 
 TEST_CASE("of a list of pairs those are kept, in their order, of which one line finds the other") {
   std::size_t contacts = 0, kept = 0, given = 0;
-  for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::draws(2000); ++seed) {
     CAPTURE(seed);
     Row row(seed);
     row.others[0] = row.one;

@@ -2,6 +2,7 @@
 // who leaves its reference.
 #include "neighbours/kernels.hpp"
 
+#include "draws.hpp"
 #include "unit/collision/spheres.hpp"
 
 #include <keeler/box/shearing_box.hpp>
@@ -160,7 +161,7 @@ bool same(const Line& a, const Line& b) {
 
 TEST_CASE("a line holds its true path, and who leaves the reference by more than the slack is listed") {
   std::size_t leave = 0, listed = 0, stay = 0, outside = 0;
-  for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::draws(1500); ++seed) {
     const Followed followed(seed);
     const Followed::Lines found = followed.follow(InstructionSet::portable, 0, number);
     CAPTURE(seed);
@@ -196,7 +197,7 @@ TEST_CASE("a line holds its true path, and who leaves the reference by more than
 
 TEST_CASE(
     "all instruction sets make the same lines and list the same leavers, of any stretch from a multiple of 8 on") {
-  for (std::uint64_t seed = 1; seed <= 600; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::draws(600); ++seed) {
     Followed followed(seed);
     const std::size_t begin = 8 * static_cast<std::size_t>(followed.random.uniform() * 8.0);
     const std::size_t end = begin + static_cast<std::size_t>(followed.random.uniform() * double(number + 1 - begin));

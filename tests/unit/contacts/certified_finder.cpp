@@ -135,7 +135,7 @@ TEST_CASE("many at once have the bits of one at a time, on every instruction set
   for (int family = 0; family + 1 < families; ++family) {
     RandomPairs pairs(7, static_cast<Family>(family));
     RandomStream random(8, RandomPurpose::position, static_cast<std::uint64_t>(family));
-    for (std::size_t round = 0; round < 2000; ++round) {
+    for (std::size_t round = 0; round < draws(2000); ++round) {
       const ManyPairs many(pairs, random, 1 + round % 9);
       std::vector<FinderResult> expected;
       for (const InstructionSet set : sets) {

@@ -170,7 +170,7 @@ TEST_CASE("straight lines rule out no first contact, over the step and over any 
     RandomPairs pairs(4, static_cast<Family>(family));
     RandomStream shares(5, RandomPurpose::position, static_cast<std::uint64_t>(family));
     int contacts = 0, ruled_out = 0, lost = 0;
-    for (int k = 0; k < 20000; ++k) {
+    for (int k = 0; k < static_cast<int>(draws(20000)); ++k) {
       const PairCase c = pairs.draw();
       DriftStep step(c.frequencies, c.begin, c.end, c.size);
       step.bodies = c.bodies;

@@ -3,6 +3,8 @@
 // frame, of oblate planets and of the thickened disks of the literature; at the origin and anywhere in large boxes.
 #pragma once
 
+#include "draws.hpp"
+
 #include <keeler/contacts/finder.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/core/units.hpp>
@@ -17,7 +19,7 @@ namespace keeler::test {
 // How many pairs of all families a test draws: so many, or what the environment says.
 inline std::uint64_t pairs_asked_for() {
   const char* text = std::getenv("KEELER_PAIRS");
-  return text ? std::strtoull(text, nullptr, 10) : 120000;
+  return text ? std::strtoull(text, nullptr, 10) : draws(120000);
 }
 
 enum class Family { neighbours, hit, grazing, inflexion, tidal, co_orbital, bounced };
