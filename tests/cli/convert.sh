@@ -36,7 +36,7 @@ grep -q sx_rad_s "$work/rough/snap_000001.csv" || fail "no spins"
 # A table is a start: the same particles.
 runs 0 generate "$work/scene.toml" --from-table "$work/csv/snap_000000.csv" -o "$work/again.hdf"
 for dataset in Coordinates Masses Radius ParticleIDs; do
-  same_bytes "a table as a start" "$work/run/snap_000000.hdf" "$work/again.hdf" "/PartType1/$dataset"
+  same_bytes "a table as a start" "/PartType1/$dataset" "$work/run/snap_000000.hdf" "$work/again.hdf"
 done
 runs 0 convert "$work/again.hdf" --to csv
 runs 0 convert "$work/again.hdf" --to vtp

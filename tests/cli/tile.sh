@@ -8,9 +8,7 @@ runs 0 run "$work/scene.toml" -o "$work/run" --set time.end=0.3
 small=$(find "$work/run" -name 'snap_*.hdf' | sort | tail -n 1)
 
 accepts "one copy" tile "$small" 1 1 -o "$work/same.hdf"
-for dataset in Coordinates Velocities Masses ParticleIDs Radius; do
-  same_bytes "one copy" "$small" "$work/same.hdf" "/PartType1/$dataset"
-done
+same_bytes "one copy" /PartType1 "$small" "$work/same.hdf"
 
 accepts "3 x 2 copies" tile "$small" 3 2 -o "$work/tiled.hdf"
 prints "3 x 2 copies" "2400 particles in 150 m x 100 m, 3 x 2 copies of $small: $work/tiled.hdf"
@@ -18,9 +16,7 @@ accepts "info" info "$work/tiled.hdf" --json
 prints "the scene in the file starts from it" "from = \\\"$work/tiled.hdf\\\""
 prints "the command in the file" "tile $small 3 2 -o $work/tiled.hdf"
 accepts "1 thread" tile "$small" 3 2 -o "$work/one.hdf" --threads 1
-for dataset in Coordinates Velocities ParticleIDs; do
-  same_bytes "1 thread" "$work/tiled.hdf" "$work/one.hdf" "/PartType1/$dataset"
-done
+same_bytes "1 thread" /PartType1 "$work/tiled.hdf" "$work/one.hdf"
 accepts "analyze" analyze "$work/tiled.hdf" --json
 large_depth=$(text optical_depth "$work/out")
 accepts "analyze" analyze "$small" --json
