@@ -53,7 +53,7 @@ void refuse_changed_run(const PlannedRun& run, const fs::path& folder, const std
   if (!fs::exists(file, unknown))
     return;
   // Both as this version of the program reads them: keys that it has learned since have their defaults.
-  Keys old_keys = keys_of(parse_stored_scene(read_text(file), file.string()).resolved);
+  Keys old_keys = keys_of(load_stored_scene(file).resolved);
   Keys new_keys = keys_of(parse_stored_scene(run.scene.resolved, file.string()).resolved);
   if (leaves_resting_open(run.scene)) // until its start is read
     new_keys["gravity.resting_contacts"] = old_keys["gravity.resting_contacts"];

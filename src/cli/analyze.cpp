@@ -177,12 +177,12 @@ void add_analyze(CLI::App& program, Action& action) {
                   "largest gap between touching spheres, over the sum of their radii (default: 0.01)")
       ->check(positive_number(10.0)); // wider ones make everything one cluster, in the time of all pairs
   command.add_option("--modes", options->settings.radial_modes, "radial modes to measure (default: 4)")
-      ->check(number_between(1, 1000, "a number of modes"));
+      ->transform(whole_number_between(1, 1000, "a number of modes"));
   CLI::Option* const profile =
       command.add_option("--profile", options->profile, "write radial profiles of all snapshots to this CSV file")
           ->type_name("FILE");
   command.add_option("--bins", options->profile_bins, "bins of the profiles along the radius (default: 100)")
-      ->check(number_between(1, 1e6, "a number of bins"))
+      ->transform(whole_number_between(1, 1e6, "a number of bins"))
       ->needs(profile);
   options->sights.add_to(command);
   options->threads.add_to(command);

@@ -19,7 +19,7 @@ struct BenchThreadOption {
     command
         .add_option("--threads", count,
                     "threads to use (default: 1); with one, processor time is measured, with more, wall time")
-        ->check(positive_number());
+        ->transform(thread_number());
   }
 
   void apply() const {
@@ -30,7 +30,8 @@ struct BenchThreadOption {
 
 /// --repeats N.
 inline void add_repeats(CLI::App& command, int& repeats) {
-  command.add_option("--repeats", repeats, "times measured; medians are given (default: 5)")->check(repeat_number());
+  command.add_option("--repeats", repeats, "times measured; medians are given (default: 5)")
+      ->transform(repeat_number());
 }
 
 /// What measure(settings) returns, with progress shown when it takes so long that one wonders; the first rank's alone.

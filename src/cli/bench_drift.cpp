@@ -112,7 +112,7 @@ void add_bench_drift(CLI::App& bench_command, Action& action) {
   CLI::App& drift = *bench_command.add_subcommand(
       "drift", "the drift phase: spheres in collisional equilibrium, restitution 0.5, no gravity");
   DriftBenchSettings& s = options->drift;
-  drift.add_option("--count", s.count, "particles (default: 10000)")->check(particle_number());
+  drift.add_option("--count", s.count, "particles (default: 10000)")->transform(particle_number());
   drift.add_option("--step", s.step_orbits, "step in orbits (default: 0.001)")
       ->check(positive_number(find_key("time.step")->range.high));
   drift.add_option("--optical-depth", s.optical_depth, "optical depth, up to 10 (default: 0.5)")

@@ -78,7 +78,7 @@ void add_bench_gravity(CLI::App& bench_command, Action& action) {
   one_of(gravity.add_option("--solver", options->bench.solver,
                             "one solver (default: all, direct for up to 10000 particles only)"),
          gravity_solver_names());
-  gravity.add_option("--count", options->bench.count, "particles (default: 100000)")->check(particle_number());
+  gravity.add_option("--count", options->bench.count, "particles (default: 100000)")->transform(particle_number());
   one_of(gravity.add_option("--state", options->state,
                             "clumped: self-gravity wakes stand; uniform: a fresh patch (default: clumped)"),
          {"clumped", "uniform"});

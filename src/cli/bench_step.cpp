@@ -122,14 +122,14 @@ void add_bench_step(CLI::App& bench_command, Action& action, const Ranks& ranks)
   CLI::App& step = *bench_command.add_subcommand(
       "step", "a whole step, gravity and collisions, in a clumped patch of Saturn's A ring or in a snapshot");
   StepBenchSettings& s = options->bench;
-  CLI::Option* count =
-      step.add_option("--count", s.count, "particles of the clumped patch (default: 100000)")->check(particle_number());
+  CLI::Option* count = step.add_option("--count", s.count, "particles of the clumped patch (default: 100000)")
+                           ->transform(particle_number());
   step.add_option("--from", s.from, "time the state of this snapshot as it stands, with the scene that it holds")
       ->type_name("FILE")
       ->excludes(count);
   step.add_option("--kick-every", s.kick_every,
                   "steps for each kick of gravity (default: 1; with --from as in the snapshot's scene)")
-      ->check(number_between(1, find_key("gravity.kick_every")->range.high, "a number of steps"));
+      ->transform(whole_number_between(1, find_key("gravity.kick_every")->range.high, "a number of steps"));
   one_of(step.add_option("--solver", s.solver,
                          "gravity solver with its default settings (default: tree; with --from that of the snapshot's "
                          "scene)"),

@@ -47,28 +47,35 @@ inline CLI::Validator number_between(double low, double high, const std::string&
   return CLI::Validator(refusal, "");
 }
 
-/// Refuse what is no number of particles that a run may have, of times that something is measured.
+/// The same for whole numbers, for an option's transform(): CLI11 itself reads neither 1e9 nor 4.0, so they are handed
+/// on in digits.
+inline CLI::Validator whole_number_between(double low, double high, const std::string& what) {
+  const auto digits_or_refusal = [=](std::string& text) {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    const bool number = *end == '\0' && end != text.c_str() && value >= low && value <= high;
+    if (!number || value != std::trunc(value))
+      return fmt::format("'{}' is not {} from {} to {}{}", text, what, figures(low), figures(high),
+                         number ? "; give a whole number" : "");
+    text = fmt::format("{:.0f}", value);
+    return std::string();
+  };
+  return CLI::Validator(digits_or_refusal, "");
+}
+
+/// Numbers of particles that a run may have, of times that something is measured, of threads.
 inline CLI::Validator particle_number() {
-  return number_between(1, find_key("particles.count")->range.high, "a number of particles");
+  return whole_number_between(1, find_key("particles.count")->range.high, "a number of particles");
 }
 inline CLI::Validator repeat_number() {
-  return number_between(1, 1000, "a number of repeats");
+  return whole_number_between(1, 1000, "a number of repeats");
+}
+inline CLI::Validator thread_number() {
+  return whole_number_between(1, most_threads, "a number of threads");
 }
 
 inline constexpr double most_orbits = 1e6;   ///< of a probe, or of a run of a study
 inline constexpr double most_seeds = 1000.0; ///< of a study
-
-/// The same for whole numbers.
-inline CLI::Validator whole_number_between(long low, long high, const std::string& what) {
-  const auto refusal = [=](const std::string& text) {
-    char* end = nullptr;
-    const long value = std::strtol(text.c_str(), &end, 10);
-    return *end == '\0' && end != text.c_str() && value >= low && value <= high
-               ? std::string()
-               : fmt::format("'{}' is not {} from {} to {}", text, what, low, high);
-  };
-  return CLI::Validator(refusal, "");
-}
 
 /// Takes one of these words; --help shows them, and the shell completes them.
 inline CLI::Option& one_of(CLI::Option* option, const std::vector<std::string>& words) {
@@ -89,7 +96,7 @@ struct ThreadOption {
 
   void add_to(CLI::App& command) {
     command.add_option("--threads", count, "threads to use (default: all); the results are the same for any number")
-        ->check(positive_number());
+        ->transform(thread_number());
   }
 
   void apply() const {

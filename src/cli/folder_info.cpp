@@ -137,7 +137,7 @@ Json describe_run(const fs::path& folder) {
   const auto now = static_cast<double>(std::time(nullptr));
   const fs::path scene = folder / "scene.toml";
   Json json = {{"folder", folder.string()}, {"kind", "run"}, {"state", view.state()}};
-  json["title"] = fs::exists(scene) ? parse_stored_scene(read_text(scene), scene.string()).title : "";
+  json["title"] = fs::exists(scene) ? load_stored_scene(scene).title : "";
   json["particle_count"] = view.particles;
   json["time_orbits"] = view.orbits;
   json["end_orbits"] = view.end_orbits;

@@ -81,10 +81,14 @@ void print_clumping(const Clumping& c) {
 
 void require_place_for_state(const GenerateOptions& options) {
   refuse_stream(output_named(options.output), "HDF5");
+  for (const std::string& source : {options.scene.path, options.table})
+    refuse_own_source(options.output, source);
   require_new_file(options.output, options.force, "a state");
 }
 
-void print_doubts(const Scene& scene, const Patch& patch) {
+void print_doubts(const Scene& scene, const Patch& patch, const TalkOption& talk) {
+  if (talk.quiet)
+    return;
   for (const std::string& doubt : doubts(scene, scale_of(patch)))
     print("note: {}\n", doubt);
 }
@@ -120,7 +124,7 @@ ExitCode generate_from_table(const GenerateOptions& options, const std::vector<s
   // No fresh start makes this state: the scene that goes with it starts from the file.
   const Scene scene =
       decided_by(parse_scene(of.scene.resolved, options.scene.path, {}, options.output), scale_of(patch));
-  print_doubts(scene, patch);
+  print_doubts(scene, patch, options.talk);
   write_snapshot(options.output, patch, {scene.resolved, collect_provenance(arguments)});
   print_state(patch, options.output);
   return ExitCode::done;
@@ -146,7 +150,7 @@ ExitCode generate(const GenerateOptions& options, const std::vector<std::string>
   }
   for (const std::string& notice : scene.notices)
     options.talk.notice()(notice);
-  print_doubts(scene, patch);
+  print_doubts(scene, patch, options.talk);
   meta.scene = decided_by(scene, scale_of(patch)).resolved;
   write_snapshot(options.output, patch, meta);
   print_state(patch, options.output);

@@ -9,6 +9,7 @@
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/diagnostics/wakes.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/files/kept_streams.hpp>
 #include <keeler/files/new_file.hpp>
 #include <keeler/render/autocorrelation_picture.hpp>
 #include <keeler/render/movie.hpp>
@@ -42,7 +43,7 @@ fs::path picture_path(const RenderOptions& options) {
   if (options.output)
     return output_named(*options.output);
   const fs::path path(options.path);
-  return fs::is_directory(path) ? path / "picture.png" : fs::path(path).replace_extension(".png");
+  return output_beside(path, fs::is_directory(path) ? path / "picture.png" : fs::path(path).replace_extension(".png"));
 }
 
 // "orbits 2 to 3": of the snapshots that are averaged.
@@ -115,8 +116,9 @@ ExitCode render(const RenderOptions& options) {
   PictureOptions look = look_of(options);
   if (options.movie)
     return draw_movie(options);
-  const StoredPatches stored = load_newest_patch(options.path);
   const fs::path picture = picture_path(options);
+  const KeptStreams kept; // of a pipe, for --autocorrelation
+  const StoredPatches stored = load_newest_patch(options.path);
   if (is_stream(picture) && options.autocorrelation)
     throw UsageError(fmt::format("'{}' takes one picture, and --autocorrelation draws a second one into a file beside "
                                  "it; name a .png",
@@ -146,7 +148,7 @@ void add_render(CLI::App& program, Action& action) {
       ->type_name("FILE");
   command.add_option("--width", options->width, "of the picture (default: 1600)")
       ->type_name("PIXELS")
-      ->check(whole_number_between(least_picture_width, most_picture_width, "a number of pixels"));
+      ->transform(whole_number_between(least_picture_width, most_picture_width, "a number of pixels"));
   one_of(command.add_option("--theme", options->theme, "the page: dark (the default), or light for print"),
          {"dark", "light"});
   CLI::Option* const colour =

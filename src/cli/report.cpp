@@ -54,7 +54,7 @@ void add_report(CLI::App& program, Action& action) {
   command
       .add_option("--snapshots", options->page.snapshots,
                   "how many snapshots the 3-D view has at most, evenly through the run (default: 8)")
-      ->check(whole_number_between(1, 1000, "a number of snapshots"));
+      ->transform(whole_number_between(1, 1000, "a number of snapshots"));
   options->threads.add_to(command);
   examples_of(command, {"keeler report wakes", "keeler report wakes --snapshots 20 -o page.html"});
   command.callback([options, &action] { action = [options] { return report(*options); }; });

@@ -4,6 +4,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/files/kept_streams.hpp>
 #include <keeler/files/new_file.hpp>
 
 #include <fmt/format.h>
@@ -39,6 +40,14 @@ fs::path output_named(const std::string& name) {
   return name == "-" ? "/dev/stdout" : name;
 }
 
+fs::path output_beside(const fs::path& source, const fs::path& name) {
+  if (reads_once(source) || descriptor_named(source))
+    throw UsageError(fmt::format("'{}' is no file on a disk that a result could stand beside; name the file to write "
+                                 "by -o",
+                                 source.string()));
+  return name;
+}
+
 bool is_standard_output(const fs::path& file) {
   return descriptor_named(file) == STDOUT_FILENO;
 }
@@ -64,6 +73,13 @@ void require_new_file(const fs::path& file, bool force, const std::string& what)
                                  "--force",
                                  file.string(), what));
   require_writable_folder(folder_of(file), file);
+}
+
+void refuse_own_source(const fs::path& file, const fs::path& source) {
+  std::error_code unknown; // of a file that is not there
+  if (fs::equivalent(file, source, unknown))
+    throw UsageError(
+        fmt::format("'{}' is what the result is made from, and would be lost; name another file", source.string()));
 }
 
 void require_replaceable(const fs::path& file, const std::string& what, std::string_view bytes, std::size_t place) {

@@ -44,7 +44,7 @@ void SightOptions::add_to(CLI::App& command) {
       ->check(number_between(-360.0, 360.0, "an azimuth"))
       ->needs(elevation);
   command.add_option("--rays", rays, "rays for each line of sight and snapshot (default: 1000000)")
-      ->check(number_between(1.0, most_rays, "a number of rays"))
+      ->transform(whole_number_between(1, most_rays, "a number of rays"))
       ->needs(elevation);
   command.add_option("--footprint", footprint, "side of the areas whose flicker is measured, in m (default: 10)")
       ->check(positive_number())

@@ -72,6 +72,7 @@ RunRequests& requests_from_signals() {
     install(signal, ask_to_stop);
   install(SIGALRM, give_up);
   install(SIGUSR2, ask_for_snapshot);
+  Interruptible::waits_end_by(requests.stop);
   return requests;
 }
 

@@ -16,7 +16,7 @@ namespace keeler {
 void hold_signals();
 void release_signals();
 
-/// The requests that the handlers set. Installs the handlers.
+/// The requests that the handlers set. Installs the handlers; a stop also ends what waits for a pipe or a device.
 RunRequests& requests_from_signals();
 
 /// What make() returns. The first signal is heeded at once, where nothing could be kept: then throws Error with this

@@ -63,7 +63,7 @@ void add_finders(CLI::App& command, Action& action, const std::vector<std::strin
   const auto talk = std::make_shared<TalkOption>();
   talk->add_to(finders);
   finders.add_option("--count", settings->count, "particles of equal size (default: 10000, some 95 minutes)")
-      ->check(particle_number());
+      ->transform(particle_number());
   finders.add_flag("--quick", settings->quick, "3000 particles, three steps, two repeats: a few minutes");
   examples_of(finders, {"keeler study finders -o finders"});
   finders.callback([settings, talk, arguments, &action] {
@@ -97,13 +97,14 @@ void add_gravity(CLI::App& command, Action& action, const std::vector<std::strin
   add_folder(gravity, *settings);
   const auto talk = std::make_shared<TalkOption>();
   talk->add_to(gravity);
-  gravity.add_option("--count", settings->count, "particles of the state (default: 100000)")->check(particle_number());
+  gravity.add_option("--count", settings->count, "particles of the state (default: 100000)")
+      ->transform(particle_number());
   gravity.add_option("--repeats", settings->repeats, "times measured; medians are given (default: 5)")
-      ->check(repeat_number());
+      ->transform(repeat_number());
   gravity.add_option("--orbits", settings->orbits, "orbits that each run is measured over (default: 4)")
       ->check(positive_number(most_orbits));
   gravity.add_option("--seeds", settings->seeds, "runs with each solver and kick interval (default: 3)")
-      ->check(number_between(1, most_seeds, "a number of seeds"));
+      ->transform(whole_number_between(1, most_seeds, "a number of seeds"));
   const auto quick = std::make_shared<bool>(false);
   gravity.add_flag("--quick", *quick,
                    "by default 5000 particles, two repeats, two seeds and half an orbit: two or three minutes");

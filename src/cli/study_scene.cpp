@@ -48,9 +48,14 @@ ExitCode carry_out(SceneStudyOptions& options) {
   }
   for (const char* const name : {"report.md", "report.html", "study.csv", "settings.csv", "figures"})
     print("{}/{}\n", settings.folder.string(), name);
-  if (result.failed > 0)
-    say(fmt::format("{} missing, the report has the reasons; the same command tries again",
-                    result.failed == 1 ? "a run is" : fmt::format("{} runs are", result.failed)));
+  const auto say_missing = [](std::size_t count, const std::string& advice) {
+    if (count > 0)
+      say(fmt::format("{} missing, the report has the reasons; {}",
+                      count == 1 ? "a run is" : fmt::format("{} runs are", count), advice));
+  };
+  say_missing(result.failed - result.unmeasurable, "the same command tries again");
+  say_missing(result.unmeasurable, fmt::format("remove what is damaged from '{}', and the same command makes it anew",
+                                               (settings.folder / "runs").string()));
   return result.failed > 0 ? ExitCode::run_time : ExitCode::done;
 }
 
@@ -66,7 +71,7 @@ void add_one(CLI::App& study, Action& action, const std::vector<std::string>& ar
       ->type_name("DIR");
   options->talk.add_to(command);
   command.add_option("--seeds", settings.seeds, "runs with each setting (default: 3)")
-      ->check(number_between(1, most_seeds, "a number of seeds"));
+      ->transform(whole_number_between(1, most_seeds, "a number of seeds"));
   command
       .add_option("--grow", settings.grow_orbits,
                   "orbits before anything is compared (default: 6 with self-gravity, 10 without)")
@@ -74,7 +79,7 @@ void add_one(CLI::App& study, Action& action, const std::vector<std::string>& ar
   command.add_option("--orbits", settings.orbits, "orbits of each run from then on (default: 6)")
       ->check(positive_number(most_orbits));
   command.add_option("--jobs", options->jobs, "runs at once, on one thread each (default: threads of the machine)")
-      ->check(number_between(1, most_threads, "a number of runs"));
+      ->transform(whole_number_between(1, most_threads, "a number of runs"));
   command.add_flag("--quick", settings.quick,
                    "few settings, and by default two seeds, an orbit to grow and two to compare: a first look");
   examples_of(command, {"keeler study " + name + " scene.toml -o " + name});

@@ -43,6 +43,18 @@ void print_text(const SweepResult& result, const std::filesystem::path& folder) 
       print("{}\n", (folder / name).string());
 }
 
+void say_failed(const SweepResult& result, const std::filesystem::path& folder) {
+  if (!result.figure_fault.empty())
+    say(result.figure_fault + "; the tables and report.md are there");
+  if (result.failed > result.unmeasurable)
+    say(fmt::format("{} failed, sweep.csv has the reasons; the same command tries again",
+                    counted(result.failed - result.unmeasurable, "run")));
+  if (result.unmeasurable > 0)
+    say(fmt::format("{} cannot be measured, sweep.csv has the reasons; remove what is damaged from '{}', and the same "
+                    "command makes it anew",
+                    counted(result.unmeasurable, "finished run"), (folder / "runs").string()));
+}
+
 ExitCode carry_out(SweepOptions& options) {
   options.talk.say_program();
   SweepSettings& settings = options.settings;
@@ -58,7 +70,9 @@ ExitCode carry_out(SweepOptions& options) {
     result = sweep(settings, requests_from_signals());
   }
   if (result.stopped) {
-    say("stopped, each run with a checkpoint; the same command goes on from here");
+    say(result.began           ? "stopped, each run with a checkpoint; the same command goes on from here"
+        : settings.tables_only ? "stopped before the tables were made; the same command makes them"
+                               : "stopped before any run was started; the same command begins anew");
     return ExitCode::stopped;
   }
   if (options.json)
@@ -68,10 +82,10 @@ ExitCode carry_out(SweepOptions& options) {
   const std::size_t left = result.runs - result.finished - result.failed;
   if (left > 0)
     say(fmt::format("{} not finished; the tables have the others", counted(left, "run")));
-  if (result.failed > 0)
-    say(fmt::format("{} failed, sweep.csv has the reasons; the same command tries again",
-                    counted(result.failed, "run")));
-  return result.failed > 0 ? ExitCode::run_time : ExitCode::done;
+  say_failed(result, settings.folder);
+  return result.failed > 0              ? ExitCode::run_time
+         : !result.figure_fault.empty() ? ExitCode::input_output
+                                        : ExitCode::done;
 }
 
 } // namespace
@@ -89,9 +103,9 @@ void add_sweep(CLI::App& program, Action& action) {
       ->required()
       ->type_name("DIR");
   command.add_option("--jobs", options->jobs, "runs at once (default: threads of the machine / threads of a run)")
-      ->check(number_between(1, most_threads, "a number of runs"));
+      ->transform(whole_number_between(1, most_threads, "a number of runs"));
   command.add_option("--threads", settings.threads_per_run, "threads of each run (default: 1)")
-      ->check(number_between(1, most_threads, "a number of threads"));
+      ->transform(thread_number());
   command.add_flag("--tables", settings.tables_only,
                    "start nothing: make the tables and the figure of what is finished");
   options->talk.add_to(command);

@@ -64,11 +64,11 @@ void add_tile(CLI::App& program, Action& action, const std::vector<std::string>&
   command.add_option("NX", options->nx, "copies side by side along the radius")
       ->required()
       ->type_name("")
-      ->check(copies);
+      ->transform(copies);
   command.add_option("NY", options->ny, "copies side by side along the orbit")
       ->required()
       ->type_name("")
-      ->check(copies);
+      ->transform(copies);
   command.add_option("-o,--output", options->output, "the snapshot to write; give it the ending .hdf")
       ->required()
       ->type_name("FILE");

@@ -25,6 +25,26 @@ bool is_option(const std::string& word) {
   return word.size() > 1 && word[0] == '-';
 }
 
+// "NAME: what CLI11 says", or "What CLI11 says: NAME = VALUE", in the program's words; other faults as CLI11 has them.
+std::string in_own_words(const CLI::App& command, const CLI::ParseError& error) {
+  const std::string said = error.what();
+  const auto between = [&](const std::string& before, const std::string& after) {
+    const std::size_t begin = said.find(before), end = said.find(after, begin + before.size());
+    return begin == said.npos || end == said.npos ? said
+                                                  : said.substr(begin + before.size(), end - begin - before.size());
+  };
+  if (dynamic_cast<const CLI::ConversionError*>(&error) && said.find(" = ") != said.npos)
+    return fmt::format("{}: '{}' is not a number", between("convert: ", " = "), said.substr(said.find(" = ") + 3));
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) && !command.remaining().empty())
+    return fmt::format("'{}' has no place for '{}'", full_name(command), command.remaining().front());
+  if (!dynamic_cast<const CLI::ArgumentMismatch*>(&error))
+    return said;
+  for (const CLI::Option* option : command.get_options())
+    if (const auto given = static_cast<int>(option->results().size()); given > option->get_items_expected_max())
+      return fmt::format("{} is given {} times, and takes one value", option->get_name(), given);
+  return said.ends_with(" missing") ? between("", ": ") + " has no value" : said;
+}
+
 } // namespace
 
 const CLI::App& asked_command(const CLI::App& program) {
@@ -66,7 +86,7 @@ std::string usage_fault(const CLI::App& program, const CLI::ParseError& error) {
       return fmt::format("'{}' has no option '{}'; {}", full_name(command), name,
                          or_help(command, closest(name, option_names(command))));
     }
-  return fmt::format("{}; {}", error.what(), or_help(command, ""));
+  return fmt::format("{}; {}", in_own_words(command, error), or_help(command, ""));
 }
 
 } // namespace keeler

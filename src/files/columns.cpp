@@ -49,6 +49,22 @@ template<class Visit> void for_each_field(std::string_view line, char separator,
   }
 }
 
+// Of a line that holds a field at least; 0 where one has several.
+std::size_t count_words(std::string_view line, char separator) {
+  std::size_t count = 0;
+  bool one_each = true;
+  for_each_field(line, separator, [&](std::string_view field) {
+    ++count;
+    one_each = one_each && field.find_first_of(blanks) == field.npos;
+  });
+  return one_each ? count : 0;
+}
+
+struct Comment {
+  std::string_view text;
+  std::size_t line = 0;
+};
+
 class Parser {
 public:
   Parser(std::string_view text, const std::string& name) : rest_(without_byte_order_mark(text)), name_(name) {}
@@ -58,8 +74,8 @@ public:
       if (line_.empty())
         continue;
       if (line_.front() == '#') {
-        comment_ = trimmed(line_.substr(1));
-        comment_line_ = number_;
+        if (columns_.names.empty())
+          comments_.push_back({trimmed(line_.substr(1)), number_});
       } else if (!columns_.names.empty()) {
         read_row();
       } else {
@@ -91,10 +107,21 @@ private:
     for_each_field(line_, separator, [&](std::string_view field) { is_number = is_number || number_of(field); });
     if (!is_number)
       return read_names(line_, number_);
-    if (comment_.empty())
+    const Comment comment = names_above(separator);
+    if (comment.text.empty())
       fail("the first row has numbers (it must name the columns); put a line of names above it");
-    read_names(comment_, comment_line_);
+    read_names(comment.text, comment.line);
     read_row();
+  }
+
+  // Of the comments above the first row the last that has a word for each field of it; where none has, the last.
+  Comment names_above(char separator) const {
+    const auto fits = [&](const Comment& comment) {
+      return !comment.text.empty() && separator_of(comment.text) == separator &&
+             count_words(comment.text, separator) == count_words(line_, separator);
+    };
+    const auto found = std::find_if(comments_.rbegin(), comments_.rend(), fits);
+    return found != comments_.rend() ? *found : comments_.empty() ? Comment{} : comments_.back();
   }
 
   void read_names(std::string_view line, std::size_t number) {
@@ -153,9 +180,10 @@ private:
     columns_.lines.push_back(number_);
   }
 
-  std::string_view rest_, line_, comment_;
+  std::string_view rest_, line_;
+  std::vector<Comment> comments_; // above the first row
   const std::string& name_;
-  std::size_t number_ = 0, comment_line_ = 0;
+  std::size_t number_ = 0;
   char separator_ = ',';
   Columns columns_;
 };
@@ -163,6 +191,7 @@ private:
 } // namespace
 
 Columns parse_columns(std::string_view text, const std::string& name) {
+  refuse_utf16(text, name + ": ");
   return Parser(text, name).run();
 }
 

@@ -36,8 +36,9 @@ constexpr std::size_t largest_transfer = std::size_t{1} << 30;
 
 } // namespace
 
+// A pipe that stands where a file is to be is not waited for.
 Descriptor::Descriptor(const std::filesystem::path& file, int flags) : file_(file) {
-  number_ = retried([&] { return ::open(file.c_str(), flags | O_CLOEXEC, 0666); });
+  number_ = retried([&] { return ::open(file.c_str(), flags | O_NONBLOCK | O_CLOEXEC, 0666); });
   if (number_ < 0 && errno == ELOOP && (flags & O_NOFOLLOW) != 0)
     throw IoError(fmt::format("cannot open for writing '{}': it is a link, and output is not sent elsewhere by links; "
                               "put the file itself there",

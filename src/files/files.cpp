@@ -3,12 +3,10 @@
 #include "content.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/files/input.hpp>
 #include <keeler/files/new_file.hpp>
 
 #include <fmt/format.h>
-
-#include <cerrno>
-#include <cstring>
 
 #include <unistd.h>
 
@@ -18,7 +16,7 @@ namespace {
 template<class Bytes> Bytes read(const std::filesystem::path& file) {
   std::optional<Bytes> content = content_of<Bytes>(file);
   if (!content)
-    throw IoError(fmt::format("cannot read '{}': {}", file.string(), std::strerror(errno)));
+    throw IoError(fmt::format("cannot read '{}': {}", file.string(), why_unread()));
   return *std::move(content);
 }
 
@@ -51,6 +49,17 @@ std::vector<std::byte> read_file(const std::filesystem::path& file) {
 
 std::string read_text(const std::filesystem::path& file) {
   return read<std::string>(file);
+}
+
+std::string read_lines(const std::filesystem::path& file) {
+  std::string text = read_text(file);
+  text.erase(0, text.size() - without_byte_order_mark(text).size());
+  std::size_t kept = 0;
+  for (std::size_t at = 0; at < text.size(); ++at)
+    if (text[at] != '\r' || at + 1 == text.size() || text[at + 1] != '\n')
+      text[kept++] = text[at];
+  text.resize(kept);
+  return text;
 }
 
 } // namespace keeler

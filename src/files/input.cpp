@@ -31,6 +31,11 @@ std::string_view without_byte_order_mark(std::string_view text) {
   return text.starts_with(mark) ? text.substr(mark.size()) : text;
 }
 
+void refuse_utf16(std::string_view text, const std::string& what) {
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
+    throw UsageError(fmt::format("{}is a text in UTF-16 (its byte order mark says so); save it as UTF-8", what));
+}
+
 std::string read_input(const std::filesystem::path& file, const std::string& place) {
   constexpr std::size_t most_bytes = std::size_t{1} << 30;
   std::optional<std::string> text = content_of<std::string>(file, most_bytes);
@@ -38,9 +43,7 @@ std::string read_input(const std::filesystem::path& file, const std::string& pla
   if (!text)
     throw UsageError(fmt::format("{}: {}cannot be read ({}); check the path and its permissions", place, what,
                                  std::strerror(errno)));
-  if (text->starts_with("\xff\xfe") || text->starts_with("\xfe\xff"))
-    throw UsageError(
-        fmt::format("{}: {}is a text in UTF-16 (its byte order mark says so); save it as UTF-8", place, what));
+  refuse_utf16(*text, fmt::format("{}: {}", place, what));
   text->erase(0, text->size() - without_byte_order_mark(*text).size());
   return *std::move(text);
 }

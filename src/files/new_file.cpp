@@ -1,7 +1,8 @@
 #include <keeler/files/new_file.hpp>
 
+#include "waiting.hpp"
+
 #include <keeler/core/error.hpp>
-#include <keeler/core/interrupt.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/files/naming_guard.hpp>
 
@@ -30,7 +31,6 @@ namespace {
 
 constexpr std::string_view mark = ".keeler-", ending = ".tmp";
 constexpr std::size_t digits = 16, longest_name = 255;
-constexpr int patience_ms = 50; // between two looks at whether the work is to be given up
 
 std::string random_digits() {
   std::random_device device;
@@ -98,7 +98,7 @@ int open_stream(const fs::path& name) {
       fcntl(number, F_SETFL, O_WRONLY); // terminals take a part at once, and more when they have room
     if (number >= 0 || (errno != EINTR && !(waits && errno == ENXIO)))
       return number;
-    throw_if_interrupted();
+    require_patience(name);
     ::poll(nullptr, 0, patience_ms);
   }
 }
@@ -110,13 +110,6 @@ std::shared_ptr<Descriptor> opened_stream(const fs::path& name) {
     std::fflush(stdout);
   const int number = named ? fcntl(*named, F_DUPFD_CLOEXEC, 0) : open_stream(name);
   return std::make_shared<Descriptor>(number, name);
-}
-
-void await_room(const Descriptor& out) {
-  pollfd wanted = {out.number(), POLLOUT, 0};
-  do
-    throw_if_interrupted();
-  while (::poll(&wanted, 1, patience_ms) == 0);
 }
 
 } // namespace
@@ -181,7 +174,7 @@ void NewFile::write(std::span<const std::byte> content) {
   if (!temporary_.empty())
     return out_->write_all(content);
   while (!content.empty()) {
-    await_room(*out_);
+    await(out_->number(), POLLOUT, file_);
     const std::span<const std::byte> piece = content.first(std::min<std::size_t>(content.size(), PIPE_BUF));
     out_->write_all(piece);
     content = content.subspan(piece.size());

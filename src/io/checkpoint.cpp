@@ -288,6 +288,7 @@ Checkpoint::Checkpoint(const std::filesystem::path& file, const Ranks& ranks) : 
   parts_->ranks = ranks;
   std::string seal;
   ranks.first_does([&] {
+    const KeptStreams kept; // a pipe is looked at twice
     parts_->open(std::nullopt);
     seal = seal_in(file);
   });

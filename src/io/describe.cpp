@@ -82,7 +82,8 @@ FieldDescription describe_field(const hdf5::Handle& group, const std::string& na
 void add_fields(FileDescription& description, const hdf5::Handle& image, const std::string& group_name) {
   const hdf5::Handle group = hdf5::open_group(image, group_name);
   for (const std::string& name : hdf5::names_in(group))
-    description.fields.push_back(describe_field(group, name));
+    if (hdf5::is_dataset(group, name)) // not a group of another tool
+      description.fields.push_back(describe_field(group, name));
 }
 
 bool has_format(const hdf5::Handle& object, const char* format) {

@@ -25,7 +25,8 @@ inline constexpr std::int64_t checkpoint_version = 5;
 inline constexpr char snapshot_format[] = "keeler snapshot";
 inline constexpr std::int64_t snapshot_version = 1;
 inline constexpr char particles_group[] = "PartType1"; // as GADGET has it; all arrays of six have one entry a type
-inline constexpr char clumping_group[] = "Clumping";   // in snapshots of clumped states
+inline constexpr char ring_box_units[] = "lengths m; Omega rad/s; time_orbits orbits; time_s s; ratios 1";
+inline constexpr char clumping_group[] = "Clumping"; // in snapshots of clumped states
 
 inline constexpr char contacts_format[] = "keeler contacts";
 inline constexpr std::int64_t contacts_version = 1;

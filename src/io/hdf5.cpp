@@ -203,6 +203,12 @@ bool exists(const Handle& parent, const std::string& name) {
   return checked("look for '" + name + "'", [&] { return H5Lexists(parent.id(), name.c_str(), H5P_DEFAULT); }) > 0;
 }
 
+bool is_dataset(const Handle& parent, const std::string& name) {
+  const Handle object(checked("open '" + name + "'", [&] { return H5Oopen(parent.id(), name.c_str(), H5P_DEFAULT); }),
+                      H5Oclose);
+  return H5Iget_type(object.id()) == H5I_DATASET;
+}
+
 std::vector<std::string> names_in(const Handle& group) {
   std::vector<std::string> names;
   const auto append = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {

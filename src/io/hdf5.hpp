@@ -44,6 +44,7 @@ std::uint64_t used_size(const Handle& file);
 Handle create_group(const Handle& parent, const std::string& name);
 Handle open_group(const Handle& parent, const std::string& name);
 bool exists(const Handle& parent, const std::string& name);
+bool is_dataset(const Handle& parent, const std::string& name);
 /// Names of groups and datasets right below a group, in alphabetical order.
 std::vector<std::string> names_in(const Handle& group);
 /// Gives an object a second name (a hard link): the same object, not a copy.
@@ -67,6 +68,9 @@ struct Layout {
   std::string type;
   Shape shape;
   std::size_t count() const;
+  bool is_of_numbers() const {
+    return type.starts_with("float") || type.starts_with("int") || type.starts_with("uint");
+  }
 };
 
 enum class Packing {

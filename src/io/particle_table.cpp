@@ -145,22 +145,24 @@ ParticleTable read_hdf5_table(std::span<const std::byte> bytes, const std::strin
   const std::vector<std::string> names = hdf5::names_in(image);
   require_no_snapshot(names, file);
   sort_out(names, std::vector<std::vector<double>>(names.size()), file); // before anything is taken to be an array
+  require_stated_units_of_groups(image, "the table");
   std::vector<std::vector<double>> values;
   for (const std::string& name : names) {
     const hdf5::Handle dataset = hdf5::open_dataset(image, name);
     const hdf5::Layout layout = hdf5::layout_of_dataset(dataset);
-    const bool numbers =
-        layout.type.starts_with("float") || layout.type.starts_with("int") || layout.type.starts_with("uint");
-    if (!numbers || layout.shape.size() != 1)
+    if (!layout.is_of_numbers() || layout.shape.size() != 1)
       throw UsageError(
           fmt::format("{}: {} is no list of numbers (an array of one dimension); write it as such", file, name));
-    if (const std::string unit = unit_of(name); !unit.empty())
+    const std::string unit = unit_of(name);
+    if (!unit.empty())
       require_stated_unit(dataset, name, unit);
     if (!values.empty() && values.front().size() != layout.count())
       throw UsageError(fmt::format("{}: {} has {} values, {} has {} (a value a particle); make them equally long", file,
                                    name, layout.count(), names.front(), values.front().size()));
     values.emplace_back(layout.count());
     hdf5::read_dataset(dataset, hdf5::native_type<double>(), values.back().data());
+    if (!unit.empty())
+      require_none_missing(dataset, name, values.back());
   }
   return table_of(file, sort_out(names, std::move(values), file), {});
 }

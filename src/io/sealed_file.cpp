@@ -9,8 +9,6 @@
 #include <algorithm>
 #include <string>
 
-#include <fcntl.h>
-
 namespace keeler {
 namespace {
 
@@ -72,6 +70,16 @@ Hash hash_of(const std::filesystem::path& name, const Descriptor& file, std::uin
   return hash;
 }
 
+// A pipe or a device may have been read already, and be kept.
+std::vector<std::byte> bytes_of(const std::filesystem::path& file) {
+  if (!reads_once(file))
+    return read_file(file);
+  const std::shared_ptr<Descriptor> opened = open_anywhere(file);
+  std::vector<std::byte> bytes(opened->size());
+  bytes.resize(opened->read_at(0, bytes));
+  return bytes;
+}
+
 // Refuses a stream before it is opened: a pipe would wait for its reader.
 std::filesystem::path file_for_hdf5(const std::filesystem::path& file) {
   refuse_stream(file, "HDF5");
@@ -113,34 +121,35 @@ void SealedFile::finish() {
 }
 
 hdf5::Handle open_sealed(const std::filesystem::path& file) {
-  Descriptor descriptor(file, O_RDONLY);
-  const std::string seal = seal_at_end(file, descriptor);
-  const std::size_t content = descriptor.size() - seal_size;
-  require_match(file, seal, seal_of(content, hash_of(file, descriptor, content)));
-  return hdf5::open_on(std::make_shared<hdf5::Disk>(std::make_shared<Descriptor>(std::move(descriptor)), content));
+  const std::shared_ptr<Descriptor> opened = open_anywhere(file);
+  const std::string seal = seal_at_end(file, *opened);
+  const std::size_t content = opened->size() - seal_size;
+  require_match(file, seal, seal_of(content, hash_of(file, *opened, content)));
+  return hdf5::open_on(std::make_shared<hdf5::Disk>(opened, content));
 }
 
 bool has_seal(const std::filesystem::path& file) {
   try {
-    return end_of(Descriptor(file, O_RDONLY)).starts_with(mark);
+    return end_of(*open_anywhere(file)).starts_with(mark);
   } catch (const IoError&) {
+    if (reads_once(file))
+      throw;
     return false; // the reader of the file says why
   }
 }
 
 std::string seal_in(const std::filesystem::path& file) {
-  return seal_at_end(file, Descriptor(file, O_RDONLY));
+  return seal_at_end(file, *open_anywhere(file));
 }
 
 hdf5::Handle open_sealed(const std::filesystem::path& file, const std::string& seal) {
-  Descriptor descriptor(file, O_RDONLY);
-  require_match(file, seal_at_end(file, descriptor), seal);
-  const std::size_t content = descriptor.size() - seal_size;
-  return hdf5::open_on(std::make_shared<hdf5::Disk>(std::make_shared<Descriptor>(std::move(descriptor)), content));
+  const std::shared_ptr<Descriptor> opened = open_anywhere(file);
+  require_match(file, seal_at_end(file, *opened), seal);
+  return hdf5::open_on(std::make_shared<hdf5::Disk>(opened, opened->size() - seal_size));
 }
 
 FileContent load_content(const std::filesystem::path& file) {
-  FileContent content{read_file(file), false};
+  FileContent content{bytes_of(file), false};
   const std::size_t size = content.bytes.size();
   if (size < seal_size || !as_text(std::span(content.bytes).last(seal_size)).starts_with(mark)) {
     require_not_written(file); // it may be half of something

@@ -7,6 +7,7 @@
 #include "hdf5_disk.hpp"
 
 #include <keeler/files/files.hpp>
+#include <keeler/files/kept_streams.hpp>
 #include <keeler/files/new_file.hpp>
 
 #include <cstddef>
@@ -45,7 +46,8 @@ private:
 /// it.
 hdf5::Handle open_sealed(const std::filesystem::path& file);
 
-/// Whether it can be opened and there is a seal at its end, right or wrong.
+/// Whether it can be opened and there is a seal at its end, right or wrong. Throws IoError of a pipe or a device that
+/// cannot be read.
 bool has_seal(const std::filesystem::path& file);
 /// The seal at the end of a file. Throws IoError where there is none.
 std::string seal_in(const std::filesystem::path& file);
@@ -67,6 +69,7 @@ hdf5::Handle open_unsealed(const std::filesystem::path& file, const std::vector<
 /// What `read` makes of the HDF5 content of a file: here where a seal vouches for it, else in a child process, whence
 /// Result comes as a parcel. Throws IoError naming the file, and what `read` throws.
 template<class Result, class Read> Result read_content(const std::filesystem::path& file, const Read& read) {
+  const KeptStreams kept; // it is looked at more than once
   if (has_seal(file))
     return read(open_sealed(file));
   const FileContent content = load_content(file);

@@ -2,7 +2,6 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/files/files.hpp>
-#include <keeler/files/input.hpp>
 
 #include <fmt/format.h>
 
@@ -126,12 +125,11 @@ void require_rising_times(const SeriesTable& table, const std::filesystem::path&
 } // namespace
 
 SeriesTable read_series(const std::filesystem::path& file) {
-  const std::string whole = read_text(file);
-  const std::string_view text = without_byte_order_mark(whole);
+  const std::string text = read_lines(file);
   SeriesTable table;
   std::size_t line = 0;
   for (std::size_t begin = 0, end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
-    const std::vector<std::string_view> fields = fields_of(text.substr(begin, end - begin));
+    const std::vector<std::string_view> fields = fields_of(std::string_view(text).substr(begin, end - begin));
     if (++line == 1) {
       table.names.assign(fields.begin(), fields.end());
       table.columns.resize(fields.size());
@@ -161,7 +159,7 @@ std::vector<std::string> series_names(const std::filesystem::path& file) {
   std::error_code unknown;
   if (!std::filesystem::exists(file, unknown))
     return {};
-  const std::string text = read_text(file);
+  const std::string text = read_lines(file);
   const std::vector<std::string_view> fields = fields_of(std::string_view(text).substr(0, text.find('\n')));
   if (fields.front() != "step")
     return {};
@@ -182,8 +180,7 @@ Series Series::resume(const std::filesystem::path& file, const std::vector<std::
   std::error_code unknown;
   if (!std::filesystem::exists(file, unknown))
     write_text(file, header_line(columns));
-  const std::string whole = read_text(file), header = header_line(columns);
-  const std::string_view text = without_byte_order_mark(whole);
+  const std::string text = read_lines(file), header = header_line(columns);
   if (!text.starts_with(header))
     throw IoError(
         fmt::format("cannot continue '{}': its first line is not the names of its columns ({}); repair it, or "
@@ -191,7 +188,7 @@ Series Series::resume(const std::filesystem::path& file, const std::vector<std::
                     file.string(), header.substr(0, header.size() - 1)));
   RowReader rows(file, text, columns.size(), every);
   const std::string_view kept = rows.rows_up_to(last_step);
-  if (kept.size() != whole.size())
+  if (std::filesystem::file_size(file, unknown) != kept.size())
     write_text(file, kept);
   Series series(file, columns.size(), kept);
   series.gaps_ = rows.gaps();
@@ -216,11 +213,11 @@ void Series::require_rows() {
   std::error_code gone;
   if (std::filesystem::file_size(path_, gone) == size_ && !gone)
     return;
-  const std::string rows = file_.read_all();
-  if (rows.size() != size_)
+  if (const std::size_t size = file_.size(); size != size_)
     throw IoError(fmt::format("'{}' was changed by another program while the run wrote to it ({} bytes instead of {}), "
                               "so rows may be lost; put the rows back that are missing, then resume the run",
-                              path_.string(), rows.size(), size_));
+                              path_.string(), size, size_));
+  const std::string rows = file_.read_all();
   write_text(path_, rows);
   file_ = open_with(path_, rows);
   restored_ = true;

@@ -13,6 +13,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <optional>
 
@@ -32,8 +33,18 @@ namespace {
 
 constexpr char not_sorted[] = "its ParticleIDs do not increase; sort the particles by them, each once";
 
+// What stands in /RingBox beside the numbers of the patch's frame, which have ranges of their own.
+void require_finite_times_and_bounds(const hdf5::Handle& group) {
+  for (const char* name : {"time_s", "bounds_low", "bounds_high"})
+    if (hdf5::has_attribute(group, name))
+      for (const double value : hdf5::read_attribute_values<double>(group, name))
+        if (!std::isfinite(value))
+          throw IoError(fmt::format("its /RingBox has {} {:g}; correct or remove it", name, value));
+}
+
 void read_ring_box(const hdf5::Handle& image, Patch& patch) {
   const hdf5::Handle group = hdf5::open_group(image, "RingBox");
+  require_finite_times_and_bounds(group);
   const auto number = [&](const char* name) { return hdf5::read_attribute<double>(group, name); };
   patch.box.size_x = number("L_x");
   patch.box.size_y = number("L_y");
@@ -87,13 +98,12 @@ struct Part {
   std::size_t end(std::size_t rows) const { return rows * (number + 1) / of; }
 };
 
-// A part of an array of rows whose shape must be `shape`. Without a unit it may state any.
+// A part of an array of rows whose shape must be `shape`.
 template<class T, class Row>
 std::vector<Row> read_array(const hdf5::Handle& group, const std::string& name, const std::string& unit,
                             const hdf5::Shape& shape, const Part& part) {
   const hdf5::Handle dataset = hdf5::open_dataset(group, name);
-  if (!unit.empty())
-    require_stated_unit(dataset, name, unit);
+  require_stated_unit(dataset, name, unit);
   const hdf5::Shape found = hdf5::layout_of_dataset(dataset).shape;
   if (found != shape)
     throw IoError(fmt::format("{} has the shape [{}], not [{}]", name, fmt::join(found, ", "), fmt::join(shape, ", ")));
@@ -101,6 +111,9 @@ std::vector<Row> read_array(const hdf5::Handle& group, const std::string& name, 
   std::vector<Row> rows(part.end(shape[0]) - first);
   if (!rows.empty())
     hdf5::read_rows(dataset, hdf5::native_type<T>(), first, rows.size(), rows.data());
+  if constexpr (std::is_same_v<T, double>)
+    require_none_missing(dataset, name,
+                         {reinterpret_cast<const double*>(rows.data()), rows.size() * sizeof(Row) / sizeof(double)});
   return rows;
 }
 
@@ -110,12 +123,15 @@ void read_particles(const hdf5::Handle& image, const Part& part, Patch& patch) {
     if (!hdf5::exists(group, name))
       throw IoError(
           fmt::format("it lacks /{}/{} (docs/formats.md has what stands there); add it", particles_group, name));
-  const hsize_t count = hdf5::layout_of_dataset(hdf5::open_dataset(group, "ParticleIDs")).count();
+  const hdf5::Handle ids = hdf5::open_dataset(group, "ParticleIDs");
+  const hsize_t count = hdf5::layout_of_dataset(ids).count();
+  require_stated_units_of_groups(image, "the file");
   require_header_fits(image, patch, count);
+  require_whole_ids(ids, "ParticleIDs");
   patch.positions = read_array<double, Vec3>(group, "Coordinates", "m", {count, 3}, part);
   patch.velocities = read_array<double, Vec3>(group, "Velocities", "m/s", {count, 3}, part);
   patch.masses = read_array<double, double>(group, "Masses", "kg", {count}, part);
-  patch.ids = read_array<std::uint64_t, std::uint64_t>(group, "ParticleIDs", "", {count}, part);
+  patch.ids = read_array<std::uint64_t, std::uint64_t>(group, "ParticleIDs", "1", {count}, part);
   patch.radii = read_array<double, double>(group, "Radius", "m", {count}, part);
   if (hdf5::exists(group, "Spins"))
     patch.spins = read_array<double, Vec3>(group, "Spins", "rad/s", {count, 3}, part);
@@ -220,6 +236,7 @@ Snapshot read_part(const std::filesystem::path& file, const Ranks& ranks) {
 Snapshot read_snapshot(const std::filesystem::path& file, const Ranks& ranks) {
   if (!ranks.many())
     return read_whole(file);
+  const KeptStreams kept; // a pipe is looked at more than once
   bool sealed = false;
   ranks.first_does([&] { sealed = has_seal(file); });
   if (ranks.from_first(sealed))

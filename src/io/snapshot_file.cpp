@@ -159,8 +159,7 @@ void write_ring_box(const hdf5::Handle& root, const Patch& frame, const Bounds& 
   hdf5::write_attribute(group, "time_s", frame.time_orbits * two_pi / frame.orbital_frequency);
   hdf5::write_attribute(group, "bounds_low", std::vector<double>(bounds.low.data(), bounds.low.data() + 3));
   hdf5::write_attribute(group, "bounds_high", std::vector<double>(bounds.high.data(), bounds.high.data() + 3));
-  hdf5::write_attribute(group, "units",
-                        std::string_view("lengths m; Omega rad/s; time_orbits orbits; time_s s; ratios 1"));
+  hdf5::write_attribute(group, "units", std::string_view(ring_box_units));
 }
 
 void write_clumping(const hdf5::Handle& image, const SnapshotMeta& meta) {

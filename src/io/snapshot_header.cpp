@@ -52,10 +52,6 @@ void require_header_fits(const hdf5::Handle& root, const Patch& patch, std::size
   if (!hdf5::exists(root, "Header"))
     return;
   const Header header(root);
-  constexpr char units[] = "Keeler takes SI; convert the arrays, and correct the attribute";
-  header.require("UnitLength_in_cm", 100.0, units);
-  header.require("UnitMass_in_g", 1000.0, units);
-  header.require("UnitVelocity_in_cm_per_s", 100.0, units);
   header.require("NumFilesPerSnapshot", 1.0, "a start is one whole file; join the files into one");
   const double of_all = static_cast<double>(count), high = std::floor(of_all / high_word);
   constexpr char counts[] = "as many as the arrays of /PartType1 have; join or correct the file";

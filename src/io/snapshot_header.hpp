@@ -9,9 +9,8 @@
 
 namespace keeler {
 
-/// Throws IoError that names the attribute where /Header states other units than m, kg and m/s, a part of a snapshot in
-/// several files, another number of particles than `count`, masses of its own, or another box or time than `patch`.
-/// What is missing states nothing.
+/// Throws IoError that names the attribute where /Header states a part of a snapshot in several files, another number
+/// of particles than `count`, masses of its own, or another box or time than `patch`. What is missing states nothing.
 void require_header_fits(const hdf5::Handle& root, const Patch& patch, std::size_t count);
 
 } // namespace keeler

@@ -7,6 +7,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
+#include <keeler/core/words.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/runs/state_hash.hpp>
 #include <keeler/scene/derived.hpp>
@@ -53,6 +54,11 @@ std::unique_ptr<Held> from_snapshot(const PythonSnapshot& snapshot, const std::s
 std::unique_ptr<Held> from_stored(StoredRun stored) {
   auto simulation = made([&] { return std::make_unique<Simulation>(stored.scene, std::move(stored.state)); });
   return std::make_unique<Held>(stored.scene, std::move(simulation));
+}
+
+// `notice` is called with each line.
+std::unique_ptr<Held> resume(const std::filesystem::path& folder, const py::function& notice) {
+  return from_stored(load_newest_checkpoint(folder, [&](const std::string& line) { notice(printable_line(line)); }));
 }
 
 // --- views: of bodies in memory, by their strides
@@ -215,8 +221,7 @@ void bind_simulation(py::module_& module) {
       .def(py::init(&from_scene), py::arg("scene"))
       .def(py::init(&from_snapshot), py::arg("snapshot"), py::arg("name"), py::arg("scene"))
       .def_static("load", [](const std::filesystem::path& file) { return from_stored(load_checkpoint(file)); })
-      .def_static("resume",
-                  [](const std::filesystem::path& folder) { return from_stored(load_newest_checkpoint(folder)); })
+      .def_static("resume", &resume, py::arg("folder"), py::arg("notice"))
       .def("__len__", [](const Held& held) { return held.state().particles.size(); })
       .def_property_readonly("scene", &Held::scene, py::return_value_policy::reference_internal)
       .def_property_readonly("orbits", &orbits)

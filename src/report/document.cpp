@@ -1,5 +1,6 @@
 #include <keeler/report/document.hpp>
 
+#include <keeler/core/words.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/report/html.hpp>
 
@@ -8,6 +9,17 @@
 #include <cstddef>
 
 namespace keeler {
+namespace {
+
+// On one line, in one cell.
+std::string in_cell(const std::string& text) {
+  std::string cell;
+  for (const char c : printable_line(text))
+    cell += c == '|' ? "\\|" : std::string(1, c);
+  return cell;
+}
+
+} // namespace
 
 Document::Document(const std::string& title) : title_(title), markdown_("# " + title + "\n") {}
 
@@ -25,7 +37,7 @@ void Document::table(const std::vector<std::vector<std::string>>& rows) {
   markdown_ += "\n";
   for (std::size_t k = 0; k < rows.size(); ++k) {
     for (const std::string& text : rows[k])
-      markdown_ += "| " + text + " ";
+      markdown_ += "| " + in_cell(text) + " ";
     markdown_ += "|\n";
     if (k == 0) {
       for (std::size_t column = 0; column < rows[k].size(); ++column)

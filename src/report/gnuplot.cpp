@@ -1,6 +1,7 @@
 #include <keeler/report/gnuplot.hpp>
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/words.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/files/new_file.hpp>
 
@@ -8,6 +9,7 @@
 
 #include <array>
 
+#include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -21,6 +23,7 @@ int run_in(const std::filesystem::path& folder, const std::string& terminal, con
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
   std::string program = "gnuplot", option = "-e", first = terminal, file = script;
   const std::array<char*, 5> arguments = {program.data(), option.data(), first.data(), file.data(), nullptr};
@@ -35,6 +38,13 @@ int run_in(const std::filesystem::path& folder, const std::string& terminal, con
 }
 
 } // namespace
+
+std::string gnuplot_string(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : printable_line(text))
+    quoted += c == '\'' ? "''" : std::string(1, c);
+  return quoted + "'";
+}
 
 bool plot(const std::filesystem::path& folder, const std::string& name, const std::string& script, int width,
           int height) {

@@ -38,7 +38,7 @@ std::optional<EditedScene> EditedScene::in(const RunFolder& folder, const std::s
   std::error_code unknown;
   if (!fs::exists(folder.scene(), unknown))
     return std::nullopt;
-  std::string text = read_text(folder.scene());
+  std::string text = read_lines(folder.scene());
   if (text == stored || text == scene.resolved)
     return std::nullopt;
   return EditedScene(folder, std::move(text), scene);

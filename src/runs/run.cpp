@@ -320,8 +320,14 @@ StoredRun load_checkpoint(const std::filesystem::path& file) {
   return load(file).run;
 }
 
-StoredRun load_newest_checkpoint(const std::filesystem::path& folder) {
-  return load(newest_valid_checkpoint(folder).path).run;
+StoredRun load_newest_checkpoint(const std::filesystem::path& folder,
+                                 const std::function<void(const std::string&)>& notice) {
+  RunOptions options;
+  options.folder = folder;
+  options.notice = notice;
+  Loaded loaded = load(newest_checkpoint(options));
+  tell_edited_scene(RunFolder(folder), loaded.run.scene, loaded, options, false);
+  return std::move(loaded.run);
 }
 
 void store_checkpoint(const std::filesystem::path& file, const SimulationState& state, const Scene& scene) {

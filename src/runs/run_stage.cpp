@@ -3,26 +3,33 @@
 #include "run_folder.hpp"
 #include "summary.hpp"
 
+#include <keeler/core/error.hpp>
+#include <keeler/files/descriptor.hpp>
 #include <keeler/io/checkpoint_folder.hpp>
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
+#include <span>
 #include <string>
+
+#include <fcntl.h>
 
 namespace keeler {
 namespace {
 
-constexpr std::streamoff longest_row = 4096; // bytes, more than any row has
+constexpr std::size_t longest_row = 4096; // bytes, more than any row has
 
 // The end of a text file, with one whole line at least where there is one.
 std::string tail_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary | std::ios::ate);
-  if (!in)
+  try {
+    const Descriptor opened(file, O_RDONLY);
+    const std::size_t size = opened.size(), length = std::min(size, 2 * longest_row);
+    std::string tail(length, '\0');
+    tail.resize(opened.read_at(size - length, std::as_writable_bytes(std::span(tail))));
+    return tail;
+  } catch (const IoError&) {
     return {};
-  const std::streamoff size = in.tellg();
-  in.seekg(std::max<std::streamoff>(0, size - 2 * longest_row));
-  return {std::istreambuf_iterator<char>(in), {}};
+  }
 }
 
 } // namespace

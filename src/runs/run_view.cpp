@@ -60,7 +60,7 @@ void take_event(RunView& view, const nlohmann::json& line) {
 
 // A line that is still being written, or is no JSON of a log, says nothing.
 void read_log(RunView& view, const fs::path& file) {
-  std::istringstream lines(read_text(file));
+  std::istringstream lines(read_lines(file));
   for (std::string text; std::getline(lines, text);) {
     const nlohmann::json line = json_of<nlohmann::json>(text);
     if (line.is_object())

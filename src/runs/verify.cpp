@@ -133,7 +133,7 @@ Found check_summary(const std::string& file) {
 
 // The last line may be one that the run is writing, or was when it was killed.
 Found check_log(const std::string& file) {
-  const std::string text = read_text(file);
+  const std::string text = read_lines(file);
   std::size_t line = 0;
   for (std::size_t begin = 0, end; (end = text.find('\n', begin)) != text.npos; begin = end + 1) {
     ++line;

@@ -24,7 +24,7 @@ struct Positioned {
   Entry entry;
 };
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\')
@@ -114,7 +114,7 @@ public:
 
   void add_table(const toml::table& table, const std::string& prefix) {
     for (const auto& [key, node] : table)
-      add(prefix + (is_plain(key.str()) ? std::string(key.str()) : quoted(key.str())), key.source().begin, node);
+      add(prefix + (is_plain(key.str()) ? std::string(key.str()) : in_quotes(key.str())), key.source().begin, node);
   }
 
   void add(const std::string& path, const toml::source_position& position, const toml::node& node) {
@@ -297,7 +297,7 @@ std::string to_toml(const Value& value) {
       const std::string digits = fmt::format("{}", number); // the shortest that gives the same bits back
       return digits.find_first_of(".en") == std::string::npos ? digits + ".0" : digits;
     }
-    std::string operator()(const std::string& text) const { return quoted(text); }
+    std::string operator()(const std::string& text) const { return in_quotes(text); }
     std::string operator()(const std::vector<double>& list) const {
       std::vector<std::string> elements;
       for (const double number : list)

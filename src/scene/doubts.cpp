@@ -107,10 +107,32 @@ void doubt_room(const PatchScale& patch, Lines& lines) {
         figures(spans, 2), enough));
 }
 
+const ForceSettings* satellite_of(const Scene& scene) {
+  for (const ForceSettings& force : scene.external_forces)
+    if (std::string_view(force.entry->table) == "satellite")
+      return &force;
+  return nullptr;
+}
+
+// Passages that drag by at least so much.
+std::optional<SatellitePassage> passage_between(const Scene& scene, const ForceSettings& satellite, double least_drag,
+                                                double from, double until) {
+  return dragging_passage(satellite.parameters, scene.planet.orbital_frequency, scene.planet.frequencies, least_drag,
+                          from, until);
+}
+
 void doubt_satellite(const Scene& scene, Lines& lines) {
+  const ForceSettings* const satellite = satellite_of(scene);
+  if (!satellite)
+    return;
   const double end = static_cast<double>(scene.time.end_step) * scene.time.step;
   if (const std::optional<SatellitePassage> passage = doubtful_passage(scene, 0.0, end))
     lines.push_back(in_words(*passage));
+  const std::optional<SatellitePassage> first = passage_between(scene, *satellite, 0.0, 0.0, HUGE_VAL);
+  if (first && first->orbits > end)
+    lines.push_back(fmt::format("the satellite first passes at orbit {}, and the run ends at orbit {} without it; let "
+                                "it pass earlier (satellite.passage), or the run end later (time.end)",
+                                figures(first->orbits, 4), figures(end, 4)));
 }
 
 // Of a fresh patch, before there is one.
@@ -137,11 +159,8 @@ double critical_restitution(double optical_depth) {
 }
 
 std::optional<SatellitePassage> doubtful_passage(const Scene& scene, double from, double until) {
-  for (const ForceSettings& force : scene.external_forces)
-    if (std::string_view(force.entry->table) == "satellite")
-      return dragging_passage(force.parameters, scene.planet.orbital_frequency, scene.planet.frequencies, doubtful_drag,
-                              from, until);
-  return std::nullopt;
+  const ForceSettings* const satellite = satellite_of(scene);
+  return satellite ? passage_between(scene, *satellite, doubtful_drag, from, until) : std::nullopt;
 }
 
 std::string in_words(const SatellitePassage& passage) {

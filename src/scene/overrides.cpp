@@ -125,6 +125,11 @@ void apply_override(SceneDocument& document, const Override& by, std::vector<std
 
 void apply_overrides(SceneDocument& document, const std::vector<std::string>& overrides,
                      std::vector<std::string>& notices) {
+  constexpr std::size_t most = 1000; // each is held against all that the scene has
+  if (overrides.size() > most)
+    throw UsageError(fmt::format("{} overrides are too many (a scene takes {} at most, and has fewer keys); write what "
+                                 "they give into the scene",
+                                 overrides.size(), most));
   for (const std::string& text : overrides)
     apply_override(document, from_command_line(text), notices);
 }

@@ -14,7 +14,8 @@ namespace keeler {
 /// key of another law, the sections that a start file replaces) is dropped, with a notice each.
 void apply_override(SceneDocument& document, const Override& by, std::vector<std::string>& notices);
 
-/// The same for those of the command line, in their order. Throws UsageError where one is not KEY=VALUE.
+/// The same for those of the command line, in their order. Throws UsageError where one is not KEY=VALUE, and where they
+/// are more than a scene can have.
 void apply_overrides(SceneDocument& document, const std::vector<std::string>& overrides,
                      std::vector<std::string>& notices);
 

@@ -91,6 +91,29 @@ std::vector<ModeSettings> read_modes(Settings& settings, const std::string& name
   return modes;
 }
 
+// So many waves of `what` in the box would be shorter than particles that should show them.
+void require_long(const Scene& scene, int waves, const std::string& place, const std::string& what) {
+  const double across = 2.0 * scene.particles.sizes.largest, wavelength = scene.size_x / waves;
+  if (!(wavelength >= across))
+    fail_at(place, fmt::format("{} has waves of {} m, shorter than the largest particle ({} m across); give at most {} "
+                               "in the box",
+                               what, figures(wavelength, 4), figures(across, 4),
+                               std::max(1.0, std::floor(scene.size_x / across))));
+}
+
+// Once the box is known.
+void require_long_waves(const Scene& scene, const Settings& settings) {
+  const ParticleSettings& particles = scene.particles;
+  if (particles.streamlines.bunching > 0.0)
+    require_long(scene, particles.streamlines.waves, settings.place("particles.streamlines.waves"),
+                 "particles.streamlines");
+  const char* const directions[] = {"outward", "inward", "standing"};
+  for (const ModeSettings& mode : particles.modes) {
+    const std::string key = std::string("particles.modes.") + directions[static_cast<std::size_t>(mode.direction)];
+    require_long(scene, mode.waves, settings.place(key), key);
+  }
+}
+
 void read_step(const Scene& scene, const Settings& settings, DensityPattern& pattern) {
   const std::vector<double> between = settings.numbers("particles.step.between");
   const double edge = 0.5 * scene.size_x;
@@ -255,6 +278,7 @@ void read_particles_and_box(Scene& scene, Settings& settings, const std::string&
   particles.modes = read_modes(settings, name);
   const Amount amount = read_amount(settings, particles);
   read_box(scene, settings, amount);
+  require_long_waves(scene, settings);
   read_pattern(scene, settings);
   const std::string place = settings.place(amount.key); // before it is resolved to a count
   read_count(scene, settings, amount);

@@ -11,6 +11,7 @@
 
 #include <keeler/core/units.hpp>
 #include <keeler/core/words.hpp>
+#include <keeler/files/files.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/gravity/axisymmetric.hpp>
 #include <keeler/scene/derived.hpp>
@@ -280,6 +281,17 @@ Scene parse_stored_scene(const std::string& text, const std::string& name) {
   SceneDocument document = parse_document(text, name);
   name_quality_of_stored(document, name);
   return read_scene(std::move(document), name, Purpose::go_on, {});
+}
+
+Scene load_stored_scene(const std::filesystem::path& file) {
+  const std::string text = read_lines(file);
+  try {
+    return parse_stored_scene(text, file.string());
+  } catch (const UsageError&) {
+    throw IoError(fmt::format("'{}' is damaged: it is no scene of Keeler any more; put it back, or take that of a "
+                              "snapshot (\"keeler info FILE --json\" prints it)",
+                              file.string()));
+  }
 }
 
 Scene load_scene(const std::string& path, const std::vector<std::string>& overrides,

@@ -8,25 +8,26 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <span>
+#include <sstream>
 
 #include <fcntl.h>
 
 namespace keeler {
 
 JobList::JobList(const std::filesystem::path& file) : file_(file) {
-  std::ifstream in(file);
+  if (!std::filesystem::exists(file))
+    return;
+  std::istringstream lines(read_lines(file));
   std::string text;
-  for (std::string line; std::getline(in, line);) {
+  for (std::string line; std::getline(lines, line);) {
     const Json entry = json_of<Json>(line);
     if (!entry.is_object() || !entry.contains("job") || !entry["job"].is_string() || !entry.contains("result"))
       continue;
     results_[entry["job"].get<std::string>()] = entry["result"];
     text += line + "\n";
   }
-  in.close();
-  if (std::filesystem::exists(file) && text.size() != std::filesystem::file_size(file))
+  if (text.size() != std::filesystem::file_size(file))
     write_text(file, text); // without a line that was cut short
 }
 

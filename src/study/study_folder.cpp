@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <exception>
 #include <fstream>
 
 namespace keeler {
@@ -53,6 +54,19 @@ Json open_study_folder(const fs::path& folder, const Json& options, const std::m
                                    folder.string(), key,
                                    before.is_object() && before.contains(key) ? json_text(before[key]) : "none"));
   return before;
+}
+
+void draw_and_report(const std::function<bool()>& draw, const std::function<void(bool)>& report) {
+  std::exception_ptr fault;
+  bool drawn = false;
+  try {
+    drawn = draw();
+  } catch (const IoError&) {
+    fault = std::current_exception();
+  }
+  report(drawn);
+  if (fault)
+    std::rethrow_exception(fault);
 }
 
 } // namespace keeler

@@ -4,6 +4,7 @@
 #include "job_list.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -17,5 +18,10 @@ std::map<std::string, std::string> study_builder(const std::vector<std::string>&
 /// of it, its builder included. Throws UsageError when it holds another study or other things, IoError.
 Json open_study_folder(const std::filesystem::path& folder, const Json& options,
                        const std::map<std::string, std::string>& builder);
+
+/// Draws the figures of a study, and then writes its report, which has the numbers whatever becomes of the figures: one
+/// that cannot be drawn is told afterwards. `draw` returns whether there are figures, `report` takes it. Throws
+/// IoError.
+void draw_and_report(const std::function<bool()>& draw, const std::function<void(bool)>& report);
 
 } // namespace keeler

@@ -51,12 +51,12 @@ bool x_is_number(const Grid& grid, const Plan& plan) {
                      [&](const GridPoint& point) { return point.settings[x.key]->number.has_value(); });
 }
 
-// A text in single quotes, as gnuplot takes it.
-std::string in_single_quotes(const std::string& text) {
-  std::string out = "'";
+// A text beside an axis, where gnuplot takes % for the beginning of a format.
+std::string label_string(const std::string& text) {
+  std::string plain;
   for (const char c : text)
-    out += c == '\'' ? "''" : std::string(1, c);
-  return out + "'";
+    plain += c == '%' ? "%%" : std::string(1, c);
+  return gnuplot_string(plain);
 }
 
 // Words in the place of numbers along x.
@@ -67,7 +67,7 @@ std::string words_along_x(const Grid& grid) {
       static_cast<std::size_t>(std::find(axis.keys.begin(), axis.keys.end(), grid.plot.x) - axis.keys.begin());
   std::string tics;
   for (std::size_t k = 0; k < axis.points.size(); ++k)
-    tics += fmt::format("{}{} {}", tics.empty() ? "" : ", ", in_single_quotes(axis.points[k][key].label), k);
+    tics += fmt::format("{}{} {}", tics.empty() ? "" : ", ", label_string(axis.points[k][key].label), k);
   return fmt::format("set xtics ({}) noenhanced\nset xrange [-0.5:{}]\n", tics,
                      static_cast<double>(axis.points.size()) - 0.5);
 }
@@ -76,7 +76,7 @@ std::string script_of(const Grid& grid, const Plan& plan, const std::vector<Plot
   const char* const colours[] = {"#1f77b4", "#c0392b", "#2e8b57", "#e67e22", "#444444", "#8e44ad"};
   const bool numbers = x_is_number(grid, plan);
   std::string script = fmt::format("set xlabel {} noenhanced\nset ylabel {} noenhanced\nset grid\nset key left top\n",
-                                   in_single_quotes(grid.plot.x), in_single_quotes(grid.plot.y));
+                                   gnuplot_string(grid.plot.x), gnuplot_string(grid.plot.y));
   if (grid.plot.x_log && numbers)
     script += "set logscale x\n";
   if (grid.plot.y_log)
@@ -86,7 +86,7 @@ std::string script_of(const Grid& grid, const Plan& plan, const std::vector<Plot
   for (std::size_t k = 0; k < lines.size(); ++k) {
     const char* const colour = colours[k % std::size(colours)];
     const std::string title =
-        lines[k].title.empty() ? "notitle" : fmt::format("title {} noenhanced", in_single_quotes(lines[k].title));
+        lines[k].title.empty() ? "notitle" : fmt::format("title {} noenhanced", gnuplot_string(lines[k].title));
     script += fmt::format("{0}'figure.dat' index {1} using 1:2 with lines lw 1 dt 2 lc rgb '{2}' notitle, '' index "
                           "{1} using 1:2:3 with yerrorbars lw 2 pt 7 ps 0.7 lc rgb '{2}' {3}",
                           k ? ", " : "", k, colour, title);

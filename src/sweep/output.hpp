@@ -21,7 +21,7 @@ struct PlotLine {
 /// Of the points that have y. Where x is no number it is the place on the axis, from 0.
 std::vector<PlotLine> plot_lines(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points);
 
-enum class Figure { drawn, nothing_to_draw, no_gnuplot };
+enum class Figure { drawn, nothing_to_draw, no_gnuplot, failed };
 
 Figure draw_figure(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points, const RunFolders& folders);
 

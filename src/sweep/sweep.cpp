@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 namespace keeler {
@@ -64,21 +65,33 @@ void tell_doubts(const Plan& plan, const Notice& notice) {
   }
 }
 
-// The tables of this moment, without those of a former one that they do not replace.
-void write_tables(const Grid& grid, const Plan& plan, const RunFolders& folders, const std::vector<RunRow>& runs,
-                  const std::vector<PointRow>& points, const Notice& notice) {
+// The tables of this moment, without those of a former one that they do not replace. Returns why there is no figure,
+// where it failed: the tables and the report stand without it.
+std::string write_tables(const Grid& grid, const Plan& plan, const RunFolders& folders, const std::vector<RunRow>& runs,
+                         const std::vector<PointRow>& points, const Notice& notice) {
   const Json run_table = runs_as_json(plan, runs), point_table = points_as_json(plan, points);
   if (!run_table.empty())
     write_text(folders.path() / "sweep.csv", csv_with_gaps(run_table));
-  if (point_table.empty())
-    return;
+  if (point_table.empty()) {
+    std::error_code absent;
+    for (const char* const name : {"points.csv", "report.md", "figure.svg", "figure.png"})
+      fs::remove(folders.path() / name, absent);
+    return {};
+  }
   write_text(folders.path() / "points.csv", csv_with_gaps(point_table));
-  const Figure figure = draw_figure(grid, plan, points, folders);
+  Figure figure = Figure::failed;
+  std::string fault;
+  try {
+    figure = draw_figure(grid, plan, points, folders);
+  } catch (const IoError& error) {
+    fault = error.what();
+  }
   if (figure == Figure::no_gnuplot)
     notice("gnuplot is not there, so only the data of the figure are written (Debian: gnuplot-nox)");
   if (figure == Figure::nothing_to_draw && !grid.plot.x.empty())
     notice(fmt::format("no run has {}, so there is no figure; name another y under [plot]", grid.plot.y));
   write_report(grid, plan, runs, points, folders, figure);
+  return fault;
 }
 
 } // namespace
@@ -107,6 +120,7 @@ SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
     settings.notice(fmt::format("note: {} in '{}' that this grid does not have stay as they are and out of the tables",
                                 counted(beside, "run"), (folders.path() / "runs").string()));
   if (!settings.tables_only) {
+    result.began = true;
     tell_doubts(plan, settings.notice);
     work_on(plan.runs, folders, claims, {settings.jobs, settings.threads_per_run, settings.progress, settings.notice},
             requests);
@@ -118,9 +132,11 @@ SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
   const SharedFiles lock(claims);
   const std::vector<RunRow> runs = run_rows(grid, plan, folders);
   const std::vector<PointRow> points = point_rows(plan, runs);
-  write_tables(grid, plan, folders, runs, points, settings.notice);
+  result.figure_fault = write_tables(grid, plan, folders, runs, points, settings.notice);
   result.finished = count_of(runs, RunStatus::finished);
   result.failed = count_of(runs, RunStatus::failed);
+  result.unmeasurable = static_cast<std::size_t>(
+      std::count_if(runs.begin(), runs.end(), [](const RunRow& run) { return !run.measurable; }));
   result.points = json_text(points_as_json(plan, points));
   return result;
 }

@@ -38,11 +38,13 @@ RunRow measured_row(const Grid& grid, const PlannedRun& run, const RunFolders& f
   RunRow row;
   row.run = &run;
   if (run_stage(folders.run(run.name)) == RunStage::finished) {
-    row.status = RunStatus::finished;
     try {
       row.numbers = measure_run(folders.run(run.name), run.scene, grid.since);
+      row.status = RunStatus::finished;
     } catch (const Error& error) { // a damaged file must not take the other runs from the table
+      row.status = RunStatus::failed;
       row.reason = error.what();
+      row.measurable = false;
     }
   } else if (const std::optional<std::string> reason = folders.failure_of(run.name)) {
     row.status = RunStatus::failed;

@@ -23,7 +23,8 @@ enum class RunStatus { finished, failed, unfinished };
 struct RunRow {
   const PlannedRun* run = nullptr;
   RunStatus status = RunStatus::unfinished;
-  std::string reason; ///< why it failed, or why a finished one could not be measured
+  std::string reason;     ///< why it failed
+  bool measurable = true; ///< false: it failed after its end, for its files cannot be read
   std::optional<RunNumbers> numbers;
 };
 

@@ -47,6 +47,50 @@ refuses "no threads" "--threads" run "$work/scene.toml" -o "$none" --threads 0
 refuses "no wall time" "--wall-time" run "$work/scene.toml" -o "$none" --wall-time -1
 nothing_left "bad options"
 
+# Whole numbers may be written as scenes take them; what CLI11 cannot take is told in the program's words.
+while read -r option what words; do
+  read -ra command <<<"$words"
+  for value in 1.5 x 99999999999999999999 1e400 0x; do
+    refuses "$words $option $value" "$option: '$value' is not a number of $what from " "${command[@]}" "$option" "$value"
+  done
+done <<'END'
+--count particles bench drift
+--count particles bench gravity
+--count particles bench step
+--count particles study finders
+--count particles study gravity
+--repeats repeats bench drift
+--repeats repeats study gravity
+--kick-every steps bench step
+--seeds seeds study gravity
+--seeds seeds study step
+--jobs runs study step
+--jobs runs sweep grid.toml
+--threads threads sweep grid.toml
+--threads threads bench gravity
+--threads threads run scene.toml
+--modes modes analyze run
+--bins bins analyze run
+--rays rays analyze run
+--width pixels render run
+--snapshots snapshots report run
+END
+refuses "half a thread" "from 1 to 1024; give a whole number" run "$work/scene.toml" -o "$none" --threads 1.5
+runs 0 bench drift --count 2e2 --repeats 1e0 --threads 1.0
+refuses "an orbit in words" "--since: 'x' is not a number; \"keeler analyze --help\"" analyze run --since x
+refuses "a word too many" "'keeler check' has no place for 'b'" check "$work/scene.toml" b
+refuses "two folders" "--output is given 2 times, and takes one value" run "$work/scene.toml" -o "$none" -o "$none"
+refuses "an option without its value" "--wall-time has no value" run "$work/scene.toml" -o "$none" --wall-time
+nothing_left "bad values of options"
+
+# No result takes the place of what it is made from.
+cp "$work/scene.toml" "$work/kept.toml"
+printf 'x,y,z,r\n0,0,0,1\n' >"$work/table.csv"
+refuses "a scene's own place" "is what the result is made from" generate "$work/kept.toml" -o "$work/./kept.toml" --force
+refuses "a table's own place" "is what the result is made from" generate "$work/kept.toml" --from-table "$work/table.csv" \
+  -o "$work/table.csv" --force
+cmp -s "$work/scene.toml" "$work/kept.toml" || fail "a scene was replaced by its state"
+
 runs 0 run "$work/scene.toml" -o "$work/taken" --set time.end=0.01
 cp -r "$work/taken" "$work/before"
 refuses "occupied folder" "--force" run "$work/scene.toml" -o "$work/taken"

@@ -76,6 +76,17 @@ sed -i 's/^tangential_restitution = .*/tangential_restitution = 0.9/' "$work/hur
 runs 4 info --verify "$work/hurt"
 prints "a scene of another run" "has other physics than scene.toml"
 
+# Lines that a tool of Windows ended are the same lines.
+rm -rf "$work/hurt"
+cp -r "$run" "$work/hurt"
+sed -i 's/$/\r/' "$work"/hurt/{series.csv,moonlets.csv,impact_speeds.csv,log.jsonl,scene.toml}
+for command in "info --verify" info analyze "render --series" "resume --until 0.14"; do
+  # shellcheck disable=SC2086 # a command and its options
+  runs 0 $command "$work/hurt"
+  grep -q 'edited\|missing' "$work/err" && fail "lines of Windows, $command: $(cat "$work/err")"
+done
+grep -q $'\r' "$work"/hurt/*.csv && fail "lines of Windows beside others"
+
 # What another program changed has no seal; its numbers are looked at.
 edited() { # NAME PYTHON: the open file is `f`
   cp "$run/snap_000002.hdf" "$work/edited.hdf"

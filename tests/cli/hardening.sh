@@ -46,7 +46,7 @@ for arguments in --help "check --defaults" "run $work/scene.toml -o $work/out-fu
 done
 
 # Threads without sense.
-refuses "too many threads" "1024 is the most" run "$work/scene.toml" -o "$work/none" --threads 100000
+refuses "too many threads" "a number of threads from 1 to 1024" run "$work/scene.toml" -o "$work/none" --threads 100000
 OMP_NUM_THREADS=99999999 refuses "too many threads in the environment" "OMP_NUM_THREADS" check "$work/scene.toml"
 
 # Scenes that are finite and absurd: each quantity has its range. Steps of these once never ended.

@@ -43,6 +43,20 @@ number '[file["damaged"] for file in info["snapshots"]]' "[False, True, False]"
 accepts "a damaged file in words" info "$work/run"
 prints "a damaged file in words" "snap_000001.hdf         damaged"
 
+# A group of another tool beside the arrays, and a scene that is none any more.
+/usr/bin/python3 - "$work/run/snap_000000.hdf" "$work/grouped.hdf" <<'END'
+import shutil, sys
+import h5py
+shutil.copy(sys.argv[1], sys.argv[2])
+with h5py.File(sys.argv[2], "a") as file:
+    file["PartType1"].create_group("notes")["self"] = file["PartType1"]
+END
+accepts "a group among the arrays" info "$work/grouped.hdf"
+accepts "a group among the arrays, as a table" convert "$work/grouped.hdf" --to csv -o "$work/grouped.csv"
+cp -r "$work/run" "$work/broken"
+echo 'end = = 3' >>"$work/broken/scene.toml"
+refuses_with 4 "a broken scene" "scene.toml' is damaged: it is no scene of Keeler any more" info "$work/broken"
+
 # At work, killed, stopped.
 cp "$work/small.toml" "$work/scene.toml"
 "$keeler" run "$work/scene.toml" --set time.end=1e5 --set output.snapshot_every=0 \

@@ -43,6 +43,45 @@ code=0
 { timeout 60 python3 -c "$pending" SIGUSR1 "$keeler" check "$work/scene.toml" >"$work/out" || code=$?; } 2>/dev/null
 [ "$code" -eq 138 ] || fail "early USR1, keeler check: exit $code"
 
+# What waits for a pipe hears them too: `timeout -k` has to kill what does not.
+accepts "a run" run "$work/scene.toml" -o "$work/done" --set time.end=0.2 -q
+mkfifo "$work/pipe"
+fixed() { # NAME: a copy of the run with a pipe in the place of this file
+  cp -r "$work/done" "$work/with-$1"
+  rm "$work/with-$1/$1"
+  mkfifo "$work/with-$1/$1"
+}
+newest=$(basename "$(newest_checkpoint "$work/done")")
+for name in log.jsonl series.csv "$newest" snap_000000.hdf; do fixed "$name"; done
+waiting=()
+: >"$work/deaf"
+while read -r command; do
+  { # shellcheck disable=SC2086 # a command and its words
+    code=0
+    timeout -k 20 1 "$keeler" $command >/dev/null 2>&1 || code=$?
+    [ "$code" -eq 124 ] || echo "exit $code: $command" >>"$work/deaf"
+  } &
+  waiting+=($!)
+done <<END
+run $work/pipe -o $work/none
+run $work/scene.toml --from $work/pipe -o $work/none
+check $work/pipe
+sweep $work/pipe -o $work/none
+study step $work/pipe -o $work/none
+convert $work/pipe --to csv -o $work/none
+render $work/pipe -o $work/none.png
+info $work/pipe
+generate $work/scene.toml --from-table $work/pipe -o $work/none.hdf
+resume $work/with-log.jsonl --until 1
+resume $work/with-series.csv --until 1
+resume $work/with-$newest --until 1
+convert $work/with-snap_000000.hdf --to csv
+render $work/with-snap_000000.hdf --movie
+render $work/with-series.csv --series
+END
+wait "${waiting[@]}"
+[ -s "$work/deaf" ] && fail "not ended by TERM while it waits for a pipe: $(cat "$work/deaf")"
+
 runs 75 "${endless[@]}" -o "$work/wall" --wall-time 0.5
 stopped "--wall-time" "$work/wall"
 runs 75 resume "$work/wall" --until 1e4 --wall-time 0.5

@@ -66,6 +66,19 @@ refuses_with 4 "a full device" "No space left on device" convert "$snapshot" --t
 "$keeler" convert "$snapshot" --to csv -o - 2>"$work/err" | true
 [ "${PIPESTATUS[0]}" -eq 0 ] || one_line "a reader that goes" "Broken pipe"
 
+# A snapshot that comes through a pipe is that of the file; no name for a result follows from that of the pipe.
+accepts "a table" convert "$snapshot" --to csv -o "$work/of-file.csv"
+runs 0 convert /dev/stdin --to csv -o "$work/of-pipe.csv" < <(cat "$snapshot")
+cmp -s "$work/of-file.csv" "$work/of-pipe.csv" || fail "a table of a snapshot from a pipe: $(cat "$work/err")"
+runs 0 info "$snapshot"
+sed "s|$snapshot|/dev/stdin|" "$work/out" >"$work/of-file"
+runs 0 info /dev/stdin < <(cat "$snapshot")
+cmp -s "$work/of-file" "$work/out" || fail "info of a snapshot from a pipe: $(cat "$work/out" "$work/err")"
+for command in render "convert --to csv"; do
+  # shellcheck disable=SC2086 # a command and its options
+  refuses "$command of a pipe without -o" "name the file to write by -o" $command /dev/stdin < <(cat "$snapshot")
+done
+
 # A pipe without a reader waits, and an interrupt ends that.
 rm -f "$work/pipe"
 mkfifo "$work/pipe"

@@ -94,6 +94,18 @@ short=(--quick --grow 0.1 --orbits 1.5)
 runs 0 study mesh "$work/scene.toml" -o "$work/mesh" "${short[@]}"
 [ "$(column force_error 2 "$work/mesh/settings.csv")" != "" ] || fail "no force error"
 runs 0 study step "$work/plain.toml" -o "$work/step" "${short[@]}"
+damaged=("$work"/step/runs/step-*_seed-1)
+sed -i 's/.*/x/' "${damaged[0]}/series.csv"
+mkdir "$work/bin"
+printf '#!/bin/sh\necho "gnuplot speaks" >&2\nexit 1\n' >"$work/bin/gnuplot"
+chmod +x "$work/bin/gnuplot"
+rm "$work/step/report.md"
+PATH=$work/bin:$PATH runs 4 study step "$work/plain.toml" -o "$work/step" "${short[@]}" -q
+one_line "a figure that fails" "gnuplot failed on '$work/step/figures/pareto.gp'"
+[ -s "$work/step/report.md" ] || fail "a figure that fails: no report"
+runs 1 study step "$work/plain.toml" -o "$work/step" "${short[@]}" -q
+one_line "a damaged run" "a run is missing, the report has the reasons; remove what is damaged from '$work/step/runs'"
+grep -q "^$(basename "${damaged[0]}"),.*,failed,.*series.csv" "$work/step/study.csv" || fail "a damaged run: $(cut -c 1-200 "$work/step/study.csv")"
 runs 0 study box "$work/plain.toml" -o "$work/box" "${short[@]}"
 grep -q "no common one" "$work/box/report.md" || fail "the report does not say that boxes have starts of their own"
 runs 0 study sizes "$work/plain.toml" -o "$work/sizes" "${short[@]}" \

@@ -181,6 +181,63 @@ END
 (cd "$work" && "$keeler" sweep small.toml --output=-dash >"$work/out" 2>"$work/err") || fail "a dash: $(cat "$work/err")"
 [ -s "$work/-dash/sweep.csv" ] || fail "a dash: no table"
 
+# Values of a grid are texts to gnuplot, whatever is in them, and what gnuplot says is not heard.
+cat >"$work/texts.toml" <<END
+scene = "scene.toml"
+since = 0.01
+[set]
+"time.end" = 0.3
+"output.series_every" = 0.01
+"output.stress_every" = 0.01
+[[axis]]
+key = "particles.density"
+values = [500, 600]
+[[axis]]
+key = "title"
+values = ["x", "100% | 'a'\\nsystem \\"touch $work/touched\\"\\n#\\u0000\\u001B[31m"]
+[plot]
+x = "title"
+y = "dispersion_x_m_s"
+END
+runs 0 sweep "$work/texts.toml" -o "$work/texts" -q
+[ -s "$work/err" ] && fail "texts: $(cat "$work/err")"
+[ -e "$work/touched" ] && fail "texts: a value of a grid was run as a command"
+grep -q "^| 500 | 100% .| 'a'?system" "$work/texts/report.md" || fail "texts: $(cat "$work/texts/report.md")"
+if command -v gnuplot >/dev/null; then
+  grep -q "100% | 'a'?system" "$work/texts/figure.svg" || fail "texts: no label in figure.svg"
+fi
+mkdir "$work/bin"
+printf '#!/bin/sh\necho "gnuplot speaks" >&2\nexit 1\n' >"$work/bin/gnuplot"
+chmod +x "$work/bin/gnuplot"
+rm "$work/texts/report.md"
+PATH=$work/bin:$PATH runs 4 sweep "$work/texts.toml" -o "$work/texts" -q --json
+one_line "a figure that fails" "gnuplot failed on '$work/texts/figure.gp'"
+[ "$(text finished "$work/out")" -eq 4 ] || fail "a figure that fails: $(cat "$work/out")"
+[ -s "$work/texts/report.md" ] || fail "a figure that fails: no report"
+
+# Finished runs that cannot be measured.
+runs 0 sweep "$work/small.toml" -o "$work/damaged" -q
+sed -i 's/.*/x/' "$work/damaged/runs/seed-1/series.csv"
+runs 1 sweep "$work/small.toml" -o "$work/damaged" -q
+one_line "a damaged run" "1 finished run cannot be measured, sweep.csv has the reasons; remove what is damaged"
+prints "a damaged run" "2 runs: 1 finished, 1 failed"
+[ "$(column finished_runs 2 "$work/damaged/points.csv")" = 1 ] || fail "a damaged run: $(cat "$work/damaged/points.csv")"
+grep -q "^seed-1,1,failed,.*series.csv" "$work/damaged/sweep.csv" || fail "a damaged run: $(cut -c 1-200 "$work/damaged/sweep.csv")"
+sed -i 's/.*/x/' "$work/damaged/runs/seed-2/series.csv"
+runs 1 sweep "$work/small.toml" -o "$work/damaged" -q
+[ -e "$work/damaged/points.csv" ] && fail "nothing to measure: the table of points of another time stands there"
+rm -r "$work/damaged/runs"/*
+runs 0 sweep "$work/small.toml" -o "$work/damaged" -q
+
+# Tables that are stopped start no run.
+code=0
+timeout 60 python3 -c 'import os, signal, sys
+signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM])
+os.kill(os.getpid(), signal.SIGTERM)
+os.execv(sys.argv[1], sys.argv[1:])' "$keeler" sweep "$work/small.toml" -o "$work/damaged" --tables 2>"$work/err" || code=$?
+[ "$code" -eq 75 ] || fail "tables that are stopped: exit $code"
+one_line "tables that are stopped" "stopped before the tables were made"
+
 # A plan of many runs heeds a signal.
 { echo 'scene = "scene.toml"' && seq -s ', ' 1 100000 | sed 's/^/seeds = [/; s/$/]/'; } >"$work/many.toml"
 "$keeler" sweep "$work/many.toml" -o "$work/many" >"$work/out" 2>"$work/err" &

@@ -137,6 +137,13 @@ grep -qF "(1,0): 0, 0, 0.0003" "$work/spins" || fail "spins: $(cat "$work/spins"
 made x,y,z,r,m,sz 0,0,0,1,4000,1e-4
 refused 2 "a part of the spins" "table.csv:1: the column 'sx' is missing; add it"
 
+made '#x,y,z,r,m' '# made by me' 0,0,0,1,4000
+runs 0 generate "$work/scene.toml" --from-table "$work/table.csv" -o "$work/comments.hdf"
+printf 'x,y,z,r\n0,0,0,1\n' | iconv -t UTF-16 >"$work/table.csv"
+refused 2 "UTF-16" "table.csv: is a text in UTF-16 (its byte order mark says so); save it as UTF-8"
+printf 'x,y,z,r\n\0\0,0,0,1\n' >"$work/table.csv"
+refused 2 "zero bytes" "table.csv:2: x is '??' (it must be a number); correct it or remove the row"
+
 made x,y,z,r,m 0,0,0,1,4000
 refuses "a start beside it" "start.from cannot stand beside a table of particles" \
   generate "$work/scene.toml" --set start.from="$work/good.hdf" --from-table "$work/table.csv" -o "$work/none.hdf"

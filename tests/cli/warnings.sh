@@ -13,6 +13,10 @@ accepts "frost" check "$work/scene.toml"
 grep -q "however fast" "$work/out" && fail "frost: $(cat "$work/out")"
 accepts "a narrow box" check "$work/scene.toml" --set 'box.size=[8, 50]' --set particles.count=30
 prints "a narrow box" "note: the box spans 4 diameters of its largest body"
+runs 0 generate "$work/scene.toml" "${elastic[@]}" -o "$work/elastic.hdf"
+prints "generate" "note: the coefficient of restitution is 0.9"
+runs 0 generate "$work/scene.toml" "${elastic[@]}" -o "$work/elastic.hdf" --force --quiet
+grep -q "note:" "$work/out" "$work/err" && fail "generate --quiet: $(cat "$work/out" "$work/err")"
 runs 0 run "$work/scene.toml" "${elastic[@]}" --set time.end=0.01 -o "$work/elastic"
 grep -q '^keeler: note: the coefficient of restitution is 0.9' "$work/err" || fail "a run: $(cat "$work/err")"
 
@@ -25,6 +29,12 @@ accepts "passages" check "$ringlet" --set satellite.every=40.2 --set time.end=32
 prints "passages" "note: the satellite's passage at orbit 124.6 moves particles at 0."
 accepts "passages that end in time" check "$ringlet" --set satellite.every=40.2 --set time.end=124
 grep -q "the satellite's passage" "$work/out" && fail "passages that end in time: $(cat "$work/out")"
+accepts "a satellite that does not come" check "$ringlet" --set satellite.passage=1e6 --set time.end=0.3
+prints "a satellite that does not come" "note: the satellite first passes at orbit 1000000, and the run ends at orbit 0.3 without it"
+accepts "nor comes back" check "$ringlet" --set satellite.passage=-3 --set satellite.every=40.2 --set time.end=30
+prints "nor comes back" "note: the satellite first passes at orbit 37.2, and the run ends at orbit 30 without it"
+accepts "one that comes back" check "$ringlet" --set satellite.passage=-3 --set satellite.every=40.2 --set time.end=40
+grep -q "first passes" "$work/out" && fail "one that comes back: $(cat "$work/out")"
 far=(run "$ringlet" --set particles.optical_depth=1e-3 --set satellite.passage=1.5 --set satellite.upright_after=100)
 runs 0 "${far[@]}" --set time.end=0.4 -o "$work/before"
 [ "$(grep -c "satellite's passage" "$work/err" "$work/out")" = "$work/err:0

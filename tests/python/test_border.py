@@ -43,11 +43,59 @@ class Border(unittest.TestCase):
             "analyze": lambda: keeler.Run.analyze(type("Other", (), {"folder": 5})(), "x"),
             "from_arrays": lambda: keeler.from_arrays(ring(), [[0.0, 0.0, 0.0]], 1.0, relax="perhaps"),
             "add_restitution_law": lambda: keeler.add_restitution_law(5, 4096),
-            "write_file": lambda: start.plot().save(5),
+            "save  ": lambda: start.plot(width=200).save(5),
         }
         for name, call in calls.items():
             with self.subTest(name):
                 self.refused(keeler.UsageError, f"{name.strip()} cannot take ", call)
+
+    def test_what_is_no_path_is_refused_before_any_work(self):
+        before = os.getcwd()
+        self.addCleanup(os.chdir, before)
+        os.chdir(self.folder)
+        grid = {"scene": ring(), "seeds": [1]}
+        calls = {
+            "run": lambda path: keeler.run(ring(), path),
+            "sweep": lambda path: keeler.sweep(grid, path),
+            "sweep ": lambda path: keeler.sweep(path, "sweep"),
+            "sweep  ": lambda path: keeler.sweep({**grid, "scene": path or 5}, "sweep"),
+            "Run": keeler.Run,
+            "read": keeler.read,
+            "read ": keeler.render,
+            "read  ": lambda path: keeler.tile(path, 2, 2),
+            "read   ": lambda path: keeler.Simulation(ring(), start=path or 5),
+            "read    ": lambda path: keeler.run(ring(), "run", start=path or 5),
+            "load": keeler.load,
+            "resume": keeler.resume,
+            "save": self.sim.save,
+            "save ": self.start.save,
+            "save  ": keeler.Picture(b"").save,
+            "plot": lambda path: self.start.plot(path or 5),
+        }
+        for name, call in calls.items():
+            for path in (None, 5, [], b"bytes", "", "a\0b", "\ud800"):
+                with self.subTest(name, path=path):
+                    self.refused(keeler.UsageError, f"{name.strip()} cannot take ", lambda: call(path))
+        self.assertEqual(os.listdir(), [])
+        for scene in (None, 5, [], b"bytes", "", "a\0b", "\ud800"):
+            with self.subTest("scene", scene=scene):
+                self.refused(keeler.UsageError, "a scene cannot ", lambda: keeler.generate(scene))
+
+    def test_texts_and_numbers_that_no_scene_can_have(self):
+        for words, call in (
+            ("title has half of a character", lambda: keeler.generate(ring(), title="\udc80")),
+            ("title has half of a character", lambda: keeler.generate(ring(title="\udc80"))),
+            ("the scene has half of a character", lambda: keeler.generate('title = "\udc80"\n')),
+            ("has half of a character", lambda: keeler.generate(ring(), **{"ti\udc80": 1})),
+            ("has half of a character", lambda: keeler.sweep({"scene": ring(), "title": "\udc80"}, self.folder / "sweep")),
+            ("particles.seed is a number of more than 300", lambda: keeler.generate(ring(), particles={"seed": 10**5000})),
+            ("time in orbits", lambda: self.sim.run(10**5000)),
+            ("minimum_speed is 'fast'", lambda: self.sim.collisions("fast").__enter__()),
+        ):
+            with self.subTest(words):
+                self.refused(keeler.UsageError, words, call)
+        with self.assertRaisesRegex(keeler.UsageError, "cannot read the scene '/dev/zero': it is too large"):
+            keeler.generate("/dev/zero")
 
     def test_names_that_are_no_utf8_and_names_that_cannot_be(self):
         odd = os.fsdecode(os.fsencode(self.folder) + b"/caf\xe9.h5")
@@ -67,10 +115,20 @@ class Border(unittest.TestCase):
 
     def test_what_a_run_left_and_others_changed(self):
         keeler.run(ring(), self.folder / "run")
-        for name, content in (("summary.json", b"{"), ("summary.json", b"\xff"), ("scene.toml", b"\xff")):
+        broken = [b"{", b"\xff", b"[" * 100000, b'{"a":' + b"1" * 10000 + b"}", b"[]", b"NaN", b'{"a": NaN}', b""]
+        for name, content in [("scene.toml", b"\xff"), *(("summary.json", content) for content in broken)]:
             (self.folder / "run" / name).write_bytes(content)
             of = "summary" if name == "summary.json" else "scene"
             self.refused(keeler.IoError, name, lambda of=of: getattr(keeler.read(self.folder / "run"), of))
+
+    def test_tables_of_a_sweep_that_others_changed(self):
+        table = self.folder / "sweep.csv"
+        for content in (b"", b"\xff", b"a,b\n1\n", b"a,b\n1,2,3\n", b"a\n" + b"x" * 200000 + b"\n"):
+            table.write_bytes(content)
+            with self.subTest(content[:10]):
+                self.refused(keeler.IoError, "sweep.csv", lambda: keeler.runs._rows(table))
+        table.write_text('run,value\r\n"a",0.5\r\nb,\r\n')
+        self.assertEqual(keeler.runs._rows(table), [{"run": "a", "value": 0.5}, {"run": "b", "value": None}])
 
     def test_pipes_are_written_to_where_the_format_allows_it(self):
         pipe, got = self.folder / "pipe", []

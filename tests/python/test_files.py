@@ -77,6 +77,22 @@ class AsTheProgram(InAFolder):
         self.assertEqual(resumed.run().state_hash, end)
         self.assertEqual(keeler.read(run).summary["state_hash"], end)
 
+    def test_resume_tells_of_an_edited_scene(self):
+        run = keeler.run(RING, self.folder / "run")
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            keeler.resume(run.folder)
+        edited = run.scene.replace("end = 0.2", "end = 0.6")
+        (run.folder / "scene.toml").write_text(edited)
+        with self.assertWarnsRegex(UserWarning, "was edited, .* --until 0.6") as caught:
+            self.assertAlmostEqual(keeler.resume(run.folder).orbits, 0.2)
+        self.assertEqual(caught.filename, __file__)
+        self.assertEqual(run.scene, edited)
+        newest = max(run.folder.glob("checkpoint_*.h5"))
+        (run.folder / "checkpoint_999999.h5").write_bytes(newest.read_bytes()[:-10])
+        with self.assertWarnsRegex(UserWarning, "checkpoint_999999.h5"):
+            keeler.resume(run.folder)
+
     def test_a_run_read(self):
         run = self.folder / "run"
         sim = keeler.Simulation(RING, output={"series_every": 0.02, "snapshot_every": 0.1})
@@ -211,6 +227,36 @@ class Starts(InAFolder):
         np.testing.assert_array_equal(whole.by_id(np.ma.array(whole.ids, mask=whole.ids == 1)).mask, [False, True])
         with self.assertRaisesRegex(keeler.UsageError, "box.size has 1 masked"):
             keeler.Simulation(RING, box={"size": np.ma.array([60.0, 60.0], mask=[True, False])})
+
+    def test_arrays_that_hold_something_else(self):
+        places = np.array([[-10.0, 0.0, 0.0], [10.0, 5.0, 1.0]])
+
+        class InKilometres(np.ndarray):
+            unit = "km"
+
+        structured = np.zeros(2, dtype=[("x", float), ("y", float), ("z", float)])
+        for words, wrong in (
+            ("ids cannot be given", dict(positions=places, radii=1.5, ids=[1, 2])),
+            ("^unknown key|^speeds", dict(positions=places, radii=1.5, speeds=1.0)),
+            ("positions has the type", dict(positions=structured, radii=1.5)),
+            ("positions has the type", dict(positions=places.astype(str), radii=1.5)),
+            ("positions has the type", dict(positions=places + 1j, radii=1.5)),
+            ("positions has entries that are no", dict(positions=np.array([[0.0, {}, 0.0]]), radii=1.5)),
+            ("radii has entries that are no", dict(positions=places, radii=np.array([{}, 1.0]))),
+            ("velocities has ", dict(positions=places, radii=1.5, velocities=[[0.0], [0.0, 1.0]])),
+            ("masses has entries that are no", dict(positions=places, radii=1.5, masses=[10**400, 1])),
+            ("positions has the unit 'km'; give numbers in SI, here m", dict(positions=places.view(InKilometres), radii=1.5)),
+        ):
+            with self.subTest(words), self.assertRaisesRegex(keeler.UsageError, words) as caught:
+                keeler.from_arrays(RING, **wrong)
+            self.assertNotIn("\n", str(caught.exception))
+        InKilometres.unit = "m"
+        for right in (places.astype(object), places.astype("float32"), places.view(InKilometres)):
+            np.testing.assert_array_equal(keeler.start_from_arrays(RING, right, 1.5).positions, places)
+        sim = keeler.from_arrays(RING, places, 1.5)
+        with self.assertRaisesRegex(keeler.UsageError, "radii has entries that are no"):
+            with sim.edit() as state:
+                state.radii = np.array([{}, 1.0])
 
     def test_sizes_are_bounded(self):
         start = keeler.generate(RING)

@@ -176,9 +176,9 @@ class ForeignFiles(unittest.TestCase):
             return how
 
         for how, words in (
-            (header("UnitLength_in_cm", 1e5), "/Header has UnitLength_in_cm 100000, not 100 (Keeler takes SI"),
-            (header("UnitMass_in_g", 1.0), "UnitMass_in_g 1, not 1000"),
-            (header("UnitVelocity_in_cm_per_s", np.nan), "UnitVelocity_in_cm_per_s nan, not 100"),
+            (header("UnitLength_in_cm", 1e5), "/Header is in another unit (its attribute UnitLength_in_cm is 100000), and Keeler takes SI"),
+            (header("UnitMass_in_g", 1.0), "UnitMass_in_g is 1)"),
+            (header("UnitVelocity_in_cm_per_s", np.nan), "UnitVelocity_in_cm_per_s is nan)"),
             (header("NumFilesPerSnapshot", 2), "NumFilesPerSnapshot 2, not 1 (a start is one whole file"),
             (header("BoxSize", 0.03), "BoxSize 0.03, not 30"),
             (header("Time", 1e7), "Time 1e+07, not 0"),
@@ -199,6 +199,85 @@ class ForeignFiles(unittest.TestCase):
             self.change(how)
             done = keeler("analyze", self.file)
             self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_units_and_scales_that_other_attributes_state(self):
+        """On the root, groups and arrays, in any case; what states SI is taken."""
+
+        def group(name, attribute, value):
+            return lambda file, _: file.require_group(name).attrs.__setitem__(attribute, value)
+
+        def array(name, attribute, value):
+            return lambda _, part: part[name].attrs.__setitem__(attribute, value)
+
+        units = "Unit length in cgs (U_L)"
+        for how, words in (
+            (group("/", "units", "km"), "the file is in another unit (its attribute units is 'km')"),
+            (group("Header", "HubbleParam", 0.7), "/Header is in another unit (its attribute HubbleParam is 0.7)"),
+            (group("Parameters", "UnitLength_in_cm", 1e5), "/Parameters is in another unit (its attribute UnitLength_in_cm"),
+            (group("Parameters", "unitmass_in_g", 1.0), "/Parameters is in another unit (its attribute unitmass_in_g is 1)"),
+            (group("Units", units, [1e5]), f"/Units is in another unit (its attribute {units} is 100000)"),
+            (group("RingBox", "units", "km"), "/RingBox is in another unit (its attribute units is 'km')"),
+            (group("RingBox", "time_s", np.nan), "its /RingBox has time_s nan"),
+            (group("RingBox", "bounds_low", [np.nan] * 3), "its /RingBox has bounds_low nan"),
+            (group("PartType1", "length_unit", "kpc"), "/PartType1 is in another unit"),
+            (array("Coordinates", "Units", "km"), "Coordinates is in another unit (its attribute Units is 'km'), and Keeler takes m"),
+            (array("Coordinates", "Units", ["m", "km"]), "the attribute Units of Coordinates is neither"),
+            (array("Radius", "scale_factor", 1000), "its attribute scale_factor is 1000"),
+            (array("Radius", "add_offset", 1.0), "its attribute add_offset is 1"),
+            (array("Velocities", "to_SI", 1e3), "its attribute to_SI is 1000"),
+            (array("Masses", "unitSI", 1e-3), "its attribute unitSI is 0.001"),
+            (array("ParticleIDs", "scale_factor", 2), "ParticleIDs is in another unit"),
+            (lambda _, part: part["Radius"].attrs.__setitem__("_FillValue", part["Radius"][0]), "Radius has "),
+        ):
+            with self.subTest(words):
+                self.change(how)
+                self.refused(4, words)
+
+        def stated(file, part):
+            for place, attributes in (
+                ("/", {"units": "SI", "length_unit": "m"}),
+                ("Units", {units: [100.0], "Unit mass in cgs (U_M)": [1000.0], "Unit time in cgs (U_t)": 1.0}),
+                ("Parameters", {"UnitLength_in_cm": "100", "HubbleParam": 0.0}),
+                ("PartType1/Radius", {"Units": "", "scale_factor": 1, "add_offset": 0.0, "unitSI": 1.0, "_FillValue": -1.0}),
+                ("PartType1/ParticleIDs", {"to_cgs": 0.0}),
+            ):
+                of = file[place] if place in file else file.create_group(place)
+                of.attrs.update(attributes)
+
+        self.change(stated)
+        done = keeler("analyze", self.file)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_ids_that_are_no_whole_numbers(self):
+        for first, kind in ((0.5, "f8"), (-1.0, "i8"), (-1.0, "f8"), (np.nan, "f8"), (2.0**60, "f8")):
+            def make(part, count, first=first, kind=kind):
+                ids = np.arange(count).astype(kind)
+                ids[0] = first
+                part["ParticleIDs"] = ids
+
+            with self.subTest(first, kind=kind):
+                self.replace("ParticleIDs", make)
+                self.refused(4, "an id is a whole number from 0 on")
+        self.replace("ParticleIDs", lambda part, count: part.__setitem__("ParticleIDs", np.arange(count, dtype="f4")))
+        self.assertEqual(keeler("analyze", self.file).returncode, 0)
+
+    def test_units_and_scales_that_a_table_states(self):
+        table = self.folder / "units.h5"
+
+        def written(where, attribute, value):
+            with h5py.File(table, "w") as file:
+                for name in "xyz":
+                    file[name] = [0.0, 5.0]
+                file["r"] = [1.0, 1.0]
+                file[where].attrs[attribute] = value
+            return keeler("generate", self.scene, "--from-table", table, "-o", self.folder / "of_table.hdf", "--force")
+
+        for where, attribute, value in (("/", "unit", "km"), ("x", "scale_factor", 1000), ("x", "Units", "km"),
+                                        ("r", "_FillValue", 1.0), ("r", "missing_value", [9.0, 1.0])):
+            done = written(where, attribute, value)
+            self.assertEqual((done.returncode, done.stderr.count(b"\n")), (4, 1), done.stderr)
+            self.assertIn(attribute.encode(), done.stderr)
+        self.assertEqual(written("x", "_FillValue", -1.0).returncode, 0)
 
     def test_a_file_that_is_open_for_writing(self):
         """h5py holds a lock meanwhile; the file on the disk may be half of it."""

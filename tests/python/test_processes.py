@@ -10,6 +10,7 @@ import select
 import signal
 import subprocess
 import sys
+import tempfile
 import unittest
 
 import numpy as np
@@ -37,6 +38,19 @@ def looked_at(what):
     except keeler.RunError as error:
         return str(error)
     return "it looked"
+
+
+def of_commands_with(word):
+    """The processes whose command line has it."""
+    found = []
+    for process in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{process}/cmdline", "rb") as file:
+                if os.fsencode(word) in file.read():
+                    found.append(process)
+        except OSError:
+            pass
+    return found
 
 
 def resident_mb():
@@ -117,6 +131,35 @@ class Processes(unittest.TestCase):
             )
             self.assertEqual((ended.returncode, ended.stderr), (0, ""))
             self.assertGreater(int(ended.stdout), 100)
+
+    def test_runs_of_the_program_end_with_the_interpreter(self):
+        """A daemon thread waits for one; its temporary folder goes too."""
+        program = """if True:
+            import sys, threading, time
+            from pathlib import Path
+            import keeler
+            sys.path.insert(0, sys.argv[1])
+            from scenes import ring
+            large = ring(box={"size": [300.0, 300.0]}, time={"step": 5e-4, "end": 500.0})
+            calls = {"run": lambda folder: keeler.run(large, folder),
+                     "sweep": lambda folder: keeler.sweep({"scene": large, "seeds": [1]}, folder)}
+            folder = Path(sys.argv[2]) / sys.argv[3]
+            threading.Thread(target=calls[sys.argv[3]], args=[folder], daemon=True).start()
+            while not list(folder.glob("**/series.csv")):
+                time.sleep(0.02)
+        """
+        here = os.path.dirname(os.path.abspath(__file__))
+        with tempfile.TemporaryDirectory() as place:
+            temporary = os.path.join(place, "temporary")
+            os.mkdir(temporary)
+            for kind in ("run", "sweep"):
+                ended = subprocess.run(
+                    [sys.executable, "-c", program, here, place, kind], capture_output=True, text=True, timeout=60,
+                    check=False, env={**os.environ, "TMPDIR": temporary},
+                )
+                self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+                self.assertEqual(of_commands_with(place), [])
+                self.assertEqual(os.listdir(temporary), [])
 
     def test_nothing_is_printed_unasked(self):
         code = ("import keeler, scenes\n"

@@ -17,10 +17,10 @@ enum class ExitCode : int {
   stopped = 75,     ///< stopped early, a valid checkpoint is on disk
 };
 
-/// One line for the user: what is wrong, why it is, what to do.
+/// One line for the user: what is wrong, why it is, what to do. What terminals cannot take of it becomes '?'.
 class Error : public std::runtime_error {
 public:
-  Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  Error(ExitCode code, const std::string& message);
   ExitCode code() const { return code_; }
 
 private:

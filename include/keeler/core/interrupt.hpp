@@ -12,7 +12,8 @@
 namespace keeler {
 
 struct Interrupted : Error {
-  Interrupted() : Error(ExitCode::run_time, "interrupted on request") {}
+  Interrupted() : Interrupted("interrupted on request") {}
+  explicit Interrupted(const std::string& message) : Error(ExitCode::run_time, message) {}
 };
 
 /// Work of this thread, and of the parallel loops in it, can be interrupted by the flag as long as this lives.
@@ -26,9 +27,15 @@ public:
   /// The flag of this thread's work.
   static const std::atomic<bool>& flag() { return *current_; }
 
+  /// From now on this flag ends what waits for others, such as the writer of a pipe: in all threads, and whatever work
+  /// there is, since a wait may have no end and leaves nothing half done.
+  static void waits_end_by(const std::atomic<bool>& flag) { of_waits_ = &flag; }
+  static bool waits_are_over() { return of_waits_.load()->load(std::memory_order_relaxed); }
+
 private:
   static constexpr std::atomic<bool> never_ = false;
   static constinit thread_local inline const std::atomic<bool>* current_ = &never_;
+  static constinit inline std::atomic<const std::atomic<bool>*> of_waits_ = &never_;
 
   const std::atomic<bool>* before_;
 };

@@ -17,7 +17,7 @@ struct Columns {
 
 /// A line of names, then a line of numbers for each row. What parts the names parts the numbers: commas, semicolons, or
 /// blanks and tabs. Empty lines and lines that begin with '#' are left out, but the names may stand behind a '#' where
-/// numbers follow at once. Throws UsageError "NAME:LINE: what is wrong; what to do".
+/// no line of names comes before the numbers. Throws UsageError "NAME:LINE: what is wrong; what to do".
 Columns parse_columns(std::string_view text, const std::string& name);
 
 } // namespace keeler

@@ -23,8 +23,12 @@ void write_text(const std::filesystem::path& file, std::string_view text);
 /// Before work whose result goes to `output`: throws IoError unless this is a folder that can be written to.
 void require_writable_folder(const std::filesystem::path& folder, const std::filesystem::path& output);
 
-/// All bytes of a file. Throws IoError.
+/// All bytes of a file. Throws IoError, also where there is not memory enough for them; Interrupted while it waits for
+/// a pipe or a device.
 std::vector<std::byte> read_file(const std::filesystem::path& file);
 std::string read_text(const std::filesystem::path& file);
+
+/// The same of a text of lines, as it was before a tool of Windows put a byte order mark and carriage returns into it.
+std::string read_lines(const std::filesystem::path& file);
 
 } // namespace keeler

@@ -13,6 +13,9 @@ namespace keeler {
 /// The text without the byte order mark of UTF-8 that some editors and spreadsheets put before it.
 std::string_view without_byte_order_mark(std::string_view text);
 
+/// Throws UsageError "WHATis a text in UTF-16 …; save it as UTF-8" where it begins as such texts do.
+void refuse_utf16(std::string_view text, const std::string& what);
+
 /// The whole file without a byte order mark, named at `place` ("scene.toml:7:9", or the file itself). Throws UsageError
 /// "PLACE: FILE cannot be read (why); …", also where the file has more than 1 GiB or does not end, and for UTF-16.
 std::string read_input(const std::filesystem::path& file, const std::string& place);

@@ -76,8 +76,10 @@ struct StoredRun {
 };
 StoredRun load_checkpoint(const std::filesystem::path& file);
 
-/// The same of the newest whole checkpoint of a run's folder.
-StoredRun load_newest_checkpoint(const std::filesystem::path& folder);
+/// The same of the newest whole checkpoint of a run's folder. `notice` gets a line on each damaged one that was passed
+/// over, and on a scene.toml that was edited, which stays as it is.
+StoredRun load_newest_checkpoint(const std::filesystem::path& folder,
+                                 const std::function<void(const std::string&)>& notice);
 
 /// Writes a state, where kicks meet, as the checkpoint of a run that has written nothing yet: in a folder of its own
 /// and under the name checkpoint_000000.h5, `keeler resume` goes on from it. Throws IoError.

@@ -12,6 +12,7 @@
 #include <keeler/scene/density_pattern.hpp>
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -180,6 +181,8 @@ TableScene parse_table_scene(const std::string& text, const std::string& name,
 /// The scene in a snapshot or checkpoint, for what exists already: the box, the sizes and whatever else only the start
 /// needed are not read (their ranges alone are checked), so a file of radii or a start file may be gone.
 Scene parse_stored_scene(const std::string& text, const std::string& name);
+/// The same of a run's scene.toml. Throws IoError, also where it is none any more.
+Scene load_stored_scene(const std::filesystem::path& file);
 
 /// Every key with default, unit and meaning, as a table (text) or as the manual's Markdown table.
 std::string describe_keys(bool markdown);

@@ -3,12 +3,13 @@
 import functools
 import types
 
+from . import _arguments
 from .errors import UsageError
 
 
 def _refusal(owner, name, values):
     """The line on arguments of types that do not fit."""
-    shown = ", ".join(f"{text if len(text) <= 40 else text[:37] + '...'}" for text in map(repr, values))
+    shown = ", ".join(map(_arguments.shown, values))
     what = owner.lower() if name == "__init__" else name
     return f"{what} cannot take {shown or 'no value'}; help() on what was called says what it takes"
 

@@ -1,14 +1,14 @@
 """Runs with a folder, sweeps, and what they leave."""
 
+import csv
+import io
 import json
 import os
 import shutil
-import signal
 import subprocess
-import tempfile
 from pathlib import Path
 
-from . import _core, scenes, snapshots
+from . import _arguments, _core, _processes, scenes, snapshots
 from .errors import Error, InvariantError, IoError, RunError, UsageError
 
 
@@ -18,7 +18,7 @@ class Run:
     while the run works); ``scene`` the resolved scene as text."""
 
     def __init__(self, folder):
-        self.folder = Path(folder)
+        self.folder = _arguments.path(folder, "Run")
         for needed in ("scene.toml", "snap_000000.hdf"):
             if not (self.folder / needed).is_file():
                 raise IoError(f"'{folder}' holds no run ({needed} is missing); name the folder of a run")
@@ -28,7 +28,7 @@ class Run:
 
     @property
     def scene(self):
-        return _text(self.folder / "scene.toml")
+        return _arguments.text(self.folder / "scene.toml")
 
     @property
     def series(self):
@@ -45,9 +45,12 @@ class Run:
         if not file.exists():
             return None
         try:
-            return json.loads(_text(file))
-        except json.JSONDecodeError:
-            raise IoError(f"'{file}' is not the summary of a run; 'keeler resume {self.folder}' writes it again") from None
+            numbers = json.loads(_arguments.text(file), parse_constant=_no_number)
+        except (ValueError, RecursionError):
+            numbers = None
+        if not isinstance(numbers, dict):
+            raise IoError(f"'{file}' is not the summary of a run; 'keeler resume {self.folder}' writes it again")
+        return numbers
 
     @property
     def snapshots(self):
@@ -57,15 +60,6 @@ class Run:
         """The numbers of ``keeler analyze DIR --json``, as a dictionary, from one orbit to another (default: from where
         on the run is steady). Raises UsageError, IoError."""
         return json.loads(_core.analyze(self.folder, since, until))
-
-
-def _text(file):
-    try:
-        return file.read_text(encoding="utf-8")
-    except UnicodeDecodeError:
-        raise IoError(f"'{file}' is no text (it has bytes that are not UTF-8); restore it, or make it again") from None
-    except OSError as error:
-        raise IoError(f"cannot read '{file}': {error.strerror}") from None
 
 
 class _Snapshots:
@@ -83,11 +77,13 @@ class _Snapshots:
         return snapshots.read(self.files[which])
 
 
+def _no_number(name):
+    raise ValueError(name)  # NaN and Infinity, which JSON has not
+
+
 def read(path):
     """A snapshot file as a Snapshot, the folder of a run as a Run. Raises IoError, UsageError."""
-    if not isinstance(path, (str, os.PathLike)):
-        raise UsageError(f"{path!r} is no path; name a snapshot or the folder of a run")
-    path = Path(path)
+    path = _arguments.path(path, "read")
     if path.is_dir():
         return Run(path)
     if not path.exists():
@@ -100,30 +96,21 @@ def program():
     package = Path(__file__).parent  # not resolved: in a build, links to the sources stand here
     installed = [prefix / "bin" / "keeler" for prefix in list(package.parents)[3:4]]  # PREFIX/lib/python3/dist-packages
     for place in (package / "bin" / "keeler", package.parent.parent / "keeler", *installed, shutil.which("keeler")):
-        if place and Path(place).is_file():
-            said = subprocess.run([place, "--version"], capture_output=True, text=True, check=False).stdout.split()
-            if said[-1:] == [_core.version()]:
+        if place and Path(place).is_file() and os.access(place, os.X_OK):
+            said = subprocess.run([place, "--version"], capture_output=True, check=False).stdout.split()
+            if said[-1:] == [_core.version().encode()]:
                 return str(place)
     raise RunError(f"the program keeler {_core.version()} is not there; install it beside the package, or add it to PATH")
 
 
 def _call(arguments):
-    """Runs the program; its errors as exceptions. Ctrl-C reaches it from here alone, and it takes the time it needs."""
-    command = [program(), *map(str, arguments)]
-    with subprocess.Popen(
-        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True
-    ) as process:
-        try:
-            said = process.communicate()[1]
-        except BaseException:
-            process.send_signal(signal.SIGINT)
-            process.communicate()
-            raise
-    if process.returncode == 0:
+    """Runs the program; its errors as exceptions."""
+    code, said = _processes.said_by([program(), *map(str, arguments)])
+    if code == 0:
         return
-    kind = {2: UsageError, 3: InvariantError, 4: IoError}.get(process.returncode, RunError)
+    kind = {2: UsageError, 3: InvariantError, 4: IoError}.get(code, RunError)
     lines = [line[len("keeler: ") :] for line in said.splitlines() if line.startswith("keeler: ")]
-    raise kind(lines[-1] if lines else f"keeler ended with {process.returncode}")
+    raise kind(lines[-1] if lines else f"keeler ended with {code}")
 
 
 def run(scene, folder, *, start=None, force=False, **overrides):
@@ -133,12 +120,13 @@ def run(scene, folder, *, start=None, force=False, **overrides):
     viscosities. A folder that holds a run is refused unless ``force``. Ctrl-C stops it with a checkpoint;
     ``keeler resume FOLDER`` goes on. Raises as the program ends: UsageError, InvariantError, IoError, RunError.
     """
-    with tempfile.TemporaryDirectory() as place:
-        file, source = Path(place) / "scene.toml", []
+    folder = _arguments.path(folder, "run")
+    with _processes.folder() as place:
+        file, source = place / "scene.toml", []
         if start is not None:
             start = snapshots.as_snapshot(start)
-            start.save(Path(place) / "start.hdf")
-            source = ["--from", Path(place) / "start.hdf"]
+            start.save(place / "start.hdf")
+            source = ["--from", place / "start.hdf"]
         file.write_text(scenes.read(scene, overrides, start and start._name).text, encoding="utf-8")
         _call(["run", file, "-o", folder, *source, *(["--force"] if force else [])])
     return Run(folder)
@@ -153,14 +141,14 @@ def sweep(grid, folder, *, jobs=None):
     Returns {"runs": rows of sweep.csv, "points": rows of points.csv} as lists of dictionaries, numbers as floats. Raises
     UsageError for a grid that cannot be, RunError when runs failed (sweep.csv says which).
     """
-    with tempfile.TemporaryDirectory() as place:
-        if isinstance(grid, dict):
-            grid = _written(grid, Path(place))
+    folder = _arguments.path(folder, "sweep")
+    with _processes.folder() as place:
+        grid = _written(grid, place) if isinstance(grid, dict) else _arguments.path(grid, "sweep")
         try:
             _call(["sweep", grid, "-o", folder, *(["--jobs", jobs] if jobs else [])])
         except Error as error:
             raise type(error)(str(error).replace(f"{place}{os.sep}", "")) from None
-    return {name: _rows(Path(folder) / file) for name, file in (("runs", "sweep.csv"), ("points", "points.csv"))}
+    return {name: _rows(folder / file) for name, file in (("runs", "sweep.csv"), ("points", "points.csv"))}
 
 
 def _written(grid, place):
@@ -169,16 +157,13 @@ def _written(grid, place):
     if isinstance(scene, dict):
         (place / "scene.toml").write_text(scenes.source(scene)[0], encoding="utf-8")
         grid = {**grid, "scene": "scene.toml"}
-    elif isinstance(scene, (str, os.PathLike)):
-        grid = {**grid, "scene": os.path.abspath(scene)}
+    elif scene is not None:
+        grid = {**grid, "scene": os.path.abspath(_arguments.path(scene, "sweep"))}
     (place / "grid.toml").write_text(scenes.source(grid)[0], encoding="utf-8")
     return place / "grid.toml"
 
 
 def _rows(file):
-    import csv
-    import io
-
     def number(text):
         try:
             return float(text)
@@ -187,8 +172,13 @@ def _rows(file):
 
     if not file.exists():
         return []
-    rows = csv.DictReader(io.StringIO(_text(file), newline=""))
-    return [{name: number(value) for name, value in row.items()} for row in rows]
+    try:
+        names, *rows = [row for row in csv.reader(io.StringIO(_arguments.text(file), newline="")) if row]
+    except (csv.Error, ValueError):
+        names, rows = [], []
+    if any(len(row) != len(names) for row in rows) or not names:
+        raise IoError(f"'{file}' is not the table of a sweep; the same sweep again writes it again")
+    return [dict(zip(names, map(number, row))) for row in rows]
 
 
 def render(what, file=None, **look):

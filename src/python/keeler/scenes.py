@@ -4,27 +4,30 @@ import json
 import math
 import operator
 import os
-from pathlib import Path
 
-import numpy as np
-
-from . import _core
+from . import _arguments, _core
 from .errors import UsageError
+
+
+def _text(value, place):
+    if not isinstance(value, str):  # a path of bytes
+        raise UsageError(f"{place} is {value!r}; give it as a text")
+    return json.dumps(_arguments.whole_characters(value, place), ensure_ascii=False)
 
 
 def _toml(value, place):
     """A value as TOML, in one line."""
     if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False)
-    if isinstance(value, os.PathLike):
-        return json.dumps(os.fspath(value), ensure_ascii=False)
+    if isinstance(value, (str, os.PathLike)):
+        return _text(os.fspath(value), place)
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{json.dumps(str(k))} = {_toml(v, f'{place}.{k}')}" for k, v in value.items()) + " }"
+        return "{ " + ", ".join(f"{_text(str(k), place)} = {_toml(v, f'{place}.{k}')}" for k, v in value.items()) + " }"
     if hasattr(value, "tolist"):  # arrays and numbers of numpy
-        return _toml(unmasked(value, place).tolist(), place)
+        return _toml(_arguments.unmasked(value, place).tolist(), place)
     if isinstance(value, int):
+        if value.bit_length() > 1000:  # Python refuses to write it
+            raise UsageError(f"{place} is a number of more than 300 digits; lower it")
         return str(value)
     if isinstance(value, float):
         if not math.isfinite(value):
@@ -32,13 +35,13 @@ def _toml(value, place):
         return repr(value)
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(_toml(v, place) for v in value) + "]"
-    raise UsageError(f"{place} is {value!r} ({type(value).__name__}); a scene has texts, numbers, lists and tables")
+    raise UsageError(f"{place} is {_arguments.shown(value)} ({type(value).__name__}); a scene has texts, numbers, lists and tables")
 
 
 def _overrides(tables, place):
     lines = []
     for name, value in tables.items():
-        path = place + name
+        path = place + _arguments.whole_characters(str(name), "the name of a key")
         below = _overrides(value, path + ".") if isinstance(value, dict) else None
         lines += below or [f"{path}={_toml(value, path)}"]  # an empty table says something: {"gravity": {}}
     return lines
@@ -60,18 +63,18 @@ def overrides_of(tables):
 def source(scene):
     """(text, name for messages) of a scene: a path, a text with a line break, a dictionary, or a snapshot's."""
     if isinstance(scene, dict):
-        lines = _not_too_deep(lambda: [f"{json.dumps(str(key))} = {_toml(value, key)}" for key, value in scene.items()])
+        lines = _not_too_deep(lambda: [f"{_text(str(k), 'a key')} = {_toml(v, str(k))}" for k, v in scene.items()])
         return "\n".join(lines) + "\n", "scene"
     if isinstance(scene, str) and "\n" in scene:
-        return scene, "scene"
-    try:
-        path = Path(scene)
-    except TypeError:
+        return _arguments.whole_characters(scene, "the scene"), "scene"
+    if not isinstance(scene, (str, os.PathLike)):
         raise UsageError(
-            f"a scene cannot be {scene!r}; give the path of a scene file, its text, or a dictionary of its tables"
-        ) from None
+            f"a scene cannot be {_arguments.shown(scene)}; give the path of a scene file, its text, or a dictionary of "
+            "its tables"
+        )
+    path = _arguments.path(scene, "a scene")
     try:
-        return path.read_text(encoding="utf-8"), str(path)
+        return _arguments.content(path).decode("utf-8"), str(path)
     except UnicodeDecodeError:
         raise UsageError(f"'{path}' is no text; give the path of a scene file") from None
     except OSError as error:
@@ -85,26 +88,19 @@ def whole_number(value, name, least, most):
     except TypeError:
         number = None
     if number is None or not least <= number <= most:
-        raise UsageError(f"{name} is {value!r}; give a whole number from {least} to {most}")
+        raise UsageError(f"{name} is {_arguments.shown(value)}; give a whole number from {least} to {most}")
     return number
-
-
-def unmasked(value, name):
-    """An array as given, None, or a sequence of numbers; refused where entries are masked: the mask would be lost."""
-    rows = value if isinstance(value, (list, tuple)) else (value,)
-    count = sum(int(np.ma.count_masked(row)) for row in rows if isinstance(row, np.ma.MaskedArray))
-    if count:
-        raise UsageError(
-            f"{name} has {count} masked {'entry' if count == 1 else 'entries'}, and a mask is no number; leave these rows "
-            "out of all arrays, or fill them in"
-        )
-    return value
 
 
 def read(scene, overrides, start_from=None):
     """The checked scene."""
     text, name = source(scene)
+    return as_arguments(lambda: _core.Scene(text, name, overrides_of(overrides), start_from))
+
+
+def as_arguments(make):
+    """What make() returns; what it says of an override is said of an argument."""
     try:
-        return _core.Scene(text, name, overrides_of(overrides), start_from)
+        return make()
     except UsageError as error:
         raise UsageError(str(error).removeprefix("--set ")) from None

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import _core, scenes, snapshots
+from . import _arguments, _core, scenes, snapshots
 from .errors import UsageError
 from .snapshots import Snapshot
 
@@ -234,9 +234,13 @@ class Simulation:
         """
         if self._recording:
             raise UsageError("contacts are recorded already; end that block first")
-        if not minimum_speed >= 0.0:
-            raise UsageError(f"minimum_speed is {minimum_speed}; give a speed in m/s, 0 or more")
-        self._core.record_contacts(float(minimum_speed))
+        try:
+            least = float(minimum_speed)
+        except (TypeError, ValueError, OverflowError):
+            least = -1.0
+        if not least >= 0.0:
+            raise UsageError(f"minimum_speed is {_arguments.shown(minimum_speed)}; give a speed in m/s, 0 or more")
+        self._core.record_contacts(least)
         self._recording = True
         contacts = _Contacts(self._core)
         try:
@@ -275,7 +279,7 @@ class Simulation:
     def save(self, file):
         """Writes the whole state to a checkpoint, from which load() goes on to the bit. As checkpoint_000000.h5 in a
         folder of its own, ``keeler resume FOLDER`` goes on from it too. Raises IoError."""
-        self._core.save(file)
+        self._core.save(_arguments.path(file, "save"))
 
     def plot(self, file=None, **look):
         """The picture of the state, as Snapshot.plot()."""
@@ -342,14 +346,14 @@ class _Edited:
 
     def arrays(self):
         names = ("positions", "velocities", "radii", "masses", "spins")
-        return [scenes.unmasked(getattr(self, name), name) for name in names]
+        return [_arguments.doubles(getattr(self, name), name) for name in names]
 
 
 def _ticks(orbits, name, scene):
     try:
         orbits = float(orbits)
-    except (TypeError, ValueError):
-        raise UsageError(f"{name} is {orbits!r}; give a time in orbits") from None
+    except (TypeError, ValueError, OverflowError):
+        raise UsageError(f"{name} is {_arguments.shown(orbits)}; give a time in orbits") from None
     count = orbits / (scene.tick * scene.kick_interval)
     if not 0.0 <= count < 1e15:
         raise UsageError(f"{name} is {orbits} orbits; give a time from 0 to {1e15 * scene.tick:g}")
@@ -375,12 +379,16 @@ class _ProgressLine:
 
 def load(file):
     """The simulation that Simulation.save() wrote, or that a checkpoint of a run holds. Raises IoError."""
-    return Simulation._of(_core.Simulation.load(file))
+    return Simulation._of(_core.Simulation.load(_arguments.path(file, "load")))
 
 
 def resume(folder):
-    """The newest checkpoint of a run's folder, as a simulation in memory; the folder stays as it is. Raises IoError."""
-    return Simulation._of(_core.Simulation.resume(folder))
+    """The newest checkpoint of a run's folder, as a simulation in memory; the folder stays as it is. Warns (UserWarning)
+    of a scene.toml that was edited after the run began, and of damaged checkpoints passed over. Raises IoError."""
+    lines = []
+    core = _core.Simulation.resume(_arguments.path(folder, "resume"), lines.append)
+    snapshots.warn(lines)
+    return Simulation._of(core)
 
 
 def from_arrays(scene, positions, radii, velocities=None, masses=None, spins=None, *, relax=False, **overrides):

@@ -1,15 +1,13 @@
 """Snapshots: a patch of ring at one instant."""
 
+import functools
 import json
-import os
 import sys
 import tempfile
 import warnings
 from pathlib import Path
 
-import numpy as np
-
-from . import _core, scenes
+from . import _arguments, _core, scenes
 from .errors import UsageError
 
 
@@ -24,7 +22,7 @@ class Picture:
 
     def save(self, file):
         """Writes the PNG. Raises IoError."""
-        _core.write_file(file, self.data)
+        _core.write_file(_arguments.path(file, "save"), self.data)
 
 
 class Snapshot:
@@ -72,7 +70,7 @@ class Snapshot:
 
     def save(self, file):
         """Writes a snapshot file; give it the ending .hdf. Raises IoError."""
-        self._core.save(file)
+        self._core.save(_arguments.path(file, "save"))
 
     def tile(self, nx, ny):
         """The snapshot repeated nx times along the radius and ny times along the orbit. Raises UsageError."""
@@ -83,7 +81,8 @@ class Snapshot:
         """The picture of ``keeler render``: from above, and edge-on. Written to a PNG where a file is named. ``width``
         is in pixels, from 200 to 8000. Raises UsageError, IoError."""
         width = scenes.whole_number(width, "width", 200, 8000)
-        if file is not None and not _core.is_stream(file) and Path(file).suffix != ".png":
+        file = None if file is None else _arguments.path(file, "plot")
+        if file is not None and not _core.is_stream(file) and file.suffix != ".png":
             raise UsageError(f"'{file}' cannot be written: pictures are PNGs; give it the ending .png")
         with tempfile.TemporaryDirectory() as folder:
             drawn = Path(folder) / "picture.png"
@@ -128,15 +127,18 @@ def start_from_arrays(scene, positions, radii, velocities=None, masses=None, spi
     any ring: velocities without the shear, tables in km.
     Raises UsageError, naming the row, for particles that no ring has, and for masked entries; InvariantError for overlaps.
     """
+    if "ids" in overrides:
+        raise UsageError("ids cannot be given: particle k gets the id k; leave them out, or sort the arrays by them")
     text, scene_name = scenes.source(scene)
     given = {"positions": positions, "velocities": velocities, "radii": radii, "masses": masses, "spins": spins}
-    arrays = [None if a is None else np.asarray(scenes.unmasked(a, name), dtype=float) for name, a in given.items()]
-    start = _core.from_arrays(text, scene_name, scenes.overrides_of(overrides), *arrays, relax)
-    _warn(start.start_doubts())
+    arrays = [_arguments.doubles(array, name) for name, array in given.items()]
+    make = functools.partial(_core.from_arrays, text, scene_name, scenes.overrides_of(overrides), *arrays, relax)
+    start = scenes.as_arguments(make)
+    warn(start.start_doubts())
     return Snapshot(start, "the arrays")
 
 
-def _warn(lines):
+def warn(lines):
     """Warns of each line, at the place outside of the package from where it was called."""
     frame, level = sys._getframe(1), 2
     while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
@@ -147,7 +149,8 @@ def _warn(lines):
 
 def read(file):
     """The snapshot in a file. Raises IoError; InvariantError for what no ring has."""
-    if not isinstance(file, (str, os.PathLike)) or not Path(file).is_file():
+    file = _arguments.path(file, "read")
+    if not file.is_file():
         raise UsageError(f"'{file}' is no file; name a snapshot, snap_NNNNNN.hdf")
     return Snapshot(_core.read_snapshot(file), str(file))
 

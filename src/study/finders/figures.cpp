@@ -57,8 +57,8 @@ bool figure1(const FinderStudyData& data, const fs::path& folder) {
     }
     blocks += "\n\n";
     const auto curve = [&](int column) {
-      return fmt::format("{}'figure1.dat' index {} using 1:{} with lines {} title '{}'", k ? ", " : "", k, column,
-                         curves[k].look, curves[k].title);
+      return fmt::format("{}'figure1.dat' index {} using 1:{} with lines {} title {}", k ? ", " : "", k, column,
+                         curves[k].look, gnuplot_string(curves[k].title));
     };
     in_x += curve(2);
     in_z += curve(3);

@@ -250,10 +250,13 @@ bool study_finders(const FinderStudySettings& settings, const std::atomic<bool>&
   for (auto& [key, value] : data.made)
     value = begun.value(key, value);
   write_finder_tables(data);
-  const bool drawn = draw_finder_figures(data);
-  if (!drawn)
-    settings.notice("gnuplot is not there, so only the data of the graphs are written (Debian: gnuplot-nox)");
-  write_finder_report(data, drawn);
+  const auto draw = [&] {
+    const bool drawn = draw_finder_figures(data);
+    if (!drawn)
+      settings.notice("gnuplot is not there, so only the data of the graphs are written (Debian: gnuplot-nox)");
+    return drawn;
+  };
+  draw_and_report(draw, [&](bool drawn) { write_finder_report(data, drawn); });
   return true;
 }
 

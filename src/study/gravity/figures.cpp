@@ -35,9 +35,9 @@ bool pareto_figure(const GravityStudyData& data, const fs::path& folder) {
   for (std::size_t k = 0; k < solvers.size(); ++k) {
     blocks += data_block(data.rows_of(solvers[k]), columns);
     const std::string& colour = colours[k % colours.size()];
-    curves += fmt::format(", '' index {0} using 1:2 with linespoints lw 2 pt 7 lc rgb '{1}' title '{2}, rms', '' index "
-                          "{0} using 1:3 with lines lw 1 dt 2 lc rgb '{1}' title '{2}, 99.9 %'",
-                          k + 1, colour, solvers[k]);
+    curves += fmt::format(", '' index {0} using 1:2 with linespoints lw 2 pt 7 lc rgb '{1}' title {2}, '' index "
+                          "{0} using 1:3 with lines lw 1 dt 2 lc rgb '{1}' title {3}",
+                          k + 1, colour, gnuplot_string(solvers[k] + ", rms"), gnuplot_string(solvers[k] + ", 99.9 %"));
   }
   write_text(folder / "pareto.dat", blocks);
   return plot(folder, "pareto",
@@ -64,7 +64,8 @@ bool convergence_figure(const GravityStudyData& data, const fs::path& folder) {
       curves += fmt::format(
           "{}'convergence.dat' index {} using 1:{} with linespoints lw 2 pt {} lc rgb '{}' title '{}'", k ? ", " : "",
           count, k + 2, k + 5, colours[static_cast<std::size_t>(k) % colours.size()], titles[k]);
-    panels += fmt::format("set title '{}'\nset xlabel '{}'\nplot {}\n", solver, parameter, curves);
+    panels += fmt::format("set title {}\nset xlabel {}\nplot {}\n", gnuplot_string(solver), gnuplot_string(parameter),
+                          curves);
     ++count;
   }
   write_text(folder / "convergence.dat", blocks);

@@ -127,10 +127,13 @@ bool study_gravity(const GravityStudySettings& settings, const std::atomic<bool>
   for (auto& [key, value] : data.made)
     value = begun.value(key, value);
   write_gravity_tables(data);
-  const bool drawn = draw_gravity_figures(data);
-  if (!drawn)
-    settings.notice("gnuplot is not there, so only the data of the graphs are written (Debian: gnuplot-nox)");
-  write_gravity_report(data, drawn);
+  const auto draw = [&] {
+    const bool drawn = draw_gravity_figures(data);
+    if (!drawn)
+      settings.notice("gnuplot is not there, so only the data of the graphs are written (Debian: gnuplot-nox)");
+    return drawn;
+  };
+  draw_and_report(draw, [&](bool drawn) { write_gravity_report(data, drawn); });
   return true;
 }
 

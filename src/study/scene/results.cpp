@@ -144,14 +144,16 @@ std::vector<SettingRun> measure_runs(const StudyPlan& plan, const std::vector<Pl
   for (const PlannedRun& run : runs) {
     SettingRun row;
     row.run = &run;
-    row.finished = run_stage(folders.run(run.name)) == RunStage::finished;
     try {
-      if (row.finished)
+      if (run_stage(folders.run(run.name)) == RunStage::finished) {
         row.values = values_of(plan, run, folders.run(run.name));
-      else
+        row.finished = true;
+      } else {
         row.reason = folders.failure_of(run.name).value_or("not finished");
+      }
     } catch (const Error& error) { // a damaged file must not take the other runs from the table
       row.reason = error.what();
+      row.measurable = false;
     }
     measured.push_back(std::move(row));
   }

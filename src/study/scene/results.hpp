@@ -32,7 +32,8 @@ std::size_t number_at(const std::string& column);
 /// A run with a setting, and what is known of it.
 struct SettingRun {
   const PlannedRun* run = nullptr;
-  bool finished = false;
+  bool finished = false;                     ///< and measured
+  bool measurable = true;                    ///< false: it came to its end, but its files cannot be read
   std::string reason;                        ///< why it failed, or could not be measured
   std::vector<std::optional<double>> values; ///< in the order of study_numbers(); empty: none is known
 };

@@ -60,18 +60,25 @@ void require_states(const std::vector<PlannedRun>& runs, const RunFolders& folde
                       run.seed, *reason));
 }
 
-std::size_t write_results(const StudyPlan& plan, const std::vector<PlannedRun>& runs, const RunFolders& folders,
-                          const std::map<std::string, std::string>& made, const SceneStudySettings& settings) {
+SceneStudyResult write_results(const StudyPlan& plan, const std::vector<PlannedRun>& runs, const RunFolders& folders,
+                               const std::map<std::string, std::string>& made, const SceneStudySettings& settings) {
   const std::vector<SettingRun> measured = measure_runs(plan, runs, folders);
   const StudyMeans means = means_of(plan.choices, measured);
   write_study_tables(plan, measured, means, folders.path());
-  const bool drawn = draw_study_figure(plan, means, folders.path());
-  if (!drawn)
-    settings.notice("there is no figure, only its data: gnuplot is not there (Debian: gnuplot-nox), or no setting has "
-                    "what it shows");
-  write_study_report(plan, measured, means, made, folders.path(), drawn);
-  return static_cast<std::size_t>(
-      std::count_if(measured.begin(), measured.end(), [](const SettingRun& run) { return run.values.empty(); }));
+  const auto draw = [&] {
+    const bool drawn = draw_study_figure(plan, means, folders.path());
+    if (!drawn)
+      settings.notice("there is no figure, only its data: gnuplot is not there (Debian: gnuplot-nox), or no setting "
+                      "has what it shows");
+    return drawn;
+  };
+  draw_and_report(draw, [&](bool drawn) { write_study_report(plan, measured, means, made, folders.path(), drawn); });
+  SceneStudyResult result;
+  for (const SettingRun& run : measured) {
+    result.failed += run.finished ? 0 : 1;
+    result.unmeasurable += run.measurable ? 0 : 1;
+  }
+  return result;
 }
 
 } // namespace
@@ -98,7 +105,7 @@ SceneStudyResult study_scene(const SceneStudySettings& settings, const RunReques
   const std::vector<PlannedRun> runs = setting_runs(plan, folders);
   if (!carry_out(runs, "settings", folders, claims, watch, settings, requests))
     return {.stopped = true};
-  return {.failed = write_results(plan, runs, folders, made, settings)};
+  return write_results(plan, runs, folders, made, settings);
 }
 
 } // namespace keeler

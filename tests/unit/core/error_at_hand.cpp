@@ -26,6 +26,7 @@ template<class Exception> Error met(const Exception& exception) {
 
 TEST_CASE("errors of Keeler pass the border as they are") {
   CHECK(std::string(met(IoError("cannot write")).what()) == "cannot write");
+  CHECK(std::string(IoError(std::string("in 'a\0b\x1b'", 9)).what()) == "in 'a?b?'"); // not cut by a NUL
   CHECK(met(InvariantError("overlap")).code() == ExitCode::invariant);
 }
 

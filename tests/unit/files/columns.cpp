@@ -35,6 +35,8 @@ TEST_CASE("tables as spreadsheets, numpy and pandas write them") {
     CHECK(columns.names == std::vector<std::string>{"a", "b"});
     CHECK(columns.values == std::vector<std::vector<double>>{{1.0, 3.0}, {-2500.0, 4.0}});
   }
+  for (const std::string comments : {"# a,b\n# made by me, and you\n", "# of, two\n#a,b\n", "#a,b\n#\n"})
+    CHECK(parse_columns(comments + "1,2\n", "t.csv").names == std::vector<std::string>{"a", "b"});
   const Columns lines = parse_columns("# of me\n\na,b\n1,2\n\n# pause\n3,nan\n", "t.csv");
   CHECK(lines.header_line == 3);
   CHECK(lines.lines == std::vector<std::size_t>{4, 7});
@@ -42,6 +44,13 @@ TEST_CASE("tables as spreadsheets, numpy and pandas write them") {
   CHECK(parse_columns("", "t.csv").names.empty());
   CHECK(parse_columns("a,b\n", "t.csv").lines.empty());
   CHECK(parse_columns("x\n0.1\n", "t.csv").values[0][0] == 0.1); // the nearest double
+}
+
+TEST_CASE("what is no text is told as such, whole") {
+  CHECK(fault(std::string("\xff\xfex\0,\0", 6)) ==
+        "t.csv: is a text in UTF-16 (its byte order mark says so); save it as UTF-8");
+  CHECK(fault("a,b\n" + std::string(2, '\0') + ",2\n") ==
+        "t.csv:2: a is '?\?' (it must be a number); correct it or remove the row");
 }
 
 TEST_CASE("a row that is not like the others is named") {

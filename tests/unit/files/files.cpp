@@ -2,10 +2,19 @@
 
 #include "disk.hpp"
 
-#include <keeler/core/error.hpp>
+#include <keeler/core/interrupt.hpp>
+#include <keeler/files/kept_streams.hpp>
 #include <keeler/files/naming_guard.hpp>
 
 #include <doctest/doctest.h>
+
+#include <array>
+#include <atomic>
+#include <fstream>
+#include <thread>
+
+#include <fcntl.h>
+#include <sys/stat.h>
 
 namespace files_test {
 
@@ -66,6 +75,54 @@ TEST_CASE("what cannot be read is an error") {
   const TemporaryFolder folder;
   CHECK_THROWS_WITH_AS(read_text(folder / "absent"), doctest::Contains("absent': No such file"), IoError);
   CHECK_THROWS_AS(read_text(folder.path()), IoError);
+}
+
+TEST_CASE("a file that is larger than the memory, or has no end, is an error that names it") {
+  const TemporaryFolder folder;
+  write_text(folder / "large", "");
+  std::filesystem::resize_file(folder / "large", std::uintmax_t{1} << 42);
+  CHECK_THROWS_WITH_AS(read_text(folder / "large"), doctest::Contains("large': it is too large"), IoError);
+  CHECK_THROWS_WITH_AS(read_file("/dev/zero"), doctest::Contains("/dev/zero': it is too large"), IoError);
+  CHECK_THROWS_WITH_AS(open_anywhere("/dev/zero"), doctest::Contains("/dev/zero': it is too large"), IoError);
+}
+
+TEST_CASE("a text of lines is what it was before a tool of Windows changed it") {
+  const TemporaryFolder folder;
+  write_text(folder / "lines", "\xef\xbb\xbf"
+                               "a\r\nb\rc\n\r\n\r");
+  CHECK(read_lines(folder / "lines") == "a\nb\rc\n\n\r");
+}
+
+TEST_CASE("a wait for a pipe ends with the work at hand, and with what ends waits") {
+  const TemporaryFolder folder;
+  const std::string pipe = folder / "pipe";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  static std::atomic<bool> over = true;
+  {
+    const Interruptible by_flag(over);
+    CHECK_THROWS_WITH_AS(read_text(pipe), doctest::Contains("waited for '"), Interrupted);
+    CHECK_THROWS_WITH_AS(write_text(pipe, "x"), doctest::Contains("waited for '"), Interrupted);
+  }
+  Interruptible::waits_end_by(over);
+  CHECK_THROWS_AS(open_anywhere(pipe), Interrupted);
+  CHECK_THROWS_AS(write_text(pipe, "x"), Interrupted);
+  write_text(folder / "file", "x");
+  CHECK(read_text(folder / "file") == "x"); // nobody is waited for
+  over = false;
+  CHECK_THROWS_AS(Descriptor(pipe, O_WRONLY | O_APPEND), IoError);
+}
+
+TEST_CASE("a pipe can be read anywhere, and again as long as it is kept") {
+  const TemporaryFolder folder;
+  const std::string pipe = folder / "pipe", text(100000, 'x'); // more than a pipe holds
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  std::thread writer([&] { std::ofstream(pipe) << text << "end"; });
+  const KeptStreams kept;
+  CHECK(open_anywhere(pipe)->size() == text.size() + 3);
+  writer.join();
+  std::array<std::byte, 3> end{};
+  CHECK(open_anywhere(pipe)->read_at(text.size(), end) == 3);
+  CHECK(end[2] == std::byte{'d'});
 }
 
 } // namespace files_test

@@ -131,6 +131,20 @@ TEST_CASE("a full disk is noticed at the row that does not fit, which leaves not
   CHECK(read_text(file) == before + "5,0.005,0.3333333333333333\n");
 }
 
+TEST_CASE("a series that a tool of Windows saved is read, and goes on as it was") {
+  const TemporaryFolder folder;
+  const auto file = folder / "series.csv";
+  const std::string kept = "step,time_orbits,energy\n0,0,0.5\n5,0.005,1\n";
+  write_text(file, "\xef\xbb\xbfstep,time_orbits,energy\r\n0,0,0.5\r\n5,0.005,1\r\n");
+  CHECK(read_series(file).of("energy") == std::vector<double>{0.5, 1.0});
+  CHECK(series_names(file) == columns);
+  Series series = Series::resume(file, columns, 7, 5);
+  CHECK(series.gaps().empty());
+  CHECK(read_text(file) == kept);
+  append(series, 10);
+  CHECK(read_text(file).starts_with(kept + "10,"));
+}
+
 TEST_CASE("a series whose times do not rise is damaged") {
   const TemporaryFolder folder;
   const auto file = folder / "series.csv";

@@ -233,6 +233,20 @@ TEST_CASE("modes that fit no box, or would make streamlines cross, are told") {
             .find("to at most 1.52 or lower the amplitudes of the modes") != std::string::npos);
 }
 
+TEST_CASE("waves at the start are longer than particles are across") {
+  const auto streamlines = [](const std::string& keys) {
+    return with("count = 300", "count = 300\nstreamlines = { " + keys + " }");
+  };
+  CHECK(streamlines("waves = 50, bunching = 0.1").empty()); // in a box of 100 m, particles of 2 m
+  CHECK(streamlines("waves = 1000, bunching = 0.0, inclination = 1.0").empty());
+  CHECK(streamlines("waves = 51, bunching = 0.1")
+            .find("particles.streamlines has waves of 1.961 m, shorter than the largest particle (2 m across); give at "
+                  "most 50 in the box") != std::string::npos);
+  for (const std::string direction : {"outward", "inward", "standing"})
+    CHECK(fault(least + "[particles.modes]\n" + direction + " = [[2, 0.1, 0], [51, 0.1, 0]]\n")
+              .find("particles.modes." + direction + " has waves of 1.961 m") != std::string::npos);
+}
+
 TEST_CASE("what follows from other keys has its range as well") {
   CHECK(
       with("size = [100, 50.0]\n[particles]\ncount = 300",

@@ -24,6 +24,14 @@ TEST_CASE("overrides take TOML values and bare words") {
   CHECK(parse_scene(least, "s.toml", {"particles.count=42", "particles.count=43"}).particles.count == 43);
 }
 
+TEST_CASE("no scene takes more overrides than it can have keys") {
+  std::vector<std::string> overrides(1000, "particles.count=42");
+  CHECK(parse_scene(least, "s.toml", overrides).particles.count == 42);
+  overrides.emplace_back("particles.count=43");
+  CHECK_THROWS_WITH_AS(parse_scene(least, "s.toml", overrides),
+                       doctest::Contains("1001 overrides are too many (a scene takes 1000 at most"), UsageError);
+}
+
 TEST_CASE("an override replaces what the file says against it, with a notice") {
   const Scene depth = parse_scene(least, "s.toml", {"particles.optical_depth=0.2"});
   CHECK(depth.particles.count == 318); // 0.2 × 5000 / π = 318.3

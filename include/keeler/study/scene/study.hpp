@@ -44,8 +44,9 @@ struct SceneStudySettings {
 
 /// How the folder stands.
 struct SceneStudyResult {
-  bool stopped = false;   ///< on request; the same settings go on
-  std::size_t failed = 0; ///< runs that the tables do not have
+  bool stopped = false;         ///< on request; the same settings go on
+  std::size_t failed = 0;       ///< runs that the tables do not have
+  std::size_t unmeasurable = 0; ///< those of them that came to their end, but whose files cannot be read
 };
 
 /// Carries out the runs that are missing and writes tables, figure and report. Throws UsageError when the scene has

@@ -1,0 +1,10 @@
+#include <keeler/core/error.hpp>
+
+#include <keeler/core/printable.hpp>
+
+namespace keeler {
+
+// what() is a C string, which a NUL of a file or a name would cut.
+Error::Error(ExitCode code, const std::string& message) : std::runtime_error(printable_text(message)), code_(code) {}
+
+} // namespace keeler
