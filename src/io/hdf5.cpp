@@ -204,7 +204,8 @@ bool exists(const Handle& parent, const std::string& name) {
 }
 
 bool is_dataset(const Handle& parent, const std::string& name) {
-  const Handle object(checked("open '" + name + "'", [&] { return H5Oopen(parent.id(), name.c_str(), H5P_DEFAULT); }),
+  const Handle object(open_inside(H5P_LINK_ACCESS, "open '" + name + "'",
+                                  [&](hid_t list) { return H5Oopen(parent.id(), name.c_str(), list); }),
                       H5Oclose);
   return H5Iget_type(object.id()) == H5I_DATASET;
 }
