@@ -111,8 +111,8 @@ TiledPatch::TiledPatch(const Patch& patch, std::size_t nx, std::size_t ny) : pat
 
 Patch tiled_patch(const Patch& patch, std::size_t nx, std::size_t ny) {
   const TiledPatch tiled(patch, nx, ny);
-  const double bytes =
-      2 * sizeof(Vec3) + 2 * sizeof(double) + sizeof(std::uint64_t) + (patch.spins.empty() ? 0 : sizeof(Vec3));
+  constexpr std::size_t smooth = 2 * sizeof(Vec3) + 2 * sizeof(double) + sizeof(std::uint64_t);
+  const auto bytes = static_cast<double>(patch.spins.empty() ? smooth : smooth + sizeof(Vec3));
   const auto count = static_cast<double>(tiled.size());
   require_memory(bytes * count, fmt::format("a patch of {} particles", figures(count, 4)), "take fewer copies");
   return tiled.some(0, tiled.size());
