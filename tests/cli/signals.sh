@@ -58,6 +58,7 @@ waiting=()
 while read -r command; do
   { # shellcheck disable=SC2086 # a command and its words
     code=0
+    # shellcheck disable=SC2086 # several words
     timeout -k 20 1 "$keeler" $command >/dev/null 2>&1 || code=$?
     [ "$code" -eq 124 ] || echo "exit $code: $command" >>"$work/deaf"
   } &
