@@ -56,7 +56,7 @@ for name in log.jsonl series.csv "$newest" snap_000000.hdf; do fixed "$name"; do
 waiting=()
 : >"$work/deaf"
 while read -r command; do
-  { # shellcheck disable=SC2086 # a command and its words
+  {
     code=0
     # shellcheck disable=SC2086 # several words
     timeout -k 20 1 "$keeler" $command >/dev/null 2>&1 || code=$?
