@@ -191,9 +191,11 @@ TEST_CASE("what no ring has is an error on all ranks, in the words of one proces
 }
 
 TEST_CASE("a stop that one rank is asked for while a start is made ends all in the same words") {
-  const test::TemporaryFolder folder;
+  const test::TemporaryFolder own;
+  std::string folder = (own / "run").string();
+  launched().from_first(folder); // all are asked for the same
   RunOptions options;
-  options.folder = folder / "run";
+  options.folder = folder;
   options.ranks = launched();
   RunRequests requests;
   int calls = 0;
@@ -202,4 +204,5 @@ TEST_CASE("a stop that one rank is asked for while a start is made ends all in t
   CHECK(words.find("stopped before the first step (on request)") == 0);
   CHECK(calls == 3);
   CHECK_FALSE(std::filesystem::exists(options.folder));
+  launched().any(false); // when all are here it goes
 }
