@@ -25,6 +25,8 @@ const OpenFile& of(const H5FD_t* file) {
 
 H5FD_t* open(const char*, unsigned, hid_t access, haddr_t) {
   const auto* const disk = static_cast<const std::shared_ptr<Disk>* const*>(H5Pget_driver_info(access));
+  if (!disk) // the library follows a link into another file, which has no such list
+    return nullptr;
   auto* const file = new (std::nothrow) OpenFile();
   if (file)
     file->disk = **disk;
