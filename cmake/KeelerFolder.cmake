@@ -41,7 +41,7 @@ function(keeler_folder name)
   set_property(GLOBAL APPEND PROPERTY KEELER_TARGETS keeler_${name})
 endfunction()
 
-# Compiles a target with fewer optimisations, a third faster: nothing in it runs once a particle and step.
+# Compiles a target with fewer optimisations, in less time: nothing in it runs once a particle and step.
 function(keeler_cold target)
   target_compile_options(${target} PRIVATE "$<$<CONFIG:Release>:-O1>")
 endfunction()

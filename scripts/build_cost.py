@@ -1,5 +1,5 @@
 """What it costs to compile Keeler: processor seconds of every compiler call and link, by folder, from an empty build
-folder and without a compiler cache; the table of docs/dev/project.md.
+folder and without a compiler cache.
 
     scripts/build-cost [--program] [--lines] [--objects N] [-D...]
     scripts/build-cost --tests [FOLDER]

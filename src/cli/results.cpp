@@ -42,7 +42,7 @@ fs::path output_named(const std::string& name) {
 
 fs::path output_beside(const fs::path& source, const fs::path& name) {
   if (reads_once(source) || descriptor_named(source))
-    throw UsageError(fmt::format("'{}' is no file on a disk that a result could stand beside; name the file to write "
+    throw UsageError(fmt::format("'{}' is no file on a disk, so no result can be put beside it; name the file to write "
                                  "by -o",
                                  source.string()));
   return name;

@@ -54,7 +54,7 @@ ExitCode carry_out(SceneStudyOptions& options) {
                       count == 1 ? "a run is" : fmt::format("{} runs are", count), advice));
   };
   say_missing(result.failed - result.unmeasurable, "the same command tries again");
-  say_missing(result.unmeasurable, fmt::format("remove what is damaged from '{}', and the same command makes it anew",
+  say_missing(result.unmeasurable, fmt::format("remove what is damaged from '{}', and the same command makes it again",
                                                (settings.folder / "runs").string()));
   return result.failed > 0 ? ExitCode::run_time : ExitCode::done;
 }

@@ -51,7 +51,7 @@ void say_failed(const SweepResult& result, const std::filesystem::path& folder) 
                     counted(result.failed - result.unmeasurable, "run")));
   if (result.unmeasurable > 0)
     say(fmt::format("{} cannot be measured, sweep.csv has the reasons; remove what is damaged from '{}', and the same "
-                    "command makes it anew",
+                    "command makes it again",
                     counted(result.unmeasurable, "finished run"), (folder / "runs").string()));
 }
 
@@ -72,7 +72,7 @@ ExitCode carry_out(SweepOptions& options) {
   if (result.stopped) {
     say(result.began           ? "stopped, each run with a checkpoint; the same command goes on from here"
         : settings.tables_only ? "stopped before the tables were made; the same command makes them"
-                               : "stopped before any run was started; the same command begins anew");
+                               : "stopped before any run was started; the same command begins again");
     return ExitCode::stopped;
   }
   if (options.json)

@@ -21,7 +21,7 @@ constexpr std::size_t never_too_large = 1000000; // bytes: so little is not wort
 constexpr std::size_t most_of_device = std::size_t{1} << 26;
 constexpr std::size_t largest_piece = std::size_t{1} << 26;
 
-// Opened anew, a pipe of this process would wait for another writer.
+// A pipe of this process that is opened a second time would wait for another writer.
 int opened(const std::filesystem::path& file) {
   if (reads_once(file))
     if (const std::optional<int> named = descriptor_named(file))

@@ -36,7 +36,7 @@ constexpr std::size_t largest_transfer = std::size_t{1} << 30;
 
 } // namespace
 
-// A pipe that stands where a file is to be is not waited for.
+// A pipe in the place of a file is not waited for.
 Descriptor::Descriptor(const std::filesystem::path& file, int flags) : file_(file) {
   number_ = retried([&] { return ::open(file.c_str(), flags | O_NONBLOCK | O_CLOEXEC, 0666); });
   if (number_ < 0 && errno == ELOOP && (flags & O_NOFOLLOW) != 0)

@@ -33,7 +33,7 @@ namespace {
 
 constexpr char not_sorted[] = "its ParticleIDs do not increase; sort the particles by them, each once";
 
-// What stands in /RingBox beside the numbers of the patch's frame, which have ranges of their own.
+// What /RingBox holds beside the numbers of the patch's frame, which have ranges of their own.
 void require_finite_times_and_bounds(const hdf5::Handle& group) {
   for (const char* name : {"time_s", "bounds_low", "bounds_high"})
     if (hdf5::has_attribute(group, name))

@@ -110,7 +110,7 @@ std::string letters_and_digits(const std::string& text) {
   return plain;
 }
 
-// One text, or numbers; neither where nothing stands there.
+// One text, or numbers; neither where the attribute is empty.
 struct Value {
   std::optional<std::string> text;
   std::vector<double> numbers;

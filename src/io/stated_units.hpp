@@ -16,7 +16,8 @@ void require_stated_unit(const hdf5::Handle& object, const std::string& name, co
 /// The same of the root, called `root_name`, and of all groups below it that programs write units to.
 void require_stated_units_of_groups(const hdf5::Handle& root, const std::string& root_name);
 
-/// Throws IoError where a dataset's values have one that an attribute of it says to stand where there is none.
+/// Throws IoError when one of a dataset's values is what its attribute _FillValue or missing_value says that missing
+/// values have.
 void require_none_missing(const hdf5::Handle& dataset, const std::string& name, std::span<const double> values);
 
 /// Throws IoError where a dataset of ids has one that is no whole number from 0 on.

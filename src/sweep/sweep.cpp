@@ -66,7 +66,7 @@ void tell_doubts(const Plan& plan, const Notice& notice) {
 }
 
 // The tables of this moment, without those of a former one that they do not replace. Returns why there is no figure,
-// where it failed: the tables and the report stand without it.
+// where it failed: the tables and the report are written without it.
 std::string write_tables(const Grid& grid, const Plan& plan, const RunFolders& folders, const std::vector<RunRow>& runs,
                          const std::vector<PointRow>& points, const Notice& notice) {
   const Json run_table = runs_as_json(plan, runs), point_table = points_as_json(plan, points);

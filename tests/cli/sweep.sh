@@ -225,7 +225,7 @@ prints "a damaged run" "2 runs: 1 finished, 1 failed"
 grep -q "^seed-1,1,failed,.*series.csv" "$work/damaged/sweep.csv" || fail "a damaged run: $(cut -c 1-200 "$work/damaged/sweep.csv")"
 sed -i 's/.*/x/' "$work/damaged/runs/seed-2/series.csv"
 runs 1 sweep "$work/small.toml" -o "$work/damaged" -q
-[ -e "$work/damaged/points.csv" ] && fail "nothing to measure: the table of points of another time stands there"
+[ -e "$work/damaged/points.csv" ] && fail "nothing to measure: the table of points of an earlier call is still there"
 rm -r "$work/damaged/runs"/*
 runs 0 sweep "$work/small.toml" -o "$work/damaged" -q
 

@@ -107,7 +107,7 @@ TEST_CASE("a wait for a pipe ends with the work at hand, and with what ends wait
   CHECK_THROWS_AS(open_anywhere(pipe), Interrupted);
   CHECK_THROWS_AS(write_text(pipe, "x"), Interrupted);
   write_text(folder / "file", "x");
-  CHECK(read_text(folder / "file") == "x"); // nobody is waited for
+  CHECK(read_text(folder / "file") == "x"); // without a wait for a writer
   over = false;
   CHECK_THROWS_AS(Descriptor(pipe, O_WRONLY | O_APPEND), IoError);
 }
