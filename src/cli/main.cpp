@@ -25,8 +25,7 @@
 #include <hdf5.h>
 #include <unistd.h>
 
-using namespace keeler;
-
+namespace keeler {
 namespace {
 
 int fail(ExitCode code, const std::string& message) {
@@ -170,9 +169,7 @@ void fill_closed_streams() {
       open("/dev/null", O_RDONLY);
 }
 
-} // namespace
-
-int main(int argc, char** argv) {
+int run_program(int argc, char** argv) {
   hold_signals();
   let_threads_sleep(argv);
   fill_closed_streams();
@@ -188,4 +185,11 @@ int main(int argc, char** argv) {
   } catch (...) {
     return fail_at_hand();
   }
+}
+
+} // namespace
+} // namespace keeler
+
+int main(int argc, char** argv) {
+  return keeler::run_program(argc, argv);
 }

@@ -9,7 +9,7 @@
 namespace keeler {
 namespace {
 
-constexpr std::size_t bins = 256; // of a series that is looked at for where it becomes steady
+constexpr std::size_t batches = 256; // of a series that is looked at for where it becomes steady
 
 double mean_of(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -76,7 +76,7 @@ double statistical_inefficiency(std::span<const double> values) {
 }
 
 std::size_t steady_start(std::span<const double> values) {
-  const std::size_t length = (values.size() + bins - 1) / bins;
+  const std::size_t length = (values.size() + batches - 1) / batches;
   const std::vector<double> coarse = blocks_of(values, std::max<std::size_t>(length, 1));
   std::size_t best = 0;
   double most = 0.0;

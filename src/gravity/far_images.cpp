@@ -14,7 +14,7 @@ namespace keeler {
 namespace {
 
 constexpr int degree = 14;
-constexpr int nodes = degree + 2; // even: half of them mirror the others
+constexpr int node_count = degree + 2; // even: half of them mirror the others
 constexpr double tolerance = 1e-8;
 
 // Rings in a direction across which the box is `across` wide, and `along` the other way.
@@ -45,10 +45,10 @@ template<class Visit> void for_each_monomial(const PolynomialShape& shape, const
 }
 
 // Where each monomial stands.
-using Places = std::array<std::array<std::array<std::size_t, degree + 1>, degree + 1>, degree + 1>;
+using TermPlaces = std::array<std::array<std::array<std::size_t, degree + 1>, degree + 1>, degree + 1>;
 
-Places places_of(const PolynomialShape& shape) {
-  Places places{};
+TermPlaces places_of(const PolynomialShape& shape) {
+  TermPlaces places{};
   std::size_t next = 0;
   for_each_monomial(shape, [&](int a, int b, int c) { places[c][b][a] = next++; });
   return places;
@@ -89,8 +89,8 @@ public:
       if (std::none_of(near_.begin(), near_.end(),
                        [&](const Vec3& n) { return (n - shift).norm() < 0.5 * shortest(); }))
         others_.push_back(shift);
-    for (int n = 0; n < nodes; ++n) {
-      const double at = chebyshev_node(n, nodes);
+    for (int n = 0; n < node_count; ++n) {
+      const double at = chebyshev_node(n, node_count);
       for (const LatticeWave& wave : lattice_.waves()) {
         along_x_[n].push_back(std::polar(1.0, wave.kx * at * box.size_x));
         along_y_[n].push_back(std::polar(1.0, wave.ky * at * box.size_y));
@@ -103,19 +103,20 @@ public:
     std::vector<double> amplitudes;
     for (const LatticeWave& wave : lattice_.waves())
       amplitudes.push_back(lattice_.wave_potential(wave, z));
-    Eigen::MatrixXd values(nodes, nodes);
+    Eigen::MatrixXd values(node_count, node_count);
     parallel_for(
-        nodes / 2,
+        node_count / 2,
         [&](std::size_t i) {
           const auto row = static_cast<int>(i);
-          for (int j = 0; j < nodes; ++j) {
-            const Vec3 place(chebyshev_node(row, nodes) * box_.size_x, chebyshev_node(j, nodes) * box_.size_y, z);
+          for (int j = 0; j < node_count; ++j) {
+            const Vec3 place(chebyshev_node(row, node_count) * box_.size_x, chebyshev_node(j, node_count) * box_.size_y,
+                             z);
             double sum = lattice_.sheet_potential(z) + images_at(place);
             for (std::size_t k = 0; k < amplitudes.size(); ++k) {
               const std::complex<double>&u = along_x_[i][k], &v = along_y_[j][k];
               sum += amplitudes[k] * (u.real() * v.real() - u.imag() * v.imag()); // cos(kx x + ky y)
             }
-            values(row, j) = values(nodes - 1 - row, nodes - 1 - j) = sum;
+            values(row, j) = values(node_count - 1 - row, node_count - 1 - j) = sum;
           }
         },
         1);
@@ -141,7 +142,7 @@ private:
   ShearingBox box_;
   Lattice lattice_;
   std::vector<Vec3> near_, others_;
-  std::array<std::vector<std::complex<double>>, nodes> along_x_, along_y_; // e^{ikx} of each wave at each node
+  std::array<std::vector<std::complex<double>>, node_count> along_x_, along_y_; // e^{ikx} of each wave at each node
 };
 
 } // namespace
@@ -179,7 +180,8 @@ FarImages::FarImages(const ShearingBox& box, double offset, int rings, double he
   shape_ = shape_for(height_degree(rings, 0.5 * scale_.z() / highest));
   const int heights = shape_.height_degree + 2; // even, like the nodes along x
   const FarPotential potential(box, offset, rings);
-  const Eigen::MatrixXd in_plane = to_chebyshev(degree, nodes), upward = to_chebyshev(shape_.height_degree, heights);
+  const Eigen::MatrixXd in_plane = to_chebyshev(degree, node_count),
+                        upward = to_chebyshev(shape_.height_degree, heights);
   const Eigen::MatrixXd powers = chebyshev_in_powers(degree);
   std::vector<Eigen::MatrixXd> planes; // coefficients of T_a T_b for each height above the plane
   for (int h = 0; h < heights / 2; ++h)
@@ -213,7 +215,7 @@ double FarImages::potential(const Vec3& displacement) const {
 
 // A difference's powers by the binomial theorem: (x − x′)^i is the sum of C(i, a) x^a (−x′)^(i−a).
 FarImages::Coefficients FarImages::potential_of(const Coefficients& moments) const {
-  const Places places = places_of(shape_);
+  const TermPlaces places = places_of(shape_);
   std::array<std::array<double, degree + 1>, degree + 1> choose{};
   for (int i = 0; i <= degree; ++i) {
     choose[i][0] = 1.0;

@@ -9,10 +9,10 @@
 namespace keeler {
 namespace {
 
-constexpr auto size = static_cast<Eigen::Index>(ForceSplit::terms);
+constexpr auto term_count = static_cast<Eigen::Index>(ForceSplit::terms);
 constexpr double fineness = 64.0, last_sample = 48.0;
 
-using Coefficients = Eigen::Matrix<double, size, 1>;
+using Coefficients = Eigen::Matrix<double, term_count, 1>;
 
 // Nodes and weights of Gauss and Legendre's rule on 0 … 1: Newton's iteration on P_n.
 struct Quadrature {
@@ -40,14 +40,14 @@ struct Quadrature {
 Coefficients basis(double u) {
   Coefficients values;
   double value = 1.0 - u * u;
-  for (Eigen::Index i = 0; i < size; ++i, value *= u * u)
+  for (Eigen::Index i = 0; i < term_count; ++i, value *= u * u)
     values[i] = value;
   return values;
 }
 
 // The combination with the largest share of its power below the band, ∫₀¹ ψ = 1.
 Coefficients most_concentrated(const Quadrature& rule, double band) {
-  using Matrix = Eigen::Matrix<double, size, size>;
+  using Matrix = Eigen::Matrix<double, term_count, term_count>;
   Matrix below = Matrix::Zero(), whole = Matrix::Zero();
   Coefficients integral = Coefficients::Zero();
   for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
@@ -60,7 +60,7 @@ Coefficients most_concentrated(const Quadrature& rule, double band) {
     below += rule.weights[i] * wave * wave.transpose();
   }
   const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solution(below, whole);
-  const Coefficients best = solution.eigenvectors().col(size - 1);
+  const Coefficients best = solution.eigenvectors().col(term_count - 1);
   return best / best.dot(integral);
 }
 
@@ -70,8 +70,8 @@ Coefficients most_concentrated(const Quadrature& rule, double band) {
 ForceSplit::ForceSplit(double band) {
   const Quadrature rule(40);
   const Coefficients profile = most_concentrated(rule, band);
-  for (Eigen::Index j = 1; j <= size; ++j) {
-    const double power = (j < size ? profile[j] : 0.0) - profile[j - 1]; // of u^2j in ψ
+  for (Eigen::Index j = 1; j <= term_count; ++j) {
+    const double power = (j < term_count ? profile[j] : 0.0) - profile[j - 1]; // of u^2j in ψ
     inside_[static_cast<std::size_t>(j - 1)] = -power * static_cast<double>(2 * j) / static_cast<double>(2 * j + 1);
   }
   for (int k = 0; k <= static_cast<int>(last_sample * fineness) + 1; ++k) {

@@ -18,7 +18,7 @@ void put(Json& json, const std::string& name, const char* unit, const Measured& 
   json[name + "_scatter_" + unit] = maybe(number.scatter);
 }
 
-Json json_of(const SizeClass& c) {
+Json numbers_of(const SizeClass& c) {
   return {{"smallest_m", c.smallest},
           {"largest_m", c.largest},
           {"count", c.count},
@@ -42,7 +42,7 @@ void add_local(Json& json, const Analysis& a) {
   json["vertex_deviation_degrees"] = a.ellipsoid.vertex_deviation_degrees;
   json["size_classes"] = Json::array();
   for (const SizeClass& c : a.size_classes)
-    json["size_classes"].push_back(json_of(c));
+    json["size_classes"].push_back(numbers_of(c));
 }
 
 void add_waves(Json& json, const std::optional<WaveAnalysis>& w) {
@@ -58,7 +58,7 @@ void add_spins(Json& json, const SpinAnalysis& s) {
   json["spin_energy_ratio"] = s.energy_ratio;
 }
 
-Json json_of(const RadialModeAnalysis& m) {
+Json numbers_of(const RadialModeAnalysis& m) {
   return {{"n", m.n},
           {"wavelength_m", m.wavelength},
           {"density_amplitude", m.density_amplitude},
@@ -68,7 +68,7 @@ Json json_of(const RadialModeAnalysis& m) {
           {"growth_rate_error_omega", m.growth ? maybe(m.growth->error) : nullptr}};
 }
 
-Json json_of(const ClusterAnalysis& c) {
+Json numbers_of(const ClusterAnalysis& c) {
   Json json;
   json["gap"] = c.gap;
   json["count"] = c.count;
@@ -93,11 +93,11 @@ void add_structure(Json& json, const Analysis& a) {
   add_local(json, a);
   if (a.spins)
     add_spins(json, *a.spins);
-  json["clusters"] = json_of(a.clusters);
+  json["clusters"] = numbers_of(a.clusters);
   json["radial_mode_noise"] = a.radial_mode_noise;
   json["radial_modes"] = Json::array();
   for (const RadialModeAnalysis& m : a.radial_modes)
-    json["radial_modes"].push_back(json_of(m));
+    json["radial_modes"].push_back(numbers_of(m));
 }
 
 } // namespace

@@ -23,10 +23,10 @@ std::vector<PlacedBody> placed_bodies(const Scene& scene) {
   for (const AggregateSettings& a : scene.particles.aggregates)
     bodies.push_back({fmt::format("particles.aggregate[{}]", bodies.size() + 1), "count", a.place, a.radius,
                       std::fabs(a.place.z())});
-  const std::size_t aggregates = bodies.size();
+  const std::size_t before_moonlets = bodies.size();
   const double vertical = scene.planet.frequencies.nu * scene.planet.orbital_frequency; // rad/s
   for (const MoonletSettings& m : scene.moonlets)
-    bodies.push_back({fmt::format("moonlet[{}]", bodies.size() - aggregates + 1), "radius", m.place, m.radius,
+    bodies.push_back({fmt::format("moonlet[{}]", bodies.size() - before_moonlets + 1), "radius", m.place, m.radius,
                       std::hypot(m.place.z(), m.velocity.z() / vertical)});
   return bodies;
 }

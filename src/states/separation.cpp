@@ -21,14 +21,14 @@ constexpr double first_tether = 0.3, tether_decay = 0.95, last_tether = 1e-4;
 constexpr double skin = 0.3;     // of its radius, that a sphere may move between lists
 constexpr int sweeps_a_list = 8; // at least: a few spheres that would go far wait for the others
 
-class Separation {
+class SphereSeparation {
 public:
-  Separation(std::vector<Sphere>& spheres, const ShearingBox& box, double offset, SphereSlabs& slabs)
+  SphereSeparation(std::vector<Sphere>& spheres, const ShearingBox& box, double offset, SphereSlabs& slabs)
       : spheres_(spheres), box_(box), offset_(offset), slabs_(slabs), own_(spheres.size()), moves_(own_, Vec3::Zero()),
         listed_places_(own_) {}
-  ~Separation() { spheres_.resize(own_); }
-  Separation(const Separation&) = delete;
-  Separation& operator=(const Separation&) = delete;
+  ~SphereSeparation() { spheres_.resize(own_); }
+  SphereSeparation(const SphereSeparation&) = delete;
+  SphereSeparation& operator=(const SphereSeparation&) = delete;
 
   // In a ball about the origin; nothing has a height to go back to.
   void enclose(double ball_radius) {
@@ -151,14 +151,14 @@ void sort_by_place(std::vector<Sphere>& spheres, const ShearingBox& box) {
 
 bool separate(std::vector<Sphere>& spheres, const ShearingBox& box, double offset, SphereSlabs& slabs, int most_sweeps,
               const std::function<void(int)>& after_sweep) {
-  return Separation(spheres, box, offset, slabs).run(most_sweeps, after_sweep);
+  return SphereSeparation(spheres, box, offset, slabs).run(most_sweeps, after_sweep);
 }
 
 bool separate_in_ball(std::vector<Sphere>& spheres, double ball_radius, int most_sweeps) {
   const double side = 8.0 * ball_radius; // images are out of reach
   const ShearingBox box{side, side, 0.0, 0.0};
   SphereSlabs slabs({}, box);
-  Separation separation(spheres, box, 0.0, slabs);
+  SphereSeparation separation(spheres, box, 0.0, slabs);
   separation.enclose(ball_radius);
   return separation.run(most_sweeps, [](int) {});
 }

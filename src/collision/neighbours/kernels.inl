@@ -100,9 +100,8 @@ std::size_t filter(const Line* lines, const LineFrame& frame, const LineSpan& sp
   return keeps;
 }
 
-constexpr double full_turn = 4294967296.0;             // 2³², the box
-constexpr double whole_numbers = 6755399441055744.0;   // 1.5 · 2⁵²: doubles above it are whole numbers
-constexpr double single = 4e-6;                        // of a path: what single precision may do to a line
+constexpr double whole_numbers = 6755399441055744.0; // 1.5 · 2⁵²: doubles above it are whole numbers
+constexpr double single = 4e-6;                      // of a path: what single precision may do to a line
 
 inline Doubles rounded(const Doubles& value) {
   return (value + whole_numbers) - whole_numbers;

@@ -10,6 +10,9 @@
 
 namespace keeler {
 
+/// A side of the box in those fractions.
+inline constexpr double full_turn = 4294967296.0; // 2³²
+
 /// Half a line of cache.
 struct alignas(32) Line {
   std::int32_t x = 0, y = 0;

@@ -17,7 +17,6 @@ constexpr std::size_t block_size = 4096;   // lines
 constexpr double nearest_share = 0.45;     // of the box: what reaches less far has one image in reach
 constexpr double cells_per_particle = 2.0; // no more,
 constexpr double fewest_cells = 64.0;      // unless these are
-constexpr double full_turn = 4294967296.0; // 2³², the box
 constexpr std::size_t most_in_group = 8;   // lines that look around together,
 constexpr std::int64_t fewest_columns = 8; // for that
 constexpr double longest_group = 4.0;      // in reaches of their level

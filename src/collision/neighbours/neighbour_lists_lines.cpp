@@ -12,9 +12,8 @@
 namespace keeler {
 namespace {
 
-constexpr double slack_share = 0.4;        // of the mean radius
-constexpr double single = 4e-6;            // of a path: what single precision may do to a line
-constexpr double full_turn = 4294967296.0; // 2³², the box
+constexpr double slack_share = 0.4; // of the mean radius
+constexpr double single = 4e-6;     // of a path: what single precision may do to a line
 
 // A place as fractions of the box, in the cell: x first, so that the image is the one that x says.
 struct Fractions {

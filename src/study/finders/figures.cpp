@@ -16,10 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> colours = {"#444444", "#c0392b", "#e67e22", "#1f77b4", "#17a2b8", "#2e8b57"};
+const std::vector<std::string> finder_colours = {"#444444", "#c0392b", "#e67e22", "#1f77b4", "#17a2b8", "#2e8b57"};
 
 std::string style(std::size_t k) {
-  return fmt::format("lc rgb '{}' lw 2 pt {}", colours[k % colours.size()], 5 + k);
+  return fmt::format("lc rgb '{}' lw 2 pt {}", finder_colours[k % finder_colours.size()], 5 + k);
 }
 
 // One curve of Figure 1: a block of figure1.dat, and how it is drawn.
@@ -38,7 +38,7 @@ std::vector<DriftCurve> drift_curves(const FinderStudyData& data) {
     for (const auto& [name, result] : data.results)
       if (name.starts_with("drift/") && result.at("path") == path)
         curves.push_back({fmt::format("{}, step {:.2g}", path, result.at("step_orbits").get<double>()),
-                          fmt::format("lc rgb '{}' lw 2{}", colours[curves.size() % colours.size()],
+                          fmt::format("lc rgb '{}' lw 2{}", finder_colours[curves.size() % finder_colours.size()],
                                       path == std::string(control_path) ? " dt 2" : ""),
                           &result});
   return curves;

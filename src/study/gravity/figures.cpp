@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> colours = {"#444444", "#c0392b", "#1f77b4", "#2e8b57", "#e67e22"};
+const std::vector<std::string> solver_colours = {"#444444", "#c0392b", "#1f77b4", "#2e8b57", "#e67e22"};
 
 // One block of a data file, with the columns asked for.
 std::string data_block(const std::vector<Json>& rows, const std::vector<const char*>& keys) {
@@ -34,7 +34,7 @@ bool pareto_figure(const GravityStudyData& data, const fs::path& folder) {
   const std::vector<std::string> solvers = data.solvers();
   for (std::size_t k = 0; k < solvers.size(); ++k) {
     blocks += data_block(data.rows_of(solvers[k]), columns);
-    const std::string& colour = colours[k % colours.size()];
+    const std::string& colour = solver_colours[k % solver_colours.size()];
     curves += fmt::format(", '' index {0} using 1:2 with linespoints lw 2 pt 7 lc rgb '{1}' title {2}, '' index "
                           "{0} using 1:3 with lines lw 1 dt 2 lc rgb '{1}' title {3}",
                           k + 1, colour, gnuplot_string(solvers[k] + ", rms"), gnuplot_string(solvers[k] + ", 99.9 %"));
@@ -63,7 +63,7 @@ bool convergence_figure(const GravityStudyData& data, const fs::path& folder) {
     for (int k = 0; k < 4; ++k)
       curves += fmt::format(
           "{}'convergence.dat' index {} using 1:{} with linespoints lw 2 pt {} lc rgb '{}' title '{}'", k ? ", " : "",
-          count, k + 2, k + 5, colours[static_cast<std::size_t>(k) % colours.size()], titles[k]);
+          count, k + 2, k + 5, solver_colours[static_cast<std::size_t>(k) % solver_colours.size()], titles[k]);
     panels += fmt::format("set title {}\nset xlabel {}\nplot {}\n", gnuplot_string(solver), gnuplot_string(parameter),
                           curves);
     ++count;

@@ -2,6 +2,7 @@
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/simulation/simulation.hpp>
 #include <keeler/states/initial.hpp>
@@ -48,10 +49,6 @@ Patch evolved(const Scene& scene) {
   for (int k = 0; k < 131; ++k)
     simulation.advance();
   return simulation.patch();
-}
-
-Vec3 peculiar_velocity(const Patch& patch, std::size_t k) {
-  return patch.velocities[k] + Vec3(0.0, patch.box.shear * patch.positions[k].x(), 0.0);
 }
 
 // Distances from a particle to all images of all particles within a reach, in order.

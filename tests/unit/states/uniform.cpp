@@ -57,7 +57,7 @@ double least_room(const Patch& patch) {
   return least;
 }
 
-double scale_height(const Patch& patch) {
+double rms_height(const Patch& patch) {
   double sum = 0.0;
   for (const Vec3& place : patch.positions)
     sum += place.z() * place.z();
@@ -109,7 +109,7 @@ TEST_CASE("no overlaps, up to a mid-plane filling of 0.55, with the height and t
       CHECK(std::sqrt(y2 / 2000) == doctest::Approx(0.5 * request.dispersion_x).epsilon(0.048));
       CHECK(std::sqrt(z2 / 2000) == doctest::Approx(request.dispersion_z).epsilon(0.048));
       if (request.dispersion_z > 1.2) // thinner ones are monolayers, which must buckle
-        CHECK(scale_height(patch) == doctest::Approx(request.dispersion_z).epsilon(0.09)); // 3σ and 4 % of thickening
+        CHECK(rms_height(patch) == doctest::Approx(request.dispersion_z).epsilon(0.09)); // 3σ and 4 % of thickening
     }
 }
 

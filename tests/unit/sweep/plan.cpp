@@ -86,10 +86,10 @@ TEST_CASE("a grid of too many runs, too deep a one or one with too many keys is 
   CHECK(GridFile(scene + "seeds = " + list(1000000) + "\n").fault() ==
         "grid.toml:1:1: the grid makes 1000000 runs (a sweep takes 100000 at most); give it fewer seeds or values, or "
         "make several grids");
-  std::string crossed = scene;
+  std::string five_axes = scene;
   for (const char* const letter : {"a", "b", "c", "d", "e"})
-    crossed += std::string("[[axis]]\nkey = \"") + letter + "\"\nvalues = " + list(10000) + "\n";
-  CHECK(GridFile(crossed).fault().rfind("grid.toml:1:1: the grid makes 1e20 runs", 0) == 0);
+    five_axes += std::string("[[axis]]\nkey = \"") + letter + "\"\nvalues = " + list(10000) + "\n";
+  CHECK(GridFile(five_axes).fault().rfind("grid.toml:1:1: the grid makes 1e20 runs", 0) == 0);
   std::string dots;
   for (int k = 0; k < 100000; ++k)
     dots += "a.";
