@@ -47,7 +47,7 @@ template<class Row> std::vector<Row> rows_of(const std::vector<std::byte>& bytes
   return rows;
 }
 
-template<class Row> std::vector<std::byte> bytes_of(const std::vector<Row>& rows) {
+template<class Row> std::vector<std::byte> packed(const std::vector<Row>& rows) {
   const auto bytes = std::as_bytes(std::span(rows));
   return {bytes.begin(), bytes.end()};
 }
@@ -132,7 +132,7 @@ struct DriftEngine::Sharing {
   bool tell() {
     Parcels news(ranks.count());
     for (std::size_t rank = 0; rank < ranks.count(); ++rank)
-      news[rank] = bytes_of(to_tell(borders.lent[rank]));
+      news[rank] = packed(to_tell(borders.lent[rank]));
     const bool is_new = ranks.any(news != told);
     told = news;
     const Parcels from = ranks.exchange(std::move(news));
@@ -167,7 +167,7 @@ struct DriftEngine::Sharing {
       if (change.place >= borders.own)
         here.push_back({change.place - borders.own, change.time, change.after, change.spin_after});
     std::erase_if(here, is_far);
-    return bytes_of(theirs) == bytes_of(here);
+    return packed(theirs) == packed(here);
   }
 
   // The whole step, with the copies on the paths that were heard.

@@ -16,37 +16,39 @@ bool continues(unsigned char byte) {
   return (byte & 0xc0) == 0x80;
 }
 
-// How many bytes the character at the beginning has; 0 when there is none to print (RFC 3629).
+unsigned char byte_of(std::string_view text, std::size_t k) {
+  return k < text.size() ? static_cast<unsigned char>(text[k]) : static_cast<unsigned char>(0);
+}
+
+// How many bytes the character at the beginning of a text that is not empty has; 0 when there is none (RFC 3629).
 std::size_t character_at(std::string_view text) {
-  const auto byte = [&](std::size_t k) -> unsigned char {
-    return k < text.size() ? static_cast<unsigned char>(text[k]) : static_cast<unsigned char>(0);
-  };
-  const unsigned char first = byte(0);
+  const unsigned char first = byte_of(text, 0), second = byte_of(text, 1);
   if (first < 0x80)
-    return first < 0x20 || first == 0x7f ? 0 : 1;
+    return 1;
   const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
   if (first < 0xc2 || first > 0xf4)
     return 0;
   for (std::size_t k = 1; k < length; ++k)
-    if (!continues(byte(k)))
+    if (!continues(byte_of(text, k)))
       return 0;
-  const unsigned char second = byte(1);
   const bool too_long = (first == 0xe0 && second < 0xa0) || (first == 0xf0 && second < 0x90);
   const bool no_character = (first == 0xed && second > 0x9f) || (first == 0xf4 && second > 0x8f);
-  const bool control = first == 0xc2 && second < 0xa0;
-  return too_long || no_character || control ? 0 : length;
+  return too_long || no_character ? 0 : length;
+}
+
+bool is_control(std::string_view character) {
+  const unsigned char first = byte_of(character, 0);
+  return first < 0x20 || first == 0x7f || (first == 0xc2 && byte_of(character, 1) < 0xa0);
 }
 
 // Keeps those control characters alone.
 std::string printable(std::string_view text, std::string_view kept) {
   std::string all;
   for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = kept.find(text[at]) != kept.npos ? 1 : character_at(text.substr(at, 4));
-    if (length > 0)
-      all += text.substr(at, length);
-    else
-      all += '?';
-    at += std::max<std::size_t>(length, 1);
+    const std::string_view character = text.substr(at, character_at(text.substr(at, 4)));
+    const bool prints = !character.empty() && (!is_control(character) || kept.find(character) != kept.npos);
+    all += prints ? character : "?";
+    at += prints ? character.size() : 1;
   }
   return all;
 }
@@ -67,6 +69,16 @@ std::string figures(double value, int digits) {
 
 std::string counted(std::uint64_t count, const std::string& noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+bool is_utf8(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = character_at(text.substr(at, 4));
+    if (length == 0)
+      return false;
+    at += length;
+  }
+  return true;
 }
 
 std::string printable_text(std::string_view text) {

@@ -2,6 +2,7 @@
 
 #include <keeler/core/units.hpp>
 #include <keeler/core/words.hpp>
+#include <keeler/gravity/axisymmetric.hpp>
 #include <keeler/gravity/fft.hpp>
 #include <keeler/gravity/near_image_count.hpp>
 #include <keeler/scene/derived.hpp>
@@ -26,18 +27,18 @@ constexpr double contact = 800.0;   // with all searches; in a patch of 10⁴ pa
 constexpr double kick = 20.0;       // a particle and kick
 constexpr double external = 80.0;   // per particle and step, of an external force
 constexpr double tree = 273.0, tree_opened = 44.5; // a particle and kick: the latter over the opening angle squared
-constexpr double mesh = 100.0, mesh_height = 75.0; // a particle and kick: the latter for each spacing of the layer's H
+constexpr double mesh = 75.0, mesh_node = 16.0;    // a particle and kick; a node and kick
 constexpr double mesh_cut = 52.0;                  // a particle and kick, for each spacing that the cut spans
-constexpr double radial_waves = 70.0;              // a particle and kick
-constexpr double tree_image = 0.1;                 // the share of the tree's time that nine images take
-constexpr double direct_pair = 0.25, far_images = 40.0; // a pair and image; a particle and kick
-constexpr double far_set_up = 3.5e3;                    // a kick and image: the expansion of all that are farther
-constexpr double resting = 2e4;                         // a grain of a pile and kick, where contacts carry kicks
-constexpr double row = 12.0, row_itself = 2e4;          // a particle and row; a row
-constexpr double stress = 350.0;                        // a particle and measurement of gravity's energy
-constexpr double snapshot = 1550.0, checkpoint = 500.0; // a particle and file
-constexpr double closing = 1000.0;                      // a particle: overlaps, hash
-constexpr double force_check = 1500.0;                  // a particle; they also take half a per cent of the run
+constexpr double radial_waves = 70.0, radial_node = 20.0; // a particle and kick; a node and kick
+constexpr double tree_image = 0.1;                        // the share of the tree's time that nine images take
+constexpr double direct_pair = 0.7, far_images = 40.0;    // a pair and image; a particle and kick
+constexpr double far_set_up = 3.5e3;                      // a kick and image: the expansion of all that are farther
+constexpr double resting = 2e4;                           // a grain of a pile and kick, where contacts carry kicks
+constexpr double row = 12.0, row_itself = 2e4;            // a particle and row; a row
+constexpr double stress = 350.0;                          // a particle and measurement of gravity's energy
+constexpr double snapshot = 1550.0, checkpoint = 500.0;   // a particle and file
+constexpr double closing = 1000.0;                        // a particle: overlaps, hash
+constexpr double force_check = 1500.0;                    // a particle; they also take half a per cent of the run
 } // namespace cost
 
 constexpr double usual_step = 1e-3;       // orbits, of the scenes that times were measured on
@@ -95,6 +96,13 @@ double drift_ns(const ContactRates& rates, double dilute, double count, const Sc
   return (cost::advance + forces + lists) / step + contacts_ns(rates, dilute, count, scene);
 }
 
+ShearingBox box_of(const Scene& scene) {
+  ShearingBox box;
+  box.size_x = scene.size_x;
+  box.size_y = scene.size_y;
+  return box;
+}
+
 // Height of the layer at the start in mean distances of particles in the plane. More than one where the layer is dense,
 // or where most particles are small.
 double relative_height(const Scene& scene) {
@@ -105,15 +113,22 @@ double relative_height(const Scene& scene) {
          distance;
 }
 
-// A cell meets more others in a space than in a plane.
-double tree_ns(const GravitySettings& gravity, double height) {
+// A cell meets more others in a space than in a plane. A tree whose cells are all opened sums pairs.
+double tree_ns(const GravitySettings& gravity, double height, double count, double images) {
   const double depth = 1.0 + 0.85 * std::log((1.0 + height) / 1.75);
-  return std::max(1.0, depth) * (cost::tree + cost::tree_opened / (gravity.opening_angle * gravity.opening_angle));
+  const double cells = cost::tree + cost::tree_opened / (gravity.opening_angle * gravity.opening_angle);
+  const double by_cells = std::max(1.0, depth) * cells * (1.0 + cost::tree_image * (images / 9.0 - 1.0));
+  return std::min(by_cells, cost::tree + cost::direct_pair * count * images);
 }
 
 // The spacing of a mesh follows the distances in the plane: a thick layer has many planes.
-double mesh_ns(const GravitySettings& gravity, double height) {
-  return cost::mesh + cost::mesh_height * height / gravity.mesh_spacing;
+double mesh_ns(const Scene& scene, const GravitySettings& gravity, double height) {
+  constexpr double heights = 6.0, bytes_a_node = 8.0; // of the layer, from the lowest particle to the highest
+  const double count = static_cast<double>(scene.particles.count),
+               distance = std::sqrt(scene.size_x * scene.size_y / count);
+  const double bytes =
+      mesh_bytes(box_of(scene), gravity.mesh_spacing * distance, heights * height * distance, scene.particles.count);
+  return cost::mesh + cost::mesh_node * bytes / bytes_a_node / count;
 }
 
 // Particles stand up to three times the layer's height from the plane; a box that is narrower than that has more rings.
@@ -125,10 +140,7 @@ double near_images(const Scene& scene, ImageSettings images) {
   const double halves = std::ceil(2.0 * height / std::min(scene.size_x, scene.size_y));
   if (images.far)
     images.rings = std::max({1, images.rings, static_cast<int>(std::min(halves, most_rings))});
-  ShearingBox box;
-  box.size_x = scene.size_x;
-  box.size_y = scene.size_y;
-  return static_cast<double>(near_image_count(box, images));
+  return static_cast<double>(near_image_count(box_of(scene), images));
 }
 
 // Of a particle and kick.
@@ -142,13 +154,14 @@ double gravity_ns(const Scene& scene) {
     return cost::kick + cost::direct_pair * count * images +
            (gravity.images.far ? cost::far_images + cost::far_set_up * images / count : 0.0);
   case GravitySettings::Solver::tree:
-    return cost::kick + tree_ns(gravity, height) * (1.0 + cost::tree_image * (images / 9.0 - 1.0));
+    return cost::kick + tree_ns(gravity, height, count, images);
   case GravitySettings::Solver::mesh:
-    return cost::kick + mesh_ns(gravity, height);
+    return cost::kick + mesh_ns(scene, gravity, height);
   case GravitySettings::Solver::axisymmetric:
-    return cost::kick + cost::radial_waves;
+    return cost::kick + cost::radial_waves +
+           cost::radial_node * radial_mesh_nodes(scene.size_x, gravity.shortest_wavelength) / count;
   default:
-    return cost::kick + mesh_ns(gravity, height) +
+    return cost::kick + mesh_ns(scene, gravity, height) +
            cost::mesh_cut * cut_for(gravity.force_error, std::sqrt(sizes.mean_power(6)) / sizes.mean_power(3));
   }
 }

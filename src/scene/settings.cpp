@@ -2,6 +2,7 @@
 
 #include "checks.hpp"
 
+#include <keeler/core/printable.hpp>
 #include <keeler/files/input.hpp>
 
 #include <fmt/format.h>
@@ -152,7 +153,13 @@ Parameters Settings::parameters(const std::string& table, const std::string& sce
 std::string Settings::toml_of(const Key& key, const std::string& path) const {
   // 3 and 3.0 are one value, and shall be one text
   const bool as_double = key.type == KeyType::number && !is_word(path);
-  return to_toml(as_double ? Value(number(path)) : find_entry(document_, path)->value);
+  const Entry& entry = *find_entry(document_, path);
+  // of a command line, or with the name of a folder: no scene could hold it
+  if (const auto* text = std::get_if<std::string>(&entry.value); text && !is_utf8(*text))
+    fail_at(entry.value_place,
+            fmt::format("{} is '{}', which is not UTF-8, and a scene must be; {}", path, *text,
+                        key.path == "title" ? "write it in UTF-8" : "rename the file or the folder"));
+  return to_toml(as_double ? Value(number(path)) : entry.value);
 }
 
 std::string Settings::motion() const {

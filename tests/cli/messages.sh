@@ -68,6 +68,12 @@ for words in "info $odd" "info $odd --json" "info --verify $odd" "info --verify 
     fail "$(cat -v <<<"$words"): no JSON"
 done
 
+# But a scene is TOML, and TOML is UTF-8: what no scene of a run could hold is refused at once.
+refuses "a title" "title is 'a?', which is not UTF-8, and a scene must be; write it in UTF-8" check "$scene" --set $'title=a\xff'
+refuses "a state of any name" "start.from is '$work/caf??[31m/snap_000000.hdf', which is not UTF-8, and a scene must be; rename the file or the folder" \
+  run "$scene" --from "$odd/snap_000000.hdf" -o "$work/never"
+[ -e "$work/never" ] && fail "a state of any name: a folder was made"
+
 # JSON of another type than Keeler writes, in what a run leaves.
 cp -r "$work/run" "$work/kept"
 for json in '[]' '5' '"text"' '{}' '{"split": 3}' '{"split": {"drift_s": "x"}, "wall_s": []}' '{"finished": "yes", "state_hash": 7, "split": {}}' \

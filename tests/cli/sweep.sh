@@ -259,7 +259,7 @@ refuses "a wrong key" "grid.toml:7:7: unknown key particles.densty" sweep "$work
 [ -e "$work/none" ] && fail "a refused sweep wrote something"
 
 # The example, short.
-sed "s#\"\.\./#\"$source_dir/examples/#; s/40\.0/0.2/; s/^since = .*/since = 0.1/" \
+sed "s#\"../#\"$source_dir/examples/#; s/^\"time.end\" = .*/\"time.end\" = 0.2/; s/^since = .*/since = 0.1/" \
   "$source_dir/examples/sweep-viscosity/grid.toml" >"$work/example.toml"
 runs 0 sweep "$work/example.toml" -o "$work/example"
 [ "$(wc -l <"$work/example/points.csv")" -eq 9 ] || fail "the example: $(cut -c 1-100 "$work/example/points.csv")"

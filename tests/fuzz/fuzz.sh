@@ -46,7 +46,7 @@ for target in "${targets[@]}"; do
   log=build/fuzz/$target.log
   nice -n 15 "$bin/fuzz" "--target=$target" -fork=1 -ignore_crashes=1 -ignore_timeouts=1 -ignore_ooms=1 -timeout=10 \
     "-max_len=$longest" -rss_limit_mb=3000 "-max_total_time=$((60 * minutes))" "-artifact_prefix=$found/$target/" "$corpus" "${seeds[@]}" \
-    >"$log" 2>&1 || { tail -n 20 "$log" >&2; exit 1; }
+    >"$log" 2>&1 || [ $? -eq 77 ] || { tail -n 20 "$log" >&2; exit 1; } # 77: with findings
   inputs=$(grep -oE '^#[0-9]+: cov' "$log" | tail -n 1 | tr -dc '0-9')
   printf '| %s | %s | %s | %s | %s | %s files, %s kB |\n' "$target" "$minutes" "${inputs:-0}" \
     $((${inputs:-0} / (60 * minutes))) "$(find "$found/$target" -type f | wc -l)" \

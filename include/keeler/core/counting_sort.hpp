@@ -3,6 +3,7 @@
 
 #include <keeler/core/threads.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <numeric>
 #include <span>
@@ -14,16 +15,18 @@ namespace keeler {
 /// place.
 ///
 /// Each thread counts and places the items of some of the cells: its part. It reads all items for that, but skips
-/// blocks of them that have no cell of its part: few remain when the items stand nearly in order already.
+/// blocks of them that have no cell of its part: few remain when the items stand nearly in order already. Fewer items
+/// than a block are one thread's.
 template<class Put>
 void counting_sort(std::span<const std::uint32_t> cell_of, std::size_t cells, std::vector<std::uint32_t>& starts,
                    const Put& put) {
   constexpr std::size_t block = 1024;
-  const std::size_t count = cell_of.size(), parts = static_cast<std::size_t>(threads());
+  const std::size_t count = cell_of.size(), blocks = (count + block - 1) / block;
+  const std::size_t parts = std::clamp<std::size_t>(blocks, 1, static_cast<std::size_t>(threads()));
   struct Bounds {
     std::uint32_t least, most;
   };
-  std::vector<Bounds> bounds((count + block - 1) / block);
+  std::vector<Bounds> bounds(blocks);
   parallel_for(
       bounds.size(),
       [&](std::size_t b) {

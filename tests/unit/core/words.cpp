@@ -33,6 +33,9 @@ TEST_CASE("a line that repeats the words of others can be printed") {
         "?? ? ?? ??? ??? ???? ??");
   CHECK(printable_line(std::string("a\0b", 3)) == "a?b");
   CHECK(printable_text("a\x1b]0;t\a\n\tΩ\xff\xc2\x9b") == "a?]0;t?\n\tΩ???");
+  CHECK(is_utf8(std::string("a\0\x1b Ω 𝛀 \xc2\x85", 14)));
+  for (const char* const bytes : {"\xff", "a\xce", "\xc0\xaf", "\xe0\x80\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80"})
+    CHECK_FALSE(is_utf8(bytes));
   const std::string cut = printable_line("begin " + std::string(1'000'000, 'x') + " end");
   CHECK(cut.size() < 2010);
   CHECK(cut.starts_with("begin xxx"));

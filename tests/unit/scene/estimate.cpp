@@ -121,6 +121,31 @@ TEST_CASE("a mesh costs more the thicker a layer is against the distances of its
   CHECK(gravity({fft, "particles.sizes={law=\"power\",exponent=3,min=0.2,max=10}"}) > 1.2 * gravity({fft}));
 }
 
+TEST_CASE("settings that make gravity dear are reckoned with") {
+  // docs/dev/estimate.md: times of 25,000 spheres, of the tree 1000, over those of the first setting
+  const auto gravity = [](std::size_t count, const std::string& choice) {
+    const double side = std::sqrt(6.4 * static_cast<double>(count));
+    return estimate_run(
+               with({fmt::format("particles.count={}", count), fmt::format("box.size=[{0},{0}]", side), choice}))
+        .gravity;
+  };
+  const auto mesh = [&](double spacing) {
+    return gravity(25000, fmt::format("gravity={{solver=\"mesh\",mesh_spacing={}}}", spacing));
+  };
+  check_near(mesh(0.8) / mesh(1.6), 3.3, 1.5);
+  check_near(mesh(0.1) / mesh(1.6), 10.0, 1.5);
+  const auto waves = [&](double shortest) {
+    return gravity(25000, fmt::format("gravity={{solver=\"axisymmetric\",shortest_wavelength={}}}", shortest));
+  };
+  check_near(waves(0.01) / waves(1.0), 4.0, 2.0);
+  check_near(waves(0.001) / waves(1.0), 123.0, 2.0);
+  const auto tree = [&](double angle) {
+    return gravity(1000, fmt::format("gravity={{solver=\"tree\",opening_angle={}}}", angle));
+  };
+  check_near(tree(0.1) / tree(0.7), 2.5, 5.0); // it takes 12
+  check_near(tree(0.01) / tree(0.7), 8.9, 2.0);
+}
+
 TEST_CASE("particles that keep less of their speed collide more often, and slowly") {
   for (const double depth : {0.1, 1.0, 3.0}) {
     ContactRates elastic = contact_rates(depth, 0.9, layer_crowding(depth));
