@@ -50,6 +50,7 @@ density = 600.0
 sizes = { law = "equal", radius = 1.0 }
 [gravity]
 solver = "fft"
+resting_contacts = "bounced"
 [time]
 step = 2e-3
 end = 0.2
@@ -67,6 +68,7 @@ sizes = { law = "power", exponent = 3.0, min = 0.03, max = 3.0 }
 tangential_restitution = 0.5
 [gravity]
 solver = "auto"
+resting_contacts = "bounced"
 [time]
 step = "auto"
 end = 0.125
@@ -213,7 +215,7 @@ uniform="run $work/uniform.toml -o $work/none"
 differ 'rank 1 is asked for something else than rank 0: it has title = "wakes", and rank 0 has title = "uniform"' \
   "$uniform" "run $work/wakes.toml -o $work/none"
 differ 'it has time.end = 0.3, and rank 0 has time.end = 0.2' "$uniform" "$uniform --set time.end=0.3"
-differ 'it has no gravity.' "$uniform --set gravity.solver=fft" "$uniform"
+differ 'it has no gravity.' "$uniform --set gravity.solver=fft --set gravity.kick_every=1" "$uniform"
 differ 'and rank 0 has no gravity.' "$uniform" "$uniform --set gravity.solver=fft"
 differ "it has the folder = $work/b/none, and rank 0 has the folder = $work/none" "$uniform" \
   "run $work/uniform.toml -o none"
@@ -281,12 +283,12 @@ END
 shared 2 1 0 run "$work/wakes.toml" -o "$work/full" --set time.end=0.1
 (
   ulimit -f 40
-  shared 2 1 4 resume "$work/full" --until 0.2
+  shared 2 1 4 resume "$work/full" --until 0.198
   report >/dev/null
 ) || fail "a full disk"
 [ "$(grep -c '^keeler: ' "$work/err")" -eq 1 ] || fail "a full disk: not one line: $(cat "$work/err")"
 grep -q "free some space, then continue with" "$work/err" || fail "a full disk: $(cat "$work/err")"
-shared 2 1 0 resume "$work/full" --until 0.2
+shared 2 1 0 resume "$work/full" --until 0.198
 same "after a full disk" "$work/wakes-1" "$work/full"
 
 # A rank is killed: all end, not with success, and the last checkpoint goes on.
