@@ -1,5 +1,7 @@
 #include <keeler/report/html.hpp>
 
+#include <keeler/core/printable.hpp>
+
 #include <fmt/format.h>
 
 namespace keeler {
@@ -27,7 +29,7 @@ std::string row_html(const std::vector<std::string>& row, const char* cell) {
 
 std::string html_text(const std::string& text) {
   std::string out;
-  for (const char c : text)
+  for (const char c : printable_text(text)) // XML has no control characters
     if (c == '&')
       out += "&amp;";
     else if (c == '<')

@@ -17,8 +17,8 @@ using Lines = std::vector<std::string>;
 
 // c_x of N particles at random has the standard error c_x / √(2N).
 void doubt_number(std::size_t count, Lines& lines) {
-  constexpr std::size_t enough = 1000;
-  if (count < enough)
+  constexpr std::size_t few = 900, enough = 1000;
+  if (count < few)
     lines.push_back(
         fmt::format("{} {} few: one measurement of their velocity dispersion scatters by {} % (1 / sqrt(2 N)), "
                     "and structures cannot be seen; {} make that {} %",
@@ -77,23 +77,56 @@ void doubt_kicks(const Scene& scene, double density, Lines& lines) {
                     figures(apart, 3), figures(r_h, 2), figures(longest, 2)));
 }
 
-// Laws whose coefficient falls with the speed find an equilibrium at some speed. Friction loses energy besides, and the
-// critical value is one of smooth spheres.
+// The speed of impacts at which a coefficient that falls with it is the critical one.
+double equilibrium_speed(const Scene& scene, double radius, double critical, double fast) {
+  double slow = 1e-9;
+  for (int k = 0; k < 60; ++k) {
+    const double between = std::sqrt(slow * fast);
+    (scene.collisions.restitution({between, radius, radius}) >= critical ? slow : fast) = between;
+  }
+  return fast;
+}
+
+// Laws whose coefficient falls with the speed find an equilibrium at some speed, and the layer is as high as it takes.
+// Friction loses energy besides, and the critical value is one of smooth spheres.
 void doubt_equilibrium(const Scene& scene, const PatchScale& patch, Lines& lines) {
-  constexpr double fast = 100.0; // m/s: far above any speed in a ring
+  constexpr double fast = 100.0;        // m/s: far above any speed in a ring
+  constexpr double most_upright = 10.0; // times as high as the box is wide
   if (scene.collisions.friction || patch.particle_count < 2)
     return;
   // A scene of particles that it makes leaves moonlets out; a stored one does not know the law of its sizes.
   const bool fresh = !scene.start_from && scene.particles.sizes.mean_power;
   const double depth = fresh ? scene.optical_depth() : patch.optical_depth;
   const double radius = fresh ? scene.particles.sizes.largest : patch.largest.radius;
-  const double kept = scene.collisions.restitution({fast, radius, radius});
-  if (const double critical = critical_restitution(depth); kept >= critical)
+  const double kept = scene.collisions.restitution({fast, radius, radius}), critical = critical_restitution(depth);
+  if (kept >= critical) {
     lines.push_back(fmt::format(
         "the coefficient of restitution is {} however fast particles collide: above {} at an optical depth of {} "
         "collisions lose less than the shear gives, there is no equilibrium, and the velocity dispersion grows without "
         "end (critical value of Goldreich & Tremaine 1978, (1 - eps^2)(1 + tau^2) = 0.61, right to 0.03)",
         figures(kept, 3), figures(critical, 3), figures(depth, 3)));
+    return;
+  }
+  const double speed = equilibrium_speed(scene, radius, critical, fast);
+  const double height = speed / (2.0 * scene.planet.orbital_frequency), side = std::min(patch.size_x, patch.size_y);
+  if (2.0 * height > most_upright * side)
+    lines.push_back(fmt::format(
+        "particles heat until they collide at some {} m/s, where the coefficient of restitution is {}, and the layer "
+        "then "
+        "reaches some {} m from its mid-plane: a box of {} m is far too narrow for it; give other sizes, lengths are "
+        "in m",
+        figures(speed, 2), figures(critical, 2), figures(height, 2), figures(side, 3)));
+}
+
+// Waves of a sheet: what is shorter than some tens of particle radii belongs to the particles themselves.
+void doubt_waves(const GravitySettings& gravity, const PatchScale& patch, Lines& lines) {
+  constexpr double short_of = 10.0; // radii
+  if (gravity.solver == GravitySettings::Solver::axisymmetric &&
+      gravity.shortest_wavelength < short_of * patch.grain.radius)
+    lines.push_back(
+        fmt::format("gravity.shortest_wavelength is {} m: the pull of waves shorter than some tens of particle "
+                    "radii (here {} m) is that of single particles spread along a line, and costs much; raise it",
+                    figures(gravity.shortest_wavelength, 3), figures(patch.grain.radius, 2)));
 }
 
 void doubt_room(const PatchScale& patch, Lines& lines) {
@@ -188,8 +221,10 @@ std::vector<std::string> doubts(const Scene& scene, const PatchScale& patch) {
   if (scene.gravity && scene.gravity->by_pairs())
     doubt_room_for_wakes(patch, lines);
   doubt_step(scene, lines);
-  if (scene.gravity)
+  if (scene.gravity) {
     doubt_kicks(scene, density, lines);
+    doubt_waves(*scene.gravity, patch, lines);
+  }
   doubt_satellite(scene, lines);
   return lines;
 }

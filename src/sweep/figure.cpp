@@ -75,7 +75,8 @@ std::string words_along_x(const Grid& grid) {
 std::string script_of(const Grid& grid, const Plan& plan, const std::vector<PlotLine>& lines) {
   const char* const colours[] = {"#1f77b4", "#c0392b", "#2e8b57", "#e67e22", "#444444", "#8e44ad"};
   const bool numbers = x_is_number(grid, plan);
-  std::string script = fmt::format("set xlabel {} noenhanced\nset ylabel {} noenhanced\nset grid\nset key left top\n",
+  std::string script = fmt::format("set xlabel {} noenhanced\nset ylabel {} noenhanced\nset grid\nset key left top\n"
+                                   "set format y '%g'\n",
                                    gnuplot_string(grid.plot.x), gnuplot_string(grid.plot.y));
   if (grid.plot.x_log && numbers)
     script += "set logscale x\n";

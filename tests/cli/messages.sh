@@ -53,6 +53,8 @@ scene=$work/scene.toml
 speaks "a scene with escape sequences" check "$scene"
 speaks "a scene with escape sequences" run "$scene" -o "$work/run"
 snapshot=$work/run/snap_000000.hdf
+speaks "plots" render "$work/run" --series -o "$work/plots.svg"
+python3 -c 'import sys, xml.dom.minidom; xml.dom.minidom.parse(sys.argv[1])' "$work/plots.svg" || fail "plots are no XML"
 
 # Names that are no UTF-8: everything works, and JSON stays JSON.
 odd=$work/$'caf\xe9\x1b[31m'

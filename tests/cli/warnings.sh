@@ -11,6 +11,11 @@ prints "elastic" "note: the coefficient of restitution is 0.9 however fast parti
 prints "elastic" "Goldreich & Tremaine 1978"
 accepts "frost" check "$work/scene.toml"
 grep -q "however fast" "$work/out" && fail "frost: $(cat "$work/out")"
+accepts "lengths in km" check "$work/scene.toml" --set 'box.size=[0.06, 0.06]' --set 'particles.sizes={ law = "equal", radius = 1e-3 }'
+prints "lengths in km" "m from its mid-plane: a box of 0.06 m is far too narrow for it; give other sizes, lengths are in m"
+grep -q "from its mid-plane" <("$keeler" check "$work/scene.toml") && fail "lengths in m are doubted"
+accepts "short waves" check "$work/scene.toml" --set 'gravity={ solver = "axisymmetric", shortest_wavelength = 0.1 }'
+prints "short waves" "note: gravity.shortest_wavelength is 0.1 m: the pull of waves shorter than some tens of particle radii (here 1 m)"
 accepts "a narrow box" check "$work/scene.toml" --set 'box.size=[8, 50]' --set particles.count=30
 prints "a narrow box" "note: the box spans 4 diameters of its largest body"
 runs 0 generate "$work/scene.toml" "${elastic[@]}" -o "$work/elastic.hdf"

@@ -102,6 +102,13 @@ class Border(unittest.TestCase):
         self.sim.save(odd)
         self.assertEqual(keeler.load(odd).state_hash, self.sim.state_hash)
         self.refused(keeler.IoError, "caf?", lambda: keeler.load(odd + "x"))
+        scene = Path(odd).with_suffix(".toml")
+        scene.write_text(self.sim.scene)
+        self.assertEqual(keeler.Simulation(scene).state_hash, self.sim.state_hash)
+        keeler.run(scene, self.folder / "run")
+        keeler.from_arrays(str(scene), [[0, 0, 0]], 1.0)
+        scene.write_text("[box]\nsize = 1\n")
+        self.refused(keeler.UsageError, "caf?.toml:2:8", lambda: keeler.Simulation(scene))
         self.refused(keeler.Error, "n" * 50, lambda: self.sim.save(self.folder / ("n" * 300)))
 
     def test_a_working_folder_that_is_gone(self):
@@ -127,8 +134,9 @@ class Border(unittest.TestCase):
             table.write_bytes(content)
             with self.subTest(content[:10]):
                 self.refused(keeler.IoError, "sweep.csv", lambda: keeler.runs._rows(table))
-        table.write_text('run,value\r\n"a",0.5\r\nb,\r\n')
-        self.assertEqual(keeler.runs._rows(table), [{"run": "a", "value": 0.5}, {"run": "b", "value": None}])
+        table.write_text('run,value,steady\r\n"a",0.5,true\r\nb,,false\r\n')
+        rows = [{"run": "a", "value": 0.5, "steady": True}, {"run": "b", "value": None, "steady": False}]
+        self.assertEqual(keeler.runs._rows(table), rows)
 
     def test_pipes_are_written_to_where_the_format_allows_it(self):
         pipe, got = self.folder / "pipe", []

@@ -138,7 +138,7 @@ def sweep(grid, folder, *, jobs=None):
     ``grid`` is the path of a grid's file, or a dictionary of what it holds, whose ``"scene"`` may be a dictionary too.
     Paths in a dictionary are relative to the current folder.
 
-    Returns {"runs": rows of sweep.csv, "points": rows of points.csv} as lists of dictionaries, numbers as floats. Raises
+    Returns {"runs": rows of sweep.csv, "points": rows of points.csv} as lists of dictionaries, numbers as floats, what is not known as None. Raises
     UsageError for a grid that cannot be, RunError when runs failed (sweep.csv says which).
     """
     folder = _arguments.path(folder, "sweep")
@@ -164,7 +164,9 @@ def _written(grid, place):
 
 
 def _rows(file):
-    def number(text):
+    def value(text):
+        if text in ("true", "false"):
+            return text == "true"
         try:
             return float(text)
         except ValueError:
@@ -178,7 +180,7 @@ def _rows(file):
         names, rows = [], []
     if any(len(row) != len(names) for row in rows) or not names:
         raise IoError(f"'{file}' is not the table of a sweep; the same sweep again writes it again")
-    return [dict(zip(names, map(number, row))) for row in rows]
+    return [dict(zip(names, map(value, row))) for row in rows]
 
 
 def render(what, file=None, **look):

@@ -61,7 +61,8 @@ def overrides_of(tables):
 
 
 def source(scene):
-    """(text, name for messages) of a scene: a path, a text with a line break, a dictionary, or a snapshot's."""
+    """(text, name) of a scene: a path, a text with a line break, a dictionary, or a snapshot's. Its files are found by the
+    name; that of a path is bytes, which need not be UTF-8."""
     if isinstance(scene, dict):
         lines = _not_too_deep(lambda: [f"{_text(str(k), 'a key')} = {_toml(v, str(k))}" for k, v in scene.items()])
         return "\n".join(lines) + "\n", "scene"
@@ -74,7 +75,7 @@ def source(scene):
         )
     path = _arguments.path(scene, "a scene")
     try:
-        return _arguments.content(path).decode("utf-8"), str(path)
+        return _arguments.content(path).decode("utf-8"), os.fsencode(path)
     except UnicodeDecodeError:
         raise UsageError(f"'{path}' is no text; give the path of a scene file") from None
     except OSError as error:
@@ -95,6 +96,7 @@ def whole_number(value, name, least, most):
 def read(scene, overrides, start_from=None):
     """The checked scene."""
     text, name = source(scene)
+    start_from = None if start_from is None else os.fsencode(start_from)
     return as_arguments(lambda: _core.Scene(text, name, overrides_of(overrides), start_from))
 
 

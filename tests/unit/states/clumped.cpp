@@ -38,8 +38,6 @@ end = 1.0
                      "test scene", overrides);
 }
 
-} // namespace
-
 // One that is held to less: it need not be a sample of anything.
 SettleCriterion lenient() {
   SettleCriterion criterion;
@@ -48,6 +46,17 @@ SettleCriterion lenient() {
   criterion.viscosity = criterion.wavelengths = {.error = 0.5, .change = 0.5};
   return criterion;
 }
+
+// Made on one thread, by the first case that asks.
+const ClumpedState& leniently_clumped() {
+  static const ClumpedState state = [] {
+    set_threads(1);
+    return clumped_state(scene(), lenient());
+  }();
+  return state;
+}
+
+} // namespace
 
 TEST_CASE("a patch clumps until the criterion holds") {
   set_threads(1);
@@ -72,8 +81,7 @@ TEST_CASE("a patch clumps until the criterion holds") {
 TEST_CASE("a patch clumps the same for any number of threads") {
   set_threads(2);
   const ClumpedState two = clumped_state(scene(), lenient());
-  set_threads(1);
-  const ClumpedState one = clumped_state(scene(), lenient());
+  const ClumpedState& one = leniently_clumped();
   CHECK(one.patch.positions == two.patch.positions);
   CHECK(one.patch.velocities == two.patch.velocities);
   // as text: a length that is not known is NaN
@@ -81,7 +89,7 @@ TEST_CASE("a patch clumps the same for any number of threads") {
 }
 
 TEST_CASE("what settled is recorded in the units of files") {
-  const Clumping c = clumped_state(scene(), lenient()).clumping;
+  const Clumping& c = leniently_clumped().clumping;
   const auto numbers = clumping_numbers(c);
   const double omega = scene().planet.orbital_frequency;
   CHECK(numbers.at("loss_viscosity_m2_s") == std::vector{omega * c.settling.viscosity.last.value});
