@@ -142,7 +142,7 @@ TEST_CASE("settings that make gravity dear are reckoned with") {
   const auto tree = [&](double angle) {
     return gravity(1000, fmt::format("gravity={{solver=\"tree\",opening_angle={}}}", angle));
   };
-  check_near(tree(0.1) / tree(0.7), 2.5, 5.0); // it takes 12
+  check_near(tree(0.1) / tree(0.7), 2.5, 5.0); // the formula gives 12
   check_near(tree(0.01) / tree(0.7), 8.9, 2.0);
 }
 
