@@ -1,12 +1,12 @@
 #include <keeler/bench/drift.hpp>
 
-#include <keeler/bench/median.hpp>
 #include <keeler/bench/pair_set.hpp>
 #include <keeler/bench/states.hpp>
 #include <keeler/contacts/finders.hpp>
 #include <keeler/core/phase_progress.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/simulation/simulation.hpp>
+#include <keeler/statistics/median.hpp>
 
 #include <cmath>
 

@@ -1,11 +1,11 @@
 #include <keeler/bench/gravity.hpp>
 
 #include <keeler/bench/gravity_states.hpp>
-#include <keeler/bench/median.hpp>
 #include <keeler/bench/yardsticks.hpp>
 #include <keeler/cells/order.hpp>
 #include <keeler/core/simd.hpp>
 #include <keeler/gravity/direct.hpp>
+#include <keeler/statistics/median.hpp>
 
 #include <algorithm>
 #include <cmath>

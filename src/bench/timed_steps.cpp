@@ -1,8 +1,8 @@
 #include <keeler/bench/timed_steps.hpp>
 
-#include <keeler/bench/median.hpp>
 #include <keeler/bench/yardsticks.hpp>
 #include <keeler/core/threads.hpp>
+#include <keeler/statistics/median.hpp>
 
 #include <algorithm>
 

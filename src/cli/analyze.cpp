@@ -1,29 +1,24 @@
 // keeler analyze: numbers from a snapshot, or averaged over the part of a run that is steady.
 #include "command.hpp"
 #include "common_options.hpp"
+#include "number_options.hpp"
 #include "print.hpp"
 #include "profile_file.hpp"
 #include "results.hpp"
 #include "sight_options.hpp"
-#include "structure_report.hpp"
-#include "transport_text.hpp"
 
-#include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/json_of_files.hpp>
-#include <keeler/core/words.hpp>
-#include <keeler/diagnostics/analysis.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/files/new_file.hpp>
+#include <keeler/quantities/views.hpp>
 #include <keeler/report/csv.hpp>
-#include <keeler/runs/analysis_numbers.hpp>
 #include <keeler/runs/measured_part.hpp>
+#include <keeler/runs/measurement.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -37,6 +32,7 @@ struct AnalyzeOptions {
   std::string path;
   bool json = false;
   AnalysisSettings settings;
+  NumberOptions numbers;
   OrbitWindow window;
   std::optional<std::string> profile, csv;
   std::size_t profile_bins = default_profile_bins;
@@ -44,63 +40,15 @@ struct AnalyzeOptions {
   ThreadOption threads;
 };
 
-void print_wakes(const Analysis& a) {
-  const char* const none =
-      a.wake_amplitude > 0.0 ? "no wakes stand out of the noise" : "these particles are too few to resolve lambda_cr";
-  if (a.wake_pitch_degrees)
-    print("wake pitch           {:.1f} degrees, {}\n", std::abs(*a.wake_pitch_degrees),
-          *a.wake_pitch_degrees < 0.0 ? "leading" : "trailing");
-  else
-    print("wake pitch           not known because {}\n", none);
-  if (a.wake_spacing_m)
-    print("wake spacing         {} m radially = {:.2f} lambda_cr\n", figures(*a.wake_spacing_m, 3),
-          *a.wake_spacing_m / a.critical_wavelength_m);
-  else
-    print("wake spacing         not known because {}\n",
-          a.wake_pitch_degrees ? "no second wake stands out within half a box" : none);
-  print("wake amplitude       {} in the autocorrelation\n", figures(a.wake_amplitude, 3));
-}
-
-void print_text(const Analysis& a, double overlap) {
-  const auto& c = a.dispersion_r_omega;
-  const auto& v = a.dispersion_m_s;
-  print("snapshots            {} up to orbit {}, {}\n", a.snapshots, figures(a.time_orbits, 4),
-        counted(a.particle_count, "particle"));
-  print("optical depth        {}\n", figures(a.optical_depth, 4));
-  print("surface density      {} kg/m^2, lambda_cr {} m\n", figures(a.surface_density_kg_m2, 4),
-        figures(a.critical_wavelength_m, 4));
-  print("Toomre Q             {:.3g}\n", a.toomre_q);
-  print("velocity dispersion  {:.3g} {:.3g} {:.3g} r Omega = {:.3g} {:.3g} {:.3g} m/s\n", c[0], c[1], c[2], v[0], v[1],
-        v[2]);
-  print("scale height         {:.3g} m, filling factor {:.3g} in the mid-plane\n", a.scale_height_m, a.filling_factor);
-  print("largest overlap      {} of a radius sum\n", figures(overlap, 2));
-  print_wakes(a);
-  print_structure(a);
-}
-
-// dispersion_m_s and x: dispersion_x_m_s, as in series.csv.
-std::string column_of_axis(const std::string& name, char axis) {
-  for (const std::string unit : {"_m_s", "_r_omega"})
-    if (name.ends_with(unit))
-      return fmt::format("{}_{}{}", name.substr(0, name.size() - unit.size()), axis, unit);
-  return fmt::format("{}_{}", name, axis);
-}
-
-// A row a snapshot: the numbers of each by itself, [x, y, z] in columns of their own.
-void write_snapshots(const fs::path& file, const StoredPatches& stored, const AnalysisSettings& settings) {
+// A row a snapshot: the numbers of each by itself.
+void write_snapshots(const fs::path& file, const StoredPatches& stored, const AnalyzeOptions& options) {
   auto rows = nlohmann::ordered_json::array();
   for (const Patch& patch : stored.patches) {
-    nlohmann::ordered_json all = numbers_of(analyze(std::span(&patch, 1), settings), largest_overlap(patch).depth), row;
-    TransportReport::of_snapshot(patch, stored.gravity).add_to(all, patch);
-    for (const auto& [name, value] : all.items())
-      if (value.is_primitive() && !name.ends_with("_error_m2_s") && name.find("scatter") == std::string::npos)
-        row[name] = value.is_null() ? nlohmann::ordered_json("") : value;
-      else if (value.is_array() && value.size() == 3 && value[0].is_number())
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          row[column_of_axis(name, "xyz"[axis])] = value[axis];
-    rows.push_back(row);
+    const TransportReport transport = TransportReport::of_snapshot(patch, stored.gravity);
+    rows.push_back(row_of(options.numbers.chosen(record_of(measure({&patch, 1}, transport, options.settings))),
+                          options.numbers.system()));
   }
-  write_table(file, csv_of(rows));
+  write_table(file, csv_with_gaps(rows));
 }
 
 // The files that get tables. One of them may go to standard output, in place of what is printed there.
@@ -130,29 +78,25 @@ private:
 ExitCode run(const AnalyzeOptions& options) {
   options.threads.apply();
   const Tables tables(options);
+  options.numbers.check(measured_quantities());
   const auto [stored, transport] = measured_part(options.path, options.window);
-  double overlap = 0.0;
-  for (const Patch& patch : stored.patches)
-    overlap = std::max(overlap, largest_overlap(patch).depth);
-  const Analysis analysis = analyze(stored.patches, options.settings);
+  const Record numbers = options.numbers.chosen(record_of(measure(stored.patches, transport, options.settings)));
   std::optional<Sights> sights;
   if (options.sights.asked())
     sights.emplace(options.sights, stored.patches);
   if (tables.profile)
     write_profiles(*tables.profile, stored.patches, options.profile_bins);
   if (tables.csv)
-    write_snapshots(*tables.csv, stored, options.settings);
+    write_snapshots(*tables.csv, stored, options);
   if (tables.fill_standard_output)
     return ExitCode::done;
   if (options.json) {
-    nlohmann::ordered_json json = numbers_of(analysis, overlap);
-    transport.add_to(json, stored.patches.back());
+    nlohmann::ordered_json json = json_of(numbers, options.numbers.system());
     if (sights)
       json["sights"] = sights->json();
     print("{}\n", json_text(json, 2));
   } else {
-    print_text(analysis, overlap);
-    print_transport(transport, stored.patches.back());
+    print("{}", lines_of(numbers, options.numbers.system()));
     if (sights)
       sights->print();
   }
@@ -184,9 +128,11 @@ void add_analyze(CLI::App& program, Action& action) {
   command.add_option("--bins", options->profile_bins, "bins of the profiles along the radius (default: 100)")
       ->transform(whole_number_between(1, 1e6, "a number of bins"))
       ->needs(profile);
+  options->numbers.add_to(command);
   options->sights.add_to(command);
   options->threads.add_to(command);
   examples_of(command, {"keeler analyze wakes", "keeler analyze wakes --since 2 --json",
+                        "keeler analyze wakes --only toomre_q,total_viscosity --units gravity",
                         "keeler analyze wakes/snap_000030.hdf --elevation 5,30"});
   command.callback([options, &action] { action = [options] { return run(*options); }; });
 }

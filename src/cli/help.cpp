@@ -5,6 +5,8 @@
 #include "usage.hpp"
 
 #include <keeler/core/suggest.hpp>
+#include <keeler/runs/measurement.hpp>
+#include <keeler/runs/series_columns.hpp>
 
 #include <fmt/format.h>
 
@@ -12,6 +14,46 @@
 
 namespace keeler {
 namespace {
+
+struct NumberTable {
+  const char* title;
+  std::vector<Quantity> quantities;
+};
+
+std::vector<NumberTable> number_tables() {
+  return {{"keeler analyze: a snapshot, or the steady part of a run", measured_quantities()},
+          {"series.csv: a run through time", series_quantities()}};
+}
+
+std::string line_of(const Quantity& quantity) {
+  std::string names;
+  for (const UnitSystem system : quantity.systems())
+    names += (names.empty() ? "" : ", ") + quantity.full_name(system);
+  return fmt::format("  {:<40} {}{}\n", names, quantity.meaning,
+                     quantity.unit.text.empty() ? "" : fmt::format(" ({})", quantity.unit.text));
+}
+
+ExitCode list_numbers() {
+  for (const NumberTable& table : number_tables()) {
+    print("{}\n", table.title);
+    for (const Quantity& quantity : table.quantities)
+      print("{}", line_of(quantity));
+    print("\n");
+  }
+  return ExitCode::done;
+}
+
+// What a number is, wherever it is told. False where none has the name.
+bool tell_number(const std::string& name) {
+  bool is_known = false;
+  for (const NumberTable& table : number_tables())
+    for (const Quantity& quantity : table.quantities)
+      if (quantity.is_called(name)) {
+        print("{}\n{}", table.title, line_of(quantity));
+        is_known = true;
+      }
+  return is_known;
+}
 
 // The command of these words: {"bench", "drift"}.
 const CLI::App& find_command(const CLI::App& program, const std::vector<std::string>& words) {
@@ -26,9 +68,10 @@ const CLI::App& find_command(const CLI::App& program, const std::vector<std::str
     }
     if (!found) {
       const std::string near = closest(word, names);
-      throw UsageError(
-          fmt::format("'{}' has no command '{}'; {}", full_name(*command), word,
-                      near.empty() ? "\"keeler help\" lists the commands" : fmt::format("did you mean '{}'?", near)));
+      throw UsageError(fmt::format("'{}' has no command '{}'; {}", full_name(*command), word,
+                                   near.empty()
+                                       ? "\"keeler help\" lists the commands, \"keeler help numbers\" the numbers"
+                                       : fmt::format("did you mean '{}'?", near)));
     }
     command = found;
   }
@@ -55,13 +98,21 @@ void add_help(CLI::App& program, Action& action) {
     bool man = false;
   };
   const auto options = std::make_shared<HelpOptions>();
-  CLI::App& command = *program.add_subcommand("help", "list the commands, or say what a command does");
-  command.add_option("COMMAND", options->words, "a command, and its part: bench drift")->type_name("");
+  CLI::App& command = *program.add_subcommand("help", "list the commands, or say what a command does or a number is");
+  command
+      .add_option("COMMAND", options->words, "a command, and its part: bench drift; \"numbers\", or the name of one")
+      ->type_name("");
   command.add_flag("--man", options->man, "print it as the source of a manual page, for man -l");
-  examples_of(command, {"keeler help run", "keeler help bench drift", "keeler help run --man"});
+  examples_of(command, {"keeler help run", "keeler help bench drift", "keeler help run --man", "keeler help numbers",
+                        "keeler help toomre_q"});
   command.callback([options, &program, &action] {
     action = [options, &program] {
-      const CLI::App& about = find_command(program, options->words);
+      const std::vector<std::string>& words = options->words;
+      if (words.size() == 1 && words.front() == "numbers")
+        return list_numbers();
+      if (words.size() == 1 && !options->man && tell_number(words.front()))
+        return ExitCode::done;
+      const CLI::App& about = find_command(program, words);
       return options->man ? print_man_page(about) : print_help(about);
     };
   });

@@ -74,9 +74,9 @@ struct Binned {
 };
 
 // Of sums whose terms' absolute values add up to no more than `bound`: they stay below 2⁶² units.
-class Unit {
+class FixedPoint {
 public:
-  explicit Unit(double bound) : per_one_(std::ldexp(1.0, 61 - std::ilogb(bound))) {}
+  explicit FixedPoint(double bound) : per_one_(std::ldexp(1.0, 61 - std::ilogb(bound))) {}
   std::uint64_t count(double term) const {
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(term * per_one_));
   }
@@ -96,7 +96,7 @@ struct EccentricityField {
   std::array<double, bins> cosine{}, sine{};
 };
 
-EccentricityField about_mean(const Binned& sums, const Unit& kilogram, const Unit& moment, double mass) {
+EccentricityField about_mean(const Binned& sums, const FixedPoint& kilogram, const FixedPoint& moment, double mass) {
   EccentricityField field;
   double mean_cosine = 0.0, mean_sine = 0.0;
   for (std::size_t b = 0; b < bins; ++b) {
@@ -155,7 +155,7 @@ std::optional<EpicyclicWaves> epicyclic_waves(const Particles& particles, double
   const double bound = std::sqrt(2.0 * means.mass * means.epicyclic_energy) / frequencies.kappa;
   if (!std::isfinite(bound) || !(bound > 0.0))
     return std::nullopt;
-  const Unit kilogram(means.mass), square(means.mass * means.mass), moment(bound);
+  const FixedPoint kilogram(means.mass), square(means.mass * means.mass), moment(bound);
   Binned sums = exact_total<Binned>(particles.size(), [&](Binned& total, std::size_t k) {
     particles.prefetch_after(k);
     const auto& [elements, radius, mass] = particles.bodies[k];

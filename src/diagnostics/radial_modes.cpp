@@ -3,7 +3,7 @@
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/mean.hpp>
-#include <keeler/diagnostics/time_series.hpp>
+#include <keeler/statistics/time_series.hpp>
 
 #include <cmath>
 

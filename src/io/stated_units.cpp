@@ -30,14 +30,14 @@ std::string without_blanks(const std::string& text) {
 }
 
 // Also as yt, astropy and pint write it, in lower case and without blanks; and what it is in CGS.
-struct Unit {
+struct KnownUnit {
   const char* name;
   std::vector<std::string> spellings;
   double in_cgs;
 };
 
-const Unit& find_unit(const std::string& name) {
-  static const std::array<Unit, 7> units = {
+const KnownUnit& find_unit(const std::string& name) {
+  static const std::array<KnownUnit, 7> units = {
       {{"m", {"m", "meter", "meters", "metre", "metres"}, 100.0},
        {"m/s", {"m/s", "ms^-1", "ms-1", "ms**-1", "m*s^-1", "m*s**-1", "meter/second", "metre/second"}, 100.0},
        {"kg", {"kg", "kilogram", "kilograms"}, 1000.0},
@@ -46,7 +46,7 @@ const Unit& find_unit(const std::string& name) {
        {"1", {"1", "none", "dimensionless"}, 1.0},
        // Of many numbers no factor to CGS is that of all.
        {"SI", {"si", "mks", "m", "kg", "s", "1", without_blanks(ring_box_units)}, no_number}}};
-  return *std::find_if(units.begin(), units.end(), [&](const Unit& unit) { return name == unit.name; });
+  return *std::find_if(units.begin(), units.end(), [&](const KnownUnit& unit) { return name == unit.name; });
 }
 
 // What an attribute of that name states: a unit in words, the unit in CGS, or a number that SI makes `wanted`.
@@ -154,7 +154,7 @@ bool are_all(const Value& value, double wanted, bool zero_states_nothing) {
   });
 }
 
-bool is_in(const Value& value, const Statement& statement, const Unit& unit) {
+bool is_in(const Value& value, const Statement& statement, const KnownUnit& unit) {
   if (value.text && value.text->empty())
     return true;
   if (statement.what == States::number)

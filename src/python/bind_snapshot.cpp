@@ -2,19 +2,18 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "computing.hpp"
+#include "numbers.hpp"
 #include "snapshot.hpp"
 
-#include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
-#include <keeler/core/json_of_files.hpp>
-#include <keeler/diagnostics/analysis.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/files/new_file.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/io/snapshot.hpp>
+#include <keeler/quantities/views.hpp>
 #include <keeler/render/patch_picture.hpp>
-#include <keeler/runs/analysis_numbers.hpp>
 #include <keeler/runs/measured_part.hpp>
+#include <keeler/runs/measurement.hpp>
 #include <keeler/scene/resting_choice.hpp>
 #include <keeler/states/clumped.hpp>
 #include <keeler/states/from_table.hpp>
@@ -93,26 +92,24 @@ PythonSnapshot from_arrays(const std::string& text, const std::string& name, con
   });
 }
 
-// JSON, which Python's own reader makes dictionaries of.
-std::string analyze_snapshot(const PythonSnapshot& snapshot) {
-  return made([&] {
-    const Patch& patch = snapshot.patch;
-    auto numbers = numbers_of(analyze(std::span(&patch, 1)), largest_overlap(patch).depth);
-    TransportReport::of_snapshot(patch, parse_stored_scene(snapshot.scene, "snapshot").gravity).add_to(numbers, patch);
-    return json_text(numbers);
-  });
+// With their names, units and meanings: what the package makes a mapping of.
+py::object numbers_of(const Record& record) {
+  return py::make_tuple(as_python(json_of(record)), described(quantities_of(record)));
 }
 
-std::string analyze_path(const fs::path& path, const std::optional<double>& since, const std::optional<double>& until) {
-  return made([&] {
+py::object analyze_snapshot(const PythonSnapshot& snapshot) {
+  return numbers_of(made([&] {
+    const TransportReport transport =
+        TransportReport::of_snapshot(snapshot.patch, parse_stored_scene(snapshot.scene, "snapshot").gravity);
+    return record_of(measure({&snapshot.patch, 1}, transport));
+  }));
+}
+
+py::object analyze_path(const fs::path& path, const std::optional<double>& since, const std::optional<double>& until) {
+  return numbers_of(made([&] {
     const MeasuredPart part = measured_part(path, {since, until});
-    double overlap = 0.0;
-    for (const Patch& patch : part.stored.patches)
-      overlap = std::max(overlap, largest_overlap(patch).depth);
-    auto numbers = numbers_of(analyze(part.stored.patches), overlap);
-    part.transport.add_to(numbers, part.stored.patches.back());
-    return json_text(numbers);
-  });
+    return record_of(measure(part.stored.patches, part.transport));
+  }));
 }
 
 py::dict series(const fs::path& file) {
@@ -176,6 +173,7 @@ void bind_snapshot(py::module_& module) {
   module.def("is_stream", &is_stream, py::arg("file"));
   module.def("read_series", &series, py::arg("file"));
   module.def("generate", &generate, py::arg("scene"), py::arg("clumped"));
+  module.def("quantities", [] { return described(measured_quantities()); });
   module.def("analyze", &analyze_path, py::arg("path"), py::arg("since"), py::arg("until"));
   module.def("from_arrays", &from_arrays, py::arg("text"), py::arg("name"), py::arg("overrides"), py::arg("positions"),
              py::arg("velocities"), py::arg("radii"), py::arg("masses"), py::arg("spins"), py::arg("relax"));

@@ -6,20 +6,18 @@
 #include "particle_view.hpp"
 #include "series_plots.hpp"
 
-#include <keeler/cells/overlap.hpp>
 #include <keeler/core/json_of_files.hpp>
 #include <keeler/core/phase_progress.hpp>
 #include <keeler/core/version.hpp>
 #include <keeler/core/words.hpp>
-#include <keeler/diagnostics/analysis.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/render/patch_picture.hpp>
 #include <keeler/report/html.hpp>
-#include <keeler/runs/analysis_numbers.hpp>
 #include <keeler/runs/measured_part.hpp>
+#include <keeler/runs/measurement.hpp>
 #include <keeler/runs/run_view.hpp>
 #include <keeler/scene/derived.hpp>
 #include <keeler/scene/doubts.hpp>
@@ -219,20 +217,13 @@ std::string RunPage::plots(const TransportReport& report) const {
 std::string RunPage::measured(MeasuredPart part) {
   thin_out(part.stored.patches);
   progress_.begin("measuring", 2.0 * static_cast<double>(part.stored.patches.size()));
-  double overlap = 0.0;
-  for (const Patch& patch : part.stored.patches) {
-    overlap = std::max(overlap, largest_overlap(patch).depth);
-    progress_.add(1.0);
-  }
-  Json numbers = numbers_of(analyze(part.stored.patches), overlap);
-  progress_.add(static_cast<double>(part.stored.patches.size()));
-  part.transport.add_to(numbers, part.stored.patches.back());
+  const Record numbers = record_of(measure(part.stored.patches, part.transport, {}, [this] { progress_.add(2.0); }));
   return section(
       "measured", "Measured",
       note(fmt::format("As `keeler analyze` measures, structure in {}; viscosities and the balance are of the "
                        "same orbits as the means above.",
                        counted(part.stored.patches.size(), "snapshot"))) +
-          measured_tables(numbers) + folded("All numbers, by their names in JSON", all_numbers(numbers)));
+          measured_table(numbers) + folded("All numbers, by their names in JSON", all_numbers(numbers)));
 }
 
 std::string RunPage::accuracy() const {

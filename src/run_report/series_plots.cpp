@@ -1,6 +1,6 @@
 #include "series_plots.hpp"
 
-#include <keeler/diagnostics/time_series.hpp>
+#include <keeler/statistics/time_series.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -143,6 +143,13 @@ std::span<const SeriesColumn> series_columns() {
   return all_columns;
 }
 
+std::vector<Quantity> series_quantities() {
+  std::vector<Quantity> all;
+  for (const SeriesColumn& column : all_columns)
+    all.push_back({column.name, unit::unnamed(column.unit), column.name, column.meaning});
+  return all;
+}
+
 std::vector<SeriesColumn> series_columns_of(const Scene& scene) {
   std::vector<SeriesColumn> present;
   std::copy_if(std::begin(all_columns), std::end(all_columns), std::back_inserter(present),

@@ -21,7 +21,7 @@ std::string sample_of(const Key& key) {
   return fmt::format("{} = {}", key.name(), key.fallback.empty() ? key.example : key.fallback);
 }
 
-[[noreturn]] void fail_unknown(const Entry& entry) {
+[[noreturn]] void fail_unknown(const DocumentEntry& entry) {
   const std::string near = suggest_path(entry.path);
   if (entry.path == "scene")
     fail_at(entry.key_place,
@@ -32,7 +32,7 @@ std::string sample_of(const Key& key) {
                                                     : fmt::format("did you mean \"{}\"?", near)));
 }
 
-bool fits_type(const Key& key, const Value& value) {
+bool fits_type(const Key& key, const DocumentValue& value) {
   switch (key.type) {
   case KeyType::text:
   case KeyType::choice:
@@ -60,7 +60,7 @@ bool fits_type(const Key& key, const Value& value) {
   return false;
 }
 
-std::vector<double> numbers_in(const Value& value) {
+std::vector<double> numbers_in(const DocumentValue& value) {
   if (const auto* number = std::get_if<double>(&value))
     return {*number};
   if (const auto* integer = std::get_if<std::int64_t>(&value))
@@ -73,7 +73,7 @@ std::vector<double> numbers_in(const Value& value) {
   return list ? *list : numbers;
 }
 
-bool fits_value(const Key& key, const Value& value) {
+bool fits_value(const Key& key, const DocumentValue& value) {
   const std::vector<double> numbers = numbers_in(value);
   if (!std::all_of(numbers.begin(), numbers.end(), [&](double n) { return std::isfinite(n) && key.range.contains(n); }))
     return false;
@@ -83,7 +83,7 @@ bool fits_value(const Key& key, const Value& value) {
   return !text || key.choices.empty() || std::find(key.choices.begin(), key.choices.end(), *text) != key.choices.end();
 }
 
-void check_value(const Key& key, const Entry& entry) {
+void check_value(const Key& key, const DocumentEntry& entry) {
   const bool right_type = fits_type(key, entry.value);
   if (right_type && fits_value(key, entry.value))
     return;
@@ -99,7 +99,7 @@ void check_value(const Key& key, const Entry& entry) {
                                          meaning_of(key), advice));
 }
 
-void check_entry(const Entry& entry) {
+void check_entry(const DocumentEntry& entry) {
   if (const Key* key = find_key(entry.path))
     return check_value(*key, entry);
   const Section* const section = find_section(entry.path);
@@ -123,7 +123,7 @@ std::string beside(const std::string& path, const std::string& other) {
 }
 
 void check_contradictions(const SceneDocument& document) {
-  for (const Entry& entry : document) {
+  for (const DocumentEntry& entry : document) {
     if (const Section* section = find_section(entry.path))
       if (!section->replaced_by.empty() && find_entry(document, section->replaced_by))
         fail_at(entry.key_place, fmt::format("{} cannot stand beside {} (the start file holds the box and its "
@@ -133,7 +133,7 @@ void check_contradictions(const SceneDocument& document) {
     if (!key)
       continue;
     for (const std::string& other : key->alternatives)
-      if (const Entry* earlier = find_entry(document, beside(entry.path, other)); earlier && earlier < &entry)
+      if (const DocumentEntry* earlier = find_entry(document, beside(entry.path, other)); earlier && earlier < &entry)
         fail_at(entry.key_place, fmt::format("{} cannot stand beside {} (either gives the other); keep one of the two",
                                              entry.path, earlier->path));
     if (!condition_holds(document, entry.path)) {
@@ -160,11 +160,11 @@ void check_key_present(const SceneDocument& document, const Key& key, const std:
 
 void check_complete(const SceneDocument& document, const std::string& name) {
   for (const Section& section : scene_sections()) {
-    const Entry* entry = find_entry(document, section.path);
+    const DocumentEntry* entry = find_entry(document, section.path);
     if (!entry && (!section.needed || (!section.replaced_by.empty() && find_entry(document, section.replaced_by))))
       continue;
     if (!entry) {
-      const Entry* parent = find_entry(document, Key{.path = section.path}.section());
+      const DocumentEntry* parent = find_entry(document, Key{.path = section.path}.section());
       fail_at(parent ? parent->key_place : name + ":1:1",
               fmt::format("[{0}] is missing ({1}); add a table [{0}]", section.path, section.meaning));
     }
@@ -181,17 +181,17 @@ bool condition_holds(const SceneDocument& document, const std::string& path) {
   const Key& key = *find_key(path);
   if (key.only_with.key.empty())
     return true;
-  const Entry* entry = find_entry(document, key.only_with.key);
+  const DocumentEntry* entry = find_entry(document, key.only_with.key);
   if (key.only_with.values.empty())
     return entry != nullptr;
-  const Value value =
+  const DocumentValue value =
       entry ? entry->value : parse_override_value(find_key(key.only_with.key)->fallback, "", "", "").front().value;
   const auto* word = std::get_if<std::string>(&value);
   return word && key.only_with.allows(*word);
 }
 
 void check_document(const SceneDocument& document, const std::string& name) {
-  for (const Entry& entry : document)
+  for (const DocumentEntry& entry : document)
     check_entry(entry);
   check_contradictions(document);
   check_complete(document, name);

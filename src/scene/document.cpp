@@ -21,7 +21,7 @@ namespace {
 
 struct Positioned {
   toml::source_position position;
-  Entry entry;
+  DocumentEntry entry;
 };
 
 std::string in_quotes(std::string_view text) {
@@ -68,7 +68,7 @@ std::optional<NumberRows> rows_in(const toml::array& array) {
   return rows;
 }
 
-Value value_of_array(const toml::array& array) {
+DocumentValue value_of_array(const toml::array& array) {
   if (const std::optional<std::vector<double>> numbers = numbers_in(array))
     return *numbers;
   if (const std::optional<NumberRows> rows = rows_in(array))
@@ -78,7 +78,7 @@ Value value_of_array(const toml::array& array) {
   return Unusable{"a list of things that are not numbers"};
 }
 
-Value value_of(const toml::node& node) {
+DocumentValue value_of(const toml::node& node) {
   switch (node.type()) {
   case toml::node_type::table:
     return Table{};
@@ -98,13 +98,13 @@ Value value_of(const toml::node& node) {
 }
 
 // A key that takes a whole number has one for 1e9 too.
-Value as_whole_number(Value value, const std::string& path) {
+DocumentValue as_whole_number(DocumentValue value, const std::string& path) {
   constexpr double end = 0x1p63;
   const auto* const number = std::get_if<double>(&value);
   if (!number || *number != std::trunc(*number) || !(std::fabs(*number) < end))
     return value;
   const Key* const key = find_key(path);
-  return key && key->type == KeyType::integer ? Value(static_cast<std::int64_t>(*number)) : value;
+  return key && key->type == KeyType::integer ? DocumentValue(static_cast<std::int64_t>(*number)) : value;
 }
 
 // Flattens what a scene may have, so that depth and length of paths are bounded by the table of keys.
@@ -177,12 +177,12 @@ toml::table parsed(const std::string& text, const std::string& name) {
 
 } // namespace
 
-const Entry* SceneDocument::find(const std::string& path) const {
+const DocumentEntry* SceneDocument::find(const std::string& path) const {
   const auto found = positions_.find(path);
   return found == positions_.end() ? nullptr : &entries_[found->second];
 }
 
-void SceneDocument::add(Entry entry) {
+void SceneDocument::add(DocumentEntry entry) {
   [[maybe_unused]] const bool is_new = positions_.emplace(entry.path, entries_.size()).second;
   assert(is_new);
   entries_.push_back(std::move(entry));
@@ -190,12 +190,12 @@ void SceneDocument::add(Entry entry) {
 
 void SceneDocument::number() {
   positions_.clear();
-  for (const Entry& entry : entries_)
+  for (const DocumentEntry& entry : entries_)
     positions_.emplace(entry.path, positions_.size());
 }
 
 std::vector<std::string> tables_of(const SceneDocument& document, const std::string& section) {
-  const Entry* const entry = find_entry(document, section);
+  const DocumentEntry* const entry = find_entry(document, section);
   if (!entry)
     return {};
   const auto* const list = std::get_if<TableList>(&entry->value);
@@ -223,7 +223,7 @@ std::optional<TextRange> range_in(const std::string& text, const std::string& na
 namespace {
 
 // Of a key that takes a number the number that a word reads as, though TOML does not: 2^64, .5, 1e400.
-Value value_of_word(const std::string& word, const std::string& path) {
+DocumentValue value_of_word(const std::string& word, const std::string& path) {
   const Key* const key = find_key(path);
   if (!key || (key->type != KeyType::number && key->type != KeyType::integer))
     return word;
@@ -261,7 +261,7 @@ SceneDocument parse_override_value(const std::string& text, const std::string& p
     return word;
   }
   SceneDocument overrides;
-  for (const Entry& entry : document)
+  for (const DocumentEntry& entry : document)
     overrides.add({entry.path, entry.path == path ? key_place : value_place, value_place, entry.value, true});
   return overrides;
 }
@@ -270,7 +270,7 @@ void fail_at(const std::string& place, const std::string& message) {
   throw UsageError(place + ": " + message);
 }
 
-std::string kind_words(const Value& value) {
+std::string kind_words(const DocumentValue& value) {
   struct Words {
     std::string operator()(bool) const { return "true or false"; }
     std::string operator()(std::int64_t) const { return "a whole number"; }
@@ -289,7 +289,7 @@ std::string kind_words(const Value& value) {
   return std::visit(Words{}, value);
 }
 
-std::string to_toml(const Value& value) {
+std::string to_toml(const DocumentValue& value) {
   struct Text {
     std::string operator()(bool flag) const { return flag ? "true" : "false"; }
     std::string operator()(std::int64_t number) const { return fmt::format("{}", number); }

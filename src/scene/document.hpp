@@ -26,15 +26,15 @@ struct Unusable {
   std::string what;
 };
 
-using Value =
+using DocumentValue =
     std::variant<bool, std::int64_t, double, std::string, std::vector<double>, NumberRows, Table, TableList, Unusable>;
 
 /// One key or table header. Names that are not plain keep their quotes in the path, so "a.b" is never a table a.
-struct Entry {
+struct DocumentEntry {
   std::string path;        ///< "particles.sizes.radius"
   std::string key_place;   ///< where the name stands: "scene.toml:3:1", or "--set a.b=value"
   std::string value_place; ///< where the value stands
-  Value value;
+  DocumentValue value;
   bool overridden = false; ///< given by an override
 };
 
@@ -43,19 +43,19 @@ struct Entry {
 class SceneDocument {
 public:
   SceneDocument() = default;
-  SceneDocument(std::initializer_list<Entry> entries) {
-    for (const Entry& entry : entries)
+  SceneDocument(std::initializer_list<DocumentEntry> entries) {
+    for (const DocumentEntry& entry : entries)
       add(entry);
   }
 
-  std::vector<Entry>::const_iterator begin() const { return entries_.begin(); }
-  std::vector<Entry>::const_iterator end() const { return entries_.end(); }
-  const Entry& front() const { return entries_.front(); }
+  std::vector<DocumentEntry>::const_iterator begin() const { return entries_.begin(); }
+  std::vector<DocumentEntry>::const_iterator end() const { return entries_.end(); }
+  const DocumentEntry& front() const { return entries_.front(); }
 
   /// Returns null where no entry has the path.
-  const Entry* find(const std::string& path) const;
+  const DocumentEntry* find(const std::string& path) const;
   /// Adds an entry at the end. Precondition: no entry has its path.
-  void add(Entry entry);
+  void add(DocumentEntry entry);
   /// Removes the entries for which `gone` is true.
   template<class Gone> void remove_if(const Gone& gone) {
     if (std::erase_if(entries_, gone) > 0)
@@ -65,14 +65,14 @@ public:
 private:
   void number();
 
-  std::vector<Entry> entries_;
+  std::vector<DocumentEntry> entries_;
   std::unordered_map<std::string, std::size_t> positions_; // by path
 };
 
 /// The paths of the tables that a document has of a section: none, its own, or those of its list.
 std::vector<std::string> tables_of(const SceneDocument& document, const std::string& section);
 
-inline const Entry* find_entry(const SceneDocument& document, const std::string& path) {
+inline const DocumentEntry* find_entry(const SceneDocument& document, const std::string& path) {
   return document.find(path);
 }
 
@@ -98,9 +98,9 @@ SceneDocument parse_override_value(const std::string& text, const std::string& p
 [[noreturn]] void fail_at(const std::string& place, const std::string& message);
 
 /// "a string", "a table", …
-std::string kind_words(const Value& value);
+std::string kind_words(const DocumentValue& value);
 
 /// The value as TOML on one line (tables and unusable values in words).
-std::string to_toml(const Value& value);
+std::string to_toml(const DocumentValue& value);
 
 } // namespace keeler

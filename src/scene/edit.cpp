@@ -106,7 +106,7 @@ void take_out(std::string& text, const TextRange& value, const std::string& path
 
 bool stands(const std::string& text, const std::string& name, const KeyChange& change) {
   const SceneDocument document = parse_document(text, name);
-  const Entry* const entry = find_entry(document, change.path);
+  const DocumentEntry* const entry = find_entry(document, change.path);
   if (!entry || !change.value)
     return !entry && !change.value;
   return to_toml(entry->value) == to_toml(parse_override_value(*change.value, change.path, name, name).front().value);

@@ -8,7 +8,7 @@ namespace keeler {
 
 std::vector<KeyInForce> keys_in_force(const Scene& scene) {
   std::vector<KeyInForce> keys;
-  for (const Entry& entry : parse_document(scene.resolved, "the resolved scene")) {
+  for (const DocumentEntry& entry : parse_document(scene.resolved, "the resolved scene")) {
     const Key* const key = find_key(entry.path);
     if (!key)
       continue; // the header of a table

@@ -25,20 +25,20 @@ bool is_dotted_name(const std::string& path) {
 }
 
 void erase_within(SceneDocument& document, const std::string& table) {
-  document.remove_if([&](const Entry& entry) { return is_within(entry.path, table); });
+  document.remove_if([&](const DocumentEntry& entry) { return is_within(entry.path, table); });
 }
 
 // Drops what the file (never another override) says at a path.
 void drop_from_file(SceneDocument& document, const std::string& path, const std::string& place,
                     std::vector<std::string>& notices) {
-  const Entry* entry = find_entry(document, path);
+  const DocumentEntry* entry = find_entry(document, path);
   if (!entry || entry->overridden)
     return;
   notices.push_back(fmt::format("{} of the scene is dropped: {} takes its place", path, place));
   erase_within(document, path);
 }
 
-void drop_contradictions(SceneDocument& document, const Entry& by, std::vector<std::string>& notices) {
+void drop_contradictions(SceneDocument& document, const DocumentEntry& by, std::vector<std::string>& notices) {
   const Key* overriding = find_key(by.path);
   if (!overriding)
     return;
@@ -71,7 +71,7 @@ void apply(SceneDocument& document, const std::string& path, const SceneDocument
            std::vector<std::string>& notices) {
   erase_within(document, path);
   add_parent_tables(document, path, place);
-  for (const Entry& entry : entries) {
+  for (const DocumentEntry& entry : entries) {
     drop_contradictions(document, entry, notices);
     document.add(entry);
   }
@@ -100,13 +100,13 @@ void apply_start(SceneDocument& document, const std::string& snapshot, std::vect
 }
 
 void apply_table(SceneDocument& document) {
-  if (const Entry* entry = find_entry(document, "start.from"))
+  if (const DocumentEntry* entry = find_entry(document, "start.from"))
     fail_at(entry->value_place, "start.from cannot stand beside a table of particles (either is the start); remove one "
                                 "of the two");
-  if (const Entry* entry = find_entry(document, "box.size_in_wavelengths"))
+  if (const DocumentEntry* entry = find_entry(document, "box.size_in_wavelengths"))
     fail_at(entry->value_place, "box.size_in_wavelengths cannot stand beside a table of particles (the wavelength "
                                 "follows from a surface density that the scene asks for); give box.size");
-  document.remove_if([](const Entry& entry) {
+  document.remove_if([](const DocumentEntry& entry) {
     return is_within(entry.path, "particles") && entry.path != "particles" && entry.path != "particles.density" &&
            (find_key(entry.path) || find_section(entry.path));
   });

@@ -51,7 +51,7 @@ const Quality* quality_of(const std::string& name) {
 }
 
 const std::string* word_in(const SceneDocument& document, const std::string& path) {
-  const Entry* const entry = find_entry(document, path);
+  const DocumentEntry* const entry = find_entry(document, path);
   return entry ? std::get_if<std::string>(&entry->value) : nullptr;
 }
 
@@ -69,7 +69,7 @@ void add_gravity_of_quality(SceneDocument& document) {
   const Quality* const quality = quality_in(document);
   if (!quality || !find_entry(document, "gravity"))
     return;
-  const auto add = [&](const std::string& path, Value value) {
+  const auto add = [&](const std::string& path, DocumentValue value) {
     if (!find_entry(document, path))
       document.add({path, "quality", "quality", std::move(value), false});
   };

@@ -53,7 +53,7 @@ Settings::Settings(SceneDocument document) : document_(std::move(document)) {
     for (const std::string& path : paths_of(key)) {
       if (has(path) || key.fallback.empty() || !condition_holds(document_, path))
         continue;
-      const Value value = parse_override_value(key.fallback, path, default_place, default_place).front().value;
+      const DocumentValue value = parse_override_value(key.fallback, path, default_place, default_place).front().value;
       document_.add({path, default_place, default_place, value, false});
     }
 }
@@ -68,7 +68,7 @@ std::vector<std::string> Settings::paths_of(const Key& key) const {
 }
 
 double Settings::number(const std::string& path) const {
-  const Value& value = find_entry(document_, path)->value;
+  const DocumentValue& value = find_entry(document_, path)->value;
   const auto* integer = std::get_if<std::int64_t>(&value);
   return integer ? static_cast<double>(*integer) : std::get<double>(value);
 }
@@ -97,13 +97,13 @@ std::string Settings::file_path(const std::string& key, const std::string& scene
   return path;
 }
 
-void Settings::resolve(const std::string& path, Value value, const std::string& replaced) {
-  document_.remove_if([&](const Entry& e) { return e.path == path || e.path == replaced; });
+void Settings::resolve(const std::string& path, DocumentValue value, const std::string& replaced) {
+  document_.remove_if([&](const DocumentEntry& e) { return e.path == path || e.path == replaced; });
   document_.add({path, "derived", "derived", std::move(value), false});
 }
 
 NumberRows Settings::rows(const Key& key, const std::string& scene_name) {
-  const Value& value = find_entry(document_, key.path)->value;
+  const DocumentValue& value = find_entry(document_, key.path)->value;
   if (const auto* given = std::get_if<NumberRows>(&value))
     return *given;
   if (std::holds_alternative<std::vector<double>>(value)) // []
@@ -153,13 +153,13 @@ Parameters Settings::parameters(const std::string& table, const std::string& sce
 std::string Settings::toml_of(const Key& key, const std::string& path) const {
   // 3 and 3.0 are one value, and shall be one text
   const bool as_double = key.type == KeyType::number && !is_word(path);
-  const Entry& entry = *find_entry(document_, path);
+  const DocumentEntry& entry = *find_entry(document_, path);
   // of a command line, or with the name of a folder: no scene could hold it
   if (const auto* text = std::get_if<std::string>(&entry.value); text && !is_utf8(*text))
     fail_at(entry.value_place,
             fmt::format("{} is '{}', which is not UTF-8, and a scene must be; {}", path, *text,
                         key.path == "title" ? "write it in UTF-8" : "rename the file or the folder"));
-  return to_toml(as_double ? Value(number(path)) : entry.value);
+  return to_toml(as_double ? DocumentValue(number(path)) : entry.value);
 }
 
 std::string Settings::motion() const {

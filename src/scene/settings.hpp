@@ -45,7 +45,7 @@ public:
   std::string file_path(const std::string& key, const std::string& scene_name);
 
   /// Fills in what was derived, so that the resolved scene has it; `replaced` is the key that led to it.
-  void resolve(const std::string& path, Value value, const std::string& replaced = {});
+  void resolve(const std::string& path, DocumentValue value, const std::string& replaced = {});
 
   /// The scene as TOML: every key in force, in the order of the key table. It reads back to the same scene.
   std::string resolved() const;

@@ -1,8 +1,8 @@
 #include "tables.hpp"
 
 #include <keeler/core/error.hpp>
-#include <keeler/diagnostics/scatter.hpp>
 #include <keeler/runs/run_stage.hpp>
+#include <keeler/statistics/scatter.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 #include "probes.hpp"
 
-#include <keeler/bench/median.hpp>
 #include <keeler/bench/yardsticks.hpp>
 #include <keeler/core/threads.hpp>
-#include <keeler/diagnostics/scatter.hpp>
 #include <keeler/simulation/simulation.hpp>
+#include <keeler/statistics/median.hpp>
+#include <keeler/statistics/scatter.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -52,7 +52,7 @@ prints "criterion" "(at most $(printf %.1f "$(awk "BEGIN { print 100 * $(recorde
 runs 0 info "$work/one.hdf"
 prints "info in text" "Clumping/loss_viscosity_m2_s"
 runs 0 analyze "$work/one.hdf"
-prints "wakes" "trailing"
+grep -qE '^wakes: pitch +[0-9.]+ degrees' "$work/out" || fail "trailing wakes: $(cat "$work/out")"
 
 for threads in 1 2; do
   runs 0 run "$work/scene.toml" --from "$work/one.hdf" -o "$work/run$threads" --threads $threads

@@ -85,14 +85,14 @@ accepts "profiles" analyze "$work/run" --profile "$work/profile.csv" --bins 20
 awk -F, 'NR > 1 { tau += $5 / 60 } END { exit !(tau > 0.5026 && tau < 0.5027) }' "$work/profile.csv" ||
   fail "the optical depth of the profiles: $(head -3 "$work/profile.csv")"
 accepts "analyze as text" analyze "$work/run"
-prints "analyze as text" "optical depth        0.5027"
+prints "analyze as text" "optical depth                      0.5027"
 
 # Texts for people: what is not known is said, counts have their plural, and 1000 is not 1e+03.
 runs 0 generate "$work/scene.toml" -o "$work/one.hdf" --set particles.count=1
 prints "generate" "1 particle in 50 m x 50 m"
 accepts "analyze one particle" analyze "$work/one.hdf"
-prints "analyze one particle" "wake pitch           not known because"
-prints "analyze one particle" "wake spacing         not known because"
+prints "analyze one particle" "wakes: pitch                       not known because"
+prints "analyze one particle" "wakes: radial spacing              not known because"
 runs 0 run "$work/scene.toml" -o "$work/crowd" --threads 1 --set time.end=0.1 --set particles.density=3e4
 prints "run" "400 particles, 1 thread"
 grep -qE 'orbit +[0-9]{4,} faster than v_cut' "$work/out" || fail "more than 1000 collisions: $(cat "$work/out")"

@@ -22,7 +22,7 @@ for threads in 1 3; do
 done
 same_bytes "1 and 3 threads" /PartType1 "$work/1.hdf" "$work/3.hdf"
 runs 0 analyze "$work/1.hdf"
-prints "overlap" "largest overlap      0 of"
+prints "overlap" "largest overlap                    0 of"
 
 sed -e 's/^sizes = .*/sizes = { law = "equal", radius = 1.0 }/' -e 's/_depth = .*/_depth = 3.0/' "$work/scene.toml" \
   >"$work/dense.toml"
@@ -53,7 +53,7 @@ refuses "a step beyond the box" "particles.step.between is [-10, 50] (two rising
 aggregate() { echo "particles.aggregate=[{ count = $1, filling = $2, place = [10, 0, 0] }]"; }
 accepts "an aggregate" generate "$work/scene.toml" --set "$(aggregate 200 0.5)" -o "$work/pile.hdf"
 runs 0 analyze "$work/pile.hdf"
-prints "an aggregate overlaps nothing" "largest overlap      0 of"
+prints "an aggregate overlaps nothing" "largest overlap                    0 of"
 runs 0 generate "$work/scene.toml" --set particles.density=3000 --set "$(aggregate 200 0.5)" -o "$work/heavy.hdf"
 runs 0 check "$work/scene.toml" --set "start.from='$work/heavy.hdf'" --set 'gravity={solver="direct",kick_every=20}'
 prints "check of a start from a file" "Hill parameter r_h 1.22 of its particles"

@@ -119,6 +119,14 @@ class AsTheProgram(InAFolder):
         run = keeler.run(RING, self.folder / "run", time={"end": 0.1}, output={"series_every": 0.01})
         self.assertEqual(run.summary["state_hash"], keeler.Simulation(RING).run(0.1).state_hash)
         self.assertIsNotNone(run.analyze(since=0.0)["total_viscosity_m2_s"])
+        numbers = run.analyze(since=0.0)
+        self.assertEqual(numbers.error("total_viscosity_m2_s"), numbers["total_viscosity_error_m2_s"])
+        self.assertIsNone(numbers.error("toomre_q"))
+        self.assertEqual(numbers.quantity("total_viscosity_r2_omega").unit, "r² Ω")
+        with self.assertRaisesRegex(keeler.UsageError, "no number 'toomreq'"):
+            numbers.quantity("toomreq")
+        plain = {name for name in keeler.quantities() if "." not in name and "spin" not in name}
+        self.assertEqual(plain - set(numbers), set())  # spins are of scenes with friction
         with self.assertRaisesRegex(keeler.UsageError, "is not empty"):
             keeler.run(RING, self.folder / "run")
         again = keeler.run(RING, self.folder / "run", force=True, time={"end": 0.05})

@@ -2,8 +2,8 @@
 // columns of their tables, the choice of a sweep's plot and the table in docs/formats.md come from here.
 #pragma once
 
-#include <keeler/diagnostics/time_series.hpp>
 #include <keeler/scene/scene.hpp>
+#include <keeler/statistics/time_series.hpp>
 
 #include <filesystem>
 #include <optional>

@@ -2,8 +2,8 @@
 // footprints of a stated size cross the line of sight. Over one or several snapshots.
 #pragma once
 
-#include <keeler/diagnostics/measured.hpp>
 #include <keeler/diagnostics/transmission.hpp>
+#include <keeler/statistics/measured.hpp>
 
 #include <span>
 

@@ -3,9 +3,9 @@
 // spectra and from the mean autocorrelation; the scatter is that of the snapshots one by one.
 #pragma once
 
-#include <keeler/diagnostics/measured.hpp>
 #include <keeler/diagnostics/wakes.hpp>
 #include <keeler/particles/patch.hpp>
+#include <keeler/statistics/measured.hpp>
 
 namespace keeler {
 

@@ -5,6 +5,7 @@
 #include <keeler/diagnostics/epicyclic_waves.hpp>
 #include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/gravity/fft.hpp>
+#include <keeler/quantities/quantity.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/simulation.hpp>
 
@@ -39,6 +40,9 @@ struct SeriesColumn {
 
 /// All columns, in their order. The step, which every row begins with, is none of them.
 std::span<const SeriesColumn> series_columns();
+
+/// Their names, units and meanings.
+std::vector<Quantity> series_quantities();
 
 /// Those that a scene has.
 std::vector<SeriesColumn> series_columns_of(const Scene& scene);

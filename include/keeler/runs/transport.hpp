@@ -2,9 +2,9 @@
 // whether collisions lose what the shear's stresses gain.
 #pragma once
 
-#include <keeler/diagnostics/time_series.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/particles/patch.hpp>
+#include <keeler/statistics/time_series.hpp>
 
 #include <optional>
 

@@ -6,20 +6,11 @@
 #include <keeler/runs/stored_patches.hpp>
 #include <keeler/runs/transport.hpp>
 
-#include <nlohmann/json.hpp>
-
 #include <filesystem>
 #include <optional>
 #include <string>
 
 namespace keeler {
-
-/// How many m²/s the two other units of a viscosity are.
-struct ViscosityUnits {
-  explicit ViscosityUnits(const Patch& patch);
-  double radii = 0.0;   ///< r² Ω
-  double gravity = 0.0; ///< G² Σ²/Ω³
-};
 
 /// Returns what the waves hold in the two halves, and what it means where that is not steady; a part of a sentence.
 std::string words_of(const WaveGrowth& waves);
@@ -36,9 +27,6 @@ public:
   const std::optional<Transport>& transport() const { return transport_; }
 
   bool is_of_run() const { return of_run_; }
-
-  /// Under the names of `keeler analyze --json`. The units of the other two forms of each viscosity are the patch's.
-  void add_to(nlohmann::ordered_json& json, const Patch& patch) const;
 
 private:
   std::optional<Transport> transport_;

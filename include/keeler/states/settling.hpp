@@ -4,12 +4,12 @@
 // viscosity that the loss of energy gives, and of the wake lengths λ_⊥ and λ_x, weighted by power.
 //
 // How much such means differ for ever depends on the box: small boxes scatter more. So each mean comes with its error
-// by blocks (diagnostics/time_series.hpp). Windows grow as orbits go by, until the means are known well enough to be
+// by blocks (statistics/time_series.hpp). Windows grow as orbits go by, until the means are known well enough to be
 // compared. Wakes have settled when no mean differs from the one before by more than its tolerance.
 #pragma once
 
-#include <keeler/diagnostics/time_series.hpp>
 #include <keeler/diagnostics/wake_spectrum.hpp>
+#include <keeler/statistics/time_series.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -20,6 +20,7 @@ What there is:
 - ``Simulation``: a patch that runs in memory. ``load``, ``resume``, ``from_arrays`` make one from what exists.
 - ``Snapshot``: a patch at one instant. ``generate``, ``tile``, ``start_from_arrays`` make one; ``read`` reads one.
 - ``Run``: the folder of a run, from ``run`` or ``read(folder)``: series, snapshots, summary. ``sweep`` makes many runs.
+- ``analyze()`` of each of these: ``Numbers``; ``quantities`` says what each is, and in which unit.
 - ``render``: a picture of any of them. ``add_restitution_law``: a law of one's own.
 - ``set_threads``, ``threads``: results are the same, bit for bit, for any number.
 - ``Error`` and its four kinds: ``UsageError``, ``InvariantError``, ``IoError``, ``RunError``.
@@ -60,6 +61,7 @@ _border.guard(_core)
 
 from . import scenes
 from .errors import Error, InvariantError, IoError, RunError, UsageError
+from .numbers import Numbers, Quantity, quantities
 from .runs import Run, program, read, render, run, sweep
 from .simulation import ELEMENTS, Simulation, from_arrays, load, resume
 from .snapshots import Picture, Snapshot, generate, start_from_arrays, tile
@@ -73,7 +75,9 @@ __all__ = [
     "Error",
     "InvariantError",
     "IoError",
+    "Numbers",
     "Picture",
+    "Quantity",
     "Run",
     "RunError",
     "Simulation",
@@ -84,6 +88,7 @@ __all__ = [
     "generate",
     "load",
     "program",
+    "quantities",
     "read",
     "render",
     "resume",

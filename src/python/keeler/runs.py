@@ -8,7 +8,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-from . import _arguments, _core, _processes, scenes, snapshots
+from . import _arguments, _core, _processes, numbers, scenes, snapshots
 from .errors import Error, InvariantError, IoError, RunError, UsageError
 
 
@@ -57,9 +57,9 @@ class Run:
         return _Snapshots(sorted(self.folder.glob("snap_*.hdf"), key=lambda file: (len(file.name), file.name)))
 
     def analyze(self, since=None, until=None):
-        """The numbers of ``keeler analyze DIR --json``, as a dictionary, from one orbit to another (default: from where
+        """The Numbers of ``keeler analyze DIR --json``, a dictionary, from one orbit to another (default: from where
         on the run is steady). Raises UsageError, IoError."""
-        return json.loads(_core.analyze(self.folder, since, until))
+        return numbers.Numbers(*_core.analyze(self.folder, since, until))
 
 
 class _Snapshots:

@@ -1,13 +1,12 @@
 """Snapshots: a patch of ring at one instant."""
 
 import functools
-import json
 import sys
 import tempfile
 import warnings
 from pathlib import Path
 
-from . import _arguments, _core, scenes
+from . import _arguments, _core, numbers, scenes
 from .errors import UsageError
 
 
@@ -65,8 +64,8 @@ class Snapshot:
         return self._velocities
 
     def analyze(self):
-        """The numbers of ``keeler analyze --json``, as a dictionary: names with units."""
-        return json.loads(self._core.analyze())
+        """The Numbers of ``keeler analyze --json``: a dictionary of names with units."""
+        return numbers.Numbers(*self._core.analyze())
 
     def save(self, file):
         """Writes a snapshot file; give it the ending .hdf. Raises IoError."""

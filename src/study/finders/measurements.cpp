@@ -2,7 +2,6 @@
 
 #include "audit.hpp"
 
-#include <keeler/bench/median.hpp>
 #include <keeler/bench/pair_set.hpp>
 #include <keeler/cells/overlap.hpp>
 #include <keeler/contacts/finders.hpp>
@@ -11,6 +10,7 @@
 #include <keeler/core/random.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/simulation/simulation.hpp>
+#include <keeler/statistics/median.hpp>
 
 #include <algorithm>
 #include <cmath>

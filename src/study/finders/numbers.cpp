@@ -2,7 +2,7 @@
 
 #include "measurements.hpp"
 
-#include <keeler/bench/median.hpp>
+#include <keeler/statistics/median.hpp>
 
 #include <fmt/format.h>
 

@@ -5,11 +5,11 @@
 #include "report.hpp"
 #include "study_folder.hpp"
 
-#include <keeler/bench/median.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/runs/folder_lock.hpp>
+#include <keeler/statistics/median.hpp>
 
 #include <fmt/format.h>
 

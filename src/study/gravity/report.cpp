@@ -5,10 +5,10 @@
 #include "study_folder.hpp"
 
 #include <keeler/core/json_of_files.hpp>
-#include <keeler/diagnostics/scatter.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/report/csv.hpp>
 #include <keeler/report/document.hpp>
+#include <keeler/statistics/scatter.hpp>
 
 #include <fmt/format.h>
 

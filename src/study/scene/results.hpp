@@ -3,7 +3,7 @@
 
 #include "runs.hpp"
 
-#include <keeler/diagnostics/scatter.hpp>
+#include <keeler/statistics/scatter.hpp>
 
 #include <nlohmann/json.hpp>
 

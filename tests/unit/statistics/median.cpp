@@ -1,4 +1,4 @@
-#include <keeler/bench/median.hpp>
+#include <keeler/statistics/median.hpp>
 
 #include <doctest/doctest.h>
 

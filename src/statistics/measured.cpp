@@ -1,6 +1,6 @@
-#include <keeler/diagnostics/measured.hpp>
+#include <keeler/statistics/measured.hpp>
 
-#include <keeler/diagnostics/scatter.hpp>
+#include <keeler/statistics/scatter.hpp>
 
 #include <cmath>
 

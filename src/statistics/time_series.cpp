@@ -1,4 +1,4 @@
-#include <keeler/diagnostics/time_series.hpp>
+#include <keeler/statistics/time_series.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <keeler/diagnostics/measured.hpp>
+#include <keeler/statistics/measured.hpp>
 
 #include <doctest/doctest.h>
 

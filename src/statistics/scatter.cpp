@@ -1,4 +1,4 @@
-#include <keeler/diagnostics/scatter.hpp>
+#include <keeler/statistics/scatter.hpp>
 
 #include <algorithm>
 #include <array>

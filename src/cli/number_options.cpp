@@ -1,0 +1,26 @@
+#include "number_options.hpp"
+
+#include "common_options.hpp"
+
+namespace keeler {
+
+void NumberOptions::add_to(CLI::App& command) {
+  command
+      .add_option("--only", names_,
+                  "tell these numbers alone (a list with commas; \"keeler help numbers\" has the names)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NAME,...");
+  one_of(command.add_option("--units", system_,
+                            "units of velocities and viscosities: si; radius (r Omega, r^2 Omega); gravity (G "
+                            "Sigma/Omega, G^2 Sigma^2/Omega^3)"),
+         {"si", "radius", "gravity"});
+}
+
+std::optional<UnitSystem> NumberOptions::system() const {
+  if (system_.empty())
+    return std::nullopt;
+  return system_ == "si" ? UnitSystem::si : system_ == "radius" ? UnitSystem::radius : UnitSystem::gravity;
+}
+
+} // namespace keeler

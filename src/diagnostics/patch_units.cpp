@@ -1,0 +1,13 @@
+#include <keeler/diagnostics/patch_units.hpp>
+
+#include <keeler/core/units.hpp>
+#include <keeler/diagnostics/dispersion.hpp>
+#include <keeler/diagnostics/surface.hpp>
+
+namespace keeler {
+
+PatchUnits units_of(const Patch& patch) {
+  return {mean_radius(patch), patch.orbital_frequency, newton_g_si * surface_density(patch)};
+}
+
+} // namespace keeler

@@ -1,0 +1,93 @@
+#include <keeler/quantities/quantity.hpp>
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/suggest.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+std::string joined(const std::string& name, std::string_view suffix) {
+  return suffix.empty() ? name : fmt::format("{}_{}", name, suffix);
+}
+
+constexpr UnitSystem all_systems[] = {UnitSystem::si, UnitSystem::radius, UnitSystem::gravity};
+
+} // namespace
+
+std::string Quantity::full_name(UnitSystem system) const {
+  return joined(name, unit_in(unit, system).suffix);
+}
+
+std::string Quantity::spread_name(UnitSystem system) const {
+  return joined(name + (spread == Spread::scatter ? "_scatter" : "_error"), unit_in(unit, system).suffix);
+}
+
+std::vector<UnitSystem> Quantity::systems(std::optional<UnitSystem> asked) const {
+  if (asked)
+    return {*asked};
+  return {std::begin(all_systems), std::begin(all_systems) + static_cast<int>(forms) + 1};
+}
+
+bool Quantity::is_called(const std::string& asked) const {
+  return name == asked || name.starts_with(asked + ".") ||
+         std::any_of(std::begin(all_systems), std::end(all_systems), [&](UnitSystem system) {
+           return full_name(system) == asked || (spread != Spread::none && spread_name(system) == asked);
+         });
+}
+
+Value value_of(const std::optional<double>& number, const std::string& why_not) {
+  return number && std::isfinite(*number) ? Value(*number) : Value(Unknown{why_not});
+}
+
+Value value_of(const Measured& number) {
+  return number.value ? Value(Uncertain{*number.value, number.scatter}) : Value(Unknown{});
+}
+
+Value value_of(const std::optional<Estimate>& number) {
+  if (!number || !std::isfinite(number->value))
+    return Unknown{};
+  return Uncertain{number->value, std::isfinite(number->error) ? std::optional(number->error) : std::nullopt};
+}
+
+void require_names(std::span<const Quantity> quantities, std::span<const std::string> names) {
+  for (const std::string& name : names) {
+    if (find_quantity(quantities, name))
+      continue;
+    std::vector<std::string> known;
+    for (const Quantity& quantity : quantities)
+      known.insert(known.end(), {quantity.name, quantity.full_name()});
+    const std::string near = closest(name, known);
+    throw UsageError(
+        fmt::format("there is no number '{}' here; {}", name,
+                    near.empty() ? "\"keeler help numbers\" lists them" : fmt::format("did you mean '{}'?", near)));
+  }
+}
+
+Record only(const Record& record, std::span<const std::string> names) {
+  require_names(quantities_of(record), names);
+  Record chosen{{}, record.units};
+  for (const std::string& name : names)
+    std::copy_if(record.entries.begin(), record.entries.end(), std::back_inserter(chosen.entries),
+                 [&](const Entry& entry) { return entry.quantity.is_called(name); });
+  return chosen;
+}
+
+std::vector<Quantity> quantities_of(const Record& record) {
+  std::vector<Quantity> all;
+  for (const Entry& entry : record.entries)
+    all.push_back(entry.quantity);
+  return all;
+}
+
+const Quantity* find_quantity(std::span<const Quantity> quantities, const std::string& name) {
+  const auto found = std::find_if(quantities.begin(), quantities.end(),
+                                  [&](const Quantity& quantity) { return quantity.is_called(name); });
+  return found == quantities.end() ? nullptr : &*found;
+}
+
+} // namespace keeler

@@ -1,0 +1,206 @@
+#include <keeler/quantities/views.hpp>
+
+#include <keeler/core/words.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t label_width = 34;
+
+template<class... Cases> struct Overloaded : Cases... { using Cases::operator()...; };
+template<class... Cases> Overloaded(Cases...) -> Overloaded<Cases...>;
+
+// In a unit of this size.
+Value in_units(const Value& value, double size) {
+  return std::visit(Overloaded{[&](double number) { return Value(number / size); },
+                               [&](const Uncertain& number) {
+                                 return Value(Uncertain{number.value / size, number.spread
+                                                                                 ? std::optional(*number.spread / size)
+                                                                                 : std::nullopt});
+                               },
+                               [&](std::vector<double> numbers) {
+                                 for (double& number : numbers)
+                                   number /= size;
+                                 return Value(std::move(numbers));
+                               },
+                               [](const auto& other) { return Value(other); }},
+                    value);
+}
+
+Json or_null(double number) {
+  return std::isfinite(number) ? Json(number) : Json(nullptr);
+}
+
+Json json_of(const Value& value) {
+  return std::visit(Overloaded{[](const Unknown&) { return Json(nullptr); },
+                               [](double number) { return or_null(number); },
+                               [](const Uncertain& number) { return or_null(number.value); },
+                               [](const std::vector<Record>& records) {
+                                 Json list = Json::array();
+                                 for (const Record& record : records)
+                                   list.push_back(keeler::json_of(record));
+                                 return list;
+                               },
+                               [](const auto& other) { return Json(other); }},
+                    value);
+}
+
+// json["clusters"]["count"] of "clusters.count".
+Json& place_of(Json& json, const std::string& name) {
+  const std::size_t dot = name.find('.');
+  return dot == std::string::npos ? json[name] : place_of(json[name.substr(0, dot)], name.substr(dot + 1));
+}
+
+std::string text_of(const Value& value, int digits) {
+  return std::visit(
+      Overloaded{[](const Unknown& unknown) {
+                   return unknown.reason.empty() ? std::string("not known") : "not known because " + unknown.reason;
+                 },
+                 [](bool yes) { return std::string(yes ? "yes" : "no"); },
+                 [](std::uint64_t count) { return fmt::format("{}", count); },
+                 [&](double number) { return figures(number, digits); },
+                 [&](const Uncertain& number) {
+                   return figures(number.value, digits) +
+                          (number.spread ? fmt::format(" ± {}", figures(*number.spread, 2)) : std::string());
+                 },
+                 [&](const std::vector<double>& numbers) {
+                   std::vector<std::string> texts;
+                   for (const double number : numbers)
+                     texts.push_back(figures(number, digits));
+                   return fmt::format("{}", fmt::join(texts, " "));
+                 },
+                 [](const std::string& text) { return text; },
+                 [](const std::vector<std::string>& texts) { return fmt::format("{}", fmt::join(texts, "; ")); },
+                 [](const std::vector<Record>& records) { return fmt::format("{}", records.size()); }},
+      value);
+}
+
+std::string line_of(const std::string& label, const std::string& text) {
+  return fmt::format("{:<{}} {}\n", ascii(label), label_width, ascii(text));
+}
+
+// "wavelength 60 m, density amplitude 0.02".
+std::string inline_text(const Record& record, std::optional<UnitSystem> system) {
+  std::string all;
+  for (const Entry& entry : record.entries)
+    if (!entry.quantity.label.empty())
+      all +=
+          fmt::format("{}{} {}", all.empty() ? "" : ", ", entry.quantity.label, text_of(entry, record.units, system));
+  return all;
+}
+
+void add_lines(std::string& lines, const Entry& entry, const PatchUnits& units, std::optional<UnitSystem> system) {
+  const std::string& label = entry.quantity.label;
+  if (const auto* const records = std::get_if<std::vector<Record>>(&entry.value))
+    for (const Record& record : *records)
+      lines += line_of(label, inline_text(record, system));
+  else if (const auto* const texts = std::get_if<std::vector<std::string>>(&entry.value))
+    for (const std::string& text : *texts)
+      lines += line_of(label, text);
+  else
+    lines += line_of(label, text_of(entry, units, system));
+}
+
+} // namespace
+
+std::vector<NamedValue> named_values(const Entry& entry, const PatchUnits& units, std::optional<UnitSystem> system) {
+  const Quantity& quantity = entry.quantity;
+  std::vector<NamedValue> all;
+  bool with_spread = quantity.spread != Spread::none; // once, in the first system
+  for (const UnitSystem in : quantity.systems(system)) {
+    const Value value = in_units(entry.value, size_of_unit(quantity.unit, in, units));
+    const auto* const uncertain = std::get_if<Uncertain>(&value);
+    all.push_back({quantity.full_name(in), uncertain ? Value(uncertain->value) : value});
+    if (with_spread)
+      all.push_back({quantity.spread_name(in), value_of(uncertain ? uncertain->spread : std::nullopt)});
+    with_spread = false;
+  }
+  return all;
+}
+
+Json json_of(const Record& record, std::optional<UnitSystem> system) {
+  Json json = Json::object();
+  for (const Entry& entry : record.entries)
+    for (const NamedValue& named : named_values(entry, record.units, system))
+      place_of(json, named.name) = json_of(named.value);
+  return json;
+}
+
+Json row_of(const Record& record, std::optional<UnitSystem> system) {
+  Json row;
+  for (const Entry& entry : record.entries)
+    for (const UnitSystem in : entry.quantity.systems(system)) {
+      const Value value = in_units(entry.value, size_of_unit(entry.quantity.unit, in, record.units));
+      const auto* const vector = std::get_if<std::vector<double>>(&value);
+      if (vector && vector->size() == 3) {
+        Quantity axis = entry.quantity;
+        for (std::size_t k = 0; k < vector->size(); ++k) {
+          axis.name = fmt::format("{}_{}", entry.quantity.name, "xyz"[k]);
+          row[axis.full_name(in)] = (*vector)[k];
+        }
+      } else if (const Json plain = json_of(value); plain.is_primitive()) {
+        row[entry.quantity.full_name(in)] = plain;
+      }
+    }
+  return row;
+}
+
+std::string text_of(const Entry& entry, const PatchUnits& units, std::optional<UnitSystem> system) {
+  const Quantity& quantity = entry.quantity;
+  if (std::holds_alternative<Unknown>(entry.value))
+    return text_of(entry.value, quantity.digits);
+  std::string all;
+  for (const UnitSystem in : quantity.systems(system)) {
+    Value value = in_units(entry.value, size_of_unit(quantity.unit, in, units));
+    if (const auto* const uncertain = std::get_if<Uncertain>(&value); uncertain && !all.empty())
+      value = uncertain->value; // the error is told once
+    const std::string_view name = unit_in(quantity.unit, in).text;
+    all += fmt::format("{}{}{}{}", all.empty() ? "" : " = ", text_of(value, quantity.digits), name.empty() ? "" : " ",
+                       name);
+  }
+  return all;
+}
+
+std::string lines_of(const Record& record, std::optional<UnitSystem> system) {
+  std::string lines;
+  for (const Entry& entry : record.entries)
+    if (!entry.quantity.label.empty())
+      add_lines(lines, entry, record.units, system);
+  return lines;
+}
+
+std::vector<std::vector<std::string>> table_of(const Record& record) {
+  std::vector<std::vector<std::string>> rows;
+  for (const Entry& entry : record.entries)
+    if (const auto* const records = std::get_if<std::vector<Record>>(&entry.value);
+        !records && !entry.quantity.label.empty())
+      rows.push_back({entry.quantity.label, text_of(entry, record.units)});
+    else if (records)
+      for (const Record& one : *records)
+        rows.push_back({entry.quantity.label, inline_text(one, std::nullopt)});
+  return rows;
+}
+
+std::string markdown_of(std::span<const Quantity> quantities) {
+  std::string table = "| name | unit | meaning |\n|---|---|---|\n";
+  for (const Quantity& quantity : quantities) {
+    std::string names;
+    for (const UnitSystem system : quantity.systems()) {
+      names += fmt::format("{}`{}`", names.empty() ? "" : ", ", quantity.full_name(system));
+      if (system == UnitSystem::si && quantity.spread != Spread::none)
+        names += fmt::format(", `{}`", quantity.spread_name());
+    }
+    table += fmt::format("| {} | {} | {} |\n", names, quantity.unit.text, quantity.meaning);
+  }
+  return table;
+}
+
+} // namespace keeler

@@ -1,0 +1,46 @@
+#include "scenes.hpp"
+
+#include <keeler/runs/measurement.hpp>
+
+#include <keeler/files/files.hpp>
+#include <keeler/quantities/views.hpp>
+#include <keeler/states/initial.hpp>
+
+#include <doctest/doctest.h>
+
+#include <set>
+
+namespace measurement_test {
+
+using namespace keeler;
+
+TEST_CASE("every measured number has names of its own and says what it is; the manual has the table") {
+  std::set<std::string> names;
+  const std::vector<Quantity> quantities = measured_quantities();
+  for (const Quantity& quantity : quantities) {
+    CAPTURE(quantity.name);
+    CHECK(!quantity.meaning.empty());
+    CHECK(quantity.meaning.find('|') == std::string::npos); // it would end a cell of the table
+    for (const UnitSystem system : quantity.systems())
+      CHECK(names.insert(quantity.full_name(system)).second);
+  }
+  const std::string page = read_text(KEELER_SOURCE_DIR "/docs/manual/commands.md"), table = markdown_of(quantities);
+  INFO("docs/manual/commands.md must hold this table:\n" << table);
+  CHECK(page.find(table) != page.npos);
+}
+
+TEST_CASE("a number of a snapshot is the mean over the snapshots") {
+  const Scene scene = test::small_scene();
+  const Patch patch = initial_patch(scene);
+  const std::vector<Patch> patches = {patch, patch};
+  const Measurement m = measure(patches, TransportReport::of_snapshot(patch, scene.gravity));
+  const double n = m.mean_over_snapshots([](const Patch& p) { return static_cast<double>(p.size()); });
+  CHECK(n == static_cast<double>(patch.size()));
+  const nlohmann::ordered_json json = json_of(record_of(m));
+  CHECK(json["snapshots"] == 2);
+  CHECK(json["particle_count"] == patch.size());
+  CHECK(json["collisional_viscosity_m2_s"].is_null()); // a snapshot does not show it
+  CHECK(json["translational_viscosity_r2_omega"].is_number());
+}
+
+} // namespace measurement_test
