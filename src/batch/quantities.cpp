@@ -1,164 +1,95 @@
 #include <keeler/batch/quantities.hpp>
 
-#include <keeler/core/error.hpp>
-#include <keeler/core/units.hpp>
 #include <keeler/diagnostics/clusters.hpp>
-#include <keeler/diagnostics/dispersion.hpp>
-#include <keeler/diagnostics/surface.hpp>
-#include <keeler/diagnostics/wake_geometry.hpp>
+#include <keeler/diagnostics/patch_units.hpp>
 #include <keeler/io/series.hpp>
+#include <keeler/runs/measurement.hpp>
+#include <keeler/runs/series_columns.hpp>
 #include <keeler/runs/stored_patches.hpp>
-#include <keeler/runs/transport.hpp>
+#include <keeler/statistics/time_series.hpp>
 
-#include <functional>
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <limits>
 #include <span>
 
 namespace keeler {
+
+struct RunQuantities::Source {
+  SeriesTable series;
+  std::vector<std::size_t> rows; ///< of the part that is measured
+  Patch last;
+  PatchUnits units;
+  Record transport;
+  Record wakes;    ///< empty without self-gravity
+  Record analysis; ///< all that keeler analyze measures; empty where nothing of it is asked for
+};
+
 namespace {
 
 namespace fs = std::filesystem;
 using Maybe = std::optional<Estimate>;
+using Source = RunQuantities::Source;
 
-// A finished run, as far as its numbers need it.
-struct Measurements {
-  SeriesTable series;
-  Patch last;
-  Transport transport;
-  std::vector<std::size_t> rows; // of the window
-  std::optional<WakeGeometry> wakes;
-};
+constexpr double no_error = std::numeric_limits<double>::quiet_NaN();
 
-struct Quantity {
-  QuantityName name;
-  std::function<Maybe(const Measurements&)> of;
-};
-
-Maybe over(const Maybe& estimate, double unit) {
-  return estimate ? Maybe({estimate->value / unit, estimate->error / unit}) : std::nullopt;
+// A plain number of a record. Only an error is one: a scatter of snapshots is none of their mean.
+Maybe estimate_in(const Record& record, const Quantity& quantity) {
+  const std::optional<double> number = number_in(record, quantity.name);
+  if (!number)
+    return std::nullopt;
+  const auto* const uncertain = std::get_if<Uncertain>(find_value(record, quantity.name));
+  return Estimate{*number,
+                  uncertain && quantity.spread == Spread::error ? uncertain->spread.value_or(no_error) : no_error};
 }
 
-double radius_speed(const Measurements& m) {
-  return mean_radius(m.last) * m.last.orbital_frequency;
+Maybe axis_in(const Record& record, const std::string& name, std::size_t axis) {
+  const Value* const value = find_value(record, name);
+  const auto* const vector = value ? std::get_if<std::vector<double>>(value) : nullptr;
+  return vector && axis < vector->size() ? Maybe({(*vector)[axis], no_error}) : std::nullopt;
 }
 
-double radius_viscosity(const Measurements& m) {
-  return mean_radius(m.last) * radius_speed(m);
-}
-
-double gravity_viscosity(const Measurements& m) {
-  const double omega = m.last.orbital_frequency, g_sigma = newton_g_si * surface_density(m.last);
-  return g_sigma * g_sigma / (omega * omega * omega);
-}
-
-Maybe column_mean(const Measurements& m, const std::string& column) {
-  const std::vector<double>* const all = m.series.find(column);
+Maybe column_mean(const Source& run, const std::string& column) {
+  const std::vector<double>* const all = run.series.find(column);
   if (!all)
     return std::nullopt;
   std::vector<double> values;
-  for (const std::size_t row : m.rows)
+  for (const std::size_t row : run.rows)
     values.push_back((*all)[row]);
   return block_mean(values);
 }
 
 // Of each particle and in each orbit: a collision is one of two particles.
-Maybe collision_rate(const Measurements& m) {
-  const std::vector<double>&orbits = m.series.of("time_orbits"), &collisions = m.series.of("collisions");
+Maybe collision_rate(const Source& run) {
+  const std::vector<double>&orbits = run.series.of("time_orbits"), &collisions = run.series.of("collisions");
   std::vector<double> rates;
-  for (std::size_t k = 0; k + 1 < m.rows.size(); ++k) {
-    const std::size_t a = m.rows[k], b = m.rows[k + 1];
+  for (std::size_t k = 0; k + 1 < run.rows.size(); ++k) {
+    const std::size_t a = run.rows[k], b = run.rows[k + 1];
     rates.push_back(2.0 * (collisions[b] - collisions[a]) /
-                    (static_cast<double>(m.last.size()) * (orbits[b] - orbits[a])));
+                    (static_cast<double>(run.last.size()) * (orbits[b] - orbits[a])));
   }
   return block_mean(rates);
 }
 
-// Of the snapshots as a whole: how far their mean is off is not known.
-Maybe wake_number(const Measurements& m, const std::function<std::optional<double>(const WakeGeometry&)>& number) {
-  const std::optional<double> value = m.wakes ? number(*m.wakes) : std::nullopt;
-  return value ? Maybe({*value, std::numeric_limits<double>::quiet_NaN()}) : std::nullopt;
-}
-
 // At one instant: how far it is off is not known.
-Maybe largest_cluster(const Measurements& m) {
-  if (!m.wakes)
+Maybe largest_cluster(const Source& run) {
+  if (run.wakes.entries.empty())
     return std::nullopt;
-  const ClusterAnalysis clusters = analyze_clusters(std::span(&m.last, 1), default_cluster_gap);
-  return Maybe({clusters.largest_mass_share, std::numeric_limits<double>::quiet_NaN()});
+  const ClusterAnalysis clusters = analyze_clusters(std::span(&run.last, 1), default_cluster_gap);
+  return Estimate{clusters.largest_mass_share, no_error};
 }
 
-void add_viscosity(std::vector<Quantity>& all, const std::string& part, const std::string& meaning,
-                   const std::function<Maybe(const Transport&)>& of) {
-  const std::string name = part + "_viscosity";
-  all.push_back({{name, "m2_s", meaning + ", m²/s"}, [of](const Measurements& m) { return of(m.transport); }});
-  all.push_back({{name, "r2_omega", "the same in r² Ω"},
-                 [of](const Measurements& m) { return over(of(m.transport), radius_viscosity(m)); }});
-  all.push_back({{name, "g2_sigma2_omega3", "the same in G²Σ²/Ω³"},
-                 [of](const Measurements& m) { return over(of(m.transport), gravity_viscosity(m)); }});
+const Record& transport_in(const Source& run) {
+  return run.transport;
 }
 
-std::vector<Quantity> make_quantities() {
-  std::vector<Quantity> all;
-  add_viscosity(all, "translational", "viscosity by particles that move",
-                [](const Transport& t) -> Maybe { return t.translational; });
-  add_viscosity(all, "collisional", "viscosity by contacts", [](const Transport& t) -> Maybe { return t.collisional; });
-  add_viscosity(all, "gravitational", "viscosity by self-gravity", [](const Transport& t) { return t.gravitational; });
-  add_viscosity(all, "total", "viscosity of the three", [](const Transport& t) { return t.total; });
-  add_viscosity(all, "loss", "what the total must be by the loss of energy",
-                [](const Transport& t) -> Maybe { return t.from_loss; });
-  all.push_back({{"energy_balance", "", "the latter over the total: 1 when nothing else does work"},
-                 [](const Measurements& m) { return m.transport.balance; }});
-  for (const char axis : {'x', 'y', 'z'}) {
-    const std::string name = std::string("dispersion_") + axis, column = name + "_m_s";
-    all.push_back({{name, "m_s", std::string("velocity dispersion along ") + axis + ", m/s"},
-                   [column](const Measurements& m) { return column_mean(m, column); }});
-    all.push_back({{name, "r_omega", "the same in mean r Ω"},
-                   [column](const Measurements& m) { return over(column_mean(m, column), radius_speed(m)); }});
-  }
-  all.push_back(
-      {{"dispersion_without_waves_x", "m_s", "velocity dispersion along x without box-long epicyclic waves, m/s"},
-       [](const Measurements& m) { return column_mean(m, "dispersion_without_waves_x_m_s"); }});
-  all.push_back({{"epicyclic_wave_fraction", "", "fraction of the epicyclic energy in these waves"},
-                 [](const Measurements& m) { return column_mean(m, "epicyclic_wave_fraction"); }});
-  all.push_back(
-      {{"scale_height", "m", "√⟨z²⟩, m"}, [](const Measurements& m) { return column_mean(m, "scale_height_m"); }});
-  for (const QuantityName& name : {QuantityName{"mean_spin", "omega", "about the vertical, Ω; with friction"},
-                                   QuantityName{"spin_energy_ratio", "", "of spins and random motion; with friction"}})
-    all.push_back({name, [column = name.column()](const Measurements& m) { return column_mean(m, column); }});
-  all.push_back({{"collisions_per_particle_orbit", "", "collisions faster than v_cut"}, collision_rate});
-  const auto add_wakes = [&](const QuantityName& name,
-                             const std::function<std::optional<double>(const WakeGeometry&)>& number) {
-    all.push_back({name, [number](const Measurements& m) { return wake_number(m, number); }});
-  };
-  add_wakes({"wake_amplitude", "", "of the mean autocorrelation; with self-gravity"},
-            [](const WakeGeometry& w) { return w.mean.amplitude; });
-  add_wakes({"wake_wavelength", "m", "λ_⊥, power-weighted; with wakes"},
-            [](const WakeGeometry& w) { return w.wavelength.value; });
-  add_wakes({"wake_angle", "degrees", "between the wakes and the orbit by the power spectrum; with wakes"},
-            [](const WakeGeometry& w) { return w.angle_degrees.value; });
-  all.push_back({{"largest_cluster_mass_share", "", "of touching spheres, in the last snapshot; with self-gravity"},
-                 largest_cluster});
-  add_wakes({"wake_contrast", "",
-             "rms of the smoothed surface density about its mean, over the mean; with "
-             "self-gravity"},
-            [](const WakeGeometry& w) { return w.contrast; });
-  return all;
+const Record& wakes_in(const Source& run) {
+  return run.wakes;
 }
 
-const std::vector<Quantity>& all_quantities() {
-  static const std::vector<Quantity> all = make_quantities();
-  return all;
-}
-
-// None: the series has too few rows for a mean.
-std::optional<Transport> transport_in(const SeriesTable& series, const RingScale& scale, std::optional<double> since) {
-  if (!enough_rows(series))
-    return std::nullopt;
-  try {
-    return transport(series, scale, {since, std::nullopt});
-  } catch (const UsageError&) {
-    return std::nullopt;
-  }
+const Record& analysis_in(const Source& run) {
+  return run.analysis;
 }
 
 std::vector<std::size_t> rows_between(const std::vector<double>& orbits, double since, double until) {
@@ -170,55 +101,100 @@ std::vector<std::size_t> rows_between(const std::vector<double>& orbits, double 
   return rows;
 }
 
-// With the mean wavelength of these snapshots, as `keeler analyze` takes it.
-WakeGeometry wakes_in(const fs::path& folder, const Patch& last, double since) {
-  const StoredPatches stored = load_patches(folder, std::max(0.0, last.time_orbits - since));
-  const double share = 1.0 / static_cast<double>(stored.patches.size());
-  double wavelength = 0.0;
-  for (const Patch& patch : stored.patches)
-    wavelength += share * critical_wavelength(patch);
-  return wake_geometry(stored.patches, wavelength);
-}
-
 } // namespace
 
-const std::vector<QuantityName>& quantities() {
-  static const std::vector<QuantityName> names = [] {
-    std::vector<QuantityName> list;
-    for (const Quantity& quantity : all_quantities())
-      list.push_back(quantity.name);
-    return list;
-  }();
-  return names;
+RunQuantities::RunQuantities(const std::vector<std::string>& more) {
+  const std::vector<Quantity> measured = measured_quantities();
+  const auto known = [&](const char* name) { return *find_quantity(measured, name); };
+  for (const char* const name : {"translational_viscosity", "collisional_viscosity", "gravitational_viscosity",
+                                 "total_viscosity", "loss_viscosity", "energy_balance"})
+    add_measured(known(name), transport_in);
+  for (const char* const axis : {"dispersion_x", "dispersion_y", "dispersion_z"})
+    add_series_mean(fmt::format("{}_m_s", axis),
+                    {axis, unit::metres_per_second, {}, {}, Spread::error, Forms::si_and_radius});
+  add_series_mean("dispersion_without_waves_x_m_s", {"dispersion_without_waves_x", unit::metres_per_second});
+  add_series_mean("epicyclic_wave_fraction", {"epicyclic_wave_fraction"});
+  add_series_mean("scale_height_m", {"scale_height", unit::metres});
+  add_series_mean("mean_spin_omega", {"mean_spin", unit::omega});
+  add_series_mean("spin_energy_ratio", {"spin_energy_ratio"});
+  add({"collisions_per_particle_orbit", unit::none, {}, "collisions faster than v_cut"}, collision_rate);
+  for (const char* const name : {"wake_amplitude", "wake_wavelength", "wake_angle"})
+    add_measured(known(name), wakes_in);
+  add({"largest_cluster_mass_share", unit::none, {}, "of touching spheres, in the last snapshot; with self-gravity"},
+      largest_cluster);
+  add_measured(known("wake_contrast"), wakes_in);
+  require_names(measured, more);
+  for (const std::string& name : more)
+    for (const Quantity& quantity : measured)
+      if (quantity.is_called(name) && !find(quantity.full_name())) {
+        analyzes_ = true;
+        add_measured(quantity, analysis_in);
+      }
 }
 
-std::vector<std::string> quantity_names() {
-  std::vector<std::string> names;
-  for (const QuantityName& name : quantities())
-    names.push_back(name.column());
-  return names;
+void RunQuantities::add(const Quantity& quantity, const Reading& number) {
+  for (const UnitSystem system : quantity.systems()) {
+    const Unit in = unit_in(quantity.unit, system);
+    Quantity with_error = quantity; // whatever is measured has a column for its error
+    with_error.spread = Spread::error;
+    columns_.push_back({quantity.full_name(system), with_error.spread_name(system),
+                        system != UnitSystem::si ? fmt::format("the same in {}", in.text)
+                        : in.text.empty()        ? quantity.meaning
+                                                 : fmt::format("{}; {}", quantity.meaning, in.text)});
+    readings_.push_back([number, system, unit = quantity.unit](const Source& run) -> Maybe {
+      const Maybe value = number(run);
+      const double size = size_of_unit(unit, system, run.units);
+      return value ? Maybe({value->value / size, value->error / size}) : std::nullopt;
+    });
+  }
 }
 
-RunNumbers measure_run(const fs::path& folder, const Scene& scene, std::optional<double> since) {
+void RunQuantities::add_measured(const Quantity& quantity, const std::function<const Record&(const Source&)>& record) {
+  if (quantity.shape == Shape::number)
+    add(quantity, [record, quantity](const Source& run) { return estimate_in(record(run), quantity); });
+  else if (quantity.shape == Shape::vector)
+    for (const std::size_t axis : {0U, 1U, 2U})
+      if (const Quantity one = quantity.along(axis); !find(one.full_name()))
+        add(one, [record, axis, name = quantity.name](const Source& run) { return axis_in(record(run), name, axis); });
+}
+
+void RunQuantities::add_series_mean(const std::string& column, Quantity quantity) {
+  const std::vector<Quantity> of_series = series_quantities();
+  quantity.meaning = find_quantity(of_series, column)->meaning;
+  add(quantity, [column](const Source& run) { return column_mean(run, column); });
+}
+
+std::optional<std::size_t> RunQuantities::find(const std::string& name) const {
+  const auto found =
+      std::find_if(columns_.begin(), columns_.end(), [&](const RunColumn& column) { return column.name == name; });
+  return found == columns_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - columns_.begin()));
+}
+
+RunNumbers RunQuantities::measure(const fs::path& folder, const Scene& scene, std::optional<double> since) const {
   RunNumbers numbers;
-  numbers.values.resize(all_quantities().size());
-  Measurements m;
-  m.series = read_series(folder / "series.csv");
-  m.last = std::move(load_newest_patch(folder).patches.front());
-  numbers.particle_count = m.last.size();
-  const std::optional<Transport> found =
-      transport_in(m.series, RingScale::of(m.last, !scene.external_forces.empty()), since);
-  if (!found)
+  numbers.values.resize(columns_.size());
+  Source run;
+  run.series = read_series(folder / "series.csv");
+  run.last = std::move(load_newest_patch(folder).patches.front());
+  numbers.particle_count = run.last.size();
+  const TransportReport report =
+      TransportReport::of_run(folder, RingScale::of(run.last, !scene.external_forces.empty()), {since, std::nullopt});
+  if (!report.transport())
     return numbers;
-  m.transport = *found;
-  m.rows = rows_between(m.series.of("time_orbits"), found->since_orbit, found->until_orbit);
+  const double first = report.transport()->since_orbit, until = report.transport()->until_orbit;
+  run.rows = rows_between(run.series.of("time_orbits"), first, until);
+  run.units = units_of(run.last);
+  run.transport = record_of(report, run.units);
+  const std::vector<Patch> patches = load_patches(folder, std::max(0.0, run.last.time_orbits - first)).patches;
+  if (analyzes_)
+    run.analysis = record_of(keeler::measure(patches, report));
   if (scene.gravity)
-    m.wakes = wakes_in(folder, m.last, found->since_orbit);
-  numbers.since_orbit = found->since_orbit;
-  numbers.until_orbit = found->until_orbit;
-  numbers.steady = found->steady;
-  for (std::size_t k = 0; k < numbers.values.size(); ++k)
-    numbers.values[k] = all_quantities()[k].of(m);
+    run.wakes = analyzes_ ? run.analysis : wakes_of(patches);
+  numbers.since_orbit = first;
+  numbers.until_orbit = until;
+  numbers.steady = report.transport()->steady;
+  for (std::size_t k = 0; k < readings_.size(); ++k)
+    numbers.values[k] = readings_[k](run);
   return numbers;
 }
 

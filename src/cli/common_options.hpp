@@ -90,6 +90,16 @@ inline CLI::Option& one_of(CLI::Option* option, const std::vector<std::string>& 
   return *option;
 }
 
+/// --quantities NAME,…: columns of a table of runs.
+inline void add_quantities(CLI::App& command, std::vector<std::string>& names) {
+  command
+      .add_option("--quantities", names,
+                  "more columns: numbers of keeler analyze (a list with commas; \"keeler help numbers\" has the names)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NAME,...");
+}
+
 /// --threads N.
 struct ThreadOption {
   int count = 0; ///< 0: as many as the machine offers

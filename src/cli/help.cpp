@@ -1,4 +1,5 @@
 // keeler help, and what --help ends with.
+#include "bench_numbers.hpp"
 #include "command.hpp"
 #include "man_page.hpp"
 #include "print.hpp"
@@ -7,6 +8,7 @@
 #include <keeler/core/suggest.hpp>
 #include <keeler/runs/measurement.hpp>
 #include <keeler/runs/series_columns.hpp>
+#include <keeler/runs/summary.hpp>
 
 #include <fmt/format.h>
 
@@ -22,7 +24,10 @@ struct NumberTable {
 
 std::vector<NumberTable> number_tables() {
   return {{"keeler analyze: a snapshot, or the steady part of a run", measured_quantities()},
-          {"series.csv: a run through time", series_quantities()}};
+          {"summary.json: what a run came to (keeler run --json)", summary_quantities()},
+          {"series.csv: a run through time", series_quantities()},
+          {"keeler bench step", step_bench_quantities()},
+          {"keeler bench drift", drift_bench_quantities()}};
 }
 
 std::string line_of(const Quantity& quantity) {

@@ -8,13 +8,11 @@
 #include "scene_arguments.hpp"
 #include "signals.hpp"
 
-#include <keeler/core/words.hpp>
-#include <keeler/files/files.hpp>
+#include <keeler/core/json_of_files.hpp>
+#include <keeler/quantities/views.hpp>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -52,89 +50,13 @@ RunOptions run_options(const JobOptions& job, const std::vector<std::string>& ar
   return options;
 }
 
-// Of a run with self-gravity: what rests, or bounces where it may have to rest. How much a share of unresolved contacts
-// loses depends on the kick interval too (docs/hard-spheres.md), so the balance of energy decides.
-void print_contacts_at_rest(const nlohmann::json& s) {
-  constexpr double too_many = 0.1;
-  const double unresolved = s["unresolved_contacts_share"].get<double>();
-  if (const nlohmann::json& resting = s["resting_contacts"]; !resting.is_null())
-    print("contacts at rest                    {} carry the kicks of gravity now\n",
-          counted(resting.get<std::uint64_t>(), "pair"));
-  else if (unresolved > too_many)
-    print("contacts at rest                    {} % of the contacts are slower than one kick of the pair's own "
-          "gravity: where the energy balance is above 1, set gravity.resting_contacts to \"carried\", or kick more "
-          "often\n",
-          figures(100.0 * unresolved, 2));
-}
-
-void print_summary(const std::string& folder, const nlohmann::json& s) {
-  const auto number = [&](const char* key) { return s[key].get<double>(); };
-  const auto count = [&](const char* key, const char* noun) { return counted(s[key].get<std::uint64_t>(), noun); };
-  print("{} orbits, {}, {}, {}\n", figures(number("time_orbits")), count("steps", "step"),
-        count("particle_count", "particle"), count("threads", "thread"));
-  print("collisions per particle and orbit   {} faster than v_cut, {} slow contacts\n",
-        figures(number("collisions_per_particle_orbit"), 3), figures(number("slow_contacts_per_particle_orbit"), 3));
-  print_contacts_at_rest(s);
-  print("largest overlap                     {} of a radius sum\n", figures(number("largest_overlap"), 2));
-  if (s["finder_gave_up"].get<long>() > 0 || number("largest_overlap") > 1e-8)
-    print("the collision finder                gave up on {}, and may have missed contacts\n",
-          s["finder_gave_up"].get<long>() == 1 ? "1 search"
-                                               : fmt::format("{} searches", s["finder_gave_up"].get<long>()));
-  constexpr double left_out = 0.05; // no solver of all forces errs as much
-  if (const nlohmann::json& f = s["force_error"]; !f.is_null() && f["rms"].get<double>() > left_out)
-    print("left out of gravity                 {} % of the rms acceleration, by choice: a mesh alone has no pull of "
-          "neighbours, rings of images none from beyond, and few particles feel little else\n",
-          figures(100.0 * f["rms"].get<double>(), 2));
-  else if (!f.is_null())
-    print("error of gravity                    {:.1e} of the rms acceleration, at worst {:.1e} (rms of {}, {})\n",
-          f["rms"].get<double>(), f["worst_rms"].get<double>(),
-          counted(f["particles"].get<std::uint64_t>(), "particle"), counted(f["checks"].get<std::uint64_t>(), "check"));
-  const nlohmann::json& e = s["energy_j"];
-  const auto energy = [&](const char* key) { return e[key].get<double>(); };
-  const auto joules = [&](const char* key) { return figures(energy(key), 4); };
-  print("energy of random motion (J)         change {} = shear by transport {} + by contacts {} + kicks {}{} - "
-        "collisions {}, rounding {:.1e}\n",
-        figures(energy("now") - energy("start"), 4), joules("translational_shear_work"),
-        joules("collisional_shear_work"), joules("kick_work"),
-        energy("resting_work") == 0.0 ? "" : fmt::format(" + contacts at rest {}", joules("resting_work")),
-        joules("lost_in_collisions"), energy("residual"));
-  const auto known = [](const nlohmann::json& b) { // better than by its own size
-    return !b.is_null() && b["ratio"].is_number() &&
-           (!b["error"].is_number() || b["error"].get<double>() < std::fabs(b["ratio"].get<double>()));
-  };
-  if (const nlohmann::json& b = s["energy_balance"]; known(b))
-    print("energy balance                      {:.3f}{}: energy lost over the work of the shear, orbits {} to {}{}\n",
-          b["ratio"].get<double>(), b["error"].is_number() ? fmt::format(" +- {:.1g}", b["error"].get<double>()) : "",
-          figures(b["since_orbit"].get<double>(), 4), figures(b["until_orbit"].get<double>(), 4),
-          b["steady"].get<bool>() ? "" : ", not steady");
-  const nlohmann::json& split = s["split"];
-  const auto part = [&](const char* key) { return split.value(key, 0.0); };
-  print("time                                {:.1f} s wall, {:.1f} s processor: start {:.1f} s, drift {:.1f} s, "
-        "gravity {:.1f} s\n",
-        number("wall_s"), number("cpu_s"), part("start_s"), part("drift_s"), part("gravity_s"));
-  print("time of output                      series {:.2g} s, stresses {:.2g} s, snapshots {:.2g} s, "
-        "checkpoints {:.2g} s, checks of forces {:.2g} s\n",
-        part("series_s"), part("stresses_s"), part("snapshots_s"), part("checkpoints_s"), part("force_checks_s"));
-  if (const std::uint64_t ranks = s["ranks"].get<std::uint64_t>(); ranks > 1)
-    print("exchange of ranks                   {:.1f} s of the first of {}: sending, receiving, waiting for others\n",
-          part("exchange_s"), ranks);
-  const nlohmann::json& cost = s["ns_per_particle_step"];
-  print("ns per particle and step            drift {:.0f}, gravity {:.0f}, series {:.1f}\n", cost.value("drift", 0.0),
-        cost.value("gravity", 0.0), cost.value("series", 0.0));
-  for (const nlohmann::json& note : s["notes"])
-    print("note                                {}\n", note.get<std::string>());
-  print("state                               {}\n", s["state_hash"].get<std::string>());
-  print("folder                              {}\n", folder);
-}
-
 ExitCode report(const JobOptions& job, const RunResult& result, const Ranks& ranks) {
   if (!ranks.is_first())
     return result.finished ? ExitCode::done : ExitCode::stopped;
-  const std::string text = read_text(std::filesystem::path(job.folder) / "summary.json");
   if (job.json)
-    print("{}", text);
+    print("{}\n", json_text(json_of(result.summary), 2));
   else
-    print_summary(job.folder, nlohmann::json::parse(text));
+    print("{}{:<34} {}\n", lines_of(result.summary), "folder", job.folder);
   if (result.finished)
     return ExitCode::done;
   say(fmt::format("stopped at step {} with a checkpoint; continue with \"{}\"", result.step, result.resume_command));

@@ -80,6 +80,7 @@ void add_one(CLI::App& study, Action& action, const std::vector<std::string>& ar
       ->check(positive_number(most_orbits));
   command.add_option("--jobs", options->jobs, "runs at once, on one thread each (default: threads of the machine)")
       ->transform(whole_number_between(1, most_threads, "a number of runs"));
+  add_quantities(command, settings.quantities);
   command.add_flag("--quick", settings.quick,
                    "few settings, and by default two seeds, an orbit to grow and two to compare: a first look");
   examples_of(command, {"keeler study " + name + " scene.toml -o " + name});

@@ -32,7 +32,7 @@ void print_json(const SweepResult& result) {
   json["runs"] = result.runs;
   json["finished"] = result.finished;
   json["failed"] = result.failed;
-  json["points"] = nlohmann::ordered_json::parse(result.points);
+  json["points"] = result.points;
   print("{}\n", json_text(json, 2));
 }
 
@@ -106,6 +106,7 @@ void add_sweep(CLI::App& program, Action& action) {
       ->transform(whole_number_between(1, most_threads, "a number of runs"));
   command.add_option("--threads", settings.threads_per_run, "threads of each run (default: 1)")
       ->transform(thread_number());
+  add_quantities(command, settings.quantities);
   command.add_flag("--tables", settings.tables_only,
                    "start nothing: make the tables and the figure of what is finished");
   options->talk.add_to(command);

@@ -108,6 +108,13 @@ void add(std::vector<SizeClass>& sum, const Patch& patch, double share) {
 
 } // namespace
 
+void Analysis::take_wakes(const WakeGeometry& geometry) {
+  wakes = geometry;
+  wake_pitch_degrees = geometry.mean.pitch_degrees;
+  wake_spacing_m = geometry.mean.spacing;
+  wake_amplitude = geometry.mean.amplitude;
+}
+
 Analysis analyze(std::span<const Patch> patches, const AnalysisSettings& settings) {
   if (patches.empty())
     throw UsageError("there is no snapshot to analyze; name a file or a run's folder that holds one");
@@ -131,11 +138,7 @@ Analysis analyze(std::span<const Patch> patches, const AnalysisSettings& setting
   mean.radial_modes = analyze_radial_modes(patches, settings.radial_modes);
   mean.radial_mode_noise = radial_mode_noise(patches.back());
   mean.ellipsoid = velocity_ellipsoid(moments);
-  mean.wakes = wake_geometry(patches, mean.critical_wavelength_m);
-  const Wakes& wakes = mean.wakes.mean;
-  mean.wake_pitch_degrees = wakes.pitch_degrees;
-  mean.wake_spacing_m = wakes.spacing;
-  mean.wake_amplitude = wakes.amplitude;
+  mean.take_wakes(wake_geometry(patches, mean.critical_wavelength_m));
   return mean;
 }
 

@@ -19,6 +19,13 @@ constexpr UnitSystem all_systems[] = {UnitSystem::si, UnitSystem::radius, UnitSy
 
 } // namespace
 
+Quantity Quantity::along(std::size_t axis) const {
+  Quantity component = *this;
+  component.name += fmt::format("_{}", "xyz"[axis]);
+  component.shape = Shape::number;
+  return component;
+}
+
 std::string Quantity::full_name(UnitSystem system) const {
   return joined(name, unit_in(unit, system).suffix);
 }
@@ -38,6 +45,12 @@ bool Quantity::is_called(const std::string& asked) const {
          std::any_of(std::begin(all_systems), std::end(all_systems), [&](UnitSystem system) {
            return full_name(system) == asked || (spread != Spread::none && spread_name(system) == asked);
          });
+}
+
+Quantity word(const std::string& name, const std::string& label, const std::string& meaning) {
+  Quantity quantity{name, unit::none, label, meaning};
+  quantity.shape = Shape::other;
+  return quantity;
 }
 
 Value value_of(const std::optional<double>& number, const std::string& why_not) {
@@ -75,6 +88,24 @@ Record only(const Record& record, std::span<const std::string> names) {
     std::copy_if(record.entries.begin(), record.entries.end(), std::back_inserter(chosen.entries),
                  [&](const Entry& entry) { return entry.quantity.is_called(name); });
   return chosen;
+}
+
+const Value* find_value(const Record& record, const std::string& name) {
+  const auto found = std::find_if(record.entries.begin(), record.entries.end(), [&](const Entry& entry) {
+    return entry.quantity.name == name || entry.quantity.full_name() == name;
+  });
+  return found == record.entries.end() ? nullptr : &found->value;
+}
+
+std::optional<double> number_in(const Record& record, const std::string& name) {
+  const Value* const value = find_value(record, name);
+  if (const auto* const number = value ? std::get_if<double>(value) : nullptr)
+    return *number;
+  if (const auto* const count = value ? std::get_if<std::uint64_t>(value) : nullptr)
+    return static_cast<double>(*count);
+  if (const auto* const uncertain = value ? std::get_if<Uncertain>(value) : nullptr)
+    return uncertain->value;
+  return std::nullopt;
 }
 
 std::vector<Quantity> quantities_of(const Record& record) {

@@ -1,5 +1,6 @@
 #include <keeler/quantities/views.hpp>
 
+#include <keeler/core/error.hpp>
 #include <keeler/core/words.hpp>
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace keeler {
 namespace {
@@ -35,14 +37,16 @@ Value in_units(const Value& value, double size) {
                     value);
 }
 
-Json or_null(double number) {
-  return std::isfinite(number) ? Json(number) : Json(nullptr);
-}
-
 Json json_of(const Value& value) {
   return std::visit(Overloaded{[](const Unknown&) { return Json(nullptr); },
                                [](double number) { return or_null(number); },
                                [](const Uncertain& number) { return or_null(number.value); },
+                               [](const NamedNumbers& numbers) {
+                                 Json object = Json::object();
+                                 for (const auto& [name, number] : numbers)
+                                   object[name] = or_null(number);
+                                 return object;
+                               },
                                [](const std::vector<Record>& records) {
                                  Json list = Json::array();
                                  for (const Record& record : records)
@@ -59,10 +63,64 @@ Json& place_of(Json& json, const std::string& name) {
   return dot == std::string::npos ? json[name] : place_of(json[name.substr(0, dot)], name.substr(dot + 1));
 }
 
+// The part of that name; null where there is none.
+const Json* find_part(const Json& json, const std::string& name) {
+  if (json.is_null())
+    return nullptr;
+  if (!json.is_object())
+    throw UsageError(fmt::format("'{}' is no part of an object", name));
+  const std::size_t dot = name.find('.');
+  const auto part = json.find(name.substr(0, dot));
+  if (part == json.end())
+    return nullptr;
+  return dot == std::string::npos ? &*part : find_part(*part, name.substr(dot + 1));
+}
+
+bool has_parts(std::span<const Quantity> quantities, const std::string& name) {
+  return std::any_of(quantities.begin(), quantities.end(),
+                     [&](const Quantity& quantity) { return quantity.name.starts_with(name + "."); });
+}
+
+Value value_of(const Json& json, const Quantity& quantity) {
+  if (json.is_null())
+    return Unknown{};
+  if (json.is_number_unsigned())
+    return json.get<std::uint64_t>();
+  if (json.is_number())
+    return json.get<double>();
+  if (quantity.shape == Shape::number)
+    throw UsageError(fmt::format("'{}' is no number", quantity.full_name()));
+  if (json.is_boolean())
+    return json.get<bool>();
+  if (json.is_string())
+    return json.get<std::string>();
+  std::vector<std::string> texts;
+  NamedNumbers numbers;
+  for (const auto& [name, value] : json.items())
+    if (value.is_string())
+      texts.push_back(value.get<std::string>());
+    else if (value.is_number())
+      numbers.emplace_back(name, value.get<double>());
+  return json.is_array() ? Value(texts) : Value(numbers);
+}
+
+// What no quantity is known of, under its name.
+void add_others(Record& record, const Json& json, const std::string& object, const std::set<std::string>& known) {
+  for (const auto& [name, value] : json.items()) {
+    const std::string path = object + name;
+    if (known.contains(path))
+      continue;
+    if (value.is_object())
+      add_others(record, value, path + ".", known);
+    else if (!value.is_null())
+      record.entries.push_back({word(path, "", ""), value_of(value, word(path, "", ""))});
+  }
+}
+
 std::string text_of(const Value& value, int digits) {
   return std::visit(
       Overloaded{[](const Unknown& unknown) {
-                   return unknown.reason.empty() ? std::string("not known") : "not known because " + unknown.reason;
+                   return unknown.reason.empty() ? std::string("none") : "not known because " + unknown.reason;
                  },
                  [](bool yes) { return std::string(yes ? "yes" : "no"); },
                  [](std::uint64_t count) { return fmt::format("{}", count); },
@@ -76,6 +134,12 @@ std::string text_of(const Value& value, int digits) {
                    for (const double number : numbers)
                      texts.push_back(figures(number, digits));
                    return fmt::format("{}", fmt::join(texts, " "));
+                 },
+                 [&](const NamedNumbers& numbers) {
+                   std::vector<std::string> texts;
+                   for (const auto& [name, number] : numbers)
+                     texts.push_back(fmt::format("{} {}", name, figures(number, digits)));
+                   return fmt::format("{}", fmt::join(texts, ", "));
                  },
                  [](const std::string& text) { return text; },
                  [](const std::vector<std::string>& texts) { return fmt::format("{}", fmt::join(texts, "; ")); },
@@ -111,6 +175,10 @@ void add_lines(std::string& lines, const Entry& entry, const PatchUnits& units, 
 
 } // namespace
 
+Json or_null(const std::optional<double>& number) {
+  return number && std::isfinite(*number) ? Json(*number) : Json(nullptr);
+}
+
 std::vector<NamedValue> named_values(const Entry& entry, const PatchUnits& units, std::optional<UnitSystem> system) {
   const Quantity& quantity = entry.quantity;
   std::vector<NamedValue> all;
@@ -134,6 +202,21 @@ Json json_of(const Record& record, std::optional<UnitSystem> system) {
   return json;
 }
 
+Record record_of(const Json& json, std::span<const Quantity> quantities) {
+  Record record;
+  std::set<std::string> known;
+  for (const Quantity& quantity : quantities) {
+    const std::string name = quantity.full_name();
+    const Json* const value = find_part(json, name);
+    if (!value || (value->is_object() && has_parts(quantities, name)))
+      continue;
+    known.insert(name);
+    record.entries.push_back({quantity, value_of(*value, quantity)});
+  }
+  add_others(record, json, "", known);
+  return record;
+}
+
 Json row_of(const Record& record, std::optional<UnitSystem> system) {
   Json row;
   for (const Entry& entry : record.entries)
@@ -141,11 +224,8 @@ Json row_of(const Record& record, std::optional<UnitSystem> system) {
       const Value value = in_units(entry.value, size_of_unit(entry.quantity.unit, in, record.units));
       const auto* const vector = std::get_if<std::vector<double>>(&value);
       if (vector && vector->size() == 3) {
-        Quantity axis = entry.quantity;
-        for (std::size_t k = 0; k < vector->size(); ++k) {
-          axis.name = fmt::format("{}_{}", entry.quantity.name, "xyz"[k]);
-          row[axis.full_name(in)] = (*vector)[k];
-        }
+        for (std::size_t k = 0; k < vector->size(); ++k)
+          row[entry.quantity.along(k).full_name(in)] = (*vector)[k];
       } else if (const Json plain = json_of(value); plain.is_primitive()) {
         row[entry.quantity.full_name(in)] = plain;
       }

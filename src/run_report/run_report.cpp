@@ -19,6 +19,7 @@
 #include <keeler/runs/measured_part.hpp>
 #include <keeler/runs/measurement.hpp>
 #include <keeler/runs/run_view.hpp>
+#include <keeler/runs/summary.hpp>
 #include <keeler/scene/derived.hpp>
 #include <keeler/scene/doubts.hpp>
 #include <keeler/states/initial.hpp>
@@ -138,7 +139,7 @@ private:
   std::vector<Patch> pictured_;
   SnapshotMeta meta_; // of the newest snapshot
   std::optional<Scene> scene_;
-  Json summary_; // null while the run works, and when it was killed
+  std::optional<Record> summary_; // none while the run works, and when it was killed
 };
 
 void RunPage::look_at_snapshots() {
@@ -227,19 +228,19 @@ std::string RunPage::measured(MeasuredPart part) {
 }
 
 std::string RunPage::accuracy() const {
-  if (!summary_.is_object())
+  if (!summary_)
     return section("accuracy", "Accuracy and its price",
                    note("The run has not ended, so it has no account yet (summary.json is missing)."));
   std::string speed;
-  const Json ns = summary_.value("ns_per_particle_step", Json::object());
-  for (const auto& [name, value] : ns.items())
-    speed += fmt::format("{}{} {} ns", speed.empty() ? "" : ", ", name, figures(value.get<double>(), 3));
-  return section(
-      "accuracy", "Accuracy and its price",
-      accuracy_table(*scene_, summary_) + "<h3>Time</h3>\n" + timing_table(summary_) +
-          note(fmt::format("{}, {} s of processor time, {} MB at most. A particle and step: {}.",
-                           counted(summary_.value("threads", 0U), "thread"), figures(summary_.value("cpu_s", 0.0), 4),
-                           figures(summary_.value("peak_memory_mb", 0.0), 4), speed)));
+  const auto number = [&](const char* name) { return number_in(*summary_, name).value_or(0.0); };
+  for (const char* const part : {"drift", "gravity", "series"})
+    speed += fmt::format("{}{} {} ns", speed.empty() ? "" : ", ", part,
+                         figures(number(fmt::format("ns_per_particle_step.{}", part).c_str()), 3));
+  return section("accuracy", "Accuracy and its price",
+                 accuracy_table(*scene_, *summary_) + "<h3>Time</h3>\n" + timing_table(*summary_) +
+                     note(fmt::format("{}, {} s of processor time, {} MB at most. A particle and step: {}.",
+                                      counted(static_cast<std::uint64_t>(number("threads")), "thread"),
+                                      figures(number("cpu"), 4), figures(number("peak_memory"), 4), speed)));
 }
 
 std::string RunPage::scene_section() const {
@@ -260,8 +261,9 @@ std::string RunPage::provenance() const {
   std::vector<std::vector<std::string>> rows = {{"the newest snapshot was made by", ""}};
   for (const auto& [name, value] : meta_.provenance)
     rows.push_back({name, value});
-  if (summary_.is_object())
-    rows.push_back({"state hash", summary_.value("state_hash", "")});
+  if (const Value* const hash = summary_ ? find_value(*summary_, "state_hash") : nullptr)
+    if (const auto* const text = std::get_if<std::string>(hash))
+      rows.push_back({"state hash", *text});
   rows.push_back({"this page by", "keeler " + program_version()});
   if (has_view())
     rows.push_back({"with three.js", "© 2010–2019 the three.js authors, MIT licence, threejs.org"});
@@ -271,10 +273,12 @@ std::string RunPage::provenance() const {
 }
 
 std::string RunPage::facts() const {
-  const std::string state = run_.running                        ? "still working"
-                            : !summary_.is_object()             ? "broken off"
-                            : summary_.value("finished", false) ? "finished"
-                                                                : "stopped before its end";
+  const Value* const value = summary_ ? find_value(*summary_, "finished") : nullptr;
+  const bool* const finished = value ? std::get_if<bool>(value) : nullptr;
+  const std::string state = run_.running            ? "still working"
+                            : !summary_             ? "broken off"
+                            : finished && *finished ? "finished"
+                                                    : "stopped before its end";
   return note(fmt::format("{} particles, {} of {} orbits, {}.", pictured_.back().size(), figures(run_.orbits, 4),
                           figures(run_.end_orbits, 4), state));
 }
@@ -297,24 +301,15 @@ std::string scripts() {
 
 std::string RunPage::html() {
   look_at_snapshots();
-  const fs::path file = folder_ / "summary.json";
-  if (fs::exists(file)) {
-    summary_ = json_of<Json>(read_text(file));
-    if (!summary_.is_object())
-      throw IoError(
-          fmt::format("'{}' is not the summary of a run (it is damaged); restore it, or remove it to have the "
-                      "page without it",
-                      file.string()));
-  }
-  const std::string told = using_json_of<Json>(file, [&] { return accuracy(); });
-  const std::string facts_of_run = using_json_of<Json>(file, [&] { return facts(); });
+  if (fs::exists(folder_ / "summary.json"))
+    summary_ = read_summary(folder_);
   MeasuredPart part = measured_part(folder_, {});
   const std::string title = scene_->title.empty() ? folder_.filename().string() : scene_->title;
-  std::string page = head() + "<body>\n<h1>" + html_text(title) + "</h1>\n" + facts_of_run;
+  std::string page = head() + "<body>\n<h1>" + html_text(title) + "</h1>\n" + facts();
   page += pictures();
   page += view() + plots(part.transport);
   page += measured(std::move(part));
-  page += told + scene_section() + using_json_of<Json>(file, [&] { return provenance(); });
+  page += accuracy() + scene_section() + provenance();
   return page + scripts() + "</body></html>\n";
 }
 

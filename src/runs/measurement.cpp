@@ -2,6 +2,7 @@
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/diagnostics/patch_units.hpp>
+#include <keeler/diagnostics/surface.hpp>
 
 #include <fmt/format.h>
 
@@ -12,7 +13,8 @@ namespace keeler {
 namespace {
 
 using Source = const Measurement&;
-using Rows = std::vector<Row<Measurement>>;
+using Report = const TransportReport&;
+using Rows = std::vector<QuantityRow<Measurement>>;
 using Maybe = std::optional<Estimate>;
 
 Value vector_of(const std::array<double, 3>& axes) {
@@ -21,6 +23,11 @@ Value vector_of(const std::array<double, 3>& axes) {
 
 Value vector_of(const Vec3& axes) {
   return std::vector<double>{axes.x(), axes.y(), axes.z()};
+}
+
+Quantity shaped(Quantity quantity, Shape shape) {
+  quantity.shape = shape;
+  return quantity;
 }
 
 Rows state_rows() {
@@ -40,9 +47,10 @@ Rows state_rows() {
        [](Source m) -> Value { return m.analysis.critical_wavelength_m; }},
       {{"toomre_q", unit::none, "Toomre Q", "κ c_x/(3.36 G Σ), with c_x of the whole patch (Toomre 1964)"},
        [](Source m) -> Value { return m.analysis.toomre_q; }},
-      {{"dispersion", unit::metres_per_second, "velocity dispersion",
-        "c_x, c_y, c_z: standard deviation of the velocity beyond the shear, streams of wakes included", Spread::none,
-        Forms::si_and_radius},
+      {shaped({"dispersion", unit::metres_per_second, "velocity dispersion",
+               "c_x, c_y, c_z: standard deviation of the velocity beyond the shear, streams of wakes included",
+               Spread::none, Forms::si_and_radius},
+              Shape::vector),
        [](Source m) { return vector_of(m.analysis.dispersion_m_s); }},
       {{"scale_height", unit::metres, "scale height", "√⟨z²⟩"},
        [](Source m) -> Value { return m.analysis.scale_height_m; }},
@@ -108,8 +116,9 @@ Rows wave_rows() {
   return {{{"epicyclic_wave_fraction", unit::none, "box-long waves: energy",
             "fraction of the epicyclic energy in axisymmetric waves as long as the box (modes 1 to 4)"},
            [](Source m) { return of_waves(m, [](const WaveAnalysis& w) -> Value { return w.energy_fraction; }); }},
-          {{"dispersion_without_waves", unit::metres_per_second, "dispersion without them",
-            "about the velocity field of these waves", Spread::none, Forms::si_and_radius},
+          {shaped({"dispersion_without_waves", unit::metres_per_second, "dispersion without them",
+                   "about the velocity field of these waves", Spread::none, Forms::si_and_radius},
+                  Shape::vector),
            [](Source m) { return of_waves(m, [](const WaveAnalysis& w) { return vector_of(w.dispersion_m_s); }); }},
           {{"toomre_q_without_waves", unit::none, "Toomre Q without them", "by that c_x"},
            [](Source m) { return of_waves(m, [](const WaveAnalysis& w) -> Value { return w.toomre_q; }); }}};
@@ -117,7 +126,7 @@ Rows wave_rows() {
 
 std::vector<Record> size_classes_of(Source m) {
   using Class = const SizeClass&;
-  static const std::vector<Row<SizeClass>> rows = {
+  static const std::vector<QuantityRow<SizeClass>> rows = {
       {{"smallest", unit::metres, "from"}, [](Class c) -> Value { return c.smallest; }},
       {{"largest", unit::metres, "to"}, [](Class c) -> Value { return c.largest; }},
       {{"count", unit::none, "particles"}, [](Class c) -> Value { return c.count; }},
@@ -131,38 +140,42 @@ std::vector<Record> size_classes_of(Source m) {
 }
 
 Rows local_rows() {
-  return {{{"local_radius", unit::metres, "local: within",
-            "of the neighbourhood whose mean velocity is taken out: 3 r or λ_cr/20, the larger"},
-           [](Source m) -> Value { return m.analysis.local.radius_m; }},
-          {{"local_dispersion", unit::metres_per_second, "local: dispersion",
-            "standard deviation of the velocities about that of the neighbours"},
-           [](Source m) { return vector_of(m.analysis.local.dispersion_m_s); }},
-          {{"local_toomre_q", unit::none, "local: Toomre Q", "by the local c_x and the mean Σ of the patch"},
-           [](Source m) -> Value { return m.analysis.local.toomre_q; }},
-          {{"local_share", unit::none, "", "share of the mass in particles that have a neighbour"},
-           [](Source m) -> Value { return m.analysis.local.share; }},
-          {{"crowding_radius", unit::metres, "mean particle: within",
-            "radius of the disc about each particle in which density is counted: 6 r or λ_cr/10, the larger"},
-           [](Source m) -> Value { return m.analysis.local.crowding_radius_m; }},
-          {{"crowding_optical_depth", unit::none, "mean particle: optical depth", "of the others within that disc"},
-           [](Source m) -> Value { return m.analysis.local.optical_depth; }},
-          {{"crowding_filling_factor", unit::none, "mean particle: filling factor", "of the others there at z = 0"},
-           [](Source m) -> Value { return m.analysis.local.filling_factor; }},
-          {{"thin_area_share", unit::none, "thin area (τ < 0.1)", "share of cells with an optical depth below 0.1"},
-           [](Source m) -> Value { return m.analysis.local.thin_area_share; }},
-          {{"thin_cell", unit::metres, "", "side of these cells"},
-           [](Source m) -> Value { return m.analysis.local.thin_cell_m; }},
-          {{"velocity_axis_ratios", unit::none, "velocity ellipsoid: ratios",
-            "c₂/c₁ and c_z/c₁ of the principal axes of the velocity ellipsoid"},
-           [](Source m) -> Value {
-             return std::vector{m.analysis.ellipsoid.second_ratio, m.analysis.ellipsoid.vertical_ratio};
-           }},
-          {{"vertex_deviation", unit::degrees, "velocity ellipsoid: deviation",
-            "from the radius to its longest axis, positive towards the orbital motion"},
-           [](Source m) -> Value { return m.analysis.ellipsoid.vertex_deviation_degrees; }},
-          {{"size_classes", unit::none, "radii",
-            "`count`, `mass_share`, `dispersion_m_s`, `scale_height_m` of radii from `smallest_m` to `largest_m`"},
-           [](Source m) -> Value { return size_classes_of(m); }}};
+  return {
+      {{"local_radius", unit::metres, "local: within",
+        "of the neighbourhood whose mean velocity is taken out: 3 r or λ_cr/20, the larger"},
+       [](Source m) -> Value { return m.analysis.local.radius_m; }},
+      {shaped({"local_dispersion", unit::metres_per_second, "local: dispersion",
+               "standard deviation of the velocities about that of the neighbours"},
+              Shape::vector),
+       [](Source m) { return vector_of(m.analysis.local.dispersion_m_s); }},
+      {{"local_toomre_q", unit::none, "local: Toomre Q", "by the local c_x and the mean Σ of the patch"},
+       [](Source m) -> Value { return m.analysis.local.toomre_q; }},
+      {{"local_share", unit::none, "", "share of the mass in particles that have a neighbour"},
+       [](Source m) -> Value { return m.analysis.local.share; }},
+      {{"crowding_radius", unit::metres, "mean particle: within",
+        "radius of the disc about each particle in which density is counted: 6 r or λ_cr/10, the larger"},
+       [](Source m) -> Value { return m.analysis.local.crowding_radius_m; }},
+      {{"crowding_optical_depth", unit::none, "mean particle: optical depth", "of the others within that disc"},
+       [](Source m) -> Value { return m.analysis.local.optical_depth; }},
+      {{"crowding_filling_factor", unit::none, "mean particle: filling factor", "of the others there at z = 0"},
+       [](Source m) -> Value { return m.analysis.local.filling_factor; }},
+      {{"thin_area_share", unit::none, "thin area (τ < 0.1)", "share of cells with an optical depth below 0.1"},
+       [](Source m) -> Value { return m.analysis.local.thin_area_share; }},
+      {{"thin_cell", unit::metres, "", "side of these cells"},
+       [](Source m) -> Value { return m.analysis.local.thin_cell_m; }},
+      {shaped({"velocity_axis_ratios", unit::none, "velocity ellipsoid: ratios",
+               "c₂/c₁ and c_z/c₁ of the principal axes of the velocity ellipsoid"},
+              Shape::other),
+       [](Source m) -> Value {
+         return std::vector{m.analysis.ellipsoid.second_ratio, m.analysis.ellipsoid.vertical_ratio};
+       }},
+      {{"vertex_deviation", unit::degrees, "velocity ellipsoid: deviation",
+        "from the radius to its longest axis, positive towards the orbital motion"},
+       [](Source m) -> Value { return m.analysis.ellipsoid.vertex_deviation_degrees; }},
+      {shaped({"size_classes", unit::none, "radii",
+               "`count`, `mass_share`, `dispersion_m_s`, `scale_height_m` of radii from `smallest_m` to `largest_m`"},
+              Shape::other),
+       [](Source m) -> Value { return size_classes_of(m); }}};
 }
 
 bool has_spins(Source m) {
@@ -170,23 +183,25 @@ bool has_spins(Source m) {
 }
 
 Rows spin_rows() {
-  return {{{"mean_spin", unit::omega, "spins: mean", "mean angular velocity against the stars; only with friction"},
-           [](Source m) { return vector_of(m.analysis.spins->mean_omega); },
-           has_spins},
-          {{"spin_dispersion", unit::omega, "spins: dispersion", "√⟨(ω − ⟨ω⟩)²⟩; only with friction"},
-           [](Source m) -> Value { return m.analysis.spins->dispersion_omega; },
-           has_spins},
-          {{"spin_energy_ratio", unit::none, "spins: energy ratio",
-            "energy of the spins about their mean over that of the random motion; only with friction"},
-           [](Source m) -> Value { return m.analysis.spins->energy_ratio; },
-           has_spins}};
+  return {
+      {shaped({"mean_spin", unit::omega, "spins: mean", "mean angular velocity against the stars; only with friction"},
+              Shape::vector),
+       [](Source m) { return vector_of(m.analysis.spins->mean_omega); }, has_spins},
+      {{"spin_dispersion", unit::omega, "spins: dispersion", "√⟨(ω − ⟨ω⟩)²⟩; only with friction"},
+       [](Source m) -> Value { return m.analysis.spins->dispersion_omega; },
+       has_spins},
+      {{"spin_energy_ratio", unit::none, "spins: energy ratio",
+        "energy of the spins about their mean over that of the random motion; only with friction"},
+       [](Source m) -> Value { return m.analysis.spins->energy_ratio; },
+       has_spins}};
 }
 
 std::vector<Record> spectrum_of(Source m) {
   using Class = ClusterAnalysis::Class;
-  static const std::vector<Row<Class>> rows = {{{"least_members"}, [](const Class& c) -> Value { return c.least; }},
-                                               {{"count"}, [](const Class& c) -> Value { return c.count; }},
-                                               {{"mass_share"}, [](const Class& c) -> Value { return c.mass_share; }}};
+  static const std::vector<QuantityRow<Class>> rows = {
+      {{"least_members"}, [](const Class& c) -> Value { return c.least; }},
+      {{"count"}, [](const Class& c) -> Value { return c.count; }},
+      {{"mass_share"}, [](const Class& c) -> Value { return c.mass_share; }}};
   std::vector<Record> classes;
   for (const Class& c : m.analysis.clusters.spectrum)
     classes.push_back({entries_of(rows, c), m.units});
@@ -205,8 +220,9 @@ Rows cluster_rows() {
           {{"clusters.largest_mass_share", unit::unnamed("of the mass"), "clusters: the heaviest",
             "share of all mass in the heaviest one"},
            [](Source m) -> Value { return m.analysis.clusters.largest_mass_share; }},
-          {{"clusters.largest_half_axes", unit::metres, "clusters: its half axes",
-            "of the homogeneous ellipsoid with the moments of inertia of the heaviest one"},
+          {shaped({"clusters.largest_half_axes", unit::metres, "clusters: its half axes",
+                   "of the homogeneous ellipsoid with the moments of inertia of the heaviest one"},
+                  Shape::vector),
            [](Source m) -> Value {
              const auto& axes = m.analysis.clusters.largest_half_axes;
              return axes ? vector_of(*axes)
@@ -215,14 +231,15 @@ Rows cluster_rows() {
            }},
           {{"clusters.spin", unit::omega, "clusters: spin", "1 + L_z/I_z, seen from the stars; mean over their mass"},
            [](Source m) { return value_of(m.analysis.clusters.spin); }},
-          {{"clusters.spectrum", unit::none, "",
-            "`count` and `mass_share` of clusters of `least_members` to twice as many"},
+          {shaped({"clusters.spectrum", unit::none, "",
+                   "`count` and `mass_share` of clusters of `least_members` to twice as many"},
+                  Shape::other),
            [](Source m) -> Value { return spectrum_of(m); }}};
 }
 
 std::vector<Record> radial_modes_of(Source m) {
   using Mode = const RadialModeAnalysis&;
-  static const std::vector<Row<RadialModeAnalysis>> rows = {
+  static const std::vector<QuantityRow<RadialModeAnalysis>> rows = {
       {{"n", unit::none, "n"}, [](Mode mode) -> Value { return static_cast<std::uint64_t>(mode.n); }},
       {{"wavelength", unit::metres, "wavelength"}, [](Mode mode) -> Value { return mode.wavelength; }},
       {{"density_amplitude", unit::none, "amplitude"}, [](Mode mode) -> Value { return mode.density_amplitude; }},
@@ -238,88 +255,92 @@ std::vector<Record> radial_modes_of(Source m) {
 }
 
 Rows mode_rows() {
-  return {{{"radial_mode_noise", unit::none, "radial modes: noise",
-            "rms density amplitude of a mode of particles at random: 2 √(Σm²)/Σm", Spread::none, Forms::si, 2},
-           [](Source m) -> Value { return m.analysis.radial_mode_noise; }},
-          {{"radial_modes", unit::none, "radial mode",
+  return {
+      {{"radial_mode_noise", unit::none, "radial modes: noise",
+        "rms density amplitude of a mode of particles at random: 2 √(Σm²)/Σm", Spread::none, Forms::si, 2},
+       [](Source m) -> Value { return m.analysis.radial_mode_noise; }},
+      {shaped(
+           {"radial_modes", unit::none, "radial mode",
             "waves along the radius: `n`, `wavelength_m`, `density_amplitude`, `density_phase_degrees`, `speed_m_s`, "
             "`growth_rate_omega`, `growth_rate_error_omega`"},
-           [](Source m) -> Value { return radial_modes_of(m); }}};
+           Shape::other),
+       [](Source m) -> Value { return radial_modes_of(m); }}};
 }
 
 // What is known of the transport; some of it of runs alone.
-Value of_transport(Source m, Value (*number)(const Transport&)) {
-  return m.transport.transport() ? number(*m.transport.transport())
-                                 : Unknown{"series.csv has fewer than three rows with all stresses here"};
+Value of_transport(Report r, Value (*number)(const Transport&)) {
+  return r.transport() ? number(*r.transport())
+                       : Unknown{"series.csv has fewer than three rows with all stresses here"};
 }
 
-Value of_run(Source m, Value (*number)(const Transport&)) {
-  return m.transport.is_of_run() ? of_transport(m, number) : Unknown{"a snapshot does not show it"};
+Value of_run(Report r, Value (*number)(const Transport&)) {
+  return r.is_of_run() ? of_transport(r, number) : Unknown{"a snapshot does not show it"};
 }
 
 Quantity viscosity(const char* part, const char* label, const char* meaning) {
   return {fmt::format("{}_viscosity", part), unit::viscosity, label, meaning, Spread::error, Forms::all};
 }
 
-Rows transport_rows() {
+std::vector<QuantityRow<TransportReport>> transport_rows() {
   return {
       {viscosity("translational", "viscosity: translational",
                  "⟨c_x c_y⟩/S: what particles carry by moving (local; Wisdom & Tremaine 1988, AJ 95, 925)"),
-       [](Source m) { return of_transport(m, [](const Transport& t) { return value_of(Maybe(t.translational)); }); }},
+       [](Report r) { return of_transport(r, [](const Transport& t) { return value_of(Maybe(t.translational)); }); }},
       {viscosity("collisional", "viscosity: collisional",
                  "Σ (x_j − x_i) (p_y gained by j) a time over M S: what jumps from centre to centre in contacts "
                  "(nonlocal; Wisdom & Tremaine 1988)"),
-       [](Source m) { return of_run(m, [](const Transport& t) { return value_of(Maybe(t.collisional)); }); }},
+       [](Report r) { return of_run(r, [](const Transport& t) { return value_of(Maybe(t.collisional)); }); }},
       {viscosity("gravitational", "viscosity: gravitational",
                  "(dΦ/dγ)/(M S): what self-gravity carries (Daisaka, Tanaka & Ida 2001, Icarus 154, 296)"),
-       [](Source m) { return of_transport(m, [](const Transport& t) { return value_of(t.gravitational); }); }},
+       [](Report r) { return of_transport(r, [](const Transport& t) { return value_of(t.gravitational); }); }},
       {viscosity("total", "viscosity: total", "the sum of the three, with the error of the sum"),
-       [](Source m) { return of_transport(m, [](const Transport& t) { return value_of(t.total); }); }},
+       [](Report r) { return of_transport(r, [](const Transport& t) { return value_of(t.total); }); }},
       {viscosity("loss", "viscosity: from the loss",
                  "(energy lost in collisions + gain of random and potential energy) a time over M S²: the total must "
                  "be this"),
-       [](Source m) { return of_run(m, [](const Transport& t) { return value_of(Maybe(t.from_loss)); }); }},
+       [](Report r) { return of_run(r, [](const Transport& t) { return value_of(Maybe(t.from_loss)); }); }},
       {{"energy_balance", unit::none, "energy balance",
         "`loss_viscosity` over `total_viscosity`: 1 but for its error; null where another force does work",
         Spread::error},
-       [](Source m) { return of_transport(m, [](const Transport& t) { return value_of(t.balance); }); }},
+       [](Report r) { return of_transport(r, [](const Transport& t) { return value_of(t.balance); }); }},
       {{"since_orbit", unit::unnamed("orbits"), "viscosities: since", "beginning of the part that they are of"},
-       [](Source m) { return of_transport(m, [](const Transport& t) -> Value { return t.since_orbit; }); }},
+       [](Report r) { return of_transport(r, [](const Transport& t) -> Value { return t.since_orbit; }); }},
       {{"until_orbit", unit::unnamed("orbits"), "viscosities: until", "its end"},
-       [](Source m) { return of_transport(m, [](const Transport& t) -> Value { return t.until_orbit; }); }},
-      {{"since_found", unit::none, "",
-        "whether that beginning was found, by Chodera's criterion (2016, J. Chem. Theory Comput. 12, 1799)"},
-       [](Source m) { return of_transport(m, [](const Transport& t) -> Value { return t.since_found; }); }},
-      {{"steady", unit::none, "viscosities: steady", "whether loss and dispersion are steady in that part"},
-       [](Source m) { return of_run(m, [](const Transport& t) -> Value { return t.steady; }); }},
+       [](Report r) { return of_transport(r, [](const Transport& t) -> Value { return t.until_orbit; }); }},
+      {shaped({"since_found", unit::none, "",
+               "whether that beginning was found, by Chodera's criterion (2016, J. Chem. Theory Comput. 12, 1799)"},
+              Shape::other),
+       [](Report r) { return of_transport(r, [](const Transport& t) -> Value { return t.since_found; }); }},
+      {shaped({"steady", unit::none, "viscosities: steady", "whether loss and dispersion are steady in that part"},
+              Shape::other),
+       [](Report r) { return of_run(r, [](const Transport& t) -> Value { return t.steady; }); }},
       {{"epicyclic_wave_fraction_first_half", unit::none, "box-long waves: first half",
         "mean of the series' `epicyclic_wave_fraction` over the first half of that part", Spread::none, Forms::si, 2},
-       [](Source m) {
+       [](Report r) {
          return of_transport(
-             m, [](const Transport& t) { return t.waves ? value_of(t.waves->first_half.value) : Unknown{}; });
+             r, [](const Transport& t) { return t.waves ? value_of(t.waves->first_half.value) : Unknown{}; });
        }},
       {{"epicyclic_wave_fraction_last_half", unit::none, "box-long waves: last half", "and over the last half",
         Spread::none, Forms::si, 2},
-       [](Source m) {
+       [](Report r) {
          return of_transport(
-             m, [](const Transport& t) { return t.waves ? value_of(t.waves->last_half.value) : Unknown{}; });
+             r, [](const Transport& t) { return t.waves ? value_of(t.waves->last_half.value) : Unknown{}; });
        }},
-      {{"epicyclic_waves_steady", unit::none, "box-long waves: steady",
-        "whether the two agree within three errors; if not, Q and c_x depend on the age of the run and on its box"},
-       [](Source m) {
+      {shaped(
+           {"epicyclic_waves_steady", unit::none, "box-long waves: steady",
+            "whether the two agree within three errors; if not, Q and c_x depend on the age of the run and on its box"},
+           Shape::other),
+       [](Report r) {
          return of_transport(
-             m, [](const Transport& t) -> Value { return t.waves ? Value(t.waves->steady) : Value(Unknown{}); });
+             r, [](const Transport& t) -> Value { return t.waves ? Value(t.waves->steady) : Value(Unknown{}); });
        }}};
 }
 
 const Rows& all_rows() {
   static const Rows all = [] {
     Rows rows;
-    for (Rows (*const part)() :
-         {state_rows, wake_rows, wave_rows, local_rows, spin_rows, cluster_rows, mode_rows, transport_rows}) {
-      Rows some = part();
-      rows.insert(rows.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
-    }
+    for (const auto part : {state_rows, wake_rows, wave_rows, local_rows, spin_rows, cluster_rows, mode_rows})
+      rows = joined(std::move(rows), part());
     return rows;
   }();
   return all;
@@ -345,12 +366,29 @@ Measurement measure(std::span<const Patch> patches, const TransportReport& trans
   return m;
 }
 
+Record record_of(const TransportReport& transport, const PatchUnits& units) {
+  static const std::vector<QuantityRow<TransportReport>> rows = transport_rows();
+  return {entries_of(rows, transport), units};
+}
+
+Record wakes_of(std::span<const Patch> patches) {
+  static const Rows rows = wake_rows();
+  const double share = 1.0 / static_cast<double>(patches.size());
+  double wavelength = 0.0;
+  for (const Patch& patch : patches)
+    wavelength += share * critical_wavelength(patch);
+  Measurement m;
+  m.analysis.take_wakes(wake_geometry(patches, wavelength));
+  return {entries_of(rows, m), units_of(patches.back())};
+}
+
 Record record_of(const Measurement& measurement) {
-  return {entries_of(all_rows(), measurement), measurement.units};
+  return {joined(entries_of(all_rows(), measurement), record_of(measurement.transport, measurement.units).entries),
+          measurement.units};
 }
 
 std::vector<Quantity> measured_quantities() {
-  return quantities_of(all_rows());
+  return joined(quantities_of(all_rows()), quantities_of(transport_rows()));
 }
 
 } // namespace keeler

@@ -15,6 +15,7 @@
 #include <keeler/io/checkpoint.hpp>
 #include <keeler/io/checkpoint_folder.hpp>
 #include <keeler/io/snapshot.hpp>
+#include <keeler/quantities/views.hpp>
 
 #include <fmt/format.h>
 
@@ -270,8 +271,8 @@ void Recorder::check_forces(const Simulation& simulation) {
   c.seconds += c.last_s;
 }
 
-void Recorder::summary(const nlohmann::ordered_json& summary) {
-  ranks_.first_does([&] { write_text(folder_.summary(), json_text(summary, 2) + "\n"); });
+void Recorder::summary(const Record& summary) {
+  ranks_.first_does([&] { write_text(folder_.summary(), json_text(json_of(summary), 2) + "\n"); });
 }
 
 void Recorder::log(const std::string& event, const nlohmann::ordered_json& details) {

@@ -76,7 +76,7 @@ public:
   void log(const std::string& event, const nlohmann::ordered_json& details);
   /// Of the first rank alone.
   void write_log(const std::string& event, const nlohmann::ordered_json& details);
-  void summary(const nlohmann::ordered_json& summary);
+  void summary(const Record& summary);
   const OutputCounters& counters() const { return counters_; }
   const Provenance& provenance() const { return provenance_; }
   const ForceChecks& force_checks() const { return force_checks_; }

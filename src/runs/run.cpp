@@ -5,7 +5,7 @@
 #include "recorder.hpp"
 #include "runner.hpp"
 #include "shared_request.hpp"
-#include "summary.hpp"
+#include "summarise.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/interrupt.hpp>
@@ -106,8 +106,8 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
   std::optional<Transport> transport;
   if (options.ranks.is_first())
     transport = transport_of_run(folder.series(), scale, options.notice);
-  const nlohmann::ordered_json summary = summarise(simulation, scene, transport, result, cost, recorder.provenance());
-  recorder.summary(summary);
+  result.summary = summarise(simulation, scene, transport, result, cost, recorder.provenance());
+  recorder.summary(result.summary);
   recorder.log(result.finished ? "finished" : "stopped", {{"step", result.step}, {"state_hash", result.state_hash}});
   return result;
 }
@@ -293,7 +293,9 @@ RunResult go_on(const RunOptions& options, RunRequests& requests) {
       options.notice(fmt::format("the run in '{}' is finished, nothing was changed; --until with a later orbit than "
                                  "{:.6g} goes on",
                                  options.folder.string(), static_cast<double>(step) * scene.time.step));
-    return {true, step, state_hash(loaded.run.state, scene, ranks), resume_command(options)};
+    RunResult result{true, step, state_hash(loaded.run.state, scene, ranks), resume_command(options)};
+    ranks.first_does([&] { result.summary = read_summary(options.folder); });
+    return result;
   }
   Simulation simulation(scene, std::move(loaded.run.state), ranks);
   ranks.first_does([&] {

@@ -1,7 +1,7 @@
 #include <keeler/runs/run_stage.hpp>
 
 #include "run_folder.hpp"
-#include "summary.hpp"
+#include "summarise.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/files/descriptor.hpp>

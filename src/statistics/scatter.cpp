@@ -39,7 +39,7 @@ Scatter scatter_of(const std::vector<double>& values) {
 double mean_bound(const Scatter& scatter) {
   if (scatter.count < 2)
     return unknown;
-  return student(scatter.count - 1) * scatter.deviation / std::sqrt(static_cast<double>(scatter.count));
+  return student(scatter.count - 1) * scatter.mean_error();
 }
 
 MeanDifference mean_difference(const Scatter& first, const Scatter& second) {

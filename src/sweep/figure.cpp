@@ -29,11 +29,6 @@ PlaceOfX place_of_x(const Grid& grid) {
   return {};
 }
 
-std::size_t index_of_y(const Grid& grid) {
-  const std::vector<std::string> names = quantity_names();
-  return static_cast<std::size_t>(std::find(names.begin(), names.end(), grid.plot.y) - names.begin());
-}
-
 // What the other axes say: "density = 900, time.step = 0.001".
 std::string title_of(const Grid& grid, const Plan& plan, const GridPoint& point, std::size_t axis_of_x) {
   std::string title;
@@ -102,7 +97,7 @@ std::vector<PlotLine> plot_lines(const Grid& grid, const Plan& plan, const std::
   if (grid.plot.x.empty())
     return lines;
   const PlaceOfX x = place_of_x(grid);
-  const std::size_t y = index_of_y(grid);
+  const std::size_t y = grid.quantities.find(grid.plot.y).value();
   const bool numbers = x_is_number(grid, plan);
   std::map<std::string, std::size_t> line_of; // by title
   for (const PointRow& row : points) {

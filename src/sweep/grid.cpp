@@ -3,6 +3,7 @@
 #include <keeler/core/error.hpp>
 #include <keeler/files/input.hpp>
 #include <keeler/files/toml_bounds.hpp>
+#include <keeler/runs/measurement.hpp>
 #include <keeler/scene/keys.hpp>
 
 #include <fmt/format.h>
@@ -326,10 +327,32 @@ private:
   std::set<std::string> keys_; // of [set] and the axes
 };
 
+// With the one that is plotted.
+RunQuantities quantities_of(const Grid& grid, std::vector<std::string> names) {
+  RunQuantities all(names);
+  if (all.find(grid.plot.y))
+    return all;
+  if (const std::vector<Quantity> measured = measured_quantities(); find_quantity(measured, grid.plot.y)) {
+    names.push_back(grid.plot.y);
+    all = RunQuantities(names);
+  }
+  if (all.find(grid.plot.y))
+    return all;
+  std::vector<std::string> columns;
+  for (const RunColumn& column : all.columns())
+    columns.push_back(column.name);
+  throw UsageError(
+      fmt::format("{}: y = \"{}\" is nothing that a sweep measures; choose one of {}, or a plain number of "
+                  "keeler analyze by its full name (\"keeler help numbers\" lists them)",
+                  grid.plot.y_place, grid.plot.y, fmt::join(columns, ", ")));
+}
+
 } // namespace
 
-Grid read_grid(const fs::path& file) {
-  return GridReader(file).read();
+Grid read_grid(const fs::path& file, const std::vector<std::string>& quantities) {
+  Grid grid = GridReader(file).read();
+  grid.quantities = quantities_of(grid, quantities);
+  return grid;
 }
 
 } // namespace keeler

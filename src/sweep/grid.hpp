@@ -15,6 +15,7 @@
 //     y = "total_viscosity_m2_s"
 #pragma once
 
+#include <keeler/batch/quantities.hpp>
 #include <keeler/scene/scene.hpp>
 
 #include <filesystem>
@@ -53,10 +54,11 @@ struct Grid {
   std::vector<GridValue> set;
   std::vector<GridAxis> axes;
   GridPlot plot;
+  RunQuantities quantities; ///< of its tables
 };
 
-/// Reads a grid; what the scene says to its keys and values is not asked. Throws UsageError "file:line:column: problem;
-/// what to do" for the first fault.
-Grid read_grid(const std::filesystem::path& file);
+/// Reads a grid, with more quantities for its tables than every sweep has; what the scene says to its keys and values
+/// is not asked. Throws UsageError "file:line:column: problem; what to do" for the first fault.
+Grid read_grid(const std::filesystem::path& file, const std::vector<std::string>& quantities = {});
 
 } // namespace keeler

@@ -115,13 +115,6 @@ void check_since(const Grid& grid, const PlannedRun& run) {
                                  grid.since_place, *grid.since, run.name, end));
 }
 
-void check_plot(const Grid& grid) {
-  const std::vector<std::string> names = quantity_names();
-  if (std::find(names.begin(), names.end(), grid.plot.y) == names.end())
-    throw UsageError(fmt::format("{}: y = \"{}\" is nothing that a sweep measures; choose one of {}", grid.plot.y_place,
-                                 grid.plot.y, fmt::join(names, ", ")));
-}
-
 // Counted before anything is made of them: axes are crossed.
 double number_of_runs(const Grid& grid) {
   constexpr double most = 1e5;
@@ -146,7 +139,6 @@ Progress checked(std::size_t runs, double all, double elapsed_s) {
 } // namespace
 
 Plan plan_runs(const Grid& grid, const std::function<void(const Progress&)>& progress) {
-  check_plot(grid);
   const double count = number_of_runs(grid);
   double elapsed = 0.0;
   Stopwatch watch(elapsed);

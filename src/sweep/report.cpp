@@ -16,10 +16,9 @@ using Table = std::vector<std::vector<std::string>>;
 
 // What the table of points shows; the rest stands in points.csv.
 std::vector<std::size_t> shown(const Grid& grid) {
-  const std::vector<std::string> names = quantity_names();
   std::vector<std::size_t> columns;
   const auto add = [&](const std::string& name) {
-    const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+    const std::size_t at = grid.quantities.find(name).value();
     if (std::find(columns.begin(), columns.end(), at) == columns.end())
       columns.push_back(at);
   };
@@ -43,7 +42,7 @@ Table table_of_points(const Grid& grid, const Plan& plan, const std::vector<Poin
   header.insert(header.end(), {"runs", "steady"});
   const std::vector<std::size_t> columns = shown(grid);
   for (const std::size_t column : columns)
-    header.push_back("`" + quantities()[column].column() + "`");
+    header.push_back("`" + grid.quantities.columns()[column].name + "`");
   Table table = {header};
   for (const PointRow& point : points) {
     if (point.finished == 0)

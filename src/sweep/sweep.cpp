@@ -69,7 +69,7 @@ void tell_doubts(const Plan& plan, const Notice& notice) {
 // where it failed: the tables and the report are written without it.
 std::string write_tables(const Grid& grid, const Plan& plan, const RunFolders& folders, const std::vector<RunRow>& runs,
                          const std::vector<PointRow>& points, const Notice& notice) {
-  const Json run_table = runs_as_json(plan, runs), point_table = points_as_json(plan, points);
+  const Json run_table = runs_as_json(grid, plan, runs), point_table = points_as_json(grid, plan, points);
   if (!run_table.empty())
     write_text(folders.path() / "sweep.csv", csv_with_gaps(run_table));
   if (point_table.empty()) {
@@ -97,7 +97,7 @@ std::string write_tables(const Grid& grid, const Plan& plan, const RunFolders& f
 } // namespace
 
 SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
-  const Grid grid = read_grid(settings.grid);
+  const Grid grid = read_grid(settings.grid, settings.quantities);
   SweepResult result;
   Plan plan;
   try {
@@ -131,13 +131,13 @@ SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
     return result;
   const SharedFiles lock(claims);
   const std::vector<RunRow> runs = run_rows(grid, plan, folders);
-  const std::vector<PointRow> points = point_rows(plan, runs);
+  const std::vector<PointRow> points = point_rows(grid, plan, runs);
   result.figure_fault = write_tables(grid, plan, folders, runs, points, settings.notice);
   result.finished = count_of(runs, RunStatus::finished);
   result.failed = count_of(runs, RunStatus::failed);
   result.unmeasurable = static_cast<std::size_t>(
       std::count_if(runs.begin(), runs.end(), [](const RunRow& run) { return !run.measurable; }));
-  result.points = json_text(points_as_json(plan, points));
+  result.points = points_as_json(grid, plan, points);
   return result;
 }
 

@@ -1,6 +1,7 @@
 #include "tables.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/quantities/views.hpp>
 #include <keeler/runs/run_stage.hpp>
 #include <keeler/statistics/scatter.hpp>
 
@@ -10,14 +11,6 @@
 namespace keeler {
 namespace {
 
-Json or_null(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json or_null(const std::optional<double>& value) {
-  return value ? or_null(*value) : Json(nullptr);
-}
-
 void add_settings(Json& row, const Plan& plan, const GridPoint& point) {
   for (std::size_t k = 0; k < plan.keys.size(); ++k) {
     const GridValue& value = *point.settings[k];
@@ -26,11 +19,11 @@ void add_settings(Json& row, const Plan& plan, const GridPoint& point) {
   }
 }
 
-void add_values(Json& row, const std::vector<std::optional<Estimate>>& values) {
-  for (std::size_t k = 0; k < quantities().size(); ++k) {
+void add_values(Json& row, const RunQuantities& quantities, const std::vector<std::optional<Estimate>>& values) {
+  for (std::size_t k = 0; k < quantities.columns().size(); ++k) {
     const std::optional<Estimate> value = k < values.size() ? values[k] : std::nullopt;
-    row[quantities()[k].column()] = value ? or_null(value->value) : Json(nullptr);
-    row[quantities()[k].error_column()] = value ? or_null(value->error) : Json(nullptr);
+    row[quantities.columns()[k].name] = value ? or_null(value->value) : Json(nullptr);
+    row[quantities.columns()[k].error_name] = value ? or_null(value->error) : Json(nullptr);
   }
 }
 
@@ -39,7 +32,7 @@ RunRow measured_row(const Grid& grid, const PlannedRun& run, const RunFolders& f
   row.run = &run;
   if (run_stage(folders.run(run.name)) == RunStage::finished) {
     try {
-      row.numbers = measure_run(folders.run(run.name), run.scene, grid.since);
+      row.numbers = grid.quantities.measure(folders.run(run.name), run.scene, grid.since);
       row.status = RunStatus::finished;
     } catch (const Error& error) { // a damaged file must not take the other runs from the table
       row.status = RunStatus::failed;
@@ -62,7 +55,7 @@ Estimate seed_mean(std::span<const Estimate> seeds) {
   for (const Estimate& seed : seeds)
     values.push_back(seed.value);
   const Scatter scatter = scatter_of(values);
-  return {scatter.mean, scatter.deviation / std::sqrt(static_cast<double>(scatter.count))};
+  return {scatter.mean, scatter.mean_error()};
 }
 
 std::size_t count_of(const std::vector<RunRow>& runs, RunStatus status) {
@@ -77,12 +70,12 @@ std::vector<RunRow> run_rows(const Grid& grid, const Plan& plan, const RunFolder
   return rows;
 }
 
-std::vector<PointRow> point_rows(const Plan& plan, const std::vector<RunRow>& runs) {
+std::vector<PointRow> point_rows(const Grid& grid, const Plan& plan, const std::vector<RunRow>& runs) {
+  const std::size_t columns = grid.quantities.columns().size();
   std::vector<PointRow> rows(plan.points.size());
   for (std::size_t p = 0; p < rows.size(); ++p)
     rows[p].point = &plan.points[p];
-  std::vector<std::vector<std::vector<Estimate>>> seeds(rows.size(),
-                                                        std::vector<std::vector<Estimate>>(quantities().size()));
+  std::vector<std::vector<std::vector<Estimate>>> seeds(rows.size(), std::vector<std::vector<Estimate>>(columns));
   for (const RunRow& run : runs) {
     PointRow& row = rows[run.run->point];
     row.finished += run.status == RunStatus::finished ? 1 : 0;
@@ -90,7 +83,7 @@ std::vector<PointRow> point_rows(const Plan& plan, const std::vector<RunRow>& ru
     if (!run.numbers)
       continue;
     row.steady += run.numbers->steady ? 1 : 0;
-    for (std::size_t k = 0; k < quantities().size(); ++k)
+    for (std::size_t k = 0; k < columns; ++k)
       if (const std::optional<Estimate>& value = run.numbers->values[k]; value && std::isfinite(value->value))
         seeds[run.run->point][k].push_back(*value);
   }
@@ -100,7 +93,7 @@ std::vector<PointRow> point_rows(const Plan& plan, const std::vector<RunRow>& ru
   return rows;
 }
 
-Json runs_as_json(const Plan& plan, const std::vector<RunRow>& runs) {
+Json runs_as_json(const Grid& grid, const Plan& plan, const std::vector<RunRow>& runs) {
   Json rows = Json::array();
   for (const RunRow& run : runs) {
     if (run.status == RunStatus::unfinished)
@@ -116,13 +109,13 @@ Json runs_as_json(const Plan& plan, const std::vector<RunRow>& runs) {
     row["since_orbit"] = or_null(numbers.since_orbit);
     row["until_orbit"] = or_null(numbers.until_orbit);
     row["steady"] = run.numbers ? Json(numbers.steady) : Json(nullptr);
-    add_values(row, numbers.values);
+    add_values(row, grid.quantities, numbers.values);
     rows.push_back(row);
   }
   return rows;
 }
 
-Json points_as_json(const Plan& plan, const std::vector<PointRow>& points) {
+Json points_as_json(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points) {
   Json rows = Json::array();
   for (const PointRow& point : points) {
     if (point.finished == 0)
@@ -132,7 +125,7 @@ Json points_as_json(const Plan& plan, const std::vector<PointRow>& points) {
     row["finished_runs"] = point.finished;
     row["failed_runs"] = point.failed;
     row["steady_runs"] = point.steady;
-    add_values(row, point.values);
+    add_values(row, grid.quantities, point.values);
     rows.push_back(row);
   }
   return rows;

@@ -34,7 +34,7 @@ std::size_t count_of(const std::vector<RunRow>& runs, RunStatus status);
 struct PointRow {
   const GridPoint* point = nullptr;
   std::size_t finished = 0, failed = 0, steady = 0; ///< runs
-  std::vector<std::optional<Estimate>> values;      ///< in the order of quantities(); none: no run has it
+  std::vector<std::optional<Estimate>> values;      ///< in the order of the columns; none: no run has it
 };
 
 /// Mean over seeds, and its standard error: from the spread of the seeds; of one seed its own error by blocks. Errors
@@ -45,11 +45,11 @@ Estimate seed_mean(std::span<const Estimate> seeds);
 std::vector<RunRow> run_rows(const Grid& grid, const Plan& plan, const RunFolders& folders);
 
 /// They belong to the plan.
-std::vector<PointRow> point_rows(const Plan& plan, const std::vector<RunRow>& runs);
+std::vector<PointRow> point_rows(const Grid& grid, const Plan& plan, const std::vector<RunRow>& runs);
 
 /// As objects, a column a name; what is not known is null. Of runs the finished and the failed ones, of points those
 /// with a finished run.
-Json runs_as_json(const Plan& plan, const std::vector<RunRow>& runs);
-Json points_as_json(const Plan& plan, const std::vector<PointRow>& points);
+Json runs_as_json(const Grid& grid, const Plan& plan, const std::vector<RunRow>& runs);
+Json points_as_json(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points);
 
 } // namespace keeler

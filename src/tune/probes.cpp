@@ -77,7 +77,7 @@ KickProbe probe_kicks(const Scene& scene, const std::vector<Patch>& states, doub
     shares.push_back(static_cast<double>(after.unresolved - before.unresolved) / std::max(1.0, contacts));
   }
   const Scatter scatter = scatter_of(shares);
-  return {interval, scatter.mean, scatter.deviation / std::sqrt(static_cast<double>(states.size()))};
+  return {interval, scatter.mean, scatter.mean_error()};
 }
 
 std::vector<StepProbe> probe_steps(const Scene& scene, const std::vector<Patch>& states, double interval,

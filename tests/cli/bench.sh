@@ -19,8 +19,8 @@ has_numbers "bench" ns_per_particle_step cost_per_orbit_us ns_per_collision ns_p
   events line_ns pair_ns
 grep -q speedup "$work/out" && fail "bench: a speedup on one thread in: $(cat "$work/out")"
 runs 0 bench drift --count 500 --repeats 1 --finder original --all-pairs --threads 2
-prints "bench" "ns per particle and step"
-prints "bench" "over one thread, by turns"
+prints "bench" "a particle and step                "
+prints "bench" "speedup: events                    "
 runs 0 bench drift --count 500 --repeats 1 --threads 2 --json
 has_numbers "bench on two threads" step events pair
 runs 0 bench drift --count 400 --optical-depth 0.02 --sizes moonlet --repeats 1 --json
@@ -49,7 +49,7 @@ refuses "an unknown solver" "--solver" bench gravity --solver guess
 refuses "an unknown state" "--state" bench gravity --state lumpy
 
 runs 0 bench step --count 100 --repeats 1 --kick-every 3 --json
-has_numbers "bench step" ns_per_particle_step drift advance gravity kick build reject solve events ns_drift_per_collision \
+has_numbers "bench step" ns_per_particle_step drift advance gravity kick build reject solve events ns_drift_per_collision drift_over_pair \
   ns_events_per_collision collisions_per_particle_step contacts_per_particle_step pairs_per_particle survivors_per_particle \
   contacts lists_made deferred bytes_per_particle line_ns pair_ns dispersion_r_omega kick_every count steps
 grep -q speedup "$work/out" && fail "bench step: a speedup on one thread in: $(cat "$work/out")"
@@ -59,13 +59,14 @@ refuses "no interval" "--kick-every" bench step --kick-every 0
 small_scene
 runs 0 run "$work/scene.toml" -o "$work/run" --set time.end=0.01 --set gravity.kick_every=5 --set gravity.opening_angle=0.5
 runs 0 bench step --from "$work/run/snap_000001.hdf" --repeats 1
-for words in "collisions per particle and step" "contacts per particle and step" "the drift of these" \
-  "over what the machine can do" "0.002 orbit, 400 particles" "tree, opening_angle 0.5, a kick every 5 steps"; do
+for words in "collisions                         0" "contacts                           0" "    build  " \
+  "drift over a pair's time" "particles                          400" "solver                             tree" "opening_angle 0.5" \
+  "steps for each kick                5"; do
   prints "bench step of a snapshot as text" "$words"
 done
 runs 0 bench step --from "$work/run/snap_000001.hdf" --repeats 1 --kick-every 2 --solver mesh --threads 2
-prints "bench step on two threads" "over one thread, by turns"
-prints "bench step with another solver" "mesh, mesh_spacing 1.6, a kick every 2 steps"
+prints "bench step on two threads" "speedup: gravity                   "
+prints "bench step with another solver" "mesh_spacing 1.6"
 runs 0 bench step --from "$work/run/snap_000001.hdf" --repeats 1 --threads 2 --json
 sed -n '/"speedup"/,/}/p' "$work/out" >"$work/speedup"
 for key in step drift events gravity pair; do

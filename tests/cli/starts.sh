@@ -34,7 +34,7 @@ runs 0 generate "$work/dense.toml" -o "$work/dense.hdf"
 one_line "generate" "$notice"
 runs 0 run "$work/dense.toml" -o "$work/run"
 grep -qF "$notice" "$work/err" || fail "run: no notice: $(cat "$work/err")"
-prints "split" "processor: start "
+prints "split" "  start                            "
 refuses "too dense" "raise velocity_dispersion to at least 3.44 or lower the optical depth from 4 to at most 3.05" \
   generate "$work/dense.toml" --set particles.optical_depth=4.0 -o "$work/none.hdf"
 

@@ -33,7 +33,7 @@ prints "a good table" "3 particles in 60 m x 40 m, no overlaps: $work/good.hdf"
 accepts "info" info "$work/good.hdf" --json
 prints "the scene in the file starts from it" "from = \\\"$work/good.hdf\\\""
 runs 0 run "$work/scene.toml" --from "$work/good.hdf" -o "$work/run"
-prints "run" "3 particles"
+prints "run" "particles                          3"
 
 made x,y,z,r 0,0,0,1 10,0,0,1
 refused 2 "no masses" "no column m, and the scene has no particles.density"

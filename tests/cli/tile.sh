@@ -23,7 +23,7 @@ accepts "analyze" analyze "$small" --json
 { [ -n "$large_depth" ] && [ "${large_depth:0:12}" = "$(text optical_depth "$work/out" | cut -c 1-12)" ]; } ||
   fail "optical depth $large_depth after tiling, $(text optical_depth "$work/out") before"
 runs 0 run "$work/scene.toml" --from "$work/tiled.hdf" -o "$work/large" --set time.end=0.02
-prints "run" "2400 particles"
+prints "run" "particles                          2400"
 
 refuses "an existing file" "exists already" tile "$small" 2 2 -o "$work/tiled.hdf"
 accepts "an existing file" tile "$small" 2 2 -o "$work/tiled.hdf" --force

@@ -78,6 +78,8 @@ struct Analysis {
   double radial_mode_noise = 0.0;      ///< rms density amplitude of a mode if particles stood at random, one snapshot
   VelocityEllipsoid ellipsoid;         ///< of the mean moments
   std::vector<SizeClass> size_classes; ///< none when all radii are equal; dispersions in m/s
+
+  void take_wakes(const WakeGeometry& geometry);
 };
 
 /// What can be chosen in an analysis.

@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -21,6 +22,9 @@ enum class Spread { none, error, scatter };
 /// In which systems of units JSON and tables give a number where nothing is asked for.
 enum class Forms { si, si_and_radius, all };
 
+/// Several numbers that are no vector, words and lists have no column of a table.
+enum class Shape { number, vector, other };
+
 struct Quantity {
   std::string name;    ///< without its unit; "clusters.count" is `count` of the object `clusters`
   Unit unit{};         ///< SI, or what the name says
@@ -29,7 +33,10 @@ struct Quantity {
   Spread spread = Spread::none;
   Forms forms = Forms::si;
   int digits = 4; ///< significant ones in texts
+  Shape shape = Shape::number;
 
+  /// The component of a vector along x, y or z: "dispersion_x".
+  Quantity along(std::size_t axis) const;
   /// "total_viscosity_m2_s", "total_viscosity_r2_omega".
   std::string full_name(UnitSystem system = UnitSystem::si) const;
   /// "total_viscosity_error_m2_s".
@@ -39,6 +46,9 @@ struct Quantity {
   /// The systems of `forms`, or the one that is asked for.
   std::vector<UnitSystem> systems(std::optional<UnitSystem> asked = std::nullopt) const;
 };
+
+/// A word, yes or no, a list or an object.
+Quantity word(const std::string& name, const std::string& label, const std::string& meaning);
 
 /// Not known or not there, and why: a part of a sentence, or nothing.
 struct Unknown {
@@ -53,8 +63,11 @@ struct Uncertain {
 
 struct Record;
 
-using Value = std::variant<Unknown, bool, std::uint64_t, double, Uncertain, std::vector<double>, std::string,
-                           std::vector<std::string>, std::vector<Record>>;
+/// Numbers under names that only the results know: an object.
+using NamedNumbers = std::vector<std::pair<std::string, double>>;
+
+using Value = std::variant<Unknown, bool, std::uint64_t, double, Uncertain, std::vector<double>, NamedNumbers,
+                           std::string, std::vector<std::string>, std::vector<Record>>;
 
 struct Entry {
   Quantity quantity;
@@ -73,26 +86,38 @@ Value value_of(const Measured& number);
 Value value_of(const std::optional<Estimate>& number);
 
 /// A quantity, and how it is read from results.
-template<class Source> struct Row {
+template<class Source> struct QuantityRow {
   Quantity quantity;
   Value (*value)(const Source&);
   bool (*present)(const Source&) = nullptr; ///< null: always
 };
 
-template<class Source> std::vector<Entry> entries_of(const std::vector<Row<Source>>& rows, const Source& source) {
+template<class Source>
+std::vector<Entry> entries_of(const std::vector<QuantityRow<Source>>& rows, const Source& source) {
   std::vector<Entry> entries;
-  for (const Row<Source>& row : rows)
+  for (const QuantityRow<Source>& row : rows)
     if (!row.present || row.present(source))
       entries.push_back({row.quantity, row.value(source)});
   return entries;
 }
 
-template<class Source> std::vector<Quantity> quantities_of(const std::vector<Row<Source>>& rows) {
+template<class Source> std::vector<Quantity> quantities_of(const std::vector<QuantityRow<Source>>& rows) {
   std::vector<Quantity> all;
-  for (const Row<Source>& row : rows)
+  for (const QuantityRow<Source>& row : rows)
     all.push_back(row.quantity);
   return all;
 }
+
+template<class Element> std::vector<Element> joined(std::vector<Element> first, const std::vector<Element>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+/// The value of the quantity of that name, with or without its unit; null where the record has none.
+const Value* find_value(const Record& record, const std::string& name);
+
+/// The number of that name; none where it is not there, not known or no number.
+std::optional<double> number_in(const Record& record, const std::string& name);
 
 std::vector<Quantity> quantities_of(const Record& record);
 

@@ -15,8 +15,15 @@ struct NamedValue {
 std::vector<NamedValue> named_values(const Entry& entry, const PatchUnits& units,
                                      std::optional<UnitSystem> system = std::nullopt);
 
+/// Null where it is not known or not finite.
+nlohmann::ordered_json or_null(const std::optional<double>& number);
+
 /// An object; names with a dot are objects in it, and what is not known is null.
 nlohmann::ordered_json json_of(const Record& record, std::optional<UnitSystem> system = std::nullopt);
+
+/// What json_of() made of a record: numbers, words and lists of words. Quantities that the JSON does not have are left
+/// out; what it has besides is there under its name alone. Throws UsageError for a value of another kind.
+Record record_of(const nlohmann::ordered_json& json, std::span<const Quantity> quantities);
 
 /// A row of a table with a column for each plain number: a vector has one for each axis ("dispersion_x_m_s"), what is
 /// not known is null, and lists, errors and scatters are left out.

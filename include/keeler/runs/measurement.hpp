@@ -28,6 +28,12 @@ Measurement measure(std::span<const Patch> patches, const TransportReport& trans
 
 Record record_of(const Measurement& measurement);
 
+/// The viscosities and the balance of energy alone.
+Record record_of(const TransportReport& transport, const PatchUnits& units);
+
+/// The wakes alone, of one patch at least.
+Record wakes_of(std::span<const Patch> patches);
+
 /// Names, units and meanings, in the order of a record.
 std::vector<Quantity> measured_quantities();
 

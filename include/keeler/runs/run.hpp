@@ -6,6 +6,7 @@
 // summary.json is there when the run has ended or stopped, not while it works or when it was killed.
 #pragma once
 
+#include <keeler/quantities/quantity.hpp>
 #include <keeler/ranks/ranks.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/simulation.hpp>
@@ -57,6 +58,7 @@ struct RunResult {
   std::int64_t step = 0;
   std::string state_hash;
   std::string resume_command; ///< goes on from here: for messages
+  Record summary{};           ///< what summary.json holds
 };
 
 /// Starts a run. Throws UsageError when the folder holds a run already and force is not given, IoError; InvariantError,

@@ -30,9 +30,14 @@ struct SeriesSample {
                std::optional<GravityEnergy> of_gravity = std::nullopt);
 };
 
+/// What a column is at an instant: a value; a sum or a number of events since the run began; the integral of a stress.
+enum class Course { value, sum, count, flux };
+
 struct SeriesColumn {
   const char* name; ///< in the header: what and unit
   const char* unit;
+  const char* plot; ///< "TITLE: CURVE" in plots; columns of one title are curves of one plot
+  Course course;
   const char* meaning;
   double (*value)(const SeriesSample&);
   bool (*in)(const Scene&) = nullptr; ///< scenes that have the column; null: all

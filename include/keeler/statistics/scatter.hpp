@@ -10,6 +10,10 @@ struct Scatter {
   std::size_t count = 0;
   double mean = 0.0;      ///< NaN of nothing
   double deviation = 0.0; ///< standard deviation of one value, n − 1 in its denominator; NaN of fewer than two
+
+  double mean_error() const {
+    return deviation / std::sqrt(static_cast<double>(count));
+  } ///< standard error of the mean
 };
 
 Scatter scatter_of(const std::vector<double>& values);

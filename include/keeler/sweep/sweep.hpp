@@ -8,9 +8,12 @@
 #include <keeler/core/progress.hpp>
 #include <keeler/runs/run.hpp>
 
+#include <nlohmann/json.hpp>
+
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace keeler {
 
@@ -19,7 +22,8 @@ struct SweepSettings {
   std::filesystem::path folder;
   std::size_t jobs = 1; ///< runs at once, each a process
   int threads_per_run = 1;
-  bool tables_only = false; ///< start nothing, make the tables of what is finished
+  bool tables_only = false;              ///< start nothing, make the tables of what is finished
+  std::vector<std::string> quantities{}; ///< of keeler analyze, as columns besides those of every sweep
   std::function<void(const Progress&)> progress;
   std::function<void(const std::string&)> notice;
 };
@@ -27,11 +31,11 @@ struct SweepSettings {
 /// How the folder stands.
 struct SweepResult {
   std::size_t runs = 0, finished = 0, failed = 0; ///< of the grid
-  std::size_t unmeasurable = 0; ///< failed ones that came to their end, but whose files cannot be read
-  bool began = false;           ///< runs were to be started
-  bool stopped = false;         ///< on request; the tables were not made
-  std::string points;           ///< the rows of points.csv, as a list in JSON
-  std::string figure_fault;     ///< why the figure could not be drawn, where it should have been
+  std::size_t unmeasurable = 0;  ///< failed ones that came to their end, but whose files cannot be read
+  bool began = false;            ///< runs were to be started
+  bool stopped = false;          ///< on request; the tables were not made
+  nlohmann::ordered_json points; ///< the rows of points.csv, a list
+  std::string figure_fault;      ///< why the figure could not be drawn, where it should have been
 };
 
 /// Carries out the runs that are neither finished nor held by another program, and makes the tables. Everything is

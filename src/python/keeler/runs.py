@@ -132,11 +132,13 @@ def run(scene, folder, *, start=None, force=False, **overrides):
     return Run(folder)
 
 
-def sweep(grid, folder, *, jobs=None):
+def sweep(grid, folder, *, jobs=None, quantities=()):
     """``keeler sweep GRID -o FOLDER``: many runs, each a process. What is finished already is not run again.
 
     ``grid`` is the path of a grid's file, or a dictionary of what it holds, whose ``"scene"`` may be a dictionary too.
     Paths in a dictionary are relative to the current folder.
+
+    ``quantities`` are names of numbers of ``analyze()`` that the tables have besides those of every sweep.
 
     Returns {"runs": rows of sweep.csv, "points": rows of points.csv} as lists of dictionaries, numbers as floats, what is not known as None. Raises
     UsageError for a grid that cannot be, RunError when runs failed (sweep.csv says which).
@@ -145,7 +147,8 @@ def sweep(grid, folder, *, jobs=None):
     with _processes.folder() as place:
         grid = _written(grid, place) if isinstance(grid, dict) else _arguments.path(grid, "sweep")
         try:
-            _call(["sweep", grid, "-o", folder, *(["--jobs", jobs] if jobs else [])])
+            more = ["--quantities", ",".join(quantities)] if quantities else []
+            _call(["sweep", grid, "-o", folder, *(["--jobs", jobs] if jobs else []), *more])
         except Error as error:
             raise type(error)(str(error).replace(f"{place}{os.sep}", "")) from None
     return {name: _rows(folder / file) for name, file in (("runs", "sweep.csv"), ("points", "points.csv"))}

@@ -86,8 +86,8 @@ bool is_known(const StudyMeans& means, std::size_t number) {
 // The numbers that the report shows, of cost and health or of physics.
 std::vector<std::size_t> shown(const StudyMeans& means, bool physics) {
   std::vector<std::size_t> numbers;
-  for (std::size_t n = 0; n < study_numbers().size(); ++n)
-    if (!study_numbers()[n].title.empty() && study_numbers()[n].compared == physics && is_known(means, n))
+  for (std::size_t n = 0; n < means.numbers.size(); ++n)
+    if (!means.numbers[n].title.empty() && means.numbers[n].compared == physics && is_known(means, n))
       numbers.push_back(n);
   return numbers;
 }
@@ -95,7 +95,7 @@ std::vector<std::size_t> shown(const StudyMeans& means, bool physics) {
 Table table_of(const StudyMeans& means, const std::vector<std::size_t>& numbers, const std::string& corner) {
   Table table = {{corner}};
   for (const std::size_t n : numbers)
-    table.front().push_back(study_numbers()[n].title);
+    table.front().push_back(means.numbers[n].title);
   for (std::size_t s = 0; s < means.settings.size(); ++s)
     table.push_back({fmt::format("`{}`{}", means.settings[s].name, s == means.reference ? " (reference)" : "")});
   return table;

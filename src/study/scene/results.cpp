@@ -2,13 +2,13 @@
 
 #include <keeler/batch/quantities.hpp>
 #include <keeler/core/error.hpp>
-#include <keeler/core/json_of_files.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/occultation.hpp>
-#include <keeler/files/files.hpp>
 #include <keeler/io/series.hpp>
+#include <keeler/quantities/views.hpp>
 #include <keeler/runs/run_stage.hpp>
 #include <keeler/runs/stored_patches.hpp>
+#include <keeler/runs/summary.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,7 @@ const std::map<std::string, std::string> compared_quantities = {
     {"wake_wavelength_m", "wake wavelength (m)"},
     {"wake_contrast", "wake contrast"}};
 
-std::vector<StudyNumber> make_numbers() {
+std::vector<StudyNumber> make_numbers(const RunQuantities& quantities) {
   std::vector<StudyNumber> all = {
       {"cpu_s_per_orbit", "processor time of an orbit, s", "processor s per orbit", false},
       {"peak_memory_mb", "the most memory in use, 10⁶ bytes", "memory (MB)", false},
@@ -49,17 +49,12 @@ std::vector<StudyNumber> make_numbers() {
       {"finder_gave_up", "as in `summary.json`", "", false},
       {"largest_overlap", "as in `summary.json`", "", false},
       {"transmission", "vertical, of the snapshots of the last orbit", "vertical transmission", true}};
-  for (const QuantityName& quantity : quantities()) {
-    const auto title = compared_quantities.find(quantity.column());
+  for (const RunColumn& column : quantities.columns()) {
+    const auto title = compared_quantities.find(column.name);
     const bool compared = title != compared_quantities.end();
-    all.push_back({quantity.column(), quantity.meaning, compared ? title->second : std::string(), compared});
+    all.push_back({column.name, column.meaning, compared ? title->second : std::string(), compared});
   }
   return all;
-}
-
-Maybe number_in(const Json& json, const std::string& key) {
-  return json.is_object() && json.contains(key) && json.at(key).is_number() ? Maybe(json.at(key).get<double>())
-                                                                            : std::nullopt;
 }
 
 // Over the measured rows of series.csv; none without the column.
@@ -81,7 +76,7 @@ Maybe transmission_of(const fs::path& folder) {
 }
 
 std::vector<Maybe> values_of(const StudyPlan& plan, const PlannedRun& run, const fs::path& folder) {
-  const Json summary = json_of<Json>(read_text(folder / "summary.json"));
+  const Record summary = read_summary(folder);
   const SeriesTable series = read_series(folder / "series.csv");
   std::map<std::string, Maybe> known;
   const Maybe cpu = number_in(summary, "cpu_s"), orbits = number_in(summary, "orbits_done"),
@@ -97,22 +92,18 @@ std::vector<Maybe> values_of(const StudyPlan& plan, const PlannedRun& run, const
   known["step_orbits"] = chosen("step_orbits", scene.time.step);
   if (scene.gravity)
     known["kick_interval_orbits"] = chosen("kick_interval_orbits", scene.time.step * scene.gravity->kick_every);
-  known["force_error"] = number_in(summary.is_object() ? summary.value("force_error", Json()) : Json(), "rms");
+  known["force_error"] = number_in(summary, "force_error.rms");
   for (const char* const key : {"unresolved_contacts_share", "finder_gave_up", "largest_overlap"})
     known[key] = number_in(summary, key);
   known["transmission"] = transmission_of(folder);
-  const RunNumbers numbers = measure_run(folder, scene, plan.since());
+  const RunNumbers numbers = plan.quantities.measure(folder, scene, plan.since());
   for (std::size_t k = 0; k < numbers.values.size(); ++k)
     if (const std::optional<Estimate>& value = numbers.values[k]; value && std::isfinite(value->value))
-      known[quantities()[k].column()] = value->value;
+      known[plan.quantities.columns()[k].name] = value->value;
   std::vector<Maybe> values;
-  for (const StudyNumber& number : study_numbers())
+  for (const StudyNumber& number : study_numbers(plan.quantities))
     values.push_back(known[number.column]);
   return values;
-}
-
-Json or_null(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
 std::size_t smallest_force_error(const std::vector<SettingMeans>& settings) {
@@ -128,8 +119,12 @@ std::size_t smallest_force_error(const std::vector<SettingMeans>& settings) {
 } // namespace
 
 const std::vector<StudyNumber>& study_numbers() {
-  static const std::vector<StudyNumber> numbers = make_numbers();
+  static const std::vector<StudyNumber> numbers = make_numbers(RunQuantities());
   return numbers;
+}
+
+std::vector<StudyNumber> study_numbers(const RunQuantities& quantities) {
+  return make_numbers(quantities);
 }
 
 std::size_t number_at(const std::string& column) {
@@ -160,9 +155,11 @@ std::vector<SettingRun> measure_runs(const StudyPlan& plan, const std::vector<Pl
   return measured;
 }
 
-StudyMeans means_of(const StudyChoices& choices, const std::vector<SettingRun>& runs) {
-  const std::size_t count = study_numbers().size();
+StudyMeans means_of(const StudyChoices& choices, const std::vector<SettingRun>& runs,
+                    const std::vector<StudyNumber>& numbers) {
+  const std::size_t count = numbers.size();
   StudyMeans means;
+  means.numbers = numbers;
   for (std::size_t s = 0; s < choices.choices.size(); ++s) {
     SettingMeans& setting = means.settings.emplace_back();
     setting.name = choices.choices[s].name;
@@ -182,8 +179,7 @@ StudyMeans means_of(const StudyChoices& choices, const std::vector<SettingRun>& 
   const std::vector<Scatter>& reference = means.settings[means.reference].scatter;
   for (std::size_t s = 0; s < means.settings.size(); ++s)
     for (std::size_t n = 0; n < count; ++n) // what is 0, as gravity's stress where there is none, has no per cent
-      means.settings[s].from_reference.push_back(s != means.reference && study_numbers()[n].compared &&
-                                                         reference[n].mean != 0.0
+      means.settings[s].from_reference.push_back(s != means.reference && numbers[n].compared && reference[n].mean != 0.0
                                                      ? mean_difference(reference[n], means.settings[s].scatter[n])
                                                      : MeanDifference{unknown, unknown});
   return means;
@@ -191,6 +187,7 @@ StudyMeans means_of(const StudyChoices& choices, const std::vector<SettingRun>& 
 
 Json runs_as_json(const StudyPlan& plan, const std::vector<SettingRun>& runs) {
   Json rows = Json::array();
+  const std::vector<StudyNumber> numbers = study_numbers(plan.quantities);
   for (const SettingRun& run : runs) {
     Json row;
     row["run"] = run.run->name;
@@ -198,8 +195,8 @@ Json runs_as_json(const StudyPlan& plan, const std::vector<SettingRun>& runs) {
     row["seed"] = run.run->seed;
     row["status"] = run.finished ? "finished" : "failed";
     row["reason"] = run.reason.empty() ? Json(nullptr) : Json(run.reason);
-    for (std::size_t n = 0; n < study_numbers().size(); ++n)
-      row[study_numbers()[n].column] = !run.values.empty() && run.values[n] ? or_null(*run.values[n]) : Json(nullptr);
+    for (std::size_t n = 0; n < numbers.size(); ++n)
+      row[numbers[n].column] = run.values.empty() ? Json(nullptr) : or_null(run.values[n]);
     rows.push_back(row);
   }
   return rows;
@@ -213,13 +210,13 @@ Json means_as_json(const StudyMeans& means) {
     row["setting"] = setting.name;
     row["runs"] = setting.finished;
     row["reference"] = s == means.reference;
-    for (std::size_t n = 0; n < study_numbers().size(); ++n) {
-      const std::string& column = study_numbers()[n].column;
+    for (std::size_t n = 0; n < means.numbers.size(); ++n) {
+      const std::string& column = means.numbers[n].column;
       const Scatter& reference = means.settings[means.reference].scatter[n];
       const double percent = 100.0 / std::fabs(reference.mean);
       row[column] = or_null(setting.scatter[n].mean);
       row[column + "_bound"] = or_null(mean_bound(setting.scatter[n]));
-      if (!study_numbers()[n].compared)
+      if (!means.numbers[n].compared)
         continue;
       row[column + "_difference_percent"] = or_null(percent * setting.from_reference[n].difference);
       row[column + "_difference_bound_percent"] = or_null(percent * setting.from_reference[n].bound);

@@ -26,6 +26,9 @@ struct StudyNumber {
 /// In the order of the columns. Cost and health first, then transmission and what sweeps measure.
 const std::vector<StudyNumber>& study_numbers();
 
+/// With others behind them.
+std::vector<StudyNumber> study_numbers(const RunQuantities& quantities);
+
 /// The place of a column.
 std::size_t number_at(const std::string& column);
 
@@ -35,14 +38,14 @@ struct SettingRun {
   bool finished = false;                     ///< and measured
   bool measurable = true;                    ///< false: it came to its end, but its files cannot be read
   std::string reason;                        ///< why it failed, or could not be measured
-  std::vector<std::optional<double>> values; ///< in the order of study_numbers(); empty: none is known
+  std::vector<std::optional<double>> values; ///< in the order of study_numbers(plan.quantities); empty: none is known
 };
 
 /// Measures the finished runs. They belong to the list.
 std::vector<SettingRun> measure_runs(const StudyPlan& plan, const std::vector<PlannedRun>& runs,
                                      const RunFolders& folders);
 
-/// A setting: its numbers over the seeds, in the order of study_numbers(), and held against the reference.
+/// A setting: its numbers over the seeds, in the order of StudyMeans::numbers, and held against the reference.
 struct SettingMeans {
   std::string name;
   std::size_t finished = 0;
@@ -51,12 +54,14 @@ struct SettingMeans {
 };
 
 struct StudyMeans {
+  std::vector<StudyNumber> numbers;
   std::vector<SettingMeans> settings;
   std::size_t reference = 0;
 };
 
 /// The reference is the given setting; none: the one with the smallest force error.
-StudyMeans means_of(const StudyChoices& choices, const std::vector<SettingRun>& runs);
+StudyMeans means_of(const StudyChoices& choices, const std::vector<SettingRun>& runs,
+                    const std::vector<StudyNumber>& numbers = study_numbers());
 
 /// As objects, a column a name; what is not known is null.
 Json runs_as_json(const StudyPlan& plan, const std::vector<SettingRun>& runs);

@@ -94,6 +94,7 @@ StudyPlan plan_study(const SceneStudySettings& settings) {
                                  settings.scene));
   plan.choices = choices_of(settings, plan.scene);
   plan.quick = settings.quick;
+  plan.quantities = RunQuantities(settings.quantities);
   plan.seeds = settings.seeds.value_or(settings.quick ? 2 : 3);
   plan.grow_orbits = settings.grow_orbits.value_or(settings.quick ? 1.0 : plan.scene.gravity ? 6.0 : 10.0);
   plan.orbits = settings.orbits.value_or(settings.quick ? 2.0 : 6.0);

@@ -4,6 +4,7 @@
 #include "choices.hpp"
 
 #include <keeler/batch/planned_run.hpp>
+#include <keeler/batch/quantities.hpp>
 #include <keeler/batch/run_folders.hpp>
 
 #include <functional>
@@ -21,6 +22,7 @@ struct StudyPlan {
   bool quick = false;
   std::size_t seeds = 3;
   double grow_orbits = 0.0, orbits = 0.0;
+  RunQuantities quantities; ///< that are measured in each run
 
   /// Orbit of a run from which on it is measured: a quarter of its orbits, at least one, are left out, with those in
   /// which its own start grew.

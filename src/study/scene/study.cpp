@@ -63,7 +63,7 @@ void require_states(const std::vector<PlannedRun>& runs, const RunFolders& folde
 SceneStudyResult write_results(const StudyPlan& plan, const std::vector<PlannedRun>& runs, const RunFolders& folders,
                                const std::map<std::string, std::string>& made, const SceneStudySettings& settings) {
   const std::vector<SettingRun> measured = measure_runs(plan, runs, folders);
-  const StudyMeans means = means_of(plan.choices, measured);
+  const StudyMeans means = means_of(plan.choices, measured, study_numbers(plan.quantities));
   write_study_tables(plan, measured, means, folders.path());
   const auto draw = [&] {
     const bool drawn = draw_study_figure(plan, means, folders.path());

@@ -75,16 +75,16 @@ bool SettingVerdict::balance_shown() const {
 
 SettingVerdict verdict_on(const StudyMeans& means, std::size_t setting) {
   SettingVerdict verdict;
-  for (std::size_t n = 0; n < study_numbers().size(); ++n) {
+  for (std::size_t n = 0; n < means.numbers.size(); ++n) {
     const MeanDifference& difference = means.settings[setting].from_reference[n];
     if (!difference.known())
       continue;
     verdict.compared = true;
-    if (study_numbers()[n].column == "energy_balance") {
+    if (means.numbers[n].column == "energy_balance") {
       verdict.balance_off = difference.difference / std::fabs(reference_mean(means, n));
       verdict.balance_bound = difference.bound / std::fabs(reference_mean(means, n));
     } else if (!difference.within()) {
-      verdict.beyond.push_back(study_numbers()[n].title);
+      verdict.beyond.push_back(means.numbers[n].title);
     }
   }
   return verdict;
@@ -122,13 +122,13 @@ std::string verdict_text(const StudyMeans& means) {
 
 std::string sensitivity_text(const StudyMeans& means) {
   std::string list;
-  for (std::size_t n = 0; n < study_numbers().size(); ++n) {
+  for (std::size_t n = 0; n < means.numbers.size(); ++n) {
     double largest = 0.0;
     for (const SettingMeans& setting : means.settings)
       if (const MeanDifference& difference = setting.from_reference[n]; difference.known())
         largest = std::max(largest, difference.bound / std::fabs(reference_mean(means, n)));
     if (largest > 0.0)
-      list += fmt::format("{}{} {:.1f} %", list.empty() ? "" : ", ", study_numbers()[n].title, 100.0 * largest);
+      list += fmt::format("{}{} {:.1f} %", list.empty() ? "" : ", ", means.numbers[n].title, 100.0 * largest);
   }
   return list.empty() ? list
                       : "**What these runs could not have seen**: differences smaller than these, in per cent of the "

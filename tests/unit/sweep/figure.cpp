@@ -15,7 +15,7 @@ std::vector<PointRow> made_up_points(const Plan& plan) {
   std::vector<PointRow> points(plan.points.size());
   for (std::size_t p = 0; p < points.size(); ++p) {
     points[p].point = &plan.points[p];
-    points[p].values.assign(quantities().size(), Estimate{10.0 * static_cast<double>(p), 0.5});
+    points[p].values.assign(RunQuantities().columns().size(), Estimate{10.0 * static_cast<double>(p), 0.5});
   }
   return points;
 }
@@ -39,7 +39,7 @@ TEST_CASE("a plot has a line for each value of the other axes, in the order of x
   CHECK(lines[1].points[1].y == 10.0);
   CHECK(lines[1].points[1].error == 0.5);
   for (PointRow& row : points)
-    row.values.assign(quantities().size(), std::nullopt);
+    row.values.assign(RunQuantities().columns().size(), std::nullopt);
   CHECK(plot_lines(grid, plan, points).empty());
 }
 

@@ -43,7 +43,7 @@ std::vector<RunRow> made_up_rows(const Plan& plan) {
       row.status = RunStatus::finished;
       row.numbers.emplace();
       row.numbers->steady = k % 2 == 0;
-      for (std::size_t q = 0; q < quantities().size(); ++q) {
+      for (std::size_t q = 0; q < RunQuantities().columns().size(); ++q) {
         const double value = std::sin(1.7 * static_cast<double>(k) + 0.3 * static_cast<double>(q * q));
         row.numbers->values.push_back(q % 5 == 3 && k % 3 == 1 ? std::nullopt
                                                                : std::optional(Estimate{value, 0.1 * value}));
@@ -83,10 +83,10 @@ TEST_CASE("a point has the mean of its finished runs, as sums over all pairs of 
   const Grid grid = file.grid();
   const Plan plan = plan_runs(grid);
   const std::vector<RunRow> runs = made_up_rows(plan);
-  const std::vector<PointRow> points = point_rows(plan, runs);
+  const std::vector<PointRow> points = point_rows(grid, plan, runs);
   REQUIRE(points.size() == 4);
   for (std::size_t p = 0; p < points.size(); ++p)
-    for (std::size_t q = 0; q < quantities().size(); ++q) {
+    for (std::size_t q = 0; q < RunQuantities().columns().size(); ++q) {
       std::vector<Estimate> seeds;
       for (const RunRow& run : runs)
         if (run.run->point == p && run.numbers && run.numbers->values[q])
@@ -107,12 +107,12 @@ TEST_CASE("tables have finished and failed runs, with gaps where nothing is know
   const Grid grid = file.grid();
   const Plan plan = plan_runs(grid);
   const std::vector<RunRow> runs = made_up_rows(plan);
-  const std::string csv = csv_with_gaps(runs_as_json(plan, runs));
+  const std::string csv = csv_with_gaps(runs_as_json(grid, plan, runs));
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 12); // the header and all runs but the one that is not finished
   CHECK(csv.starts_with("run,particles.optical_depth,time.step,seed,status,reason,particle_count,since_orbit,"));
   CHECK(csv.find("\noptical_depth-0.1_step-0.002_seed-2,0.1,0.002,2,failed,\"no room, \"\"none\"\"\",,") != csv.npos);
   CHECK(csv.find("null") == csv.npos);
-  const Json points = points_as_json(plan, point_rows(plan, runs));
+  const Json points = points_as_json(grid, plan, point_rows(grid, plan, runs));
   CHECK(points[3].at("particles.optical_depth") == 0.2);
   CHECK(points[1].at("failed_runs") == 1);
 }

@@ -32,12 +32,13 @@ struct SceneStudySettings {
   std::string scene;                  ///< a file
   std::vector<std::string> overrides; ///< "KEY=VALUE", of the scene
   std::filesystem::path folder;
-  std::optional<std::size_t> seeds;   ///< at least 2; none: 3, quick 2
-  std::optional<double> grow_orbits;  ///< until the common state; none: 6 with self-gravity, 10 without, quick 1
-  std::optional<double> orbits;       ///< of each run from then on, at least 1.5; none: 6, quick 2
-  bool quick = false;                 ///< few settings
-  std::size_t jobs = 1;               ///< runs at once, each a process of one thread
-  std::vector<std::string> arguments; ///< the command line, for provenance
+  std::optional<std::size_t> seeds;      ///< at least 2; none: 3, quick 2
+  std::optional<double> grow_orbits;     ///< until the common state; none: 6 with self-gravity, 10 without, quick 1
+  std::optional<double> orbits;          ///< of each run from then on, at least 1.5; none: 6, quick 2
+  std::vector<std::string> quantities{}; ///< of keeler analyze, as columns besides those of every study
+  bool quick = false;                    ///< few settings
+  std::size_t jobs = 1;                  ///< runs at once, each a process of one thread
+  std::vector<std::string> arguments;    ///< the command line, for provenance
   std::function<void(const Progress&)> progress;
   std::function<void(const std::string&)> notice;
 };

@@ -1,13 +1,12 @@
-// summary.json: what a run came to, in numbers.
+// What a run came to, when it ends or stops.
 #pragma once
 
 #include "recorder.hpp"
 
 #include <keeler/io/provenance.hpp>
 #include <keeler/runs/run.hpp>
+#include <keeler/runs/summary.hpp>
 #include <keeler/runs/transport.hpp>
-
-#include <nlohmann/json.hpp>
 
 namespace keeler {
 
@@ -24,10 +23,20 @@ struct RunCost {
 std::optional<Transport> transport_of_run(const std::filesystem::path& series, const RingScale& scale,
                                           const std::function<void(const std::string&)>& notice);
 
+/// What the numbers of a summary are read from.
+struct SummarySource {
+  Simulation& simulation;
+  const Scene& scene;
+  const std::optional<Transport>& transport;
+  const RunResult& result;
+  const RunCost& cost;
+  double largest_overlap; ///< now
+};
+
 /// Counts and energies are those of the whole run, times those of this stretch. Collective; the first rank's is the
 /// one.
-nlohmann::ordered_json summarise(Simulation& simulation, const Scene& scene, const std::optional<Transport>& transport,
-                                 const RunResult& result, const RunCost& cost, const Provenance& provenance);
+Record summarise(Simulation& simulation, const Scene& scene, const std::optional<Transport>& transport,
+                 const RunResult& result, const RunCost& cost, const Provenance& provenance);
 
 /// Whether the folder's summary is that of a finished run. False when there is none.
 bool says_finished(const std::filesystem::path& summary);

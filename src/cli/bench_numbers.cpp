@@ -1,0 +1,227 @@
+#include "bench_numbers.hpp"
+
+#include <keeler/core/threads.hpp>
+
+namespace keeler {
+namespace {
+
+using Timed = const TimedSteps&;
+using TimedRows = std::vector<QuantityRow<TimedSteps>>;
+
+constexpr Unit ns = unit::unnamed("ns"), times = unit::unnamed("times");
+
+Quantity three_digits(const char* name, const Unit& unit, const char* label, const char* meaning) {
+  return {name, unit, label, meaning, Spread::none, Forms::si, 3};
+}
+
+bool has_many_ranks(Timed t) {
+  return t.ranks > 1;
+}
+
+bool has_speedup(Timed t) {
+  return t.ranks > 1 || threads() > 1;
+}
+
+TimedRows phase_rows(const std::string& object) {
+  const auto phase = [&](const char* name, const char* label, const char* meaning) {
+    return three_digits((object + "." + name).c_str(), ns, label, meaning);
+  };
+  return {{phase("build", "    build", "making neighbour lists"), [](Timed t) -> Value { return t.drift_split.build; }},
+          {phase("reject", "    reject", "leaving out pairs that cannot meet in the step"),
+           [](Timed t) -> Value { return t.drift_split.reject; }},
+          {phase("solve", "    solve", "the finder on the rest, at the start of the step"),
+           [](Timed t) -> Value { return t.drift_split.solve; }},
+          {phase("events", "    events", "carrying out contacts, and finding those that follow"),
+           [](Timed t) -> Value { return t.drift_split.events; }}};
+}
+
+// How often things happen, and what the machine can do.
+TimedRows count_rows() {
+  return {
+      {three_digits("pairs_per_particle", unit::none, "pairs tested", "a particle and step, when neighbours are found"),
+       [](Timed t) -> Value { return t.per_particle_step(t.pairs_tested); }},
+      {three_digits("survivors_per_particle", unit::none, "pairs for the finder", "a particle, at the start of a step"),
+       [](Timed t) -> Value { return t.per_particle_step(t.survivors); }},
+      {{"contacts", unit::none, "", "fast and slow, in all repeats"}, [](Timed t) -> Value { return t.contacts; }},
+      {{"recontacts", unit::none, "", "contacts of a pair that has met in the same step"},
+       [](Timed t) -> Value { return t.recontacts; }},
+      {{"lists_made", unit::none, "", "how often neighbour lists were made"},
+       [](Timed t) -> Value { return t.lists_made; }},
+      {{"listed_anew", unit::none, "", "particles whose neighbours were found anew within a list's life"},
+       [](Timed t) -> Value { return t.listed_anew; }},
+      {{"deferred", unit::none, "", "contacts that a domain left to the rounds after it"},
+       [](Timed t) -> Value { return t.deferred; }},
+      {{"in_sequence", unit::none, "", "contacts carried out one after the other"},
+       [](Timed t) -> Value { return t.in_sequence; }},
+      {{"rolled_back", unit::none, "", "contacts taken back, since one before them touched their particles"},
+       [](Timed t) -> Value { return t.rolled_back; }},
+      {{"widest_list", unit::none, "", "neighbours of the particle that has most"},
+       [](Timed t) -> Value { return t.widest_list; }},
+      {{"bytes_per_particle", unit::none, "bytes a particle", "held by the drift"},
+       [](Timed t) -> Value { return std::uint64_t{t.bytes_per_particle}; }},
+      {three_digits("yardsticks.line_ns", ns, "yardstick: a line of memory", "time to load a line from memory"),
+       [](Timed t) -> Value { return t.yardsticks.line_ns; }},
+      {three_digits("yardsticks.pair_ns", ns, "yardstick: a pair", "time for |d|² and d·v of a pair"),
+       [](Timed t) -> Value { return t.yardsticks.pair_ns; }}};
+}
+
+TimedRows rank_rows() {
+  return {{{"ranks", unit::none, "ranks", "processes that share the particles"},
+           [](Timed t) -> Value { return std::uint64_t{t.ranks}; },
+           has_many_ranks},
+          {three_digits("exchange.ns", ns, "  exchange", "of a particle and step, waiting included"),
+           [](Timed t) -> Value { return t.exchange.ns; }, has_many_ranks},
+          {three_digits("exchange.messages", unit::none, "  messages a step", "that a rank sends in a step"),
+           [](Timed t) -> Value { return t.exchange.messages; }, has_many_ranks},
+          {three_digits("exchange.bytes", unit::none, "  bytes a step", "that a rank sends in a step"),
+           [](Timed t) -> Value { return t.exchange.bytes; }, has_many_ranks},
+          {three_digits("exchange.common", unit::none, "  common sums a step", "in which all ranks take part"),
+           [](Timed t) -> Value { return t.exchange.common; }, has_many_ranks},
+          {{"shared_again", unit::none, "  steps done again", "of all timed ones"},
+           [](Timed t) -> Value { return t.shared_again; },
+           has_many_ranks}};
+}
+
+TimedRows speedup_rows(bool with_gravity) {
+  TimedRows rows = {{three_digits("speedup.step", times, "speedup: step", "over one thread or rank, timed by turns"),
+                     [](Timed t) -> Value { return t.speedup.step; }, has_speedup}};
+  if (with_gravity)
+    rows.push_back({three_digits("speedup.drift", times, "speedup: drift", "of the drift"),
+                    [](Timed t) -> Value { return t.speedup.drift; }, has_speedup});
+  rows.push_back({three_digits("speedup.events", times, "speedup: events", "of the events"),
+                  [](Timed t) -> Value { return t.speedup.events; }, has_speedup});
+  if (with_gravity)
+    rows.push_back({three_digits("speedup.gravity", times, "speedup: gravity", "of the solves"),
+                    [](Timed t) -> Value { return t.speedup.gravity; }, has_speedup});
+  rows.push_back({three_digits("speedup.pair", times, "speedup: a pair", "of the yardstick"),
+                  [](Timed t) -> Value { return t.speedup.pair; }, has_speedup});
+  return rows;
+}
+
+TimedRows all_of(std::initializer_list<TimedRows> parts) {
+  TimedRows all;
+  for (const TimedRows& part : parts)
+    all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+TimedRows step_rows() {
+  return all_of(
+      {{{three_digits("ns_per_particle_step", ns, "a particle and step", "median of the repeats"),
+         [](Timed t) -> Value { return t.ns_per_particle_step; }},
+        {three_digits("split.drift", ns, "  drift", "motion and contacts"),
+         [](Timed t) -> Value { return t.split.drift; }},
+        {three_digits("split.advance", ns, "  advance", "of the epicycles' phases"),
+         [](Timed t) -> Value { return t.split.advance; }},
+        {three_digits("split.gravity", ns, "  gravity", "self-gravity"),
+         [](Timed t) -> Value { return t.split.gravity; }},
+        {three_digits("split.kick", ns, "  kick", "of the elements"), [](Timed t) -> Value { return t.split.kick; }}},
+       phase_rows("drift_split"),
+       {{three_digits("drift_over_pair", unit::none, "drift over a pair's time", "times the yardstick `pair_ns`"),
+         [](Timed t) -> Value { return t.split.drift / t.yardsticks.pair_ns; }},
+        {three_digits("ns_drift_per_collision", ns, "drift for each contact", "drift over contacts"),
+         [](Timed t) -> Value { return t.per_contact(t.split.drift); }},
+        {three_digits("ns_events_per_collision", ns, "events for each contact", "events over contacts"),
+         [](Timed t) -> Value { return t.per_contact(t.drift_split.events); }},
+        {three_digits("collisions_per_particle_step", unit::none, "collisions",
+                      "faster than v_cut, a particle and step"),
+         [](Timed t) -> Value { return 2.0 * t.per_particle_step(t.collisions); }},
+        {three_digits("contacts_per_particle_step", unit::none, "contacts", "fast and slow, a particle and step"),
+         [](Timed t) -> Value { return 2.0 * t.per_particle_step(t.contacts); }}},
+       count_rows(),
+       rank_rows(),
+       speedup_rows(true)});
+}
+
+TimedRows drift_rows() {
+  return all_of(
+      {{{three_digits("ns_per_particle_step", ns, "a particle and step", "median of the repeats"),
+         [](Timed t) -> Value { return t.ns_per_particle_step; }},
+        {three_digits("split.advance", ns, "    advance", "of the epicycles' phases"),
+         [](Timed t) -> Value { return t.split.advance; }}},
+       phase_rows("split"),
+       {{three_digits("drift_over_pair", unit::none, "that over a pair's time", "times the yardstick `pair_ns`"),
+         [](Timed t) -> Value { return t.ns_per_particle_step / t.yardsticks.pair_ns; }},
+        {three_digits("ns_per_collision", ns, "for each contact", "all of that time over contacts"),
+         [](Timed t) -> Value { return t.per_contact(t.ns_per_particle_step); }},
+        {three_digits("ns_events_per_collision", ns, "events for each contact", "events over contacts"),
+         [](Timed t) -> Value { return t.per_contact(t.drift_split.events); }}},
+       count_rows(),
+       speedup_rows(false)});
+}
+
+using Step = const TimedStep&;
+using Drift = const TimedDrift&;
+
+std::vector<QuantityRow<TimedStep>> step_setting_rows() {
+  return {{three_digits("dispersion_r_omega", unit::unnamed("r Ω"), "dispersion c_x", "of the state that is timed"),
+           [](Step s) -> Value { return s.bench.dispersion_r_omega; }},
+          {word("solver", "solver", "of gravity"), [](Step s) -> Value { return s.bench.choice.solver; }},
+          {word("settings", "  its settings", "of the solver"), [](Step s) -> Value { return s.bench.choice.text; }},
+          {{"kick_every", unit::none, "steps for each kick", "of gravity"},
+           [](Step s) -> Value { return static_cast<std::uint64_t>(s.bench.choice.settings.kick_every); }},
+          {word("from", "from", "the snapshot that is timed"), [](Step s) -> Value { return *s.settings.from; },
+           [](Step s) { return s.settings.from.has_value(); }},
+          {{"count", unit::none, "particles", "N"}, [](Step s) -> Value { return std::uint64_t{s.bench.timed.count}; }},
+          {{"step_orbits", unit::unnamed("orbits"), "a step", "its length"},
+           [](Step s) -> Value { return s.bench.step_orbits; }},
+          {{"threads", unit::none, "threads", "that were used"},
+           [](Step) -> Value { return static_cast<std::uint64_t>(threads()); }},
+          {{"repeats", unit::none, "repeats", "times measured"},
+           [](Step s) -> Value { return static_cast<std::uint64_t>(s.settings.repeats); }},
+          {{"steps", unit::none, "steps in each", "steps of a repeat"},
+           [](Step s) -> Value { return static_cast<std::uint64_t>(s.bench.timed.steps); }}};
+}
+
+std::vector<QuantityRow<TimedDrift>> drift_setting_rows() {
+  return {
+      {three_digits("cost_per_orbit_us", unit::unnamed("us"), "a particle and orbit",
+                    "that time for all steps of an orbit"),
+       [](Drift d) -> Value { return 1e-3 * d.bench.timed.ns_per_particle_step / d.settings.step_orbits; }},
+      {three_digits("ns_per_call", ns, "for each finder call", "at the start of steps"),
+       [](Drift d) -> Value { return d.bench.ns_per_call; }},
+      {three_digits("calls_per_particle_step", unit::none, "finder calls", "a particle, at the start of a step"),
+       [](Drift d) -> Value { return d.bench.calls_per_particle_step; }},
+      {three_digits("collisions_per_particle_orbit", unit::none, "collisions",
+                    "faster than v_cut, a particle and orbit"),
+       [](Drift d) -> Value {
+         return 2.0 * d.bench.timed.per_particle_step(d.bench.timed.collisions) / d.settings.step_orbits;
+       }},
+      {three_digits("dispersion_r_omega", unit::unnamed("r Ω"), "dispersion c_x", "of the state that is timed"),
+       [](Drift d) -> Value { return d.bench.dispersion_r_omega; }},
+      {{"count", unit::none, "particles", "N"}, [](Drift d) -> Value { return std::uint64_t{d.bench.timed.count}; }},
+      {{"step_orbits", unit::unnamed("orbits"), "a step", "its length"},
+       [](Drift d) -> Value { return d.settings.step_orbits; }},
+      {{"optical_depth", unit::none, "optical depth", "of the state"},
+       [](Drift d) -> Value { return d.settings.optical_depth; }},
+      {word("sizes", "sizes", "of the particles"), [](Drift d) -> Value { return d.sizes; }},
+      {word("finder", "finder", "of collisions"), [](Drift d) -> Value { return d.settings.finder; }},
+      {word("all_pairs", "all pairs", "whether no pair is rejected before the finder"),
+       [](Drift d) -> Value { return d.settings.all_pairs; }},
+      {{"threads", unit::none, "threads", "that were used"},
+       [](Drift) -> Value { return static_cast<std::uint64_t>(threads()); }},
+      {{"repeats", unit::none, "repeats", "times measured"},
+       [](Drift d) -> Value { return static_cast<std::uint64_t>(d.settings.repeats); }},
+      {{"steps", unit::none, "steps in each", "steps of a repeat"},
+       [](Drift d) -> Value { return static_cast<std::uint64_t>(d.bench.timed.steps); }}};
+}
+
+} // namespace
+
+Record record_of(const TimedStep& step) {
+  return {joined(entries_of(step_rows(), step.bench.timed), entries_of(step_setting_rows(), step)), {}};
+}
+
+Record record_of(const TimedDrift& drift) {
+  return {joined(entries_of(drift_rows(), drift.bench.timed), entries_of(drift_setting_rows(), drift)), {}};
+}
+
+std::vector<Quantity> step_bench_quantities() {
+  return joined(quantities_of(step_rows()), quantities_of(step_setting_rows()));
+}
+
+std::vector<Quantity> drift_bench_quantities() {
+  return joined(quantities_of(drift_rows()), quantities_of(drift_setting_rows()));
+}
+
+} // namespace keeler

@@ -1,0 +1,300 @@
+#include "summarise.hpp"
+
+#include <keeler/core/error.hpp>
+#include <keeler/core/json_of_files.hpp>
+#include <keeler/core/memory.hpp>
+#include <keeler/core/threads.hpp>
+#include <keeler/core/words.hpp>
+#include <keeler/files/files.hpp>
+#include <keeler/quantities/views.hpp>
+#include <keeler/scene/doubts.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+using SummaryRow = QuantityRow<SummarySource>;
+using From = const SummarySource&;
+
+constexpr Unit joules = unit::unnamed("J"), nanoseconds = unit::unnamed("ns"),
+               of_rms = unit::unnamed("of the rms acceleration");
+
+double joule(From s) { // per kg m² rad⁻²
+  return s.scene.planet.orbital_frequency * s.scene.planet.orbital_frequency;
+}
+
+const CollisionTally& collisions(From s) {
+  return s.simulation.state().collisions;
+}
+
+// Of each particle and in each orbit: a contact is one of two particles.
+Value rate(From s, std::uint64_t contacts) {
+  const double orbits = s.simulation.orbits();
+  return orbits > 0.0 ? 2.0 * static_cast<double>(contacts) / (static_cast<double>(s.simulation.count()) * orbits)
+                      : 0.0;
+}
+
+double unresolved_share(From s) {
+  const std::uint64_t contacts = collisions(s).fast + collisions(s).slow;
+  return static_cast<double>(collisions(s).unresolved) / static_cast<double>(std::max<std::uint64_t>(1, contacts));
+}
+
+bool carries(From s) {
+  return s.scene.gravity && s.scene.gravity->carries();
+}
+
+bool has_force_error(From s) {
+  return s.cost.force_checks.count > 0;
+}
+
+bool has_balance(From s) {
+  return s.transport && s.transport->balance;
+}
+
+// What a user must know of the results: empty where nothing is amiss.
+std::vector<std::string> notes(From s) {
+  constexpr double too_many = 0.1, left_out = 0.05; // no solver of all forces errs as much
+  std::vector<std::string> all;
+  if (const std::optional<SatellitePassage> passage = doubtful_passage(s.scene, 0.0, s.simulation.orbits()))
+    all.push_back(in_words(*passage));
+  // How much such contacts lose depends on the kick interval too (docs/hard-spheres.md), so the balance of energy
+  // decides.
+  if (!carries(s) && unresolved_share(s) > too_many)
+    all.push_back(
+        fmt::format("{} % of the contacts are slower than one kick of the pair's own gravity: where the energy "
+                    "balance is above 1, set gravity.resting_contacts to \"carried\", or kick more often",
+                    figures(100.0 * unresolved_share(s), 2)));
+  if (collisions(s).gave_up > 0 || s.largest_overlap > 1e-8)
+    all.push_back(fmt::format("the collision finder gave up on {} {}, and may have missed contacts",
+                              collisions(s).gave_up, collisions(s).gave_up == 1 ? "search" : "searches"));
+  if (const ForceChecks& checks = s.cost.force_checks; has_force_error(s) && checks.last_rms > left_out)
+    all.push_back(
+        fmt::format("left out of gravity: {} % of the rms acceleration, by choice: a mesh alone has no pull of "
+                    "neighbours, rings of images none from beyond, and few particles feel little else",
+                    figures(100.0 * checks.last_rms, 2)));
+  return all;
+}
+
+std::vector<SummaryRow> state_rows() {
+  return {
+      {word("finished", "finished", "true at the end, false after a stop"),
+       [](From s) -> Value { return s.result.finished; }},
+      {word("state_hash", "state", "fingerprint of the state, see `keeler info`"),
+       [](From s) -> Value { return s.result.state_hash; }},
+      {{"time", unit::orbits, "time", "since the run began"}, [](From s) -> Value { return s.simulation.orbits(); }},
+      {{"steps", unit::none, "steps", "since the run began"},
+       [](From s) -> Value { return static_cast<std::uint64_t>(s.simulation.state().control.steps); }},
+      {{"particle_count", unit::none, "particles", "N"}, [](From s) -> Value { return s.simulation.count(); }},
+      {{"ranks", unit::none, "ranks", "processes that share the run"},
+       [](From s) -> Value { return static_cast<std::uint64_t>(s.simulation.ranks().count()); }},
+      {{"threads", unit::none, "threads", "of each process"},
+       [](From) -> Value { return static_cast<std::uint64_t>(threads()); }},
+      {{"collisions_per_particle_orbit", unit::none, "collisions a particle and orbit",
+        "faster than v_cut, 2 n/(N orbits), since the run began", Spread::none, Forms::si, 3},
+       [](From s) { return rate(s, collisions(s).fast); }},
+      {{"slow_contacts_per_particle_orbit", unit::none, "slow contacts",
+        "those slower than v_cut, which bounce elastically", Spread::none, Forms::si, 3},
+       [](From s) { return rate(s, collisions(s).slow); }},
+      {{"unresolved_contacts_share", unit::none, "unresolved contacts",
+        "share of all contacts that are slower than what one kick of the pair's own gravity gives them", Spread::none,
+        Forms::si, 3},
+       [](From s) -> Value { return unresolved_share(s); }},
+      {{"resting_contacts", unit::none, "contacts at rest",
+        "pairs that rest on each other at the end and carry the kicks; null where the scene has none carried"},
+       [](From s) -> Value {
+         return carries(s) ? Value(std::uint64_t{s.simulation.state().resting.pairs.size()}) : Value(Unknown{});
+       }},
+      {{"finder_gave_up", unit::none, "searches given up",
+        "searches for a contact that did not converge; always 0 with the `certified` finder"},
+       [](From s) -> Value { return collisions(s).gave_up; }},
+      {{"largest_overlap", unit::unnamed("of a radius sum"), "largest overlap", "at the end, over the sum of the radii",
+        Spread::none, Forms::si, 2},
+       [](From s) -> Value { return s.largest_overlap; }},
+      {word("force_error", "error of gravity", "null without gravity and where it was not checked"),
+       [](From) -> Value { return Unknown{"it was not checked"}; }, [](From s) { return !has_force_error(s); }},
+      {{"force_error.rms", of_rms, "error of gravity",
+        "rms error of the accelerations held against the sum over all pairs and images, in the last check",
+        Spread::none, Forms::si, 2},
+       [](From s) -> Value { return s.cost.force_checks.last_rms; },
+       has_force_error},
+      {{"force_error.worst_rms", of_rms, "  at worst", "in the worst check of this command", Spread::none, Forms::si,
+        2},
+       [](From s) -> Value { return s.cost.force_checks.worst_rms; },
+       has_force_error},
+      {{"force_error.checks", unit::none, "", "checks of this command, which take at most 0.5 % of the time"},
+       [](From s) -> Value { return static_cast<std::uint64_t>(s.cost.force_checks.count); },
+       has_force_error},
+      {{"force_error.particles", unit::none, "", "particles that are looked at in a check"},
+       [](From s) -> Value { return s.cost.force_checks.particles; },
+       has_force_error},
+      {word("notes", "note", "what happened so far that makes the results doubtful, a text each"),
+       [](From s) -> Value { return notes(s); }}};
+}
+
+Value work_of_forces(From s) {
+  NamedNumbers work;
+  for (const ForceState& force : s.simulation.state().forces)
+    work.emplace_back(force.name, force.work * joule(s));
+  return work;
+}
+
+std::vector<SummaryRow> energy_rows() {
+  return {{{"energy_j.start", joules, "energy of random motion: start",
+            "Σ m (½c² + ½ν²z²) of the random motions, c the velocity beyond the shear, and energy of spins"},
+           [](From s) -> Value { return s.simulation.balance().start * joule(s); }},
+          {{"energy_j.now", joules, "energy of random motion: now", "the same now"},
+           [](From s) -> Value { return s.simulation.balance().energy * joule(s); }},
+          {{"energy_j.translational_shear_work", joules, "  from the shear, by transport",
+            "work of the shear on the stress of moving particles"},
+           [](From s) -> Value {
+             return s.scene.planet.frequencies.shear() * s.simulation.balance().translational_flux * joule(s);
+           }},
+          {{"energy_j.collisional_shear_work", joules, "  from the shear, by contacts",
+            "work of the shear on the stress of contacts"},
+           [](From s) -> Value {
+             return s.scene.planet.frequencies.shear() * s.simulation.balance().collisional_flux * joule(s);
+           }},
+          {{"energy_j.kick_work", joules, "  by kicks", "work of all forces"},
+           [](From s) -> Value { return s.simulation.balance().kick_work * joule(s); }},
+          {word("energy_j.kick_work_of", "", "work of each force, under its name"), work_of_forces},
+          {{"energy_j.resting_work", joules, "  by contacts at rest",
+            "work of what contacts at rest carry, along their lines of centres"},
+           [](From s) -> Value { return s.simulation.balance().resting_work * joule(s); }},
+          {{"energy_j.lost_in_collisions", joules, "  lost in collisions", "since the run began"},
+           [](From s) -> Value { return s.simulation.balance().lost * joule(s); }},
+          {{"energy_j.residual", joules, "  rounding", "what the books leave", Spread::none, Forms::si, 2},
+           [](From s) -> Value { return s.simulation.balance().residual * joule(s); }},
+          {word("energy_balance", "", "null where the series does not show it"),
+           [](From) -> Value { return Unknown{}; }, [](From s) { return !has_balance(s); }},
+          {{"energy_balance.ratio", unit::none, "energy balance",
+            "energy lost over the work of the shear on all stresses where the run is steady: 1 but for its error",
+            Spread::none, Forms::si, 4},
+           [](From s) { return value_of(std::optional(s.transport->balance->value)); },
+           has_balance},
+          {{"energy_balance.error", unit::none, "  its error", "standard error, by blocks", Spread::none, Forms::si, 2},
+           [](From s) { return value_of(std::optional(s.transport->balance->error)); },
+           has_balance},
+          {{"energy_balance.total_viscosity", unit::viscosity, "  total viscosity", "by all three stresses"},
+           [](From s) { return value_of(std::optional(s.transport->total->value)); },
+           has_balance},
+          {{"energy_balance.since_orbit", unit::unnamed("orbits"), "  since", "beginning of the part that they are of"},
+           [](From s) -> Value { return s.transport->since_orbit; },
+           has_balance},
+          {{"energy_balance.until_orbit", unit::unnamed("orbits"), "  until", "its end"},
+           [](From s) -> Value { return s.transport->until_orbit; },
+           has_balance},
+          {word("energy_balance.steady", "  steady", "whether the run is steady there"),
+           [](From s) -> Value { return s.transport->steady; }, has_balance}};
+}
+
+// A particle and step of this stretch, in units of 10⁹.
+double passes(From s) {
+  const std::int64_t steps = std::max<std::int64_t>(1, s.simulation.state().control.steps - s.cost.first_step);
+  return 1e-9 * static_cast<double>(s.simulation.count()) * static_cast<double>(steps);
+}
+
+std::vector<SummaryRow> cost_rows() {
+  return {
+      {{"wall", unit::seconds, "wall time", "of this command"}, [](From s) -> Value { return s.cost.wall_s; }},
+      {{"cpu", unit::seconds, "processor time", "of this command"}, [](From s) -> Value { return s.cost.cpu_s; }},
+      {{"orbits_done", unit::unnamed("orbits"), "", "by this command"},
+       [](From s) -> Value { return s.simulation.orbits() - s.cost.first_orbit; }},
+      {{"peak_memory", unit::megabytes, "memory at most", "10⁶ bytes; null where the system does not say"},
+       [](From) { return value_of(std::optional(1e-6 * peak_memory())); }},
+      {{"split.start", unit::seconds, "  start", "wall time of making or reading the initial state; 0 after a resume"},
+       [](From s) -> Value { return s.cost.start_s; }},
+      {{"split.drift", unit::seconds, "  drift", "of motion and contacts"},
+       [](From s) -> Value { return s.simulation.time_split().drift; }},
+      {{"split.gravity", unit::seconds, "  gravity", "of self-gravity"},
+       [](From s) -> Value { return s.simulation.time_split().force("gravity"); }},
+      {{"split.resting", unit::seconds, "", "of contacts at rest"},
+       [](From s) -> Value { return s.simulation.time_split().resting; }},
+      {{"split.series", unit::seconds, "  series", "of rows of `series.csv`", Spread::none, Forms::si, 2},
+       [](From s) -> Value { return s.cost.output.series; }},
+      {{"split.stresses", unit::seconds, "  stresses", "of gravity's energy and stress in them", Spread::none,
+        Forms::si, 2},
+       [](From s) -> Value { return s.cost.output.stresses; }},
+      {{"split.snapshots", unit::seconds, "  snapshots", "of snapshots", Spread::none, Forms::si, 2},
+       [](From s) -> Value { return s.cost.output.snapshots; }},
+      {{"split.checkpoints", unit::seconds, "  checkpoints", "of checkpoints", Spread::none, Forms::si, 2},
+       [](From s) -> Value { return s.cost.output.checkpoints; }},
+      {{"split.contacts", unit::seconds, "", "of files of the log of contacts"},
+       [](From s) -> Value { return s.cost.output.contacts; }},
+      {{"split.exchange", unit::seconds, "  exchange of ranks",
+        "of the first of several ranks: sending, receiving and waiting, within all the others"},
+       [](From) -> Value { return exchange_costs().seconds; }},
+      {{"split.force_checks", unit::seconds, "  checks of forces", "of the checks behind `force_error`", Spread::none,
+        Forms::si, 2},
+       [](From s) -> Value { return s.cost.force_checks.seconds; }},
+      {{"ns_per_particle_step.drift", nanoseconds, "drift, a particle and step", "wall time of a particle and step",
+        Spread::none, Forms::si, 3},
+       [](From s) -> Value { return s.simulation.time_split().drift / passes(s); }},
+      {{"ns_per_particle_step.gravity", nanoseconds, "gravity, a particle and step", "the same", Spread::none,
+        Forms::si, 3},
+       [](From s) -> Value { return s.simulation.time_split().force("gravity") / passes(s); }},
+      {{"ns_per_particle_step.series", nanoseconds, "series, a particle and step", "the same", Spread::none, Forms::si,
+        2},
+       [](From s) -> Value { return s.cost.output.series / passes(s); }}};
+}
+
+std::vector<SummaryRow> all_rows() {
+  return joined(joined(state_rows(), energy_rows()), cost_rows());
+}
+
+} // namespace
+
+std::optional<Transport> transport_of_run(const std::filesystem::path& series, const RingScale& scale,
+                                          const std::function<void(const std::string&)>& notice) {
+  try {
+    const SeriesTable table = read_series(series);
+    if (enough_rows(table)) // too few say nothing
+      return transport(table, scale, {});
+  } catch (const Error& error) {
+    if (notice)
+      notice(fmt::format("no balance of energy: {}", error.what()));
+  }
+  return std::nullopt;
+}
+
+bool says_finished(const std::filesystem::path& summary) {
+  std::error_code unknown;
+  if (!std::filesystem::exists(summary, unknown))
+    return false;
+  const nlohmann::json json = json_of<nlohmann::json>(read_text(summary));
+  return json.is_object() && json.contains("finished") && json["finished"] == true;
+}
+
+Record summarise(Simulation& simulation, const Scene& scene, const std::optional<Transport>& transport,
+                 const RunResult& result, const RunCost& cost, const Provenance& provenance) {
+  Record record{entries_of(all_rows(), {simulation, scene, transport, result, cost, simulation.largest_overlap()}), {}};
+  for (const ForceSettings& force : scene.external_forces)
+    record.entries.push_back({{fmt::format("split.{}", force.entry->table), unit::seconds},
+                              simulation.time_split().force(force.entry->table)});
+  for (const auto& [name, value] : provenance)
+    record.entries.push_back({word("provenance." + name, "", ""), value});
+  return record;
+}
+
+std::vector<Quantity> summary_quantities() {
+  return quantities_of(all_rows());
+}
+
+Record read_summary(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "summary.json";
+  const auto json = json_of<nlohmann::ordered_json>(read_text(file));
+  if (!json.is_object())
+    throw IoError(
+        fmt::format("'{}' is not the summary of a run (it is damaged); restore it, or remove it", file.string()));
+  try {
+    return record_of(json, summary_quantities());
+  } catch (const UsageError& fault) {
+    throw IoError(fmt::format("'{}' holds something else than Keeler writes there ({}); restore it, or make it again",
+                              file.string(), fault.what()));
+  }
+}
+
+} // namespace keeler
