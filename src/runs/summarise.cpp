@@ -143,52 +143,49 @@ Value work_of_forces(From s) {
 }
 
 std::vector<SummaryRow> energy_rows() {
-  return {{{"energy_j.start", joules, "energy of random motion: start",
-            "Σ m (½c² + ½ν²z²) of the random motions, c the velocity beyond the shear, and energy of spins"},
-           [](From s) -> Value { return s.simulation.balance().start * joule(s); }},
-          {{"energy_j.now", joules, "energy of random motion: now", "the same now"},
-           [](From s) -> Value { return s.simulation.balance().energy * joule(s); }},
-          {{"energy_j.translational_shear_work", joules, "  from the shear, by transport",
-            "work of the shear on the stress of moving particles"},
-           [](From s) -> Value {
-             return s.scene.planet.frequencies.shear() * s.simulation.balance().translational_flux * joule(s);
-           }},
-          {{"energy_j.collisional_shear_work", joules, "  from the shear, by contacts",
-            "work of the shear on the stress of contacts"},
-           [](From s) -> Value {
-             return s.scene.planet.frequencies.shear() * s.simulation.balance().collisional_flux * joule(s);
-           }},
-          {{"energy_j.kick_work", joules, "  by kicks", "work of all forces"},
-           [](From s) -> Value { return s.simulation.balance().kick_work * joule(s); }},
-          {word("energy_j.kick_work_of", "", "work of each force, under its name"), work_of_forces},
-          {{"energy_j.resting_work", joules, "  by contacts at rest",
-            "work of what contacts at rest carry, along their lines of centres"},
-           [](From s) -> Value { return s.simulation.balance().resting_work * joule(s); }},
-          {{"energy_j.lost_in_collisions", joules, "  lost in collisions", "since the run began"},
-           [](From s) -> Value { return s.simulation.balance().lost * joule(s); }},
-          {{"energy_j.residual", joules, "  rounding", "what the books leave", Spread::none, Forms::si, 2},
-           [](From s) -> Value { return s.simulation.balance().residual * joule(s); }},
-          {word("energy_balance", "", "null where the series does not show it"),
-           [](From) -> Value { return Unknown{}; }, [](From s) { return !has_balance(s); }},
-          {{"energy_balance.ratio", unit::none, "energy balance",
-            "energy lost over the work of the shear on all stresses where the run is steady: 1 but for its error",
-            Spread::none, Forms::si, 4},
-           [](From s) { return value_of(std::optional(s.transport->balance->value)); },
-           has_balance},
-          {{"energy_balance.error", unit::none, "  its error", "standard error, by blocks", Spread::none, Forms::si, 2},
-           [](From s) { return value_of(std::optional(s.transport->balance->error)); },
-           has_balance},
-          {{"energy_balance.total_viscosity", unit::viscosity, "  total viscosity", "by all three stresses"},
-           [](From s) { return value_of(std::optional(s.transport->total->value)); },
-           has_balance},
-          {{"energy_balance.since_orbit", unit::unnamed("orbits"), "  since", "beginning of the part that they are of"},
-           [](From s) -> Value { return s.transport->since_orbit; },
-           has_balance},
-          {{"energy_balance.until_orbit", unit::unnamed("orbits"), "  until", "its end"},
-           [](From s) -> Value { return s.transport->until_orbit; },
-           has_balance},
-          {word("energy_balance.steady", "  steady", "whether the run is steady there"),
-           [](From s) -> Value { return s.transport->steady; }, has_balance}};
+  return {
+      {{"energy_j.start", joules, "energy of random motion: start",
+        "Σ m (½c² + ½ν²z²) of the random motions, c the velocity beyond the shear, and energy of spins"},
+       [](From s) -> Value { return s.balance.start * joule(s); }},
+      {{"energy_j.now", joules, "energy of random motion: now", "the same now"},
+       [](From s) -> Value { return s.balance.energy * joule(s); }},
+      {{"energy_j.translational_shear_work", joules, "  from the shear, by transport",
+        "work of the shear on the stress of moving particles"},
+       [](From s) -> Value { return s.scene.planet.frequencies.shear() * s.balance.translational_flux * joule(s); }},
+      {{"energy_j.collisional_shear_work", joules, "  from the shear, by contacts",
+        "work of the shear on the stress of contacts"},
+       [](From s) -> Value { return s.scene.planet.frequencies.shear() * s.balance.collisional_flux * joule(s); }},
+      {{"energy_j.kick_work", joules, "  by kicks", "work of all forces"},
+       [](From s) -> Value { return s.balance.kick_work * joule(s); }},
+      {word("energy_j.kick_work_of", "", "work of each force, under its name"), work_of_forces},
+      {{"energy_j.resting_work", joules, "  by contacts at rest",
+        "work of what contacts at rest carry, along their lines of centres"},
+       [](From s) -> Value { return s.balance.resting_work * joule(s); }},
+      {{"energy_j.lost_in_collisions", joules, "  lost in collisions", "since the run began"},
+       [](From s) -> Value { return s.balance.lost * joule(s); }},
+      {{"energy_j.residual", joules, "  rounding", "what the books leave", Spread::none, Forms::si, 2},
+       [](From s) -> Value { return s.balance.residual * joule(s); }},
+      {word("energy_balance", "", "null where the series does not show it"), [](From) -> Value { return Unknown{}; },
+       [](From s) { return !has_balance(s); }},
+      {{"energy_balance.ratio", unit::none, "energy balance",
+        "energy lost over the work of the shear on all stresses where the run is steady: 1 but for its error",
+        Spread::none, Forms::si, 4},
+       [](From s) { return value_of(std::optional(s.transport->balance->value)); },
+       has_balance},
+      {{"energy_balance.error", unit::none, "  its error", "standard error, by blocks", Spread::none, Forms::si, 2},
+       [](From s) { return value_of(std::optional(s.transport->balance->error)); },
+       has_balance},
+      {{"energy_balance.total_viscosity", unit::viscosity, "  total viscosity", "by all three stresses"},
+       [](From s) { return value_of(std::optional(s.transport->total->value)); },
+       has_balance},
+      {{"energy_balance.since_orbit", unit::unnamed("orbits"), "  since", "beginning of the part that they are of"},
+       [](From s) -> Value { return s.transport->since_orbit; },
+       has_balance},
+      {{"energy_balance.until_orbit", unit::unnamed("orbits"), "  until", "its end"},
+       [](From s) -> Value { return s.transport->until_orbit; },
+       has_balance},
+      {word("energy_balance.steady", "  steady", "whether the run is steady there"),
+       [](From s) -> Value { return s.transport->steady; }, has_balance}};
 }
 
 // A particle and step of this stretch, in units of 10⁹.
@@ -270,7 +267,9 @@ bool says_finished(const std::filesystem::path& summary) {
 
 Record summarise(Simulation& simulation, const Scene& scene, const std::optional<Transport>& transport,
                  const RunResult& result, const RunCost& cost, const Provenance& provenance) {
-  Record record{entries_of(all_rows(), {simulation, scene, transport, result, cost, simulation.largest_overlap()}), {}};
+  const SummarySource source{simulation,          scene, transport, result, cost, simulation.largest_overlap(),
+                             simulation.balance()};
+  Record record{entries_of(all_rows(), source), {}};
   for (const ForceSettings& force : scene.external_forces)
     record.entries.push_back({{fmt::format("split.{}", force.entry->table), unit::seconds},
                               simulation.time_split().force(force.entry->table)});

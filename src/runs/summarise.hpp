@@ -31,6 +31,7 @@ struct SummarySource {
   const RunResult& result;
   const RunCost& cost;
   double largest_overlap; ///< now
+  EnergyBalance balance;
 };
 
 /// Counts and energies are those of the whole run, times those of this stretch. Collective; the first rank's is the
