@@ -81,12 +81,9 @@ names sweep
 accepts "check" check "$work/scene.toml" --json
 names check
 accepts "analyze" analyze "$work/run" --json
-names analyze
 explained
 accepts "lines of sight" analyze "$work/run" --json --elevation 5,30 --azimuth 0,90 --rays 1000
 explained
-sed -i 's/^ \{4,\}/    /' "$work/out" # names at any depth
-names analyze
 accepts "info" info "$(newest_checkpoint "$work/run")" --json
 sed -i '/^  "fields"/,/^  }/{/^    /d}; /^  "attributes"/,/^  }/{/^    /d}' "$work/out" # names of the file, not of the program
 names info

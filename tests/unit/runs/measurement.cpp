@@ -24,8 +24,8 @@ TEST_CASE("every measured number has names of its own and says what it is; the m
     for (const UnitSystem system : quantity.systems())
       CHECK(names.insert(quantity.full_name(system)).second);
   }
-  const std::string page = read_text(KEELER_SOURCE_DIR "/docs/manual/commands.md"), table = markdown_of(quantities);
-  INFO("docs/manual/commands.md must hold this table:\n" << table);
+  const std::string page = read_text(KEELER_SOURCE_DIR "/docs/manual/numbers.md"), table = markdown_of(quantities);
+  INFO("docs/manual/numbers.md must hold this table:\n" << table);
   CHECK(page.find(table) != page.npos);
 }
 
