@@ -47,6 +47,13 @@ Rows state_rows() {
        [](Source m) -> Value { return m.analysis.critical_wavelength_m; }},
       {{"toomre_q", unit::none, "Toomre Q", "κ c_x/(3.36 G Σ), with c_x of the whole patch (Toomre 1964)"},
        [](Source m) -> Value { return m.analysis.toomre_q; }},
+      {{"gravity_parameter", unit::none, "gravity parameter",
+        "(G Σ/(r Ω²))²: the unit of viscosity by self-gravity, G²Σ²/Ω³, over that by contacts, r²Ω (Daisaka, Tanaka & "
+        "Ida "
+        "2001, Icarus 154, 296)"},
+       [](Source m) -> Value {
+         return m.units.viscosity(UnitSystem::gravity) / m.units.viscosity(UnitSystem::radius);
+       }},
       {shaped({"dispersion", unit::metres_per_second, "velocity dispersion",
                "c_x, c_y, c_z: standard deviation of the velocity beyond the shear, streams of wakes included",
                Spread::none, Forms::si_and_radius},

@@ -2,12 +2,14 @@
 
 #include <keeler/runs/measurement.hpp>
 
+#include <keeler/core/units.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/quantities/views.hpp>
 #include <keeler/states/initial.hpp>
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <set>
 
 namespace measurement_test {
@@ -41,6 +43,18 @@ TEST_CASE("a number of a snapshot is the mean over the snapshots") {
   CHECK(json["particle_count"] == patch.size());
   CHECK(json["collisional_viscosity_m2_s"].is_null()); // a snapshot does not show it
   CHECK(json["translational_viscosity_r2_omega"].is_number());
+}
+
+TEST_CASE("the gravity parameter turns a viscosity in r² Ω into one in G² Σ²/Ω³") {
+  const Scene scene = test::small_scene();
+  const Patch patch = initial_patch(scene);
+  const nlohmann::ordered_json json =
+      json_of(record_of(measure({&patch, 1}, TransportReport::of_snapshot(patch, scene.gravity))));
+  const double parameter = json["gravity_parameter"], in_radii = json["translational_viscosity_r2_omega"],
+               by_gravity = json["translational_viscosity_g2_sigma2_omega3"];
+  CHECK(in_radii / parameter == doctest::Approx(by_gravity).epsilon(1e-14));
+  const double omega = patch.orbital_frequency, r = json["mean_radius_m"], sigma = json["surface_density_kg_m2"];
+  CHECK(parameter == doctest::Approx(std::pow(newton_g_si * sigma / (r * omega * omega), 2)).epsilon(1e-14));
 }
 
 } // namespace measurement_test
