@@ -1,5 +1,6 @@
 // keeler help, and what --help ends with.
 #include "bench_numbers.hpp"
+#include "check_numbers.hpp"
 #include "command.hpp"
 #include "man_page.hpp"
 #include "print.hpp"
@@ -26,6 +27,7 @@ std::vector<NumberTable> number_tables() {
   return {{"keeler analyze: a snapshot, or the steady part of a run", measured_quantities()},
           {"summary.json: what a run came to (keeler run --json)", summary_quantities()},
           {"series.csv: a run through time", series_quantities()},
+          {"keeler check", check_quantities()},
           {"keeler bench step", step_bench_quantities()},
           {"keeler bench drift", drift_bench_quantities()}};
 }

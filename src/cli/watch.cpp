@@ -5,6 +5,7 @@
 
 #include <keeler/core/words.hpp>
 #include <keeler/runs/run_view.hpp>
+#include <keeler/runs/series_columns.hpp>
 
 #include <fmt/format.h>
 
@@ -14,6 +15,7 @@
 #include <ctime>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <thread>
 
 namespace keeler {
@@ -24,15 +26,21 @@ constexpr int label_columns = 18, value_columns = 10;
 struct Line {
   const char* column; ///< of the series
   const char* label;
-  bool counts = false; ///< since the run began: its rate an orbit is shown
+
+  /// Since the run began: its rate an orbit is shown.
+  bool counts() const {
+    const auto columns = series_columns();
+    const auto same = [&](const SeriesColumn& known) { return std::string_view(known.name) == column; };
+    return std::find_if(columns.begin(), columns.end(), same)->course != Course::value;
+  }
 };
 
 constexpr Line lines[] = {
     {"dispersion_x_m_s", "c_x, m/s"},
     {"dispersion_z_m_s", "c_z, m/s"},
     {"scale_height_m", "height, m"},
-    {"collisions", "collisions/orbit", true},
-    {"energy_lost_j", "loss, J/orbit", true},
+    {"collisions", "collisions/orbit"},
+    {"energy_lost_j", "loss, J/orbit"},
     {"translational_viscosity_m2_s", "nu trans., m2/s"},
     {"gravitational_viscosity_m2_s", "nu grav., m2/s"},
     {"spin_dispersion_omega", "spins, Omega"},
@@ -44,8 +52,9 @@ std::vector<double> values_of(const SeriesTable& series, const Line& line) {
   const std::vector<double>& times = series.of("time_orbits");
   const std::vector<double>& column = series.of(line.column);
   std::vector<double> values;
-  for (std::size_t i = line.counts ? 1 : 0; i < column.size(); ++i) {
-    const double value = line.counts ? (column[i] - column[i - 1]) / (times[i] - times[i - 1]) : column[i];
+  const bool counts = line.counts();
+  for (std::size_t i = counts ? 1 : 0; i < column.size(); ++i) {
+    const double value = counts ? (column[i] - column[i - 1]) / (times[i] - times[i - 1]) : column[i];
     if (std::isfinite(value))
       values.push_back(value);
   }

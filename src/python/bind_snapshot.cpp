@@ -14,6 +14,7 @@
 #include <keeler/render/patch_picture.hpp>
 #include <keeler/runs/measured_part.hpp>
 #include <keeler/runs/measurement.hpp>
+#include <keeler/runs/summary.hpp>
 #include <keeler/scene/resting_choice.hpp>
 #include <keeler/states/clumped.hpp>
 #include <keeler/states/from_table.hpp>
@@ -174,6 +175,7 @@ void bind_snapshot(py::module_& module) {
   module.def("read_series", &series, py::arg("file"));
   module.def("generate", &generate, py::arg("scene"), py::arg("clumped"));
   module.def("quantities", [] { return described(measured_quantities()); });
+  module.def("summary_quantities", [] { return described(summary_quantities()); });
   module.def("analyze", &analyze_path, py::arg("path"), py::arg("since"), py::arg("until"));
   module.def("from_arrays", &from_arrays, py::arg("text"), py::arg("name"), py::arg("overrides"), py::arg("positions"),
              py::arg("velocities"), py::arg("radii"), py::arg("masses"), py::arg("spins"), py::arg("relax"));

@@ -168,9 +168,18 @@ void add_lines(std::string& lines, const Entry& entry, const PatchUnits& units, 
       lines += line_of(label, inline_text(record, system));
   else if (const auto* const texts = std::get_if<std::vector<std::string>>(&entry.value))
     for (const std::string& text : *texts)
-      lines += line_of(label, text);
+      lines += fmt::format("{}: {}\n", ascii(label), ascii(text)); // whole sentences
   else
     lines += line_of(label, text_of(entry, units, system));
+}
+
+// " = 7.2 min": nobody divides by 60 as quickly.
+std::string in_hours(const Value& value, const Unit& unit) {
+  const auto* const seconds = std::get_if<double>(&value);
+  if (unit != unit::seconds || !seconds || *seconds < 120.0)
+    return {};
+  return *seconds < 7200.0 ? fmt::format(" = {} min", figures(*seconds / 60.0, 2))
+                           : fmt::format(" = {} h", figures(*seconds / 3600.0, 2));
 }
 
 } // namespace
@@ -243,8 +252,8 @@ std::string text_of(const Entry& entry, const PatchUnits& units, std::optional<U
     if (const auto* const uncertain = std::get_if<Uncertain>(&value); uncertain && !all.empty())
       value = uncertain->value; // the error is told once
     const std::string_view name = unit_in(quantity.unit, in).text;
-    all += fmt::format("{}{}{}{}", all.empty() ? "" : " = ", text_of(value, quantity.digits), name.empty() ? "" : " ",
-                       name);
+    all += fmt::format("{}{}{}{}{}", all.empty() ? "" : " = ", text_of(value, quantity.digits), name.empty() ? "" : " ",
+                       name, in_hours(value, quantity.unit));
   }
   return all;
 }

@@ -47,7 +47,7 @@ $work/out:0" ] || fail "before a passage: $(cat "$work/err" "$work/out")"
 runs 0 "${far[@]}" --set time.end=2 -o "$work/passage"
 [ "$(grep -c "^keeler: note: the satellite's passage at orbit 1.5 moves particles at 1.1 of the speed" "$work/err")" -eq 2 ] ||
   fail "a passage, at the start and when it comes: $(cat "$work/err")"
-prints "a passage" "note                               the satellite's passage at orbit 1.5"
+prints "a passage" "note: the satellite's passage at orbit 1.5"
 python3 - "$work" <<'END' || fail "a passage in the files"
 import json, sys
 work = sys.argv[1]

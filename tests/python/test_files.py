@@ -119,6 +119,7 @@ class AsTheProgram(InAFolder):
         run = keeler.run(RING, self.folder / "run", time={"end": 0.1}, output={"series_every": 0.01})
         self.assertEqual(run.summary["state_hash"], keeler.Simulation(RING).run(0.1).state_hash)
         self.assertIsNotNone(run.analyze(since=0.0)["total_viscosity_m2_s"])
+        self.assertEqual(run.summary.quantity("wall_s").unit, "s")
         numbers = run.analyze(since=0.0)
         self.assertEqual(numbers.error("total_viscosity_m2_s"), numbers["total_viscosity_error_m2_s"])
         self.assertIsNone(numbers.error("toomre_q"))

@@ -14,7 +14,7 @@ from .errors import Error, InvariantError, IoError, RunError, UsageError
 
 class Run:
     """The folder of a run, read. ``series`` is a dictionary of arrays, one a column of series.csv, units in the names;
-    ``snapshots`` a list of Snapshots, each read when it is asked for; ``summary`` the numbers of summary.json (None
+    ``snapshots`` a list of Snapshots, each read when it is asked for; ``summary`` the Numbers of summary.json (None
     while the run works); ``scene`` the resolved scene as text."""
 
     def __init__(self, folder):
@@ -45,12 +45,12 @@ class Run:
         if not file.exists():
             return None
         try:
-            numbers = json.loads(_arguments.text(file), parse_constant=_no_number)
+            values = json.loads(_arguments.text(file), parse_constant=_no_number)
         except (ValueError, RecursionError):
-            numbers = None
-        if not isinstance(numbers, dict):
+            values = None
+        if not isinstance(values, dict):
             raise IoError(f"'{file}' is not the summary of a run; 'keeler resume {self.folder}' writes it again")
-        return numbers
+        return numbers.Numbers(values, _core.summary_quantities())
 
     @property
     def snapshots(self):

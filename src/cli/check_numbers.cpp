@@ -1,0 +1,201 @@
+#include "check_numbers.hpp"
+
+#include <keeler/core/units.hpp>
+#include <keeler/core/words.hpp>
+#include <keeler/scene/grain_piles.hpp>
+#include <keeler/scene/resting_choice.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+using Checked = const CheckedScene&;
+
+bool particles_known(Checked c) {
+  return c.derived.particles_known;
+}
+
+bool has_kicks(Checked c) {
+  return c.scene.gravity && !c.scene.time.automatic;
+}
+
+// Of a scene whose particles attract each other by pairs.
+bool may_rest(Checked c) {
+  return c.scene.gravity && c.scene.gravity->by_pairs();
+}
+
+bool has_estimate(Checked c) {
+  return c.cost.has_value();
+}
+
+// What only a start file knows of its particles.
+Value known(Checked c, double number) {
+  return particles_known(c) ? Value(number) : Value(Unknown{"only the start file knows it"});
+}
+
+std::string resting_word(Checked c) {
+  return c.scene.gravity->carries() ? "carried" : "bounced";
+}
+
+// What the default would be, where the scene has chosen otherwise, and why.
+std::string resting_reason(Checked c) {
+  const RestingChoice choice = choose_resting_contacts(c.start, c.scene);
+  if (choice.carried == c.scene.gravity->carries())
+    return choice.reason;
+  return (choice.carried ? "by default they are carried: " : "by default they bounce: ") + choice.reason;
+}
+
+// The first and the last id, and what bodies there are of.
+Record body(std::size_t first, std::size_t count, double radius, double mass, Checked c) {
+  const double g = newton_g(c.scene.planet.orbital_frequency);
+  return {{{{"first_id", unit::none, "id"}, std::uint64_t{first}},
+           {{"count", unit::none, "particles"}, std::uint64_t{count}},
+           {{"radius", unit::metres, "radius"}, radius},
+           {{"mass_kg", unit::unnamed("kg"), "mass"}, mass},
+           {{"hill_radius", unit::metres, "Hill radius", "", Spread::none, Forms::si, 3}, std::cbrt(g * mass / 3.0)}},
+          {}};
+}
+
+Value aggregates(Checked c) {
+  std::vector<Record> all;
+  for (const AggregateSettings& a : c.scene.particles.aggregates)
+    all.push_back(body(a.first, a.count, a.radius, a.mass, c));
+  return all;
+}
+
+Value moonlets(Checked c) {
+  std::vector<Record> all;
+  for (const MoonletSettings& m : c.scene.moonlets)
+    all.push_back(body(c.scene.particles.count + all.size(), 1, m.radius, m.mass, c));
+  return all;
+}
+
+std::vector<QuantityRow<CheckedScene>> patch_rows() {
+  return {
+      {word("title", "scene", "its title"), [](Checked c) -> Value { return c.scene.title; }},
+      {word("from", "box and particles from", "the start file"), [](Checked c) -> Value { return *c.scene.start_from; },
+       [](Checked c) { return c.scene.start_from.has_value(); }},
+      {{"particle_count", unit::none, "particles", "N"},
+       [](Checked c) -> Value {
+         return particles_known(c) ? Value(std::uint64_t{c.derived.particle_count}) : known(c, 0.0);
+       }},
+      {{"optical_depth", unit::none, "optical depth", "Σ π r² over the area"},
+       [](Checked c) -> Value { return particles_known(c) ? c.derived.optical_depth : c.start.optical_depth; }},
+      {{"surface_density", unit::unnamed("kg/m²"), "surface density", "Σ m over the area"},
+       [](Checked c) { return known(c, c.derived.surface_density); }},
+      {{"lambda_cr", unit::metres, "critical wavelength", "λ_cr = 4π² G Σ/κ² (Toomre 1964)"},
+       [](Checked c) { return known(c, c.derived.lambda_cr); }},
+      {{"toomre_q", unit::none, "Toomre Q at the start", "κ c_x/(3.36 G Σ)", Spread::none, Forms::si, 3},
+       [](Checked c) { return known(c, c.derived.toomre_q); }},
+      {{"hill_parameter", unit::none, "Hill parameter r_h",
+        "mutual Hill radius of two equal particles over the sum of their radii", Spread::none, Forms::si, 3},
+       [](Checked c) -> Value {
+         return particles_known(c) ? c.derived.hill_parameter
+                                   : hill_parameter(c.start.density, distance_from_saturn(c.scene.planet));
+       }},
+      {{"midplane_filling", unit::none, "mid-plane filling at the start",
+        "share of the plane z = 0 that spheres cut, where streamlines are closest; at most 0.55", Spread::none,
+        Forms::si, 3},
+       [](Checked c) { return known(c, c.derived.midplane_filling); }},
+      {{"box", unit::metres, "box", "sides along the radius and the orbit", Spread::none, Forms::si, 4, Shape::other},
+       [](Checked c) -> Value {
+         return particles_known(c) ? Value(std::vector{c.scene.size_x, c.scene.size_y})
+                                   : Value(Unknown{"only the start file knows it"});
+       }},
+      {{"box_wavelengths", unit::unnamed("λ_cr"), "  in critical wavelengths", "these sides over λ_cr", Spread::none,
+        Forms::si, 3, Shape::other},
+       [](Checked c) -> Value {
+         return std::vector{c.scene.size_x / c.derived.lambda_cr, c.scene.size_y / c.derived.lambda_cr};
+       },
+       particles_known},
+      {word("aggregates", "aggregate", "bodies of many particles"), aggregates},
+      {word("moonlets", "moonlet", "bodies of one large particle"), moonlets}};
+}
+
+std::vector<QuantityRow<CheckedScene>> course_rows() {
+  return {{{"steps", unit::none, "steps", "length of the run; of an automatic step of the shortest ones"},
+           [](Checked c) -> Value { return static_cast<std::uint64_t>(c.derived.steps); }},
+          {{"step", unit::orbits, "a step", "its length; null where it is automatic"},
+           [](Checked c) -> Value {
+             return c.scene.time.automatic
+                        ? Value(Unknown{fmt::format("it is automatic, from 1/{} to 1/{} orbits",
+                                                    TimeSettings::ticks_per_orbit,
+                                                    TimeSettings::ticks_per_orbit / TimeSettings::longest)})
+                        : Value(c.scene.time.step);
+           }},
+          {{"kick_interval", unit::orbits, "from kick to kick", "of a fixed step with self-gravity, else null"},
+           [](Checked c) -> Value {
+             return has_kicks(c) ? Value(c.scene.time.step * static_cast<double>(c.scene.gravity->kick_every))
+                                 : Value(Unknown{});
+           }},
+          {word("gravity", "gravity", "solver and settings of self-gravity"),
+           [](Checked c) -> Value {
+             return in_words(particles_known(c) ? chosen_for(c.derived.particle_count, *c.scene.gravity)
+                                                : *c.scene.gravity);
+           },
+           [](Checked c) { return c.scene.gravity.has_value(); }},
+          {word("resting_contacts", "contacts at rest",
+                "\"carried\" or \"bounced\": what contacts at rest do; null without self-gravity between particles"),
+           [](Checked c) -> Value { return may_rest(c) ? Value(resting_word(c)) : Value(Unknown{}); }},
+          {word("resting_reason", "  why", "why they do by default"),
+           [](Checked c) -> Value { return resting_reason(c); }, may_rest}};
+}
+
+std::vector<QuantityRow<CheckedScene>> cost_rows() {
+  return {
+      {{"memory", unit::megabytes, "memory, an estimate", "largest use, 10⁶ bytes", Spread::none, Forms::si, 2},
+       [](Checked c) { return known(c, c.derived.memory_mb); }},
+      {{"estimated", unit::seconds, "time on one thread, an estimate", "processor time of `keeler run` on this machine",
+        Spread::none, Forms::si, 2},
+       [](Checked c) -> Value { return c.cost ? Value(c.cost->total()) : Value(Unknown{}); }},
+      {word("estimate", "", "null where only a start file knows the particles"),
+       [](Checked) -> Value { return Unknown{}; }, [](Checked c) { return !has_estimate(c); }},
+      {{"estimate.start", unit::seconds, "  start", "making the initial state", Spread::none, Forms::si, 2},
+       [](Checked c) -> Value { return c.cost->start; },
+       has_estimate},
+      {{"estimate.drift", unit::seconds, "  drift", "moving particles, finding and carrying out contacts", Spread::none,
+        Forms::si, 2},
+       [](Checked c) -> Value { return c.cost->drift; },
+       has_estimate},
+      {{"estimate.gravity", unit::seconds, "  gravity", "solves and kicks", Spread::none, Forms::si, 2},
+       [](Checked c) -> Value { return c.cost->gravity; },
+       has_estimate},
+      {{"estimate.output", unit::seconds, "  output", "files, rows of the series, checks", Spread::none, Forms::si, 2},
+       [](Checked c) -> Value { return c.cost->output; },
+       has_estimate},
+      {word("estimate.dominates", "  most of it", "the largest part"),
+       [](Checked c) -> Value { return std::string(c.cost->dominating()); }, has_estimate},
+      {{"estimate.contacts_per_particle_orbit", unit::none, "", "contacts that the estimate reckons with"},
+       [](Checked c) -> Value { return scene_contacts(c.scene).wakes.all(); },
+       has_estimate},
+      {{"estimate.grains_in_piles", unit::none, "", "particles that the estimate takes to rest on large bodies"},
+       [](Checked c) -> Value {
+         return GrainPiles(c.scene).grains(static_cast<double>(c.scene.time.end_step) * c.scene.time.step);
+       },
+       has_estimate},
+      {word("notices", "note", "what was rounded or dropped, a text each"),
+       [](Checked c) -> Value { return c.scene.notices; }},
+      {word("doubts", "note", "what is seldom meant, or what a patch of this size cannot show, a text each"),
+       [](Checked c) -> Value { return c.doubts; }},
+      {word("costs", "note", "what makes the scene at least five times as dear as its like, a text each"),
+       [](Checked c) -> Value { return particles_known(c) ? dear_choices(c.scene) : std::vector<std::string>(); }}};
+}
+
+std::vector<QuantityRow<CheckedScene>> all_rows() {
+  return joined(joined(patch_rows(), course_rows()), cost_rows());
+}
+
+} // namespace
+
+Record record_of(const CheckedScene& checked) {
+  return {entries_of(all_rows(), checked), {}};
+}
+
+std::vector<Quantity> check_quantities() {
+  return quantities_of(all_rows());
+}
+
+} // namespace keeler
