@@ -1,9 +1,9 @@
 #include <keeler/batch/quantities.hpp>
 
 #include <keeler/diagnostics/clusters.hpp>
-#include <keeler/diagnostics/patch_units.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/runs/measurement.hpp>
+#include <keeler/runs/patch_units.hpp>
 #include <keeler/runs/series_columns.hpp>
 #include <keeler/runs/stored_patches.hpp>
 #include <keeler/statistics/time_series.hpp>

@@ -4,6 +4,7 @@
 #include "print.hpp"
 #include "usage.hpp"
 
+#include <keeler/runs/measurement.hpp>
 #include <keeler/scene/examples.hpp>
 #include <keeler/scene/keys.hpp>
 
@@ -105,11 +106,22 @@ std::vector<Candidate> scene_assignments(const std::string& begun) {
   return candidates;
 }
 
+// Names with commas between them: the last one is still being written.
+std::vector<Candidate> numbers_after(const std::string& begun) {
+  const std::string done = begun.substr(0, begun.rfind(',') + 1);
+  std::vector<Candidate> candidates;
+  for (const Quantity& quantity : measured_quantities())
+    candidates.push_back({done + quantity.full_name(), quantity.meaning});
+  return candidates;
+}
+
 // What stands in --help for a value says what it can be: "dark|light" are its words, "FILE" the name of a file.
 Offer values_of(const CLI::Option& option, const std::string& begun) {
   const std::string placeholder = placeholder_of(option);
   if (placeholder == "NAME")
     return {.candidates = examples()};
+  if (placeholder == "NAME,...")
+    return {.candidates = numbers_after(begun)};
   if (placeholder == "SCENE")
     return {.names = "files", .candidates = examples()};
   if (placeholder == "KEY=VALUE")

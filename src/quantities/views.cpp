@@ -81,7 +81,7 @@ bool has_parts(std::span<const Quantity> quantities, const std::string& name) {
                      [&](const Quantity& quantity) { return quantity.name.starts_with(name + "."); });
 }
 
-Value value_of(const Json& json, const Quantity& quantity) {
+Value read_value(const Json& json, const Quantity& quantity) {
   if (json.is_null())
     return Unknown{};
   if (json.is_number_unsigned())
@@ -113,7 +113,7 @@ void add_others(Record& record, const Json& json, const std::string& object, con
     if (value.is_object())
       add_others(record, value, path + ".", known);
     else if (!value.is_null())
-      record.entries.push_back({word(path, "", ""), value_of(value, word(path, "", ""))});
+      record.entries.push_back({word(path, "", ""), read_value(value, word(path, "", ""))});
   }
 }
 
@@ -182,11 +182,11 @@ std::string in_hours(const Value& value, const Unit& unit) {
                            : fmt::format(" = {} h", figures(*seconds / 3600.0, 2));
 }
 
-} // namespace
-
-Json or_null(const std::optional<double>& number) {
-  return number && std::isfinite(*number) ? Json(*number) : Json(nullptr);
-}
+// A number under each of its names: in each of its systems of units, and its error or scatter once.
+struct NamedValue {
+  std::string name;
+  Value value; // never Uncertain
+};
 
 std::vector<NamedValue> named_values(const Entry& entry, const PatchUnits& units, std::optional<UnitSystem> system) {
   const Quantity& quantity = entry.quantity;
@@ -201,6 +201,12 @@ std::vector<NamedValue> named_values(const Entry& entry, const PatchUnits& units
     with_spread = false;
   }
   return all;
+}
+
+} // namespace
+
+Json or_null(const std::optional<double>& number) {
+  return number && std::isfinite(*number) ? Json(*number) : Json(nullptr);
 }
 
 Json json_of(const Record& record, std::optional<UnitSystem> system) {
@@ -220,7 +226,7 @@ Record record_of(const Json& json, std::span<const Quantity> quantities) {
     if (!value || (value->is_object() && has_parts(quantities, name)))
       continue;
     known.insert(name);
-    record.entries.push_back({quantity, value_of(*value, quantity)});
+    record.entries.push_back({quantity, read_value(*value, quantity)});
   }
   add_others(record, json, "", known);
   return record;

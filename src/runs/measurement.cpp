@@ -1,8 +1,8 @@
 #include <keeler/runs/measurement.hpp>
 
 #include <keeler/cells/overlap.hpp>
-#include <keeler/diagnostics/patch_units.hpp>
 #include <keeler/diagnostics/surface.hpp>
+#include <keeler/runs/patch_units.hpp>
 
 #include <fmt/format.h>
 

@@ -21,7 +21,7 @@ bool earlier(const fs::path& a, const fs::path& b) {
   return x.size() != y.size() ? x.size() < y.size() : x < y;
 }
 
-constexpr double rounding = 1.0 + 1e-9; // of times in orbits
+constexpr double time_rounding = 1.0 + 1e-9; // of times in orbits
 
 Snapshot load_snapshot(const fs::path& file) {
   Snapshot snapshot = read_snapshot(file);
@@ -67,7 +67,8 @@ StoredPatches load_patches(const fs::path& path, double orbits) {
   StoredPatches stored;
   for (auto file = files.rbegin(); file != files.rend(); ++file) {
     Snapshot snapshot = load_snapshot(*file);
-    if (!stored.patches.empty() && snapshot.patch.time_orbits < stored.patches.back().time_orbits - orbits * rounding)
+    if (!stored.patches.empty() &&
+        snapshot.patch.time_orbits < stored.patches.back().time_orbits - orbits * time_rounding)
       break;
     take(stored, std::move(snapshot), *file);
     std::rotate(stored.patches.begin(), stored.patches.end() - 1, stored.patches.end()); // oldest first
@@ -79,9 +80,9 @@ StoredPatches load_patches_between(const fs::path& folder, double since, double 
   StoredPatches stored;
   for (const fs::path& file : snapshots_in(folder)) {
     Snapshot snapshot = load_snapshot(file);
-    if (snapshot.patch.time_orbits > until * rounding)
+    if (snapshot.patch.time_orbits > until * time_rounding)
       break;
-    if (snapshot.patch.time_orbits * rounding >= since)
+    if (snapshot.patch.time_orbits * time_rounding >= since)
       take(stored, std::move(snapshot), file);
   }
   if (stored.patches.empty())

@@ -45,6 +45,10 @@ offers none drift gravity step -- bench ''
 only 3
 offers none drift -- help bench dr
 offers none certified -- bench drift --finder ''
+offers none toomre_q toomre_q_without_waves -- analyze run --only toom
+only 2
+offers none toomre_q,optical_depth -- analyze run --only toomre_q,opt
+only 1
 offers none -- run scene.toml --wall-time ''
 only 0
 "$keeler" new --list | cut -d ' ' -f 1 >examples

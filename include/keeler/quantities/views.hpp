@@ -7,14 +7,6 @@
 
 namespace keeler {
 
-/// A number under each of its names: the quantity in each of its systems of units, and its error or scatter.
-struct NamedValue {
-  std::string name;
-  Value value; ///< never Uncertain
-};
-std::vector<NamedValue> named_values(const Entry& entry, const PatchUnits& units,
-                                     std::optional<UnitSystem> system = std::nullopt);
-
 /// Null where it is not known or not finite.
 nlohmann::ordered_json or_null(const std::optional<double>& number);
 

@@ -1,4 +1,4 @@
-#include <keeler/diagnostics/patch_units.hpp>
+#include <keeler/runs/patch_units.hpp>
 
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
