@@ -1,5 +1,6 @@
 #include <keeler/batch/quantities.hpp>
 
+#include <keeler/core/error.hpp>
 #include <keeler/diagnostics/clusters.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/runs/measurement.hpp>
@@ -124,12 +125,21 @@ RunQuantities::RunQuantities(const std::vector<std::string>& more) {
       largest_cluster);
   add_measured(known("wake_contrast"), wakes_in);
   require_names(measured, more);
-  for (const std::string& name : more)
-    for (const Quantity& quantity : measured)
-      if (quantity.is_called(name) && !find(quantity.full_name())) {
-        analyzes_ = true;
-        add_measured(quantity, analysis_in);
-      }
+  for (const std::string& name : more) {
+    bool has_column = false;
+    for (const Quantity& quantity : measured) {
+      if (!quantity.is_called(name) || quantity.shape == Shape::other)
+        continue;
+      has_column = true;
+      if (find(quantity.full_name()))
+        continue;
+      analyzes_ = true;
+      add_measured(quantity, analysis_in);
+    }
+    if (!has_column)
+      throw UsageError(
+          fmt::format("'{}' is no plain number, so no table of runs has a column for it; leave it out", name));
+  }
 }
 
 void RunQuantities::add(const Quantity& quantity, const Reading& number) {

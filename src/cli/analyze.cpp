@@ -48,6 +48,8 @@ void write_snapshots(const fs::path& file, const StoredPatches& stored, const An
     rows.push_back(row_of(options.numbers.chosen(record_of(measure({&patch, 1}, transport, options.settings))),
                           options.numbers.system()));
   }
+  if (rows.front().is_null())
+    throw UsageError("none of the numbers of --only has a column in --csv; lists and words are in --json");
   write_table(file, csv_with_gaps(rows));
 }
 

@@ -22,25 +22,26 @@ bool has_speedup(Timed t) {
   return t.ranks > 1 || threads() > 1;
 }
 
-TimedRows phase_rows(const std::string& object) {
+TimedRows phase_rows(const std::string& object, const std::string& before) {
   const auto phase = [&](const char* name, const char* label, const char* meaning) {
-    return three_digits((object + "." + name).c_str(), ns, label, meaning);
+    return three_digits((object + "." + name).c_str(), ns, (before + label).c_str(), meaning);
   };
-  return {{phase("build", "    build", "making neighbour lists"), [](Timed t) -> Value { return t.drift_split.build; }},
-          {phase("reject", "    reject", "leaving out pairs that cannot meet in the step"),
+  return {{phase("build", "build", "making neighbour lists"), [](Timed t) -> Value { return t.drift_split.build; }},
+          {phase("reject", "reject", "leaving out pairs that cannot meet in the step"),
            [](Timed t) -> Value { return t.drift_split.reject; }},
-          {phase("solve", "    solve", "the finder on the rest, at the start of the step"),
+          {phase("solve", "solve", "the finder on the rest, at the start of the step"),
            [](Timed t) -> Value { return t.drift_split.solve; }},
-          {phase("events", "    events", "carrying out contacts, and finding those that follow"),
+          {phase("events", "events", "carrying out contacts, and finding those that follow"),
            [](Timed t) -> Value { return t.drift_split.events; }}};
 }
 
 // How often things happen, and what the machine can do.
 TimedRows count_rows() {
   return {
-      {three_digits("pairs_per_particle", unit::none, "pairs tested", "a particle and step, when neighbours are found"),
+      {three_digits("pairs_per_particle", unit::none, "pairs tested, a particle",
+                    "in a step, when neighbours are found"),
        [](Timed t) -> Value { return t.per_particle_step(t.pairs_tested); }},
-      {three_digits("survivors_per_particle", unit::none, "pairs for the finder", "a particle, at the start of a step"),
+      {three_digits("survivors_per_particle", unit::none, "pairs for the finder, a particle", "at the start of a step"),
        [](Timed t) -> Value { return t.per_particle_step(t.survivors); }},
       {{"contacts", unit::none, "", "fast and slow, in all repeats"}, [](Timed t) -> Value { return t.contacts; }},
       {{"recontacts", unit::none, "", "contacts of a pair that has met in the same step"},
@@ -116,17 +117,17 @@ TimedRows step_rows() {
         {three_digits("split.gravity", ns, "  gravity", "self-gravity"),
          [](Timed t) -> Value { return t.split.gravity; }},
         {three_digits("split.kick", ns, "  kick", "of the elements"), [](Timed t) -> Value { return t.split.kick; }}},
-       phase_rows("drift_split"),
+       phase_rows("drift_split", "  drift: "),
        {{three_digits("drift_over_pair", unit::none, "drift over a pair's time", "times the yardstick `pair_ns`"),
          [](Timed t) -> Value { return t.split.drift / t.yardsticks.pair_ns; }},
         {three_digits("ns_drift_per_collision", ns, "drift for each contact", "drift over contacts"),
          [](Timed t) -> Value { return t.per_contact(t.split.drift); }},
         {three_digits("ns_events_per_collision", ns, "events for each contact", "events over contacts"),
          [](Timed t) -> Value { return t.per_contact(t.drift_split.events); }},
-        {three_digits("collisions_per_particle_step", unit::none, "collisions",
-                      "faster than v_cut, a particle and step"),
+        {three_digits("collisions_per_particle_step", unit::none, "collisions a particle and step",
+                      "faster than v_cut"),
          [](Timed t) -> Value { return 2.0 * t.per_particle_step(t.collisions); }},
-        {three_digits("contacts_per_particle_step", unit::none, "contacts", "fast and slow, a particle and step"),
+        {three_digits("contacts_per_particle_step", unit::none, "contacts a particle and step", "fast and slow"),
          [](Timed t) -> Value { return 2.0 * t.per_particle_step(t.contacts); }}},
        count_rows(),
        rank_rows(),
@@ -137,9 +138,9 @@ TimedRows drift_rows() {
   return all_of(
       {{{three_digits("ns_per_particle_step", ns, "a particle and step", "median of the repeats"),
          [](Timed t) -> Value { return t.ns_per_particle_step; }},
-        {three_digits("split.advance", ns, "    advance", "of the epicycles' phases"),
+        {three_digits("split.advance", ns, "  advance", "of the epicycles' phases"),
          [](Timed t) -> Value { return t.split.advance; }}},
-       phase_rows("split"),
+       phase_rows("split", "  "),
        {{three_digits("drift_over_pair", unit::none, "that over a pair's time", "times the yardstick `pair_ns`"),
          [](Timed t) -> Value { return t.ns_per_particle_step / t.yardsticks.pair_ns; }},
         {three_digits("ns_per_collision", ns, "for each contact", "all of that time over contacts"),
@@ -182,8 +183,8 @@ std::vector<QuantityRow<TimedDrift>> drift_setting_rows() {
        [](Drift d) -> Value { return d.bench.ns_per_call; }},
       {three_digits("calls_per_particle_step", unit::none, "finder calls", "a particle, at the start of a step"),
        [](Drift d) -> Value { return d.bench.calls_per_particle_step; }},
-      {three_digits("collisions_per_particle_orbit", unit::none, "collisions",
-                    "faster than v_cut, a particle and orbit"),
+      {three_digits("collisions_per_particle_orbit", unit::none, "collisions a particle and orbit",
+                    "faster than v_cut"),
        [](Drift d) -> Value {
          return 2.0 * d.bench.timed.per_particle_step(d.bench.timed.collisions) / d.settings.step_orbits;
        }},

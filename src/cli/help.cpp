@@ -53,12 +53,15 @@ ExitCode list_numbers() {
 // What a number is, wherever it is told. False where none has the name.
 bool tell_number(const std::string& name) {
   bool is_known = false;
-  for (const NumberTable& table : number_tables())
+  for (const NumberTable& table : number_tables()) {
+    std::string told;
     for (const Quantity& quantity : table.quantities)
-      if (quantity.is_called(name)) {
-        print("{}\n{}", table.title, line_of(quantity));
-        is_known = true;
-      }
+      if (quantity.is_called(name))
+        told += line_of(quantity);
+    if (!told.empty())
+      print("{}\n{}", table.title, told);
+    is_known = is_known || !told.empty();
+  }
   return is_known;
 }
 
@@ -74,6 +77,10 @@ const CLI::App& find_command(const CLI::App& program, const std::vector<std::str
         found = below;
     }
     if (!found) {
+      if (command == &program)
+        for (const NumberTable& table : number_tables())
+          for (const Quantity& quantity : table.quantities)
+            names.insert(names.end(), {quantity.name, quantity.full_name()});
       const std::string near = closest(word, names);
       throw UsageError(fmt::format("'{}' has no command '{}'; {}", full_name(*command), word,
                                    near.empty()

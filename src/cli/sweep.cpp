@@ -32,7 +32,7 @@ void print_json(const SweepResult& result) {
   json["runs"] = result.runs;
   json["finished"] = result.finished;
   json["failed"] = result.failed;
-  json["points"] = result.points;
+  json["points"] = *result.points;
   print("{}\n", json_text(json, 2));
 }
 

@@ -57,8 +57,8 @@ Value value_of(const std::optional<double>& number, const std::string& why_not) 
   return number && std::isfinite(*number) ? Value(*number) : Value(Unknown{why_not});
 }
 
-Value value_of(const Measured& number) {
-  return number.value ? Value(Uncertain{*number.value, number.scatter}) : Value(Unknown{});
+Value value_of(const Measured& number, const std::string& why_not) {
+  return number.value ? Value(Uncertain{*number.value, number.scatter}) : Value(Unknown{why_not});
 }
 
 Value value_of(const std::optional<Estimate>& number) {
@@ -75,18 +75,33 @@ void require_names(std::span<const Quantity> quantities, std::span<const std::st
     for (const Quantity& quantity : quantities)
       known.insert(known.end(), {quantity.name, quantity.full_name()});
     const std::string near = closest(name, known);
-    throw UsageError(
-        fmt::format("there is no number '{}' here; {}", name,
-                    near.empty() ? "\"keeler help numbers\" lists them" : fmt::format("did you mean '{}'?", near)));
+    throw UsageError(fmt::format("there is no number '{}' here; {}", name,
+                                 near.empty()
+                                     ? "\"keeler help numbers\" lists them, and says which need something of the scene"
+                                     : fmt::format("did you mean '{}'?", near)));
   }
 }
+
+namespace {
+
+// Texts tell it in any case.
+Entry asked_for(Entry entry) {
+  if (entry.quantity.label.empty())
+    entry.quantity.label = entry.quantity.name;
+  if (const auto* const list = std::get_if<std::vector<Record>>(&entry.value); list && list->empty())
+    entry.quantity.label += ": none";
+  return entry;
+}
+
+} // namespace
 
 Record only(const Record& record, std::span<const std::string> names) {
   require_names(quantities_of(record), names);
   Record chosen{{}, record.units};
   for (const std::string& name : names)
-    std::copy_if(record.entries.begin(), record.entries.end(), std::back_inserter(chosen.entries),
-                 [&](const Entry& entry) { return entry.quantity.is_called(name); });
+    for (const Entry& entry : record.entries)
+      if (entry.quantity.is_called(name))
+        chosen.entries.push_back(asked_for(entry));
   return chosen;
 }
 

@@ -68,7 +68,7 @@ const Json* find_part(const Json& json, const std::string& name) {
   if (json.is_null())
     return nullptr;
   if (!json.is_object())
-    throw UsageError(fmt::format("'{}' is no part of an object", name));
+    throw UsageError(fmt::format("a part '{}' is asked of what is no object", name));
   const std::size_t dot = name.find('.');
   const auto part = json.find(name.substr(0, dot));
   if (part == json.end())
@@ -154,19 +154,21 @@ std::string line_of(const std::string& label, const std::string& text) {
 // "wavelength 60 m, density amplitude 0.02".
 std::string inline_text(const Record& record, std::optional<UnitSystem> system) {
   std::string all;
-  for (const Entry& entry : record.entries)
-    if (!entry.quantity.label.empty())
-      all +=
-          fmt::format("{}{} {}", all.empty() ? "" : ", ", entry.quantity.label, text_of(entry, record.units, system));
+  for (const Entry& entry : record.entries) {
+    const std::string& label = entry.quantity.label.empty() ? entry.quantity.name : entry.quantity.label;
+    all += fmt::format("{}{} {}", all.empty() ? "" : ", ", label, text_of(entry, record.units, system));
+  }
   return all;
 }
 
 void add_lines(std::string& lines, const Entry& entry, const PatchUnits& units, std::optional<UnitSystem> system) {
   const std::string& label = entry.quantity.label;
-  if (const auto* const records = std::get_if<std::vector<Record>>(&entry.value))
+  if (const auto* const records = std::get_if<std::vector<Record>>(&entry.value)) {
+    if (records->empty() && label.ends_with(": none"))
+      lines += label + "\n";
     for (const Record& record : *records)
       lines += line_of(label, inline_text(record, system));
-  else if (const auto* const texts = std::get_if<std::vector<std::string>>(&entry.value))
+  } else if (const auto* const texts = std::get_if<std::vector<std::string>>(&entry.value))
     for (const std::string& text : *texts)
       lines += fmt::format("{}: {}\n", ascii(label), ascii(text)); // whole sentences
   else
@@ -278,7 +280,7 @@ std::vector<std::vector<std::string>> table_of(const Record& record) {
     if (const auto* const records = std::get_if<std::vector<Record>>(&entry.value);
         !records && !entry.quantity.label.empty())
       rows.push_back({entry.quantity.label, text_of(entry, record.units)});
-    else if (records)
+    else if (records && !entry.quantity.label.empty())
       for (const Record& one : *records)
         rows.push_back({entry.quantity.label, inline_text(one, std::nullopt)});
   return rows;

@@ -287,7 +287,7 @@ RunResult go_on(const RunOptions& options, RunRequests& requests) {
   ranks.together([&] { scene = until(std::move(loaded.run.scene), options, loaded.run.state.step); });
   const std::int64_t step = start.checkpoint_step = loaded.run.state.step;
   ranks.first_does([&] { folder.cut_log(); });
-  if (step >= scene.time.end_step && ranks.from_first(says_finished(folder.summary()))) {
+  if (step >= scene.time.end_step && ranks.from_first(says_finished(folder.path()))) {
     ranks.first_does([&] { tell_edited_scene(folder, scene, loaded, options, false); });
     if (options.notice)
       options.notice(fmt::format("the run in '{}' is finished, nothing was changed; --until with a later orbit than "

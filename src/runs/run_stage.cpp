@@ -38,7 +38,7 @@ RunStage run_stage(const std::filesystem::path& folder) {
   std::error_code unknown;
   if (!std::filesystem::exists(folder, unknown) || std::filesystem::is_empty(folder, unknown))
     return RunStage::absent;
-  if (says_finished(RunFolder(folder).summary()))
+  if (says_finished(folder))
     return RunStage::finished;
   return list_checkpoints(folder).empty() ? RunStage::begun : RunStage::resumable;
 }

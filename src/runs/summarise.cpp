@@ -115,7 +115,8 @@ std::vector<SummaryRow> state_rows() {
         Spread::none, Forms::si, 2},
        [](From s) -> Value { return s.largest_overlap; }},
       {word("force_error", "error of gravity", "null without gravity and where it was not checked"),
-       [](From) -> Value { return Unknown{"it was not checked"}; }, [](From s) { return !has_force_error(s); }},
+       [](From s) -> Value { return Unknown{s.scene.gravity ? "it was not checked" : "there is none"}; },
+       [](From s) { return !has_force_error(s); }},
       {{"force_error.rms", of_rms, "error of gravity",
         "rms error of the accelerations held against the sum over all pairs and images, in the last check",
         Spread::none, Forms::si, 2},
@@ -165,8 +166,8 @@ std::vector<SummaryRow> energy_rows() {
        [](From s) -> Value { return s.balance.lost * joule(s); }},
       {{"energy_j.residual", joules, "  rounding", "what the books leave", Spread::none, Forms::si, 2},
        [](From s) -> Value { return s.balance.residual * joule(s); }},
-      {word("energy_balance", "", "null where the series does not show it"), [](From) -> Value { return Unknown{}; },
-       [](From s) { return !has_balance(s); }},
+      {word("energy_balance", "", "loss over work of the shear; null where the series does not show it"),
+       [](From) -> Value { return Unknown{}; }, [](From s) { return !has_balance(s); }},
       {{"energy_balance.ratio", unit::none, "energy balance",
         "energy lost over the work of the shear on all stresses where the run is steady: 1 but for its error",
         Spread::none, Forms::si, 4},
@@ -181,7 +182,7 @@ std::vector<SummaryRow> energy_rows() {
       {{"energy_balance.since_orbit", unit::unnamed("orbits"), "  since", "beginning of the part that they are of"},
        [](From s) -> Value { return s.transport->since_orbit; },
        has_balance},
-      {{"energy_balance.until_orbit", unit::unnamed("orbits"), "  until", "its end"},
+      {{"energy_balance.until_orbit", unit::unnamed("orbits"), "  until", "end of that part"},
        [](From s) -> Value { return s.transport->until_orbit; },
        has_balance},
       {word("energy_balance.steady", "  steady", "whether the run is steady there"),
@@ -196,12 +197,14 @@ double passes(From s) {
 
 std::vector<SummaryRow> cost_rows() {
   return {
-      {{"wall", unit::seconds, "wall time", "of this command"}, [](From s) -> Value { return s.cost.wall_s; }},
-      {{"cpu", unit::seconds, "processor time", "of this command"}, [](From s) -> Value { return s.cost.cpu_s; }},
-      {{"orbits_done", unit::unnamed("orbits"), "", "by this command"},
-       [](From s) -> Value { return s.simulation.orbits() - s.cost.first_orbit; }},
       {{"peak_memory", unit::megabytes, "memory at most", "10⁶ bytes; null where the system does not say"},
        [](From) { return value_of(std::optional(1e-6 * peak_memory())); }},
+      {{"wall", unit::seconds, "wall time", "wall time of this command"},
+       [](From s) -> Value { return s.cost.wall_s; }},
+      {{"cpu", unit::seconds, "processor time", "processor time of this command"},
+       [](From s) -> Value { return s.cost.cpu_s; }},
+      {{"orbits_done", unit::unnamed("orbits"), "", "by this command"},
+       [](From s) -> Value { return s.simulation.orbits() - s.cost.first_orbit; }},
       {{"split.start", unit::seconds, "  start", "wall time of making or reading the initial state; 0 after a resume"},
        [](From s) -> Value { return s.cost.start_s; }},
       {{"split.drift", unit::seconds, "  drift", "of motion and contacts"},
@@ -257,12 +260,17 @@ std::optional<Transport> transport_of_run(const std::filesystem::path& series, c
   return std::nullopt;
 }
 
-bool says_finished(const std::filesystem::path& summary) {
+bool says_finished(const std::filesystem::path& folder) {
   std::error_code unknown;
-  if (!std::filesystem::exists(summary, unknown))
+  if (!std::filesystem::exists(folder / "summary.json", unknown))
     return false;
-  const nlohmann::json json = json_of<nlohmann::json>(read_text(summary));
-  return json.is_object() && json.contains("finished") && json["finished"] == true;
+  try {
+    const Record summary = read_summary(folder);
+    const Value* const finished = find_value(summary, "finished");
+    return finished && std::holds_alternative<bool>(*finished) && std::get<bool>(*finished);
+  } catch (const IoError&) { // a damaged one is written anew
+    return false;
+  }
 }
 
 Record summarise(Simulation& simulation, const Scene& scene, const std::optional<Transport>& transport,

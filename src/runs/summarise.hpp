@@ -39,7 +39,7 @@ struct SummarySource {
 Record summarise(Simulation& simulation, const Scene& scene, const std::optional<Transport>& transport,
                  const RunResult& result, const RunCost& cost, const Provenance& provenance);
 
-/// Whether the folder's summary is that of a finished run. False when there is none.
-bool says_finished(const std::filesystem::path& summary);
+/// Whether the folder's summary is that of a finished run. False when there is none, or one that is damaged.
+bool says_finished(const std::filesystem::path& folder);
 
 } // namespace keeler

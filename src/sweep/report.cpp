@@ -68,7 +68,8 @@ void write_report(const Grid& grid, const Plan& plan, const std::vector<RunRow>&
                                count_of(runs, RunStatus::failed), count_of(runs, RunStatus::unfinished)));
   report.paragraph(fmt::format(
       "Each run is measured {}. A number is the mean over the seeds, its error the standard error by the spread of the "
-      "seeds; of one seed it is that run's own error by blocks. `steady` counts the runs that are steady in the part "
+      "seeds; of one seed it is that run's own error by blocks, where it has one. `steady` counts the runs that are "
+      "steady in the part "
       "measured.",
       grid.since ? fmt::format("from orbit {} on", figures(*grid.since)) : "from where it becomes steady"));
   report.heading("Points");

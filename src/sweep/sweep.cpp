@@ -137,7 +137,7 @@ SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
   result.failed = count_of(runs, RunStatus::failed);
   result.unmeasurable = static_cast<std::size_t>(
       std::count_if(runs.begin(), runs.end(), [](const RunRow& run) { return !run.measurable; }));
-  result.points = points_as_json(grid, plan, points);
+  result.points = std::make_shared<const Json>(points_as_json(grid, plan, points));
   return result;
 }
 

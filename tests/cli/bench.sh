@@ -59,7 +59,7 @@ refuses "no interval" "--kick-every" bench step --kick-every 0
 small_scene
 runs 0 run "$work/scene.toml" -o "$work/run" --set time.end=0.01 --set gravity.kick_every=5 --set gravity.opening_angle=0.5
 runs 0 bench step --from "$work/run/snap_000001.hdf" --repeats 1
-for words in "collisions                         0" "contacts                           0" "    build  " \
+for words in "collisions a particle and step     " "contacts a particle and step       " "  drift: build  " \
   "drift over a pair's time" "particles                          400" "solver                             tree" "opening_angle 0.5" \
   "steps for each kick                5"; do
   prints "bench step of a snapshot as text" "$words"

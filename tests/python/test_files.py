@@ -122,6 +122,10 @@ class AsTheProgram(InAFolder):
         self.assertEqual(run.summary.quantity("wall_s").unit, "s")
         numbers = run.analyze(since=0.0)
         self.assertEqual(numbers.error("total_viscosity_m2_s"), numbers["total_viscosity_error_m2_s"])
+        in_radii = numbers["total_viscosity_r2_omega"] / numbers["total_viscosity_m2_s"]
+        self.assertEqual(
+            numbers.error("total_viscosity_r2_omega"), numbers["total_viscosity_error_m2_s"] * in_radii
+        )
         self.assertIsNone(numbers.error("toomre_q"))
         self.assertEqual(numbers.quantity("total_viscosity_r2_omega").unit, "r² Ω")
         with self.assertRaisesRegex(keeler.UsageError, "no number 'toomreq'"):

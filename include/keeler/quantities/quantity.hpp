@@ -82,7 +82,7 @@ struct Record {
 
 /// A number that is not finite is not known.
 Value value_of(const std::optional<double>& number, const std::string& why_not = {});
-Value value_of(const Measured& number);
+Value value_of(const Measured& number, const std::string& why_not = {});
 Value value_of(const std::optional<Estimate>& number);
 
 /// A quantity, and how it is read from results.

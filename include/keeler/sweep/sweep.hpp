@@ -12,6 +12,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -31,11 +32,11 @@ struct SweepSettings {
 /// How the folder stands.
 struct SweepResult {
   std::size_t runs = 0, finished = 0, failed = 0; ///< of the grid
-  std::size_t unmeasurable = 0;  ///< failed ones that came to their end, but whose files cannot be read
-  bool began = false;            ///< runs were to be started
-  bool stopped = false;          ///< on request; the tables were not made
-  nlohmann::ordered_json points; ///< the rows of points.csv, a list
-  std::string figure_fault;      ///< why the figure could not be drawn, where it should have been
+  std::size_t unmeasurable = 0; ///< failed ones that came to their end, but whose files cannot be read
+  bool began = false;           ///< runs were to be started
+  bool stopped = false;         ///< on request; the tables were not made
+  std::shared_ptr<const nlohmann::ordered_json> points; ///< the rows of points.csv, a list; null where there are none
+  std::string figure_fault; ///< why the figure could not be drawn, where it should have been
 };
 
 /// Carries out the runs that are neither finished nor held by another program, and makes the tables. Everything is

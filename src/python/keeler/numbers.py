@@ -8,7 +8,7 @@ from .errors import UsageError
 
 class Quantity(NamedTuple):
     """A number that ``analyze()`` gives: its name there, its unit, what it is, and the name of the number that stands
-    beside it as its standard error or its scatter (None without one)."""
+    beside it, or beside the same in SI, as its standard error or its scatter (None without one)."""
 
     name: str
     unit: str
@@ -18,7 +18,7 @@ class Quantity(NamedTuple):
 
 def quantities():
     """All numbers that ``analyze()`` gives, in their order: a dictionary of names and Quantities."""
-    return {name: Quantity(name, *about) for name, about in _core.quantities().items()}
+    return {name: Quantity(name, *about[:3]) for name, about in _core.quantities().items()}
 
 
 class Numbers(dict):
@@ -32,14 +32,16 @@ class Numbers(dict):
     def quantity(self, name):
         """The Quantity of that name: unit and meaning. Raises UsageError."""
         if name not in self._about:
-            raise UsageError(f"there is no number '{name}' here; keeler.quantities() lists them")
-        return Quantity(name, *self._about[name])
+            raise UsageError(f"there is no number '{name}' here; keeler.quantities() lists them with their units")
+        return Quantity(name, *self._about[name][:3])
 
     def error(self, name):
         """The standard error or the scatter of the number of that name, in its unit; None where none is known. Raises
         UsageError."""
-        spread = self.quantity(name).spread
-        return None if spread is None else self[spread]
+        spread, si = self.quantity(name).spread, self._about[name][3]
+        if spread is None or self.get(spread) is None or not self.get(si):
+            return None
+        return self[spread] * (self[name] / self[si])
 
 
 Numbers.__doc__ += "\n\n" + "\n".join(

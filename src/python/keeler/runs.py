@@ -147,7 +147,8 @@ def sweep(grid, folder, *, jobs=None, quantities=()):
     with _processes.folder() as place:
         grid = _written(grid, place) if isinstance(grid, dict) else _arguments.path(grid, "sweep")
         try:
-            more = ["--quantities", ",".join(quantities)] if quantities else []
+            names = [quantities] if isinstance(quantities, str) else [str(name) for name in quantities]
+            more = ["--quantities", ",".join(names)] if names else []
             _call(["sweep", grid, "-o", folder, *(["--jobs", jobs] if jobs else []), *more])
         except Error as error:
             raise type(error)(str(error).replace(f"{place}{os.sep}", "")) from None
