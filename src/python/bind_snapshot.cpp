@@ -5,6 +5,7 @@
 #include "numbers.hpp"
 #include "snapshot.hpp"
 
+#include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/files/new_file.hpp>
