@@ -187,19 +187,21 @@ RunNumbers RunQuantities::measure(const fs::path& folder, const Scene& scene, st
   run.series = read_series(folder / "series.csv");
   run.last = std::move(load_newest_patch(folder).patches.front());
   numbers.particle_count = run.last.size();
-  const TransportReport report =
-      TransportReport::of_run(folder, RingScale::of(run.last, !scene.external_forces.empty()), {since, std::nullopt});
+  const TransportReport report = TransportReport::of_series(
+      run.series, RingScale::of(run.last, !scene.external_forces.empty()), {since, std::nullopt});
   if (!report.transport())
     return numbers;
   const double first = report.transport()->since_orbit, until = report.transport()->until_orbit;
   run.rows = rows_between(run.series.of("time_orbits"), first, until);
   run.units = units_of(run.last);
   run.transport = record_of(report, run.units);
-  const std::vector<Patch> patches = load_patches(folder, std::max(0.0, run.last.time_orbits - first)).patches;
-  if (analyzes_)
-    run.analysis = record_of(keeler::measure(patches, report));
-  if (scene.gravity)
-    run.wakes = analyzes_ ? run.analysis : wakes_of(patches);
+  if (analyzes_ || scene.gravity) {
+    const std::vector<Patch> patches = load_patches(folder, std::max(0.0, run.last.time_orbits - first)).patches;
+    if (analyzes_)
+      run.analysis = record_of(keeler::measure(patches, report));
+    if (scene.gravity)
+      run.wakes = analyzes_ ? run.analysis : wakes_of(patches);
+  }
   numbers.since_orbit = first;
   numbers.until_orbit = until;
   numbers.steady = report.transport()->steady;

@@ -1,7 +1,7 @@
 // keeler bench drift: the drift phase.
 #include "bench.hpp"
 #include "bench_numbers.hpp"
-#include "print.hpp"
+#include "print_record.hpp"
 
 #include <keeler/bench/drift.hpp>
 #include <keeler/core/json_of_files.hpp>

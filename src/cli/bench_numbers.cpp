@@ -10,7 +10,7 @@ using TimedRows = std::vector<QuantityRow<TimedSteps>>;
 
 constexpr Unit ns = unit::unnamed("ns"), times = unit::unnamed("times");
 
-Quantity three_digits(const char* name, const Unit& unit, const char* label, const char* meaning) {
+Quantity three_digits(const std::string& name, const Unit& unit, const std::string& label, const char* meaning) {
   return {name, unit, label, meaning, Spread::none, Forms::si, 3};
 }
 
@@ -24,7 +24,7 @@ bool has_speedup(Timed t) {
 
 TimedRows phase_rows(const std::string& object, const std::string& before) {
   const auto phase = [&](const char* name, const char* label, const char* meaning) {
-    return three_digits((object + "." + name).c_str(), ns, (before + label).c_str(), meaning);
+    return three_digits(object + "." + name, ns, before + label, meaning);
   };
   return {{phase("build", "build", "making neighbour lists"), [](Timed t) -> Value { return t.drift_split.build; }},
           {phase("reject", "reject", "leaving out pairs that cannot meet in the step"),

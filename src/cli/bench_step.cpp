@@ -1,7 +1,7 @@
 // keeler bench step: a whole step with self-gravity and collisions.
 #include "bench.hpp"
 #include "bench_numbers.hpp"
-#include "print.hpp"
+#include "print_record.hpp"
 
 #include <keeler/bench/step.hpp>
 #include <keeler/core/json_of_files.hpp>

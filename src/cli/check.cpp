@@ -1,7 +1,7 @@
 // keeler check: what a scene means, before anything runs.
 #include "check_numbers.hpp"
 #include "command.hpp"
-#include "print.hpp"
+#include "print_record.hpp"
 #include "scene_arguments.hpp"
 
 #include <keeler/bench/yardsticks.hpp>

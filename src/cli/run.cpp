@@ -2,14 +2,11 @@
 #include "command.hpp"
 #include "common_options.hpp"
 #include "messages.hpp"
-#include "print.hpp"
+#include "print_record.hpp"
 #include "progress_line.hpp"
 #include "results.hpp"
 #include "scene_arguments.hpp"
 #include "signals.hpp"
-
-#include <keeler/core/json_of_files.hpp>
-#include <keeler/quantities/views.hpp>
 
 #include <fmt/format.h>
 
@@ -53,10 +50,9 @@ RunOptions run_options(const JobOptions& job, const std::vector<std::string>& ar
 ExitCode report(const JobOptions& job, const RunResult& result, const Ranks& ranks) {
   if (!ranks.is_first())
     return result.finished ? ExitCode::done : ExitCode::stopped;
-  if (job.json)
-    print("{}\n", json_text(json_of(result.summary), 2));
-  else
-    print("{}{:<34} {}\n", lines_of(result.summary), "folder", job.folder);
+  print_record(result.summary, job.json);
+  if (!job.json)
+    print("{:<34} {}\n", "folder", job.folder);
   if (result.finished)
     return ExitCode::done;
   say(fmt::format("stopped at step {} with a checkpoint; continue with \"{}\"", result.step, result.resume_command));

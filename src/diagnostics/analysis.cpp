@@ -32,9 +32,6 @@ void add(Analysis& sum, const Patch& patch, double share) {
   sum.critical_wavelength_m += share * critical_wavelength(patch);
   sum.toomre_q += share * toomre_q(patch);
   sum.scale_height_m += share * scale_height(patch);
-  sum.mean_eccentricity_m += share * mean_eccentricity(patch);
-  sum.mean_inclination_m += share * mean_inclination(patch);
-  sum.filling_factor += share * midplane_filling(patch);
   sum.translational_viscosity_m2_s += share * translational_viscosity(patch) * omega;
   sum.random_energy_m2_s2 += share * (energy.horizontal + energy.vertical) * omega * omega;
 }

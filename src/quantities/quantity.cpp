@@ -20,9 +20,8 @@ constexpr UnitSystem all_systems[] = {UnitSystem::si, UnitSystem::radius, UnitSy
 } // namespace
 
 Quantity Quantity::along(std::size_t axis) const {
-  Quantity component = *this;
+  Quantity component = of_shape(*this, Shape::number);
   component.name += fmt::format("_{}", "xyz"[axis]);
-  component.shape = Shape::number;
   return component;
 }
 
@@ -47,10 +46,13 @@ bool Quantity::is_called(const std::string& asked) const {
          });
 }
 
-Quantity word(const std::string& name, const std::string& label, const std::string& meaning) {
-  Quantity quantity{name, unit::none, label, meaning};
-  quantity.shape = Shape::other;
+Quantity of_shape(Quantity quantity, Shape shape) {
+  quantity.shape = shape;
   return quantity;
+}
+
+Quantity word(const std::string& name, const std::string& label, const std::string& meaning) {
+  return of_shape({name, unit::none, label, meaning}, Shape::other);
 }
 
 Value value_of(const std::optional<double>& number, const std::string& why_not) {
@@ -82,26 +84,13 @@ void require_names(std::span<const Quantity> quantities, std::span<const std::st
   }
 }
 
-namespace {
-
-// Texts tell it in any case.
-Entry asked_for(Entry entry) {
-  if (entry.quantity.label.empty())
-    entry.quantity.label = entry.quantity.name;
-  if (const auto* const list = std::get_if<std::vector<Record>>(&entry.value); list && list->empty())
-    entry.quantity.label += ": none";
-  return entry;
-}
-
-} // namespace
-
 Record only(const Record& record, std::span<const std::string> names) {
   require_names(quantities_of(record), names);
-  Record chosen{{}, record.units};
+  Record chosen{{}, record.units, true};
   for (const std::string& name : names)
     for (const Entry& entry : record.entries)
       if (entry.quantity.is_called(name))
-        chosen.entries.push_back(asked_for(entry));
+        chosen.entries.push_back(entry);
   return chosen;
 }
 

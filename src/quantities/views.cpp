@@ -147,32 +147,45 @@ std::string text_of(const Value& value, int digits) {
       value);
 }
 
-std::string line_of(const std::string& label, const std::string& text) {
-  return fmt::format("{:<{}} {}\n", ascii(label), label_width, ascii(text));
+const std::string& label_of(const Quantity& quantity) {
+  return quantity.label.empty() ? quantity.name : quantity.label;
 }
 
 // "wavelength 60 m, density amplitude 0.02".
 std::string inline_text(const Record& record, std::optional<UnitSystem> system) {
   std::string all;
-  for (const Entry& entry : record.entries) {
-    const std::string& label = entry.quantity.label.empty() ? entry.quantity.name : entry.quantity.label;
-    all += fmt::format("{}{} {}", all.empty() ? "" : ", ", label, text_of(entry, record.units, system));
-  }
+  for (const Entry& entry : record.entries)
+    all +=
+        fmt::format("{}{} {}", all.empty() ? "" : ", ", label_of(entry.quantity), text_of(entry, record.units, system));
   return all;
 }
 
-void add_lines(std::string& lines, const Entry& entry, const PatchUnits& units, std::optional<UnitSystem> system) {
-  const std::string& label = entry.quantity.label;
-  if (const auto* const records = std::get_if<std::vector<Record>>(&entry.value)) {
-    if (records->empty() && label.ends_with(": none"))
-      lines += label + "\n";
-    for (const Record& record : *records)
-      lines += line_of(label, inline_text(record, system));
-  } else if (const auto* const texts = std::get_if<std::vector<std::string>>(&entry.value))
-    for (const std::string& text : *texts)
-      lines += fmt::format("{}: {}\n", ascii(label), ascii(text)); // whole sentences
-  else
-    lines += line_of(label, text_of(entry, units, system));
+struct TextRow {
+  std::string label, text;
+  bool is_sentence = false;
+};
+
+// A row for each record or sentence of a list.
+std::vector<TextRow> rows_of(const Record& record, std::optional<UnitSystem> system) {
+  std::vector<TextRow> rows;
+  for (const auto& [quantity, value] : record.entries) {
+    if (quantity.label.empty() && !record.asked)
+      continue;
+    const std::size_t before = rows.size();
+    const auto* const records = std::get_if<std::vector<Record>>(&value);
+    const auto* const sentences = std::get_if<std::vector<std::string>>(&value);
+    if (records)
+      for (const Record& one : *records)
+        rows.push_back({label_of(quantity), inline_text(one, system)});
+    else if (sentences)
+      for (const std::string& sentence : *sentences)
+        rows.push_back({label_of(quantity), sentence, true});
+    else
+      rows.push_back({label_of(quantity), text_of({quantity, value}, record.units, system)});
+    if (rows.size() == before && record.asked)
+      rows.push_back({label_of(quantity), "none"});
+  }
+  return rows;
 }
 
 // " = 7.2 min": nobody divides by 60 as quickly.
@@ -268,21 +281,16 @@ std::string text_of(const Entry& entry, const PatchUnits& units, std::optional<U
 
 std::string lines_of(const Record& record, std::optional<UnitSystem> system) {
   std::string lines;
-  for (const Entry& entry : record.entries)
-    if (!entry.quantity.label.empty())
-      add_lines(lines, entry, record.units, system);
+  for (const TextRow& row : rows_of(record, system))
+    lines += row.is_sentence ? fmt::format("{}: {}\n", ascii(row.label), ascii(row.text))
+                             : fmt::format("{:<{}} {}\n", ascii(row.label), label_width, ascii(row.text));
   return lines;
 }
 
 std::vector<std::vector<std::string>> table_of(const Record& record) {
   std::vector<std::vector<std::string>> rows;
-  for (const Entry& entry : record.entries)
-    if (const auto* const records = std::get_if<std::vector<Record>>(&entry.value);
-        !records && !entry.quantity.label.empty())
-      rows.push_back({entry.quantity.label, text_of(entry, record.units)});
-    else if (records && !entry.quantity.label.empty())
-      for (const Record& one : *records)
-        rows.push_back({entry.quantity.label, inline_text(one, std::nullopt)});
+  for (const TextRow& row : rows_of(record, std::nullopt))
+    rows.push_back({row.label, row.text});
   return rows;
 }
 

@@ -1,10 +1,9 @@
 #include <keeler/runs/measurement.hpp>
 
 #include <keeler/cells/overlap.hpp>
+#include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/runs/patch_units.hpp>
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -13,9 +12,7 @@ namespace keeler {
 namespace {
 
 using Source = const Measurement&;
-using Report = const TransportReport&;
 using Rows = std::vector<QuantityRow<Measurement>>;
-using Maybe = std::optional<Estimate>;
 
 Value vector_of(const std::array<double, 3>& axes) {
   return std::vector<double>(axes.begin(), axes.end());
@@ -23,11 +20,6 @@ Value vector_of(const std::array<double, 3>& axes) {
 
 Value vector_of(const Vec3& axes) {
   return std::vector<double>{axes.x(), axes.y(), axes.z()};
-}
-
-Quantity shaped(Quantity quantity, Shape shape) {
-  quantity.shape = shape;
-  return quantity;
 }
 
 Rows state_rows() {
@@ -54,19 +46,19 @@ Rows state_rows() {
        [](Source m) -> Value {
          return m.units.viscosity(UnitSystem::gravity) / m.units.viscosity(UnitSystem::radius);
        }},
-      {shaped({"dispersion", unit::metres_per_second, "velocity dispersion",
-               "c_x, c_y, c_z: standard deviation of the velocity beyond the shear, streams of wakes included",
-               Spread::none, Forms::si_and_radius},
-              Shape::vector),
+      {of_shape({"dispersion", unit::metres_per_second, "velocity dispersion",
+                 "c_x, c_y, c_z: standard deviation of the velocity beyond the shear, streams of wakes included",
+                 Spread::none, Forms::si_and_radius},
+                Shape::vector),
        [](Source m) { return vector_of(m.analysis.dispersion_m_s); }},
       {{"scale_height", unit::metres, "scale height", "√⟨z²⟩"},
        [](Source m) -> Value { return m.analysis.scale_height_m; }},
       {{"mean_eccentricity", unit::metres, "", "mean amplitude of the epicycles along the radius"},
-       [](Source m) -> Value { return m.analysis.mean_eccentricity_m; }},
+       [](Source m) -> Value { return m.mean_over_snapshots(mean_eccentricity); }},
       {{"mean_inclination", unit::metres, "", "mean amplitude of the vertical oscillations"},
-       [](Source m) -> Value { return m.analysis.mean_inclination_m; }},
+       [](Source m) -> Value { return m.mean_over_snapshots(mean_inclination); }},
       {{"filling_factor", unit::none, "filling factor", "share of the plane z = 0 that spheres cut"},
-       [](Source m) -> Value { return m.analysis.filling_factor; }},
+       [](Source m) -> Value { return m.mean_over_snapshots(midplane_filling); }},
       {{"random_energy", unit::specific_energy, "", "⟨½κ²e² + ½ν²i²⟩ per mass, which free epicycles keep"},
        [](Source m) -> Value { return m.analysis.random_energy_m2_s2; }},
       {{"largest_overlap", unit::unnamed("of a radius sum"), "largest overlap",
@@ -123,9 +115,9 @@ Rows wave_rows() {
   return {{{"epicyclic_wave_fraction", unit::none, "box-long waves: energy",
             "fraction of the epicyclic energy in axisymmetric waves as long as the box (modes 1 to 4)"},
            [](Source m) { return of_waves(m, [](const WaveAnalysis& w) -> Value { return w.energy_fraction; }); }},
-          {shaped({"dispersion_without_waves", unit::metres_per_second, "dispersion without them",
-                   "about the velocity field of these waves", Spread::none, Forms::si_and_radius},
-                  Shape::vector),
+          {of_shape({"dispersion_without_waves", unit::metres_per_second, "dispersion without them",
+                     "about the velocity field of these waves", Spread::none, Forms::si_and_radius},
+                    Shape::vector),
            [](Source m) { return of_waves(m, [](const WaveAnalysis& w) { return vector_of(w.dispersion_m_s); }); }},
           {{"toomre_q_without_waves", unit::none, "Toomre Q without them",
             "κ c_x/(3.36 G Σ) by the dispersion without these waves"},
@@ -152,9 +144,9 @@ Rows local_rows() {
       {{"local_radius", unit::metres, "local: within",
         "of the neighbourhood whose mean velocity is taken out: 3 r or λ_cr/20, the larger"},
        [](Source m) -> Value { return m.analysis.local.radius_m; }},
-      {shaped({"local_dispersion", unit::metres_per_second, "local: dispersion",
-               "standard deviation of the velocities about that of the neighbours"},
-              Shape::vector),
+      {of_shape({"local_dispersion", unit::metres_per_second, "local: dispersion",
+                 "standard deviation of the velocities about that of the neighbours"},
+                Shape::vector),
        [](Source m) { return vector_of(m.analysis.local.dispersion_m_s); }},
       {{"local_toomre_q", unit::none, "local: Toomre Q", "by the local c_x and the mean Σ of the patch"},
        [](Source m) -> Value { return m.analysis.local.toomre_q; }},
@@ -171,18 +163,18 @@ Rows local_rows() {
        [](Source m) -> Value { return m.analysis.local.thin_area_share; }},
       {{"thin_cell", unit::metres, "", "side of these cells"},
        [](Source m) -> Value { return m.analysis.local.thin_cell_m; }},
-      {shaped({"velocity_axis_ratios", unit::none, "velocity ellipsoid: ratios",
-               "c₂/c₁ and c_z/c₁ of the principal axes of the velocity ellipsoid"},
-              Shape::other),
+      {of_shape({"velocity_axis_ratios", unit::none, "velocity ellipsoid: ratios",
+                 "c₂/c₁ and c_z/c₁ of the principal axes of the velocity ellipsoid"},
+                Shape::other),
        [](Source m) -> Value {
          return std::vector{m.analysis.ellipsoid.second_ratio, m.analysis.ellipsoid.vertical_ratio};
        }},
       {{"vertex_deviation", unit::degrees, "velocity ellipsoid: deviation",
         "from the radius to its longest axis, positive towards the orbital motion"},
        [](Source m) -> Value { return m.analysis.ellipsoid.vertex_deviation_degrees; }},
-      {shaped({"size_classes", unit::none, "radii",
-               "`count`, `mass_share`, `dispersion_m_s`, `scale_height_m` of radii from `smallest_m` to `largest_m`"},
-              Shape::other),
+      {of_shape({"size_classes", unit::none, "radii",
+                 "`count`, `mass_share`, `dispersion_m_s`, `scale_height_m` of radii from `smallest_m` to `largest_m`"},
+                Shape::other),
        [](Source m) -> Value { return size_classes_of(m); }}};
 }
 
@@ -191,17 +183,17 @@ bool has_spins(Source m) {
 }
 
 Rows spin_rows() {
-  return {
-      {shaped({"mean_spin", unit::omega, "spins: mean", "mean angular velocity against the stars; only with friction"},
-              Shape::vector),
-       [](Source m) { return vector_of(m.analysis.spins->mean_omega); }, has_spins},
-      {{"spin_dispersion", unit::omega, "spins: dispersion", "√⟨(ω − ⟨ω⟩)²⟩; only with friction"},
-       [](Source m) -> Value { return m.analysis.spins->dispersion_omega; },
-       has_spins},
-      {{"spin_energy_ratio", unit::none, "spins: energy ratio",
-        "energy of the spins about their mean over that of the random motion; only with friction"},
-       [](Source m) -> Value { return m.analysis.spins->energy_ratio; },
-       has_spins}};
+  return {{of_shape(
+               {"mean_spin", unit::omega, "spins: mean", "mean angular velocity against the stars; only with friction"},
+               Shape::vector),
+           [](Source m) { return vector_of(m.analysis.spins->mean_omega); }, has_spins},
+          {{"spin_dispersion", unit::omega, "spins: dispersion", "√⟨(ω − ⟨ω⟩)²⟩; only with friction"},
+           [](Source m) -> Value { return m.analysis.spins->dispersion_omega; },
+           has_spins},
+          {{"spin_energy_ratio", unit::none, "spins: energy ratio",
+            "energy of the spins about their mean over that of the random motion; only with friction"},
+           [](Source m) -> Value { return m.analysis.spins->energy_ratio; },
+           has_spins}};
 }
 
 std::vector<Record> spectrum_of(Source m) {
@@ -228,9 +220,9 @@ Rows cluster_rows() {
           {{"clusters.largest_mass_share", unit::unnamed("of the mass"), "clusters: the heaviest",
             "share of all mass in the heaviest one"},
            [](Source m) -> Value { return m.analysis.clusters.largest_mass_share; }},
-          {shaped({"clusters.largest_half_axes", unit::metres, "clusters: its half axes",
-                   "of the homogeneous ellipsoid with the moments of inertia of the heaviest one"},
-                  Shape::vector),
+          {of_shape({"clusters.largest_half_axes", unit::metres, "clusters: its half axes",
+                     "of the homogeneous ellipsoid with the moments of inertia of the heaviest one"},
+                    Shape::vector),
            [](Source m) -> Value {
              const auto& axes = m.analysis.clusters.largest_half_axes;
              return axes ? vector_of(*axes)
@@ -239,9 +231,9 @@ Rows cluster_rows() {
            }},
           {{"clusters.spin", unit::omega, "clusters: spin", "1 + L_z/I_z, seen from the stars; mean over their mass"},
            [](Source m) { return value_of(m.analysis.clusters.spin); }},
-          {shaped({"clusters.spectrum", unit::none, "",
-                   "`count` and `mass_share` of clusters of `least_members` to twice as many"},
-                  Shape::other),
+          {of_shape({"clusters.spectrum", unit::none, "",
+                     "`count` and `mass_share` of clusters of `least_members` to twice as many"},
+                    Shape::other),
            [](Source m) -> Value { return spectrum_of(m); }}};
 }
 
@@ -267,81 +259,12 @@ Rows mode_rows() {
       {{"radial_mode_noise", unit::none, "radial modes: noise",
         "rms density amplitude of a mode of particles at random: 2 √(Σm²)/Σm", Spread::none, Forms::si, 2},
        [](Source m) -> Value { return m.analysis.radial_mode_noise; }},
-      {shaped(
+      {of_shape(
            {"radial_modes", unit::none, "radial mode",
             "waves along the radius: `n`, `wavelength_m`, `density_amplitude`, `density_phase_degrees`, `speed_m_s`, "
             "`growth_rate_omega`, `growth_rate_error_omega`"},
            Shape::other),
        [](Source m) -> Value { return radial_modes_of(m); }}};
-}
-
-// What is known of the transport; some of it of runs alone.
-Value of_transport(Report r, Value (*number)(const Transport&)) {
-  return r.transport() ? number(*r.transport())
-                       : Unknown{"series.csv has fewer than three rows with all stresses here"};
-}
-
-Value of_run(Report r, Value (*number)(const Transport&)) {
-  return r.is_of_run() ? of_transport(r, number) : Unknown{"a snapshot does not show it"};
-}
-
-Quantity viscosity(const char* part, const char* label, const char* meaning) {
-  return {fmt::format("{}_viscosity", part), unit::viscosity, label, meaning, Spread::error, Forms::all};
-}
-
-std::vector<QuantityRow<TransportReport>> transport_rows() {
-  return {
-      {viscosity("translational", "viscosity: translational",
-                 "⟨c_x c_y⟩/S: what particles carry by moving (local; Wisdom & Tremaine 1988, AJ 95, 925)"),
-       [](Report r) { return of_transport(r, [](const Transport& t) { return value_of(Maybe(t.translational)); }); }},
-      {viscosity("collisional", "viscosity: collisional",
-                 "Σ (x_j − x_i) (p_y gained by j) a time over M S: what jumps from centre to centre in contacts "
-                 "(nonlocal; Wisdom & Tremaine 1988)"),
-       [](Report r) { return of_run(r, [](const Transport& t) { return value_of(Maybe(t.collisional)); }); }},
-      {viscosity("gravitational", "viscosity: gravitational",
-                 "(dΦ/dγ)/(M S): what self-gravity carries (Daisaka, Tanaka & Ida 2001, Icarus 154, 296)"),
-       [](Report r) { return of_transport(r, [](const Transport& t) { return value_of(t.gravitational); }); }},
-      {viscosity("total", "viscosity: total", "the sum of the three, with the error of the sum"),
-       [](Report r) { return of_run(r, [](const Transport& t) { return value_of(t.total); }); }},
-      {viscosity("loss", "viscosity: from the loss",
-                 "(energy lost in collisions + gain of random and potential energy) a time over M S²: the total must "
-                 "be this"),
-       [](Report r) { return of_run(r, [](const Transport& t) { return value_of(Maybe(t.from_loss)); }); }},
-      {{"energy_balance", unit::none, "energy balance",
-        "`loss_viscosity` over `total_viscosity`: 1 but for its error; null where another force does work",
-        Spread::error},
-       [](Report r) { return of_run(r, [](const Transport& t) { return value_of(t.balance); }); }},
-      {{"since_orbit", unit::unnamed("orbits"), "viscosities: since", "beginning of the part that they are of"},
-       [](Report r) { return of_transport(r, [](const Transport& t) -> Value { return t.since_orbit; }); }},
-      {{"until_orbit", unit::unnamed("orbits"), "viscosities: until", "end of the part that they are of"},
-       [](Report r) { return of_transport(r, [](const Transport& t) -> Value { return t.until_orbit; }); }},
-      {shaped({"since_found", unit::none, "",
-               "whether that beginning was found, by Chodera's criterion (2016, J. Chem. Theory Comput. 12, 1799)"},
-              Shape::other),
-       [](Report r) { return of_transport(r, [](const Transport& t) -> Value { return t.since_found; }); }},
-      {shaped({"steady", unit::none, "viscosities: steady", "whether loss and dispersion are steady in that part"},
-              Shape::other),
-       [](Report r) { return of_run(r, [](const Transport& t) -> Value { return t.steady; }); }},
-      {{"epicyclic_wave_fraction_first_half", unit::none, "box-long waves: first half",
-        "mean of the series' `epicyclic_wave_fraction` over the first half of that part", Spread::none, Forms::si, 2},
-       [](Report r) {
-         return of_transport(
-             r, [](const Transport& t) { return t.waves ? value_of(t.waves->first_half.value) : Unknown{}; });
-       }},
-      {{"epicyclic_wave_fraction_last_half", unit::none, "box-long waves: last half", "and over the last half",
-        Spread::none, Forms::si, 2},
-       [](Report r) {
-         return of_transport(
-             r, [](const Transport& t) { return t.waves ? value_of(t.waves->last_half.value) : Unknown{}; });
-       }},
-      {shaped(
-           {"epicyclic_waves_steady", unit::none, "box-long waves: steady",
-            "whether the two agree within three errors; if not, Q and c_x depend on the age of the run and on its box"},
-           Shape::other),
-       [](Report r) {
-         return of_transport(
-             r, [](const Transport& t) -> Value { return t.waves ? Value(t.waves->steady) : Value(Unknown{}); });
-       }}};
 }
 
 const Rows& all_rows() {
@@ -357,10 +280,11 @@ const Rows& all_rows() {
 } // namespace
 
 double Measurement::mean_over_snapshots(double (*of)(const Patch&)) const {
-  double sum = 0.0;
+  const double share = 1.0 / static_cast<double>(patches.size());
+  double mean = 0.0;
   for (const Patch& patch : patches)
-    sum += of(patch);
-  return sum / static_cast<double>(patches.size());
+    mean += share * of(patch);
+  return mean;
 }
 
 Measurement measure(std::span<const Patch> patches, const TransportReport& transport, const AnalysisSettings& settings,
@@ -374,19 +298,11 @@ Measurement measure(std::span<const Patch> patches, const TransportReport& trans
   return m;
 }
 
-Record record_of(const TransportReport& transport, const PatchUnits& units) {
-  static const std::vector<QuantityRow<TransportReport>> rows = transport_rows();
-  return {entries_of(rows, transport), units};
-}
-
 Record wakes_of(std::span<const Patch> patches) {
   static const Rows rows = wake_rows();
-  const double share = 1.0 / static_cast<double>(patches.size());
-  double wavelength = 0.0;
-  for (const Patch& patch : patches)
-    wavelength += share * critical_wavelength(patch);
   Measurement m;
-  m.analysis.take_wakes(wake_geometry(patches, wavelength));
+  m.patches = patches;
+  m.analysis.take_wakes(wake_geometry(patches, m.mean_over_snapshots(critical_wavelength)));
   return {entries_of(rows, m), units_of(patches.back())};
 }
 
@@ -396,7 +312,7 @@ Record record_of(const Measurement& measurement) {
 }
 
 std::vector<Quantity> measured_quantities() {
-  return joined(quantities_of(all_rows()), quantities_of(transport_rows()));
+  return joined(quantities_of(all_rows()), transport_quantities());
 }
 
 } // namespace keeler

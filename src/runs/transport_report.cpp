@@ -19,6 +19,78 @@ Estimate at_an_instant(double value) {
   return {value, std::numeric_limits<double>::quiet_NaN()};
 }
 
+using Report = const TransportReport&;
+using Maybe = std::optional<Estimate>;
+
+// What is known of the transport; some of it of runs alone.
+Value of_transport(Report r, Value (*number)(const Transport&)) {
+  return r.transport() ? number(*r.transport())
+                       : Unknown{"series.csv has fewer than three rows with all stresses here"};
+}
+
+Value of_run(Report r, Value (*number)(const Transport&)) {
+  return r.is_of_run() ? of_transport(r, number) : Unknown{"a snapshot does not show it"};
+}
+
+Quantity viscosity(const char* part, const char* label, const char* meaning) {
+  return {fmt::format("{}_viscosity", part), unit::viscosity, label, meaning, Spread::error, Forms::all};
+}
+
+std::vector<QuantityRow<TransportReport>> transport_rows() {
+  return {
+      {viscosity("translational", "viscosity: translational",
+                 "⟨c_x c_y⟩/S: what particles carry by moving (local; Wisdom & Tremaine 1988, AJ 95, 925)"),
+       [](Report r) { return of_transport(r, [](const Transport& t) { return value_of(Maybe(t.translational)); }); }},
+      {viscosity("collisional", "viscosity: collisional",
+                 "Σ (x_j − x_i) (p_y gained by j) a time over M S: what jumps from centre to centre in contacts "
+                 "(nonlocal; Wisdom & Tremaine 1988)"),
+       [](Report r) { return of_run(r, [](const Transport& t) { return value_of(Maybe(t.collisional)); }); }},
+      {viscosity("gravitational", "viscosity: gravitational",
+                 "(dΦ/dγ)/(M S): what self-gravity carries (Daisaka, Tanaka & Ida 2001, Icarus 154, 296)"),
+       [](Report r) { return of_transport(r, [](const Transport& t) { return value_of(t.gravitational); }); }},
+      {viscosity("total", "viscosity: total", "the sum of the three, with the error of the sum"),
+       [](Report r) { return of_run(r, [](const Transport& t) { return value_of(t.total); }); }},
+      {viscosity("loss", "viscosity: from the loss",
+                 "(energy lost in collisions + gain of random and potential energy) a time over M S²: the total must "
+                 "be this"),
+       [](Report r) { return of_run(r, [](const Transport& t) { return value_of(Maybe(t.from_loss)); }); }},
+      {{"energy_balance", unit::none, "energy balance",
+        "`loss_viscosity` over `total_viscosity`: 1 but for its error; null where another force does work",
+        Spread::error},
+       [](Report r) { return of_run(r, [](const Transport& t) { return value_of(t.balance); }); }},
+      {{"since_orbit", unit::unnamed("orbits"), "viscosities: since", "beginning of the part that they are of"},
+       [](Report r) { return of_transport(r, [](const Transport& t) -> Value { return t.since_orbit; }); }},
+      {{"until_orbit", unit::unnamed("orbits"), "viscosities: until", "end of the part that they are of"},
+       [](Report r) { return of_transport(r, [](const Transport& t) -> Value { return t.until_orbit; }); }},
+      {of_shape({"since_found", unit::none, "",
+                 "whether that beginning was found, by Chodera's criterion (2016, J. Chem. Theory Comput. 12, 1799)"},
+                Shape::other),
+       [](Report r) { return of_transport(r, [](const Transport& t) -> Value { return t.since_found; }); }},
+      {of_shape({"steady", unit::none, "viscosities: steady", "whether loss and dispersion are steady in that part"},
+                Shape::other),
+       [](Report r) { return of_run(r, [](const Transport& t) -> Value { return t.steady; }); }},
+      {{"epicyclic_wave_fraction_first_half", unit::none, "box-long waves: first half",
+        "mean of the series' `epicyclic_wave_fraction` over the first half of that part", Spread::none, Forms::si, 2},
+       [](Report r) {
+         return of_transport(
+             r, [](const Transport& t) { return t.waves ? value_of(t.waves->first_half.value) : Unknown{}; });
+       }},
+      {{"epicyclic_wave_fraction_last_half", unit::none, "box-long waves: last half", "and over the last half",
+        Spread::none, Forms::si, 2},
+       [](Report r) {
+         return of_transport(
+             r, [](const Transport& t) { return t.waves ? value_of(t.waves->last_half.value) : Unknown{}; });
+       }},
+      {of_shape(
+           {"epicyclic_waves_steady", unit::none, "box-long waves: steady",
+            "whether the two agree within three errors; if not, Q and c_x depend on the age of the run and on its box"},
+           Shape::other),
+       [](Report r) {
+         return of_transport(
+             r, [](const Transport& t) -> Value { return t.waves ? Value(t.waves->steady) : Value(Unknown{}); });
+       }}};
+}
+
 } // namespace
 
 std::string words_of(const WaveGrowth& waves) {
@@ -37,7 +109,13 @@ TransportReport TransportReport::of_run(const std::filesystem::path& folder, con
   std::error_code unknown;
   if (!std::filesystem::exists(file, unknown))
     return report;
-  const SeriesTable series = read_series(file);
+  return of_series(read_series(file), scale, window);
+}
+
+TransportReport TransportReport::of_series(const SeriesTable& series, const RingScale& scale,
+                                           const OrbitWindow& window) {
+  TransportReport report;
+  report.of_run_ = true;
   if (!enough_rows(series))
     return report;
   try {
@@ -59,6 +137,15 @@ TransportReport TransportReport::of_snapshot(const Patch& patch, const std::opti
     t.gravitational = at_an_instant(meter->energy(problem).stress / (total_mass(patch) * patch.box.shear) * omega);
   }
   return report;
+}
+
+Record record_of(const TransportReport& transport, const PatchUnits& units) {
+  static const std::vector<QuantityRow<TransportReport>> rows = transport_rows();
+  return {entries_of(rows, transport), units};
+}
+
+std::vector<Quantity> transport_quantities() {
+  return quantities_of(transport_rows());
 }
 
 } // namespace keeler

@@ -59,9 +59,6 @@ struct Analysis {
   std::array<double, 3> dispersion_m_s{};     ///< c_x, c_y, c_z
   std::array<double, 3> dispersion_r_omega{}; ///< the same in ⟨r⟩ Ω
   double scale_height_m = 0.0;
-  double mean_eccentricity_m = 0.0;
-  double mean_inclination_m = 0.0;
-  double filling_factor = 0.0; ///< at z = 0
   double translational_viscosity_m2_s = 0.0;
   double random_energy_m2_s2 = 0.0; ///< ⟨½κ²e² + ½ν²i²⟩ per unit mass
 

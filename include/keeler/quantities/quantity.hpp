@@ -47,6 +47,9 @@ struct Quantity {
   std::vector<UnitSystem> systems(std::optional<UnitSystem> asked = std::nullopt) const;
 };
 
+/// A quantity that is no plain number.
+Quantity of_shape(Quantity quantity, Shape shape);
+
 /// A word, yes or no, a list or an object.
 Quantity word(const std::string& name, const std::string& label, const std::string& meaning);
 
@@ -78,6 +81,7 @@ struct Entry {
 struct Record {
   std::vector<Entry> entries{};
   PatchUnits units{};
+  bool asked = false; ///< for by name: texts then tell numbers without a label and empty lists too
 };
 
 /// A number that is not finite is not known.

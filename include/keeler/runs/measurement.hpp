@@ -28,9 +28,6 @@ Measurement measure(std::span<const Patch> patches, const TransportReport& trans
 
 Record record_of(const Measurement& measurement);
 
-/// The viscosities and the balance of energy alone.
-Record record_of(const TransportReport& transport, const PatchUnits& units);
-
 /// The wakes alone, of one patch at least.
 Record wakes_of(std::span<const Patch> patches);
 

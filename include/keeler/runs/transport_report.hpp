@@ -3,6 +3,7 @@
 #pragma once
 
 #include <keeler/particles/patch.hpp>
+#include <keeler/quantities/quantity.hpp>
 #include <keeler/runs/stored_patches.hpp>
 #include <keeler/runs/transport.hpp>
 
@@ -20,6 +21,9 @@ public:
   /// Of a run's folder: from its series. Without a viscosity when that has too few rows in the window.
   static TransportReport of_run(const std::filesystem::path& folder, const RingScale& scale, const OrbitWindow& window);
 
+  /// Of a run's series, which has been read.
+  static TransportReport of_series(const SeriesTable& series, const RingScale& scale, const OrbitWindow& window);
+
   /// Of a snapshot of a scene with these settings of gravity.
   static TransportReport of_snapshot(const Patch& patch, const std::optional<GravitySettings>& gravity);
 
@@ -32,5 +36,9 @@ private:
   std::optional<Transport> transport_;
   bool of_run_ = false;
 };
+
+/// The viscosities and the balance of energy, under their names.
+Record record_of(const TransportReport& transport, const PatchUnits& units);
+std::vector<Quantity> transport_quantities();
 
 } // namespace keeler

@@ -8,7 +8,7 @@
 #include <keeler/core/progress.hpp>
 #include <keeler/runs/run.hpp>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <filesystem>
 #include <functional>

@@ -44,6 +44,7 @@ TEST_CASE("some of a record, in the order of the names") {
   const Record some = only(record, std::vector<std::string>{"clusters", "total_viscosity"});
   REQUIRE(some.entries.size() == 2);
   CHECK(some.entries[0].quantity.name == "clusters.count");
+  CHECK(some.asked);
   CHECK_THROWS_WITH_AS(only(record, std::vector<std::string>{"total_viscosty"}),
                        "there is no number 'total_viscosty' here; did you mean 'total_viscosity'?", UsageError);
 }

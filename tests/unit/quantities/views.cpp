@@ -40,6 +40,11 @@ TEST_CASE("text") {
         "pitch                              not known because there are no wakes\n"
         "steady                             yes\n"
         "mode                               n 1, wavelength 50 m\n");
+  Record asked{{{{"clusters.gap"}, 0.01}, {{"modes"}, std::vector<Record>()}}, {}, true};
+  CHECK(lines_of(asked) == "clusters.gap                       0.01\nmodes                              none\n");
+  CHECK(json_of(asked).dump() == R"({"clusters":{"gap":0.01},"modes":[]})");
+  asked.asked = false;
+  CHECK(lines_of(asked).empty());
   CHECK(table_of(example())[1] == std::vector<std::string>{"viscosity", "8 ± 0.5 m²/s = 2 r² Ω = 2 G² Σ²/Ω³"});
 }
 

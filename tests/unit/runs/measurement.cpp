@@ -1,3 +1,4 @@
+#include "documented.hpp"
 #include "scenes.hpp"
 
 #include <keeler/runs/measurement.hpp>
@@ -10,25 +11,13 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <set>
 
 namespace measurement_test {
 
 using namespace keeler;
 
 TEST_CASE("every measured number has names of its own and says what it is; the manual has the table") {
-  std::set<std::string> names;
-  const std::vector<Quantity> quantities = measured_quantities();
-  for (const Quantity& quantity : quantities) {
-    CAPTURE(quantity.name);
-    CHECK(!quantity.meaning.empty());
-    CHECK(quantity.meaning.find('|') == std::string::npos); // it would end a cell of the table
-    for (const UnitSystem system : quantity.systems())
-      CHECK(names.insert(quantity.full_name(system)).second);
-  }
-  const std::string page = read_text(KEELER_SOURCE_DIR "/docs/manual/numbers.md"), table = markdown_of(quantities);
-  INFO("docs/manual/numbers.md must hold this table:\n" << table);
-  CHECK(page.find(table) != page.npos);
+  test::check_documented(measured_quantities(), "docs/manual/numbers.md");
 }
 
 TEST_CASE("a number of a snapshot is the mean over the snapshots") {

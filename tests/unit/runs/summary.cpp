@@ -1,3 +1,4 @@
+#include "documented.hpp"
 #include "scenes.hpp"
 #include "unit/files/disk.hpp"
 
@@ -10,23 +11,12 @@
 
 #include <doctest/doctest.h>
 
-#include <set>
-
 namespace summary_test {
 
 using namespace keeler;
 
 TEST_CASE("every number of a summary has a name of its own and says what it is; the manual has the table") {
-  std::set<std::string> names;
-  const std::vector<Quantity> quantities = summary_quantities();
-  for (const Quantity& quantity : quantities) {
-    CAPTURE(quantity.name);
-    CHECK(!quantity.meaning.empty());
-    CHECK(names.insert(quantity.full_name()).second);
-  }
-  const std::string page = read_text(KEELER_SOURCE_DIR "/docs/manual/commands.md"), table = markdown_of(quantities);
-  INFO("docs/manual/commands.md must hold this table:\n" << table);
-  CHECK(page.find(table) != page.npos);
+  test::check_documented(summary_quantities(), "docs/manual/commands.md");
 }
 
 TEST_CASE("a summary that is read is the one that the run returned") {
