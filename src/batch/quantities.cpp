@@ -78,7 +78,7 @@ Maybe largest_cluster(const Source& run) {
   if (run.wakes.entries.empty())
     return std::nullopt;
   const ClusterAnalysis clusters = analyze_clusters(std::span(&run.last, 1), default_cluster_gap);
-  return Estimate{clusters.largest_mass_share, no_error};
+  return Estimate{clusters.largest_mass_fraction, no_error};
 }
 
 const Record& transport_in(const Source& run) {

@@ -2,8 +2,8 @@
 
 #include "child.hpp"
 
+#include <keeler/core/format.hpp>
 #include <keeler/core/stopwatch.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/runs/folder_lock.hpp>
 #include <keeler/runs/run_stage.hpp>
@@ -227,7 +227,7 @@ private:
     progress.share = finished == std::ssize(states_) ? 1.0 : std::min(now / all, 0.999);
     progress.elapsed_s = elapsed;
     progress.remaining_s = gained > 0.0 ? elapsed * (all - now) / gained : 0.0;
-    progress.what = fmt::format("{} of {} done, {} running", finished, counted(states_.size(), "run"), running());
+    progress.what = fmt::format("{} of {} done, {} running", finished, pluralize(states_.size(), "run"), running());
     options_.progress(progress);
   }
 

@@ -2,9 +2,9 @@
 
 #include <keeler/bench/pair_set.hpp>
 #include <keeler/bench/states.hpp>
-#include <keeler/contacts/finders.hpp>
 #include <keeler/core/phase_progress.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
+#include <keeler/finders/finders.hpp>
 #include <keeler/simulation/simulation.hpp>
 #include <keeler/statistics/median.hpp>
 
@@ -13,8 +13,8 @@
 namespace keeler {
 namespace {
 
-constexpr double least_call_seconds = 0.1; // of finder calls, for the time of one
-constexpr double most_orbits = 0.1;        // in each repeat
+constexpr double min_call_seconds = 0.1; // of finder calls, for the time of one
+constexpr double max_orbits = 0.1;       // in each repeat
 
 void time_calls(const DriftBenchSettings& settings, const Scene& scene, const SimulationState& state,
                 DriftBench& bench) {
@@ -23,7 +23,7 @@ void time_calls(const DriftBenchSettings& settings, const Scene& scene, const Si
   const std::unique_ptr<Finder> finder = make_finder(scene.collisions.finder);
   std::vector<double> times;
   for (int repeat = 0; repeat < settings.repeats; ++repeat)
-    times.push_back(ns_per_call(pairs, *finder, least_call_seconds));
+    times.push_back(ns_per_call(pairs, *finder, min_call_seconds));
   bench.ns_per_call = median(times);
   bench.calls_per_particle_step =
       static_cast<double>(pairs.queries.size()) / static_cast<double>(state.particles.size());
@@ -41,7 +41,7 @@ DriftBench bench_drift(const DriftBenchSettings& settings) {
   BenchState made = bench_state(settings, progress);
   DriftBench bench;
   bench.dispersion_r_omega = velocity_in_radii(made.patch, velocity_dispersion(made.patch)).x();
-  const double steps = steps_worth_timing(made.patch.size(), settings.step_orbits, most_orbits / settings.step_orbits);
+  const double steps = steps_worth_timing(made.patch.size(), settings.step_orbits, max_orbits / settings.step_orbits);
 
   Simulation simulation(made.scene, made.patch);
   made.patch = {}; // room: a large state is held once

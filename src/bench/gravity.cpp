@@ -16,12 +16,12 @@ namespace {
 
 constexpr ImageSettings reference_images{2, true};
 constexpr double reference_pairs = 5e9; // as many as seconds allow
-constexpr double least_sample = 500.0, most_sample = 2000.0;
+constexpr double min_sample = 500.0, max_sample = 2000.0;
 constexpr double edge_width = 5.0; // m, of a box of more than 120 m
-constexpr std::size_t least_at_edge = 64;
-constexpr std::size_t reference_block = 128;  // targets between two looks at the progress
-constexpr double least_repeat_seconds = 0.05; // of solves, in one repeat
-constexpr std::size_t most_direct = 10000;    // particles, unless it is asked for
+constexpr std::size_t min_at_edge = 64;
+constexpr std::size_t reference_block = 128; // targets between two looks at the progress
+constexpr double min_repeat_seconds = 0.05;  // of solves, in one repeat
+constexpr std::size_t max_direct = 10000;    // particles, unless it is asked for
 
 // The patch in the order of places, as a run has its particles.
 Patch in_memory_order(const Patch& patch) {
@@ -38,8 +38,8 @@ Patch in_memory_order(const Patch& patch) {
 ForceSample sample_of(const GravityProblem& problem) {
   const double images = std::pow(2.0 * reference_images.rings + 1.0, 2);
   const double affordable = reference_pairs / (images * static_cast<double>(problem.positions.size()));
-  const auto even = static_cast<std::size_t>(std::clamp(affordable, least_sample, most_sample));
-  return draw_force_sample(problem, even, std::max(least_at_edge, even / 8), edge_width);
+  const auto even = static_cast<std::size_t>(std::clamp(affordable, min_sample, max_sample));
+  return draw_force_sample(problem, even, std::max(min_at_edge, even / 8), edge_width);
 }
 
 std::vector<Vec3> exact_accelerations(const GravityProblem& problem, const ForceSample& sample,
@@ -62,7 +62,7 @@ std::vector<double> solve_times(GravitySolver& solver, const GravityProblem& pro
   const double start = bench_seconds();
   solver.accelerate(problem, accelerations);
   const double first = std::max(1e-9, bench_seconds() - start);
-  const int solves = static_cast<int>(std::ceil(std::min(1e6, least_repeat_seconds / first)));
+  const int solves = static_cast<int>(std::ceil(std::min(1e6, min_repeat_seconds / first)));
   std::vector<double> times;
   for (int repeat = 0; repeat < repeats; ++repeat) {
     const double before = bench_seconds();
@@ -76,7 +76,7 @@ std::vector<double> solve_times(GravitySolver& solver, const GravityProblem& pro
 std::vector<GravityChoice> chosen(const GravityBenchSettings& settings, std::size_t count) {
   std::vector<GravityChoice> choices;
   for (const GravityChoice& choice : gravity_choices(settings.dense))
-    if (settings.solver.empty() ? choice.solver != "direct" || count <= most_direct : choice.solver == settings.solver)
+    if (settings.solver.empty() ? choice.solver != "direct" || count <= max_direct : choice.solver == settings.solver)
       choices.push_back(choice);
   return choices;
 }

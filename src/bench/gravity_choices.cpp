@@ -1,6 +1,6 @@
 #include <keeler/bench/gravity_choices.hpp>
 
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/gravity/fft.hpp>
 
 #include <fmt/format.h>
@@ -86,7 +86,7 @@ GravityChoice choice_of(const GravitySettings& settings, std::size_t count) {
   if (chosen.solver == Solver::axisymmetric)
     choice = {"axisymmetric", fmt::format("waves from {:g} m up", chosen.shortest_wavelength), "", 0.0, {}};
   if ((chosen.solver == Solver::tree || chosen.solver == Solver::direct) && !chosen.images.far)
-    choice.text += fmt::format(", {} of images alone", counted(chosen.images.rings, "ring"));
+    choice.text += fmt::format(", {} of images alone", pluralize(chosen.images.rings, "ring"));
   choice.settings = chosen;
   return choice;
 }

@@ -1,9 +1,9 @@
 #include <keeler/bench/gravity_states.hpp>
 
+#include <keeler/initial_conditions/initial.hpp>
+#include <keeler/initial_conditions/tiled.hpp>
 #include <keeler/scene/derived.hpp>
 #include <keeler/simulation/simulation.hpp>
-#include <keeler/states/initial.hpp>
-#include <keeler/states/tiled.hpp>
 
 #include <fmt/format.h>
 
@@ -13,8 +13,8 @@
 namespace keeler {
 namespace {
 
-constexpr double least_wavelengths = 2.0; // λ_cr along a tile
-constexpr double evolving_step = 2e-3;    // orbits
+constexpr double min_wavelengths = 2.0; // λ_cr along a tile
+constexpr double evolving_step = 2e-3;  // orbits
 constexpr double evolving_angle = 0.7;
 constexpr double clumping_orbits = 1.5;
 constexpr double largest_clumped_tile = 12000.0; // particles: 4.5 λ_cr
@@ -49,8 +49,8 @@ end = 1.0
 } // namespace
 
 Scene a_ring_scene(std::size_t count, std::uint64_t seed) {
-  const auto least = static_cast<double>(scene_of(least_wavelengths, seed).particles.count);
-  return scene_of(least_wavelengths * std::max(1.0, std::sqrt(static_cast<double>(count) / least)), seed);
+  const auto least = static_cast<double>(scene_of(min_wavelengths, seed).particles.count);
+  return scene_of(min_wavelengths * std::max(1.0, std::sqrt(static_cast<double>(count) / least)), seed);
 }
 
 Patch evolved_with_gravity(const Scene& scene, double orbits, PhaseProgress& progress) {

@@ -64,14 +64,14 @@ DriftStep PairSet::view() const {
   return step;
 }
 
-double ns_per_call(const PairSet& pairs, Finder& finder, double least_seconds) {
+double ns_per_call(const PairSet& pairs, Finder& finder, double min_seconds) {
   if (pairs.queries.empty())
     return 0.0;
   const DriftStep step = pairs.view();
   finder.begin(step);
   double seconds = 0.0, used = 0.0; // `used` keeps the compiler from leaving calls out
   std::size_t calls = 0;
-  while (seconds < least_seconds) {
+  while (seconds < min_seconds) {
     const double start = cpu_seconds();
     for (const Query& query : pairs.queries)
       used += finder.find(query).time;

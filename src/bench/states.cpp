@@ -2,10 +2,10 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/initial_conditions/initial.hpp>
+#include <keeler/initial_conditions/tiled.hpp>
 #include <keeler/scene/derived.hpp>
 #include <keeler/simulation/simulation.hpp>
-#include <keeler/states/initial.hpp>
-#include <keeler/states/tiled.hpp>
 
 #include <fmt/format.h>
 

@@ -1,12 +1,12 @@
 #include <keeler/bench/step.hpp>
 
 #include <keeler/bench/gravity_states.hpp>
+#include <keeler/comm/same_request.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/io/snapshot.hpp>
-#include <keeler/ranks/same_request.hpp>
 #include <keeler/scene/keys_in_force.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@
 namespace keeler {
 namespace {
 
-constexpr double most_steps = 100.0; // in each repeat
+constexpr double max_steps = 100.0; // in each repeat
 
 BenchState stored_state(const std::string& file) {
   Snapshot snapshot = read_snapshot(file);
@@ -80,11 +80,11 @@ StepBench bench_step(const StepBenchSettings& settings) {
   bench.step_orbits = state.scene.time.step;
   bench.dispersion_r_omega = velocity_in_radii(state.patch, velocity_dispersion(state.patch)).x();
   const int kick_every = bench.choice.settings.kick_every;
-  const int steps = whole_intervals(steps_worth_timing(state.patch.size(), bench.step_orbits, most_steps), kick_every);
+  const int steps = whole_intervals(steps_worth_timing(state.patch.size(), bench.step_orbits, max_steps), kick_every);
 
-  Simulation simulation(state.scene, settings.ranks.is_first() ? state.patch : Patch(), settings.ranks);
+  Simulation simulation(state.scene, settings.ranks.is_root() ? state.patch : Patch(), settings.ranks);
   std::optional<Simulation> alone;
-  if (settings.ranks.many() && settings.ranks.is_first())
+  if (settings.ranks.distributed() && settings.ranks.is_root())
     alone.emplace(state.scene, state.patch);
   state.patch = {}; // room: a large state is held once, and by the first rank twice
   bench.timed = time_steps(simulation, steps, settings.repeats, kick_every, progress, alone ? &*alone : nullptr);

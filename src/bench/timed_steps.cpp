@@ -11,10 +11,10 @@ namespace {
 
 constexpr int untimed_steps = 10;
 // In each repeat:
-constexpr double least_steps = 20.0;              // more than two windows of the drift
+constexpr double min_steps = 20.0;                // more than two windows of the drift
 constexpr double life_steps = 64.0, life = 0.159; // neighbour lists live so many steps at most, and so many orbits
 constexpr double enough_passes = 4e6;             // particles × steps,
-constexpr double most_passes = 6.4e7;             // and for a life
+constexpr double max_passes = 6.4e7;              // and for a life
 
 // All clocks of a run as they stand, s.
 struct Clocks {
@@ -63,8 +63,8 @@ struct Gains {
   }
 
   // The others wait.
-  void compare_ranks(const Ranks& ranks, Simulation* alone, const Lap& shared, int steps) {
-    ranks.first_does([&] { compare(run(*alone, steps), shared); });
+  void compare_ranks(const Communicator& ranks, Simulation* alone, const Lap& shared, int steps) {
+    ranks.on_root([&] { compare(run(*alone, steps), shared); });
     pair.push_back(1.0);
   }
 
@@ -102,16 +102,16 @@ struct Counts {
 };
 
 // Those that each rank has of its own particles.
-void add_over_ranks(const Ranks& ranks, TimedSteps& timed) {
+void add_over_ranks(const Communicator& ranks, TimedSteps& timed) {
   for (std::uint64_t* const count : {&timed.recontacts, &timed.lists_made, &timed.listed_anew, &timed.deferred,
                                      &timed.in_sequence, &timed.rolled_back, &timed.pairs_tested, &timed.survivors})
     *count = ranks.sum(*count);
 }
 
 // What ranks told each other since `before`.
-ExchangeSplit exchange_since(const ExchangeCosts& before, const Ranks& ranks, double steps, std::size_t count) {
+ExchangeSplit exchange_since(const ExchangeCosts& before, const Communicator& ranks, double steps, std::size_t count) {
   const ExchangeCosts after = exchange_costs(); // and what follows adds to them
-  const double each_step = 1.0 / (steps * static_cast<double>(ranks.count()));
+  const double each_step = 1.0 / (steps * static_cast<double>(ranks.size()));
   const auto total = [&](std::uint64_t number) { return static_cast<double>(ranks.sum(number)) * each_step; };
   const std::uint64_t messages = after.messages - before.messages, bytes = after.bytes - before.bytes;
   const std::uint64_t common = after.common - before.common;
@@ -137,7 +137,7 @@ void add_counts(const Counts& before, const Counts& after, TimedSteps& timed) {
   timed.rolled_back += after.costs.rolled_back - before.costs.rolled_back;
   timed.pairs_tested += after.costs.pairs_tested - before.costs.pairs_tested;
   timed.survivors += after.costs.survivors - before.costs.survivors;
-  timed.shared_again += after.costs.shared_again - before.costs.shared_again;
+  timed.repeated_steps += after.costs.repeated_steps - before.costs.repeated_steps;
   timed.widest_list = after.costs.widest_list;
   timed.bytes_per_particle = after.costs.bytes_per_particle;
 }
@@ -146,16 +146,16 @@ void add_counts(const Counts& before, const Counts& after, TimedSteps& timed) {
 
 double steps_worth_timing(std::size_t count, double step, double most) {
   const double particles = static_cast<double>(std::max<std::size_t>(1, count));
-  const double least = std::max(least_steps, std::min({life_steps, life / step, most_passes / particles}));
+  const double least = std::max(min_steps, std::min({life_steps, life / step, max_passes / particles}));
   return std::clamp(enough_passes / particles, least, std::max(least, most));
 }
 
 TimedSteps time_steps(Simulation& simulation, int steps, int repeats, int kick_every, PhaseProgress& progress,
                       Simulation* alone) {
-  const Ranks& ranks = simulation.ranks();
+  const Communicator& ranks = simulation.ranks();
   TimedSteps timed;
   timed.count = simulation.count();
-  timed.ranks = ranks.count();
+  timed.ranks = ranks.size();
   timed.steps = steps;
   timed.repeats = repeats;
   progress.begin("timing", repeats);
@@ -176,7 +176,7 @@ TimedSteps time_steps(Simulation& simulation, int steps, int repeats, int kick_e
     laps.push_back(run(simulation, steps));
     timed.exchange += exchange_since(exchanged, ranks, steps * repeats, timed.count);
     add_counts(before, Counts(simulation), timed);
-    if (ranks.many())
+    if (ranks.distributed())
       gains.compare_ranks(ranks, alone, laps.back(), steps);
     else if (threads() > 1)
       gains.compare_threads(simulation, laps.back(), pair.back(), steps);
@@ -185,7 +185,7 @@ TimedSteps time_steps(Simulation& simulation, int steps, int repeats, int kick_e
   take_times(laps, timed);
   add_over_ranks(ranks, timed);
   timed.yardsticks = {median(line), median(pair)};
-  if (ranks.is_first() && (ranks.many() || threads() > 1))
+  if (ranks.is_root() && (ranks.distributed() || threads() > 1))
     timed.speedup = gains.medians();
   return timed;
 }

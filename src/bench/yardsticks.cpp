@@ -8,7 +8,7 @@
 namespace keeler {
 namespace {
 
-constexpr double least_yardstick_seconds = 0.03; // of work, for one measurement
+constexpr double min_yardstick_seconds = 0.03; // of work, for one measurement
 
 // Time of one call of work(), s; the first one is not counted.
 template<class Work> double seconds_of(const Work& work, double (*clock)()) {
@@ -16,7 +16,7 @@ template<class Work> double seconds_of(const Work& work, double (*clock)()) {
   const double start = clock();
   double spent = 0.0;
   int times = 0;
-  while (spent < least_yardstick_seconds) {
+  while (spent < min_yardstick_seconds) {
     work();
     ++times;
     spent = clock() - start;
@@ -46,8 +46,8 @@ double bench_seconds() {
 
 double MemoryYardstick::measure() {
   constexpr int chunk = 4096;
-  constexpr std::size_t least_lines = 200000; // between two looks at the clock
-  const std::size_t rounds = 1 + least_lines / (lines_.size() + 1);
+  constexpr std::size_t min_lines = 200000; // between two looks at the clock
+  const std::size_t rounds = 1 + min_lines / (lines_.size() + 1);
   const auto once = [&] {
     parallel_for(
         lines_.size(),

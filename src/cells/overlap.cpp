@@ -2,8 +2,8 @@
 
 #include <keeler/cells/grid.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/core/threads.hpp>
-#include <keeler/core/words.hpp>
 
 #include <fmt/format.h>
 
@@ -92,7 +92,7 @@ void require_no_heap(const Patch& patch, const std::string& state) {
     throw InvariantError(
         fmt::format("the {} of {} lie on each other in heaps (a column as wide as a particle holds {} on "
                     "the mean); spread them out",
-                    counted(count, "particle"), state, figures(pairs / static_cast<double>(count), 3)));
+                    pluralize(count, "particle"), state, format_number(pairs / static_cast<double>(count), 3)));
 }
 
 void require_apart(const Patch& patch, const std::string& state) {

@@ -3,7 +3,7 @@
 
 namespace keeler {
 
-void add_bench(CLI::App& program, Action& action, const Ranks& ranks) {
+void add_bench(CLI::App& program, Action& action, const Communicator& ranks) {
   CLI::App& command = *program.add_subcommand("bench", "time a kernel on this machine");
   command.require_subcommand(1);
   add_bench_drift(command, action);

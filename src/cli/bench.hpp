@@ -9,7 +9,7 @@ namespace keeler {
 
 void add_bench_drift(CLI::App& bench, Action& action);
 void add_bench_gravity(CLI::App& bench, Action& action);
-void add_bench_step(CLI::App& bench, Action& action, const Ranks& ranks);
+void add_bench_step(CLI::App& bench, Action& action, const Communicator& ranks);
 
 /// --threads N for a bench: one unless given.
 struct BenchThreadOption {
@@ -36,9 +36,9 @@ inline void add_repeats(CLI::App& command, int& repeats) {
 
 /// What measure(settings) returns, with progress shown when it takes so long that one wonders; the first rank's alone.
 template<class Settings, class Measure>
-auto measured(Settings settings, const Measure& measure, const Ranks& ranks = {}) {
+auto measured(Settings settings, const Measure& measure, const Communicator& ranks = {}) {
   constexpr double patience_s = 5.0;
-  if (!ranks.is_first())
+  if (!ranks.is_root())
     return measure(settings);
   ProgressLine line;
   settings.progress = [&line](const Progress& progress) {

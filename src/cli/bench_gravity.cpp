@@ -3,8 +3,8 @@
 #include "print.hpp"
 
 #include <keeler/bench/gravity.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/core/json_of_files.hpp>
-#include <keeler/core/words.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -44,10 +44,11 @@ void print_json(const GravityOptions& options, const GravityBench& b) {
 }
 
 void print_text(const GravityOptions& options, const GravityBench& b) {
-  print("{}, {}, box {} m x {} m, shear offset {} m, {}\n", counted(b.count, "particle"), options.state,
-        figures(b.size_x_m, 4), figures(b.size_y_m, 4), figures(b.offset_m, 4), counted(threads(), "thread"));
+  print("{}, {}, box {} m x {} m, shear offset {} m, {}\n", pluralize(b.count, "particle"), options.state,
+        format_number(b.size_x_m, 4), format_number(b.size_y_m, 4), format_number(b.offset_m, 4),
+        pluralize(threads(), "thread"));
   print("errors of {} particles' forces over the rms force, of {} within {:g} m of the edges; medians of {}\n\n",
-        b.sample, b.edge_sample, b.edge_width_m, counted(options.bench.repeats, "repeat"));
+        b.sample, b.edge_sample, b.edge_width_m, pluralize(options.bench.repeats, "repeat"));
   print("{:<8}{:<22}{:>12}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>10}{:>10}\n", "solver", "settings", "ns/particle", "rms",
         "99.9 %", "x", "y", "z", "edge", "edge pull", "net force");
   for (const GravityBenchRow& row : b.rows) {

@@ -79,7 +79,7 @@ TimedRows rank_rows() {
           {three_digits("exchange.common", unit::none, "  common sums a step", "in which all ranks take part"),
            [](Timed t) -> Value { return t.exchange.common; }, has_many_ranks},
           {{"shared_again", unit::none, "  steps done again", "of all timed ones"},
-           [](Timed t) -> Value { return t.shared_again; },
+           [](Timed t) -> Value { return t.repeated_steps; },
            has_many_ranks}};
 }
 

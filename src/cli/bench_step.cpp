@@ -4,8 +4,8 @@
 #include "print_record.hpp"
 
 #include <keeler/bench/step.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/core/json_of_files.hpp>
-#include <keeler/core/words.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -30,7 +30,7 @@ ExitCode bench(StepOptions& options) {
 
 } // namespace
 
-void add_bench_step(CLI::App& bench_command, Action& action, const Ranks& ranks) {
+void add_bench_step(CLI::App& bench_command, Action& action, const Communicator& ranks) {
   const auto options = std::make_shared<StepOptions>();
   options->bench.ranks = ranks;
   CLI::App& step = *bench_command.add_subcommand(

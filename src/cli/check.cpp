@@ -5,12 +5,12 @@
 #include "scene_arguments.hpp"
 
 #include <keeler/bench/yardsticks.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/core/memory.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
-#include <keeler/core/words.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/scene/resting_choice.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
 
@@ -55,12 +55,12 @@ ExitCode check(const CheckOptions& options) {
   require_start_file(asked);
   const PatchScale start = scale_of_start(asked);
   const Scene scene = decided_by(asked, start);
-  Lines said = doubts(scene, start);
+  Lines said = warnings(scene, start);
   const Derived derived = derive(scene);
   if (const double left = 1e-6 * available_memory(); derived.memory_mb > left)
     said.push_back(fmt::format("the run needs about {} GB of memory, and {} GB can be had here: run refuses it; take "
                                "fewer particles, a coarser mesh, or a machine that has more",
-                               figures(1e-3 * derived.memory_mb, 3), figures(1e-3 * left, 3)));
+                               format_number(1e-3 * derived.memory_mb, 3), format_number(1e-3 * left, 3)));
   print_record(record_of(CheckedScene{scene, start, derived, estimate(scene, derived), said}), options.json);
   return ExitCode::done;
 }

@@ -1,7 +1,7 @@
 #include "check_numbers.hpp"
 
+#include <keeler/core/format.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/scene/grain_piles.hpp>
 #include <keeler/scene/resting_choice.hpp>
 
@@ -179,9 +179,11 @@ std::vector<QuantityRow<CheckedScene>> cost_rows() {
       {word("notices", "note", "what was rounded or dropped, a text each"),
        [](Checked c) -> Value { return c.scene.notices; }},
       {word("doubts", "note", "what is seldom meant, or what a patch of this size cannot show, a text each"),
-       [](Checked c) -> Value { return c.doubts; }},
+       [](Checked c) -> Value { return c.warnings; }},
       {word("costs", "note", "what makes the scene at least five times as dear as its like, a text each"),
-       [](Checked c) -> Value { return particles_known(c) ? dear_choices(c.scene) : std::vector<std::string>(); }}};
+       [](Checked c) -> Value {
+         return particles_known(c) ? expensive_settings(c.scene) : std::vector<std::string>();
+       }}};
 }
 
 std::vector<QuantityRow<CheckedScene>> all_rows() {

@@ -3,9 +3,9 @@
 
 #include <keeler/quantities/quantity.hpp>
 #include <keeler/scene/derived.hpp>
-#include <keeler/scene/doubts.hpp>
 #include <keeler/scene/estimate.hpp>
 #include <keeler/scene/scene.hpp>
+#include <keeler/scene/warnings.hpp>
 
 #include <optional>
 #include <string>
@@ -19,7 +19,7 @@ struct CheckedScene {
   PatchScale start; ///< of the start file where there is one
   Derived derived;
   std::optional<RunEstimate> cost; ///< none: only the start file knows the particles
-  std::vector<std::string> doubts;
+  std::vector<std::string> warnings;
 };
 
 Record record_of(const CheckedScene& checked);

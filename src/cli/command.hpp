@@ -1,8 +1,8 @@
 // A subcommand: one file, which registers its options and leaves the action to main.
 #pragma once
 
+#include <keeler/comm/communicator.hpp>
 #include <keeler/core/error.hpp>
-#include <keeler/ranks/ranks.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -26,8 +26,9 @@ ExitCode print_help(const CLI::App& command);
 /// whole command line, for the provenance of what is written.
 void add_check(CLI::App& program, Action& action);
 void add_generate(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
-void add_run(CLI::App& program, Action& action, const std::vector<std::string>& arguments, const Ranks& ranks);
-void add_resume(CLI::App& program, Action& action, const std::vector<std::string>& arguments, const Ranks& ranks);
+void add_run(CLI::App& program, Action& action, const std::vector<std::string>& arguments, const Communicator& ranks);
+void add_resume(CLI::App& program, Action& action, const std::vector<std::string>& arguments,
+                const Communicator& ranks);
 void add_complete(CLI::App& program, Action& action);
 void add_help(CLI::App& program, Action& action);
 void add_info(CLI::App& program, Action& action);
@@ -36,7 +37,7 @@ void add_analyze(CLI::App& program, Action& action);
 void add_new(CLI::App& program, Action& action);
 void add_render(CLI::App& program, Action& action);
 void add_report(CLI::App& program, Action& action);
-void add_bench(CLI::App& program, Action& action, const Ranks& ranks);
+void add_bench(CLI::App& program, Action& action, const Communicator& ranks);
 void add_study(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
 void add_sweep(CLI::App& program, Action& action);
 void add_tile(CLI::App& program, Action& action, const std::vector<std::string>& arguments);

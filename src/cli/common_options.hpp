@@ -2,10 +2,10 @@
 #pragma once
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/core/start_threads.hpp>
 #include <keeler/core/suggest.hpp>
 #include <keeler/core/threads.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/scene/keys.hpp>
 
@@ -30,7 +30,8 @@ inline CLI::Validator positive_number(double most = std::numeric_limits<double>:
     const double value = std::strtod(text.c_str(), &end);
     return *end == '\0' && end != text.c_str() && value > 0.0 && std::isfinite(value) && value <= most
                ? std::string()
-               : "'" + text + "' is not a number above 0" + (std::isfinite(most) ? ", up to " + figures(most) : "");
+               : "'" + text + "' is not a number above 0" +
+                     (std::isfinite(most) ? ", up to " + format_number(most) : "");
   };
   return CLI::Validator(refusal, "");
 }
@@ -42,7 +43,7 @@ inline CLI::Validator number_between(double low, double high, const std::string&
     const double value = std::strtod(text.c_str(), &end);
     return *end == '\0' && end != text.c_str() && value >= low && value <= high
                ? std::string()
-               : "'" + text + "' is not " + what + " from " + figures(low) + " to " + figures(high);
+               : "'" + text + "' is not " + what + " from " + format_number(low) + " to " + format_number(high);
   };
   return CLI::Validator(refusal, "");
 }
@@ -55,7 +56,7 @@ inline CLI::Validator whole_number_between(double low, double high, const std::s
     const double value = std::strtod(text.c_str(), &end);
     const bool number = *end == '\0' && end != text.c_str() && value >= low && value <= high;
     if (!number || value != std::trunc(value))
-      return fmt::format("'{}' is not {} from {} to {}{}", text, what, figures(low), figures(high),
+      return fmt::format("'{}' is not {} from {} to {}{}", text, what, format_number(low), format_number(high),
                          number ? "; give a whole number" : "");
     text = fmt::format("{:.0f}", value);
     return std::string();
@@ -71,11 +72,11 @@ inline CLI::Validator repeat_number() {
   return whole_number_between(1, 1000, "a number of repeats");
 }
 inline CLI::Validator thread_number() {
-  return whole_number_between(1, most_threads, "a number of threads");
+  return whole_number_between(1, max_threads, "a number of threads");
 }
 
-inline constexpr double most_orbits = 1e6;   ///< of a probe, or of a run of a study
-inline constexpr double most_seeds = 1000.0; ///< of a study
+inline constexpr double max_orbits = 1e6;   ///< of a probe, or of a run of a study
+inline constexpr double max_seeds = 1000.0; ///< of a study
 
 /// Takes one of these words; --help shows them, and the shell completes them.
 inline CLI::Option& one_of(CLI::Option* option, const std::vector<std::string>& words) {

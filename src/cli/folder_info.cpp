@@ -4,8 +4,8 @@
 
 #include <keeler/batch/run_folders.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/core/json_of_files.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/io/describe.hpp>
 #include <keeler/runs/folder_lock.hpp>
@@ -208,11 +208,13 @@ Json describe_many(const fs::path& folder) {
 
 std::string size_in_words(const Json& bytes) {
   const auto size = bytes.get<double>();
-  return size < 1e6 ? fmt::format("{:.3g} kB", 1e-3 * size) : fmt::format("{} MB", figures(1e-6 * size, 4));
+  return size < 1e6 ? fmt::format("{:.3g} kB", 1e-3 * size) : fmt::format("{} MB", format_number(1e-6 * size, 4));
 }
 
 std::string in_words(const Json& value) {
-  return value.is_string() ? value.get<std::string>() : value.is_number() ? figures(value.get<double>()) : "unknown";
+  return value.is_string()   ? value.get<std::string>()
+         : value.is_number() ? format_number(value.get<double>())
+                             : "unknown";
 }
 
 // What lies on disk of one kind: how many, how large, and the first and the last.
@@ -243,12 +245,12 @@ void print_run(const Json& json) {
         : state == "running" ? ", " + clock(json["remaining_s"]) + " left"
         : state == "broken"  ? ": log.jsonl has the reason, broken_*.hdf the state"
                              : "; \"keeler resume " + text("folder") + "\" goes on");
-  print("orbits      {} of {}\n", figures(json["time_orbits"].get<double>(), 4),
-        figures(json["end_orbits"].get<double>(), 4));
+  print("orbits      {} of {}\n", format_number(json["time_orbits"].get<double>(), 4),
+        format_number(json["end_orbits"].get<double>(), 4));
   print("particles   {}\nwall time   {}\n", json["particle_count"].get<std::uint64_t>(), clock(json["wall_s"]));
   if (!json["version"].is_null())
     print("written by  keeler {}, commit {}, {} on {}\n", in_words(json["version"]), in_words(json["commit"]),
-          json["threads"].is_number_unsigned() ? counted(json["threads"].get<std::uint64_t>(), "thread")
+          json["threads"].is_number_unsigned() ? pluralize(json["threads"].get<std::uint64_t>(), "thread")
                                                : "unknown threads",
           in_words(json["host"]));
   print("on disk     {}\n", size_in_words(json["bytes"]));
@@ -256,8 +258,8 @@ void print_run(const Json& json) {
   print_files("checkpoints", json["checkpoints"], "steps", "step");
   if (!json["contacts"].empty())
     print_files("contacts", json["contacts"], "contact_count", "rows:");
-  print("series      {} of {}, {}\n", counted(json["series"]["rows"].get<std::uint64_t>(), "row"),
-        counted(json["series"]["columns"].get<std::uint64_t>(), "column"), size_in_words(json["series"]["bytes"]));
+  print("series      {} of {}, {}\n", pluralize(json["series"]["rows"].get<std::uint64_t>(), "row"),
+        pluralize(json["series"]["columns"].get<std::uint64_t>(), "column"), size_in_words(json["series"]["bytes"]));
 }
 
 void print_many(const Json& json) {

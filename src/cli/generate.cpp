@@ -9,14 +9,14 @@
 #include "signals.hpp"
 
 #include <keeler/cells/overlap.hpp>
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/files/new_file.hpp>
+#include <keeler/initial_conditions/broken.hpp>
+#include <keeler/initial_conditions/clumped.hpp>
+#include <keeler/initial_conditions/from_table.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/scene/resting_choice.hpp>
-#include <keeler/states/broken.hpp>
-#include <keeler/states/clumped.hpp>
-#include <keeler/states/from_table.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
 
@@ -89,8 +89,8 @@ void require_place_for_state(const GenerateOptions& options) {
 void print_doubts(const Scene& scene, const Patch& patch, const TalkOption& talk) {
   if (talk.quiet)
     return;
-  for (const std::string& doubt : doubts(scene, scale_of(patch)))
-    print("note: {}\n", doubt);
+  for (const std::string& warning : warnings(scene, scale_of(patch)))
+    print("note: {}\n", warning);
 }
 
 // Overlaps that a run would refuse are reported, or removed where the user asks for it.
@@ -101,16 +101,17 @@ void part(Patch& patch, const GenerateOptions& options, const ParticleTable& tab
   const Overlap worst = largest_overlap(patch);
   const std::string found =
       fmt::format("{} of particles overlap, worst those of {} and {}, by {:.2g} of their radius sum",
-                  counted(overlaps, "pair"), table.place_of(worst.id_i), table.place_of(worst.id_j), worst.depth);
+                  pluralize(overlaps, "pair"), table.place_of(worst.id_i), table.place_of(worst.id_j), worst.depth);
   if (!options.relax)
     throw InvariantError(found + "; correct them, or move them apart by --relax");
   const Relaxation moved = unless_stopped(stopped, [&] { return relax(patch); });
-  print("{}; moved {} apart, by {} m at most\n", found, counted(moved.moved, "particle"), figures(moved.farthest, 3));
+  print("{}; moved {} apart, by {} m at most\n", found, pluralize(moved.moved, "particle"),
+        format_number(moved.farthest, 3));
 }
 
 void print_state(const Patch& patch, const std::string& output) {
-  print("{} in {} m x {} m, no overlaps: {}\n", counted(patch.size(), "particle"), figures(patch.box.size_x, 5),
-        figures(patch.box.size_y, 5), output);
+  print("{} in {} m x {} m, no overlaps: {}\n", pluralize(patch.size(), "particle"), format_number(patch.box.size_x, 5),
+        format_number(patch.box.size_y, 5), output);
 }
 
 ExitCode generate_from_table(const GenerateOptions& options, const std::vector<std::string>& arguments) {
@@ -169,7 +170,7 @@ void add_generate(CLI::App& program, Action& action, const std::vector<std::stri
   CLI::Option& clumped = *command.add_flag("--clumped", options->clumped,
                                            "evolve the state under its own gravity until its wakes have settled");
   command
-      .add_option("--most-orbits", options->criterion.most_orbits,
+      .add_option("--most-orbits", options->criterion.max_orbits,
                   "give up when wakes have not settled by then (default: 30)")
       ->check(number_between(0.0, 200.0, "a number of orbits"))
       ->needs(&clumped);

@@ -4,8 +4,8 @@
 #include "print.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/core/json_of_files.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/files/kept_streams.hpp>
 #include <keeler/io/contacts.hpp>
 #include <keeler/io/describe.hpp>

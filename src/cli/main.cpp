@@ -4,11 +4,11 @@
 #include "signals.hpp"
 #include "usage.hpp"
 
+#include <keeler/comm/communicator.hpp>
+#include <keeler/comm/same_request.hpp>
 #include <keeler/core/error_at_hand.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/version.hpp>
-#include <keeler/ranks/ranks.hpp>
-#include <keeler/ranks/same_request.hpp>
 
 #include <fmt/format.h>
 
@@ -58,7 +58,8 @@ void group(CLI::App& program, const std::string& heading) {
 }
 
 // In the order in which a user meets them.
-void add_commands(CLI::App& program, Action& action, const std::vector<std::string>& arguments, const Ranks& ranks) {
+void add_commands(CLI::App& program, Action& action, const std::vector<std::string>& arguments,
+                  const Communicator& ranks) {
   add_new(program, action);
   add_check(program, action);
   add_tune(program, action);
@@ -85,12 +86,12 @@ void add_commands(CLI::App& program, Action& action, const std::vector<std::stri
 }
 
 // Commands of one process would all do the same.
-void refuse_ranks(const std::string& command, const Ranks& ranks) {
+void refuse_ranks(const std::string& command, const Communicator& ranks) {
   const std::vector<std::string> shared = {"keeler", "keeler run", "keeler resume", "keeler bench step"};
-  if (ranks.many() && std::find(shared.begin(), shared.end(), command) == shared.end())
+  if (ranks.distributed() && std::find(shared.begin(), shared.end(), command) == shared.end())
     throw UsageError(fmt::format("'{}' is for one process, and a launcher of MPI has started {}; start it by itself "
                                  "(only run, resume and bench step are shared by ranks)",
-                                 command, ranks.count()));
+                                 command, ranks.size()));
 }
 
 // The command that a command line asks for.
@@ -99,7 +100,7 @@ struct Parsed {
   Action help;         // prints --help or --version, where these are asked for
 };
 
-Parsed parse(CLI::App& program, int argc, char** argv, const Ranks& ranks) {
+Parsed parse(CLI::App& program, int argc, char** argv, const Communicator& ranks) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& asked) { // --help and --version
@@ -119,8 +120,8 @@ Parsed parse(CLI::App& program, int argc, char** argv, const Ranks& ranks) {
 }
 
 int run(int argc, char** argv) {
-  const Ranks ranks = Ranks::launched();
-  if (!ranks.is_first() && !std::freopen("/dev/null", "w", stdout)) // results are the first rank's to tell
+  const Communicator ranks = Communicator::launched();
+  if (!ranks.is_root() && !std::freopen("/dev/null", "w", stdout)) // results are the first rank's to tell
     throw IoError("cannot open /dev/null");
   CLI::App program("Keeler simulates a self-gravitating patch of a planetary ring.", "keeler");
   program.set_version_flag("--version", "keeler " + program_version());

@@ -2,7 +2,7 @@
 // nothing else happens: no run ends because nobody reads its progress.
 #pragma once
 
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 
 #include <cstdio>
 #include <string>

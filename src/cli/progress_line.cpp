@@ -3,7 +3,7 @@
 #include "messages.hpp"
 #include "terminal.hpp"
 
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 
 #include <fmt/format.h>
 
@@ -93,7 +93,7 @@ void ProgressLine::show(const RunProgress& p) {
   if (!due(p.elapsed_s, p.step == p.end_step))
     return;
   const double done = static_cast<double>(p.step) / static_cast<double>(p.end_step);
-  Parts parts = {fmt::format("{:.3f}/{} orbits", p.orbits, figures(p.end_orbits)),
+  Parts parts = {fmt::format("{:.3f}/{} orbits", p.orbits, format_number(p.end_orbits)),
                  fmt::format("{:3.0f} %", 100.0 * done)};
   for (const std::string& left : time_left(done, p.elapsed_s, p.remaining_s))
     parts.push_back(left);
@@ -139,8 +139,8 @@ void ProgressLine::show(const ClumpingProgress& p) {
   Parts parts = {fmt::format("{:.3f} orbits", p.orbits), clock(p.elapsed_s),
                  fmt::format("contrast {:.3f}", p.contrast)};
   if (!p.settling) {
-    parts.push_back(fmt::format("compared from orbit {:g} on", p.criterion.least_orbits()));
-  } else if (p.settling->standing < p.criterion.least_standing) {
+    parts.push_back(fmt::format("compared from orbit {:g} on", p.criterion.min_orbits()));
+  } else if (p.settling->standing < p.criterion.min_standing) {
     parts.push_back("no wakes stand out");
   } else {
     const auto change = [&](const WindowMeans& means) {

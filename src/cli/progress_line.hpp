@@ -5,8 +5,8 @@
 #include "talk.hpp"
 
 #include <keeler/core/progress.hpp>
+#include <keeler/initial_conditions/clumped.hpp>
 #include <keeler/runs/run.hpp>
-#include <keeler/states/clumped.hpp>
 
 #include <optional>
 #include <string>

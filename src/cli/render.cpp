@@ -148,7 +148,7 @@ void add_render(CLI::App& program, Action& action) {
       ->type_name("FILE");
   command.add_option("--width", options->width, "of the picture (default: 1600)")
       ->type_name("PIXELS")
-      ->transform(whole_number_between(least_picture_width, most_picture_width, "a number of pixels"));
+      ->transform(whole_number_between(min_picture_width, max_picture_width, "a number of pixels"));
   one_of(command.add_option("--theme", options->theme, "the page: dark (the default), or light for print"),
          {"dark", "light"});
   CLI::Option* const colour =

@@ -28,7 +28,7 @@ struct JobOptions {
 
 // The first rank alone speaks.
 RunOptions run_options(const JobOptions& job, const std::vector<std::string>& arguments, ProgressLine& line,
-                       const Ranks& ranks) {
+                       const Communicator& ranks) {
   RunOptions options;
   options.ranks = ranks;
   options.folder = job.folder;
@@ -39,7 +39,7 @@ RunOptions run_options(const JobOptions& job, const std::vector<std::string>& ar
   if (job.until > 0.0)
     options.until_orbits = job.until;
   options.arguments = arguments;
-  if (!ranks.is_first())
+  if (!ranks.is_root())
     return options;
   options.start_progress = [&line](const StartProgress& progress) { line.show(progress); };
   options.progress = [&line](const RunProgress& progress) { line.show(progress); };
@@ -47,8 +47,8 @@ RunOptions run_options(const JobOptions& job, const std::vector<std::string>& ar
   return options;
 }
 
-ExitCode report(const JobOptions& job, const RunResult& result, const Ranks& ranks) {
-  if (!ranks.is_first())
+ExitCode report(const JobOptions& job, const RunResult& result, const Communicator& ranks) {
+  if (!ranks.is_root())
     return result.finished ? ExitCode::done : ExitCode::stopped;
   print_record(result.summary, job.json);
   if (!job.json)
@@ -70,7 +70,7 @@ void add_common(CLI::App& command, JobOptions& job) {
 
 } // namespace
 
-void add_run(CLI::App& program, Action& action, const std::vector<std::string>& arguments, const Ranks& ranks) {
+void add_run(CLI::App& program, Action& action, const std::vector<std::string>& arguments, const Communicator& ranks) {
   const auto job = std::make_shared<JobOptions>();
   CLI::App& command = *program.add_subcommand("run", "evolve a scene into a folder of results");
   job->scene.add_to(command)->required();
@@ -87,14 +87,14 @@ void add_run(CLI::App& program, Action& action, const std::vector<std::string>& 
     requests_from_signals(); // before signals are released
     action = [job, arguments, ranks] {
       job->threads.apply();
-      if (ranks.is_first())
+      if (ranks.is_root())
         job->talk.say_program();
       Scene scene;
       ranks.together([&] {
         require_folder_name(job->folder);
         scene = job->scene.load(job->from);
       });
-      if (ranks.is_first())
+      if (ranks.is_root())
         job->talk.say_scene(scene);
       RunResult result;
       {
@@ -106,7 +106,8 @@ void add_run(CLI::App& program, Action& action, const std::vector<std::string>& 
   });
 }
 
-void add_resume(CLI::App& program, Action& action, const std::vector<std::string>& arguments, const Ranks& ranks) {
+void add_resume(CLI::App& program, Action& action, const std::vector<std::string>& arguments,
+                const Communicator& ranks) {
   const auto job = std::make_shared<JobOptions>();
   CLI::App& command = *program.add_subcommand("resume", "continue a run from its newest whole checkpoint");
   command.add_option("DIR", job->folder, "the folder of the run")->required()->type_name("");
@@ -117,7 +118,7 @@ void add_resume(CLI::App& program, Action& action, const std::vector<std::string
     requests_from_signals(); // before signals are released
     action = [job, arguments, ranks] {
       job->threads.apply();
-      if (ranks.is_first())
+      if (ranks.is_root())
         job->talk.say_program();
       RunResult result;
       {

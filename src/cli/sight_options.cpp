@@ -3,8 +3,8 @@
 #include "common_options.hpp"
 #include "print.hpp"
 
+#include <keeler/core/format.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/core/words.hpp>
 
 #include <fmt/format.h>
 
@@ -14,16 +14,16 @@ namespace keeler {
 namespace {
 
 constexpr double degree = pi / 180.0;
-constexpr double least_elevation = 0.1; // degrees: rays then cross 600 m of ring for each metre of its thickness
-constexpr int default_azimuths = 18;    // every 10°; half a turn more sees the same ring from below
-constexpr double most_rays = 1e9;
+constexpr double min_elevation = 0.1; // degrees: rays then cross 600 m of ring for each metre of its thickness
+constexpr int default_azimuths = 18;  // every 10°; half a turn more sees the same ring from below
+constexpr double max_rays = 1e9;
 
 nlohmann::ordered_json maybe(const std::optional<double>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
 std::string known(const std::optional<double>& value, int digits) {
-  return value ? figures(*value, digits) : "unknown";
+  return value ? format_number(*value, digits) : "unknown";
 }
 
 } // namespace
@@ -35,7 +35,7 @@ void SightOptions::add_to(CLI::App& command) {
                       "cast rays at these angles above the ring plane (degrees, a list with commas)")
           ->delimiter(',')
           ->allow_extra_args(false)
-          ->check(number_between(least_elevation, 90.0, "an elevation"));
+          ->check(number_between(min_elevation, 90.0, "an elevation"));
   command
       .add_option("--azimuth", azimuths,
                   "angles from the radius to the orbital motion (degrees, a list with commas; default: every 10)")
@@ -44,7 +44,7 @@ void SightOptions::add_to(CLI::App& command) {
       ->check(number_between(-360.0, 360.0, "an azimuth"))
       ->needs(elevation);
   command.add_option("--rays", rays, "rays for each line of sight and snapshot (default: 1000000)")
-      ->transform(whole_number_between(1, most_rays, "a number of rays"))
+      ->transform(whole_number_between(1, max_rays, "a number of rays"))
       ->needs(elevation);
   command.add_option("--footprint", footprint, "side of the areas whose flicker is measured, in m (default: 10)")
       ->check(positive_number())
@@ -98,20 +98,20 @@ nlohmann::ordered_json Sights::json() const {
 
 void Sights::print() const {
   keeler::print("lines of sight       {} rays, footprints of {} x {} m\n", rays_.size(),
-                figures(rays_.footprint_x(), 3), figures(rays_.footprint_y(), 3));
+                format_number(rays_.footprint_x(), 3), format_number(rays_.footprint_y(), 3));
   for (const Elevation& e : elevations_) {
     for (std::size_t k = 0; k < e.looks.size(); ++k) {
       const Occultation& o = e.looks[k];
       keeler::print(
           "  B {:<5} phi {:<5} T {:.4f} +- {:.4f}, normal optical depth {}; flicker: variance {}, skewness {}, "
           "kurtosis {}\n",
-          figures(e.degrees, 3), figures(e.azimuths[k], 3), *o.transmission.value, o.ray_error,
-          known(o.normal_optical_depth, 4), figures(o.flicker.variance, 3), known(o.flicker.skewness, 3),
+          format_number(e.degrees, 3), format_number(e.azimuths[k], 3), *o.transmission.value, o.ray_error,
+          known(o.normal_optical_depth, 4), format_number(o.flicker.variance, 3), known(o.flicker.skewness, 3),
           known(o.flicker.kurtosis, 3));
     }
     if (const auto asymmetry = azimuthal_asymmetry(e.looks))
-      keeler::print("  B {:<5} azimuthal asymmetry {:.3g}, brightest at {} degrees\n", figures(e.degrees, 3),
-                    asymmetry->amplitude, figures(asymmetry->brightest_azimuth / degree, 4));
+      keeler::print("  B {:<5} azimuthal asymmetry {:.3g}, brightest at {} degrees\n", format_number(e.degrees, 3),
+                    asymmetry->amplitude, format_number(asymmetry->brightest_azimuth / degree, 4));
   }
 }
 

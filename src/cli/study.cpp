@@ -102,9 +102,9 @@ void add_gravity(CLI::App& command, Action& action, const std::vector<std::strin
   gravity.add_option("--repeats", settings->repeats, "times measured; medians are given (default: 5)")
       ->transform(repeat_number());
   gravity.add_option("--orbits", settings->orbits, "orbits that each run is measured over (default: 4)")
-      ->check(positive_number(most_orbits));
+      ->check(positive_number(max_orbits));
   gravity.add_option("--seeds", settings->seeds, "runs with each solver and kick interval (default: 3)")
-      ->transform(whole_number_between(1, most_seeds, "a number of seeds"));
+      ->transform(whole_number_between(1, max_seeds, "a number of seeds"));
   const auto quick = std::make_shared<bool>(false);
   gravity.add_flag("--quick", *quick,
                    "by default 5000 particles, two repeats, two seeds and half an orbit: two or three minutes");

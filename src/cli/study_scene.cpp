@@ -71,15 +71,15 @@ void add_one(CLI::App& study, Action& action, const std::vector<std::string>& ar
       ->type_name("DIR");
   options->talk.add_to(command);
   command.add_option("--seeds", settings.seeds, "runs with each setting (default: 3)")
-      ->transform(whole_number_between(1, most_seeds, "a number of seeds"));
+      ->transform(whole_number_between(1, max_seeds, "a number of seeds"));
   command
       .add_option("--grow", settings.grow_orbits,
                   "orbits before anything is compared (default: 6 with self-gravity, 10 without)")
-      ->check(positive_number(most_orbits));
+      ->check(positive_number(max_orbits));
   command.add_option("--orbits", settings.orbits, "orbits of each run from then on (default: 6)")
-      ->check(positive_number(most_orbits));
+      ->check(positive_number(max_orbits));
   command.add_option("--jobs", options->jobs, "runs at once, on one thread each (default: threads of the machine)")
-      ->transform(whole_number_between(1, most_threads, "a number of runs"));
+      ->transform(whole_number_between(1, max_threads, "a number of runs"));
   add_quantities(command, settings.quantities);
   command.add_flag("--quick", settings.quick,
                    "few settings, and by default two seeds, an orbit to grow and two to compare: a first look");

@@ -7,8 +7,8 @@
 #include "results.hpp"
 #include "signals.hpp"
 
+#include <keeler/core/format.hpp>
 #include <keeler/core/json_of_files.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/sweep/sweep.hpp>
 
 #include <fmt/format.h>
@@ -37,7 +37,7 @@ void print_json(const SweepResult& result) {
 }
 
 void print_text(const SweepResult& result, const std::filesystem::path& folder) {
-  print("{}: {} finished, {} failed\n", counted(result.runs, "run"), result.finished, result.failed);
+  print("{}: {} finished, {} failed\n", pluralize(result.runs, "run"), result.finished, result.failed);
   for (const char* const name : {"sweep.csv", "points.csv", "report.md", "figure.svg"})
     if (std::filesystem::exists(folder / name))
       print("{}\n", (folder / name).string());
@@ -48,11 +48,11 @@ void say_failed(const SweepResult& result, const std::filesystem::path& folder) 
     say(result.figure_fault + "; the tables and report.md are there");
   if (result.failed > result.unmeasurable)
     say(fmt::format("{} failed, sweep.csv has the reasons; the same command tries again",
-                    counted(result.failed - result.unmeasurable, "run")));
+                    pluralize(result.failed - result.unmeasurable, "run")));
   if (result.unmeasurable > 0)
     say(fmt::format("{} cannot be measured, sweep.csv has the reasons; remove what is damaged from '{}', and the same "
                     "command makes it again",
-                    counted(result.unmeasurable, "finished run"), (folder / "runs").string()));
+                    pluralize(result.unmeasurable, "finished run"), (folder / "runs").string()));
 }
 
 ExitCode carry_out(SweepOptions& options) {
@@ -81,7 +81,7 @@ ExitCode carry_out(SweepOptions& options) {
     print_text(result, settings.folder);
   const std::size_t left = result.runs - result.finished - result.failed;
   if (left > 0)
-    say(fmt::format("{} not finished; the tables have the others", counted(left, "run")));
+    say(fmt::format("{} not finished; the tables have the others", pluralize(left, "run")));
   say_failed(result, settings.folder);
   return result.failed > 0              ? ExitCode::run_time
          : !result.figure_fault.empty() ? ExitCode::input_output
@@ -103,7 +103,7 @@ void add_sweep(CLI::App& program, Action& action) {
       ->required()
       ->type_name("DIR");
   command.add_option("--jobs", options->jobs, "runs at once (default: threads of the machine / threads of a run)")
-      ->transform(whole_number_between(1, most_threads, "a number of runs"));
+      ->transform(whole_number_between(1, max_threads, "a number of runs"));
   command.add_option("--threads", settings.threads_per_run, "threads of each run (default: 1)")
       ->transform(thread_number());
   add_quantities(command, settings.quantities);

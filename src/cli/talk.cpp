@@ -2,10 +2,10 @@
 
 #include "messages.hpp"
 
+#include <keeler/core/format.hpp>
 #include <keeler/core/simd.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/version.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/scene/derived.hpp>
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ std::function<void(const std::string&)> TalkOption::notice() const {
 void TalkOption::say_program() const {
   if (verbose)
     say(fmt::format("version {}, commit {}, {}; {}, {}", program_version(), source_commit(), build_compiler(),
-                    counted(static_cast<std::uint64_t>(threads()), "thread"),
+                    pluralize(static_cast<std::uint64_t>(threads()), "thread"),
                     instruction_set_name(choose_instruction_set())));
 }
 

@@ -5,12 +5,12 @@
 #include "results.hpp"
 
 #include <keeler/cells/overlap.hpp>
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/files/new_file.hpp>
+#include <keeler/initial_conditions/initial.hpp>
+#include <keeler/initial_conditions/tiled.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/scene/scene.hpp>
-#include <keeler/states/initial.hpp>
-#include <keeler/states/tiled.hpp>
 
 #include <fmt/format.h>
 
@@ -49,8 +49,9 @@ ExitCode tile(const TileOptions& options, const std::vector<std::string>& argume
   const TiledPatch tiled(patch, options.nx, options.ny);
   write(tiled, options.output, {scene.resolved, collect_provenance(arguments)});
   const ShearingBox box = tiled.some(0, 0).box;
-  print("{} in {} m x {} m, {} x {} copies of {}: {}\n", counted(tiled.size(), "particle"), figures(box.size_x, 5),
-        figures(box.size_y, 5), options.nx, options.ny, options.file, options.output);
+  print("{} in {} m x {} m, {} x {} copies of {}: {}\n", pluralize(tiled.size(), "particle"),
+        format_number(box.size_x, 5), format_number(box.size_y, 5), options.nx, options.ny, options.file,
+        options.output);
   return ExitCode::done;
 }
 

@@ -8,9 +8,9 @@
 #include "scene_arguments.hpp"
 #include "signals.hpp"
 
+#include <keeler/core/format.hpp>
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/json_of_files.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/scene/examples.hpp>
 #include <keeler/scene/quality.hpp>
@@ -126,7 +126,7 @@ const char* mark(bool chosen) {
 }
 
 void print_text(const Tuning& t) {
-  print("{} in states up to {:.3g} orbits old, one thread\n", counted(t.particles, "particle"), t.orbits);
+  print("{} in states up to {:.3g} orbits old, one thread\n", pluralize(t.particles, "particle"), t.orbits);
   if (!t.gravity.empty())
     print("errors are held to {} of what is allowed, since other seeds differ\n", margin_for_seeds);
   if (!t.gravity.empty())
@@ -148,10 +148,10 @@ void print_text(const Tuning& t) {
   print("\n");
   for (const ThreadProbe& probe : t.threads)
     if (probe.threads > 1)
-      print("{}: {:.2f} times as fast{}\n", counted(probe.threads, "thread"), probe.speedup,
+      print("{}: {:.2f} times as fast{}\n", pluralize(probe.threads, "thread"), probe.speedup,
             mark(probe.threads == t.chosen_threads));
-  print("the whole run: about {} processor seconds, {} s on {}\n\n", figures(t.processor_seconds, 2),
-        figures(t.wall_seconds, 2), counted(t.chosen_threads, "thread"));
+  print("the whole run: about {} processor seconds, {} s on {}\n\n", format_number(t.processor_seconds, 2),
+        format_number(t.wall_seconds, 2), pluralize(t.chosen_threads, "thread"));
 }
 
 void print_keys(const std::vector<KeyChange>& keys) {
@@ -175,7 +175,7 @@ ExitCode tune_scene(const TuneOptions& options) {
   options.threads.apply();
   options.talk.say_program();
   TuneSettings settings = tolerances(options);
-  settings.most_threads = threads();
+  settings.max_threads = threads();
   const Scene scene = options.scene.load();
   refuse_what_cannot_be_written(options);
   const std::string text = read_scene_text(options.scene.path);
@@ -222,7 +222,7 @@ void add_tune(CLI::App& program, Action& action) {
   command
       .add_option("--orbits", options->settings.orbits,
                   "age of the state that is probed (default: 4 with self-gravity, else 8; at most the run's end)")
-      ->check(positive_number(most_orbits));
+      ->check(positive_number(max_orbits));
   command.add_option("-o,--output", options->output, "write the scene with the keys that were found")
       ->type_name("FILE");
   command.add_flag("--force", options->force, "replace the file if it exists");

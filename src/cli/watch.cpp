@@ -3,7 +3,7 @@
 #include "print.hpp"
 #include "terminal.hpp"
 
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/runs/run_view.hpp>
 #include <keeler/runs/series_columns.hpp>
 
@@ -97,9 +97,10 @@ std::string standing(const RunView& view) {
 // No line is longer than the terminal is wide.
 std::string text_of(const RunView& view, const std::string& folder, int width) {
   const auto columns = static_cast<std::size_t>(width);
-  std::vector<std::string> text = {folder, standing(view),
-                                   fmt::format("orbit {} of {}", figures(view.orbits, 4), figures(view.end_orbits, 4)),
-                                   progress_bar(view.share(), std::clamp(width, 10, 60))};
+  std::vector<std::string> text = {
+      folder, standing(view),
+      fmt::format("orbit {} of {}", format_number(view.orbits, 4), format_number(view.end_orbits, 4)),
+      progress_bar(view.share(), std::clamp(width, 10, 60))};
   for (const auto& [what, name] : {std::pair{"snapshot", view.snapshot}, std::pair{"checkpoint", view.checkpoint},
                                    std::pair{"picture", view.picture}})
     if (!name.empty())
@@ -113,7 +114,7 @@ std::string text_of(const RunView& view, const std::string& folder, int width) {
       if (values.empty())
         continue;
       const std::string numbers =
-          fmt::format("{:<{}}{:>{}}  ", line.label, label_columns, figures(values.back(), 3), value_columns);
+          fmt::format("{:<{}}{:>{}}  ", line.label, label_columns, format_number(values.back(), 3), value_columns);
       all += numbers.substr(0, columns);
       if (numbers.size() < columns)
         all += small_plot(values, columns - numbers.size());

@@ -25,9 +25,9 @@
 #include <keeler/collision/drift.hpp>
 #include <keeler/collision/events.hpp>
 #include <keeler/collision/settings.hpp>
-#include <keeler/contacts/finder.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/interrupt.hpp>
+#include <keeler/finders/finder.hpp>
 
 #include <fmt/format.h>
 
@@ -138,11 +138,11 @@ public:
   }
 
   /// Of one particle in one search so far.
-  std::uint64_t most_partners() const { return most_partners_; }
+  std::uint64_t max_partners() const { return max_partners_; }
 
 private:
   static constexpr std::size_t nobody = ~std::size_t{0};
-  static constexpr std::uint32_t most_collisions = 100000; // of one particle in one step: an event storm, not physics
+  static constexpr std::uint32_t max_collisions = 100000; // of one particle in one step: an event storm, not physics
 
   /// Whom particle i may meet, through that image of it.
   struct Partner {
@@ -270,10 +270,10 @@ private:
   }
 
   void change(std::uint32_t i, const Elements& elements, double time) {
-    if (orbits_.stamp(i) == most_collisions)
+    if (orbits_.stamp(i) == max_collisions)
       throw InvariantError(fmt::format(
           "particle {} collided more than {} times in one step (an event storm); raise collisions.elastic_below",
-          step_.particles->ids[i], most_collisions));
+          step_.particles->ids[i], max_collisions));
     const State then = state_at(elements, step_.frequencies, Rotation());
     if (!(then.position.allFinite() && then.velocity.allFinite()))
       throw InvariantError(
@@ -296,7 +296,7 @@ private:
       __builtin_prefetch(&step_.particles->ids[j]);
       orbits_.prefetch_partner(j);
     });
-    most_partners_ = std::max(most_partners_, partners);
+    max_partners_ = std::max(max_partners_, partners);
     if (until < -step_.begin) {
       const std::uint64_t id = step_.particles->ids[i];
       events_.add({until, id, id, {}, i, i, orbits_.stamp(i), orbits_.stamp(i)});
@@ -306,12 +306,12 @@ private:
   // A large body is hit so often that a search to the end of the step would be in vain but for its first part: it looks
   // as far as it will probably not be hit, and then again.
   double look_until(std::uint32_t i, double from) const {
-    constexpr double hits_ahead = 2.0, least_share = 1.0 / 256.0; // of the step
+    constexpr double hits_ahead = 2.0, min_share = 1.0 / 256.0; // of the step
     const double begin = step_.begin, end = -begin;
     if (orbits_.stamp(i) < 2 || without(Acceleration::looks) || !orbits_.may_look_again(i))
       return end;
     const double ahead = hits_ahead * (from - begin) / orbits_.stamp(i);
-    return std::min(end, from + std::max(ahead, least_share * (end - begin)));
+    return std::min(end, from + std::max(ahead, min_share * (end - begin)));
   }
 
   // Asks about all of them at once.
@@ -335,7 +335,7 @@ private:
   const StepAtHand& step_;
   Orbits& orbits_;
   EventQueue& events_;
-  std::uint64_t most_partners_ = 0;
+  std::uint64_t max_partners_ = 0;
 
   // the search at hand
   std::vector<Partner> partners_;

@@ -36,9 +36,9 @@ void DriftPhase::collide(Particles& particles, const ShearingBox& box, double of
 }
 
 #ifdef KEELER_MPI
-bool DriftPhase::collide_shared(Particles& particles, const Borders& borders, const Ranks& ranks,
-                                const ShearingBox& box, double offset, CollisionTally& tally) {
-  return engine_->collide_shared(particles, borders, ranks, box, offset, tally);
+bool DriftPhase::collide_distributed(Particles& particles, const Borders& borders, const Communicator& ranks,
+                                     const ShearingBox& box, double offset, CollisionTally& tally) {
+  return engine_->collide_distributed(particles, borders, ranks, box, offset, tally);
 }
 #endif
 

@@ -3,13 +3,13 @@
 #include "ablation.hpp"
 #include "in_place.hpp"
 
-#include <keeler/contacts/certified_finder.hpp>
-#include <keeler/contacts/finders.hpp>
-#include <keeler/contacts/motion/relative.hpp>
-#include <keeler/contacts/search/certified.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
+#include <keeler/finders/certified_finder.hpp>
+#include <keeler/finders/finders.hpp>
+#include <keeler/finders/motion/relative.hpp>
+#include <keeler/finders/search/certified.hpp>
 
 #include <fmt/format.h>
 
@@ -82,7 +82,7 @@ void DriftEngine::carry_out(const std::vector<Event>& first, CollisionTally& tal
   InPlace orbits{*this, tally};
   ContactLoop loop(step_at_hand_, orbits, events_);
   loop.run();
-  costs_.widest_list = std::max(costs_.widest_list, loop.most_partners());
+  costs_.widest_list = std::max(costs_.widest_list, loop.max_partners());
 }
 
 void DriftEngine::end_step() {
@@ -97,7 +97,7 @@ void DriftEngine::end_step() {
 
 // Whether it is this rank's.
 bool DriftEngine::count(const Contact& contact, CollisionTally& tally) {
-  if (Ranks::possible && contact.low >= counted_)
+  if (Communicator::possible && contact.low >= counted_)
     return false; // a copy: its owner counts
   ++(contact.fast ? tally.fast : tally.slow);
   tally.unresolved += contact.unresolved;
@@ -125,7 +125,7 @@ bool DriftEngine::in_domains(const std::vector<Event>& first, CollisionTally& ta
     return false;
   const std::size_t paying = std::min(static_cast<std::size_t>(threads()), first.size() / fewest_contacts);
   const std::size_t wanted = observer_ ? observer_->wants_domains() : 0;
-  const std::size_t domains = std::min(OptimisticLoop::most_domains, wanted > 0 ? wanted : paying);
+  const std::size_t domains = std::min(OptimisticLoop::max_domains, wanted > 0 ? wanted : paying);
   if (domains < 2 || !optimistic_.carry_out(step_at_hand_, *particles_, so_far_, finder(), lists_, first, domains))
     return false;
   optimistic_.visit_contacts([&](const Contact& contact, const CollisionRecord* record) {
@@ -133,10 +133,10 @@ bool DriftEngine::in_domains(const std::vector<Event>& first, CollisionTally& ta
       records_.push_back(*record);
   });
   optimistic_.list_touched(touched_);
-  if constexpr (Ranks::possible)
+  if constexpr (Communicator::possible)
     if (borders_)
       note_changes_of_domains();
-  costs_.widest_list = std::max(costs_.widest_list, optimistic_.most_partners());
+  costs_.widest_list = std::max(costs_.widest_list, optimistic_.max_partners());
   return true;
 }
 

@@ -8,9 +8,9 @@
 
 #include <keeler/collision/drift.hpp>
 #include <keeler/collision/neighbour_audit.hpp>
+#include <keeler/comm/communicator.hpp>
 #include <keeler/core/exact_sum.hpp>
-#include <keeler/ranks/ranks.hpp>
-#include <keeler/slabs/borders.hpp>
+#include <keeler/decomposition/borders.hpp>
 
 namespace keeler {
 
@@ -22,8 +22,8 @@ public:
   DriftEngine& operator=(const DriftEngine&) = delete;
 
   void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally, bool undisturbed);
-  bool collide_shared(Particles& particles, const Borders& borders, const Ranks& ranks, const ShearingBox& box,
-                      double offset, CollisionTally& tally);
+  bool collide_distributed(Particles& particles, const Borders& borders, const Communicator& ranks,
+                           const ShearingBox& box, double offset, CollisionTally& tally);
   DriftCosts costs() const;
 
   Finder& finder() const {
@@ -75,8 +75,8 @@ private:
   void complete_changes();
   void undo_changes();
   void do_again(Sharing& sharing);
-  void end_shared(Sharing& sharing, CollisionTally& tally);
-  void gather_records(const Ranks& ranks);
+  void end_distributed(Sharing& sharing, CollisionTally& tally);
+  void gather_records(const Communicator& ranks);
   void prepare(bool undisturbed);
   bool in_domains(const std::vector<Event>& first, CollisionTally& tally);
   bool count(const Contact& contact, CollisionTally& tally);

@@ -8,8 +8,8 @@
 #pragma once
 
 #include <keeler/cells/grid.hpp>
-#include <keeler/contacts/straight_line.hpp>
 #include <keeler/core/interrupt.hpp>
+#include <keeler/finders/straight_line.hpp>
 
 #include <vector>
 

@@ -1,4 +1,4 @@
-// The orbits of a loop that has all contacts of the step. For drift_engine.cpp and shared_drift.cpp alone.
+// The orbits of a loop that has all contacts of the step. For drift_engine.cpp and distributed_drift.cpp alone.
 #pragma once
 
 #include "drift_engine.hpp"
@@ -23,7 +23,7 @@ struct DriftEngine::InPlace {
   void change(std::uint32_t i, const Elements& elements, double time) {
     if (stamp(i) == 0)
       drift.touched_.push_back(i);
-    if constexpr (Ranks::possible)
+    if constexpr (Communicator::possible)
       if (drift.borders_)
         drift.note_change(i, time, elements);
     drift.so_far_.change(i, time);

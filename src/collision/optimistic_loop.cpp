@@ -12,7 +12,7 @@ namespace keeler {
 
 bool OptimisticLoop::carry_out(const StepAtHand& step, Particles& particles, StepSoFar& so_far, const Finder& finder,
                                NeighbourLists& lists, const std::vector<Event>& first, std::size_t domains) {
-  assert(finder.exact() && domains > 0 && domains <= most_domains);
+  assert(finder.exact() && domains > 0 && domains <= max_domains);
   step_ = &step;
   particles_ = &particles;
   so_far_ = &so_far;
@@ -65,7 +65,7 @@ void OptimisticLoop::Domain::clear() {
   is_rolled_back.clear();
   unresolved.clear();
   touched.clear();
-  most_partners = 0;
+  max_partners = 0;
   rolled_back = 0;
   failed = false;
 }
@@ -113,7 +113,7 @@ void OptimisticLoop::run(std::size_t round, Domain& domain) {
       loop.search_again(orbits.again);
     }
     loop.run();
-    domain.most_partners = loop.most_partners();
+    domain.max_partners = loop.max_partners();
   } catch (...) {
     domain.failed = true; // the sequence will throw it in its order
   }
@@ -222,10 +222,10 @@ void OptimisticLoop::list_touched(std::vector<std::uint32_t>& touched) const {
     touched.insert(touched.end(), domain.touched.begin(), domain.touched.end());
 }
 
-std::uint64_t OptimisticLoop::most_partners() const {
+std::uint64_t OptimisticLoop::max_partners() const {
   std::uint64_t most = 0;
   for (const Domain& domain : domains_)
-    most = std::max(most, domain.most_partners);
+    most = std::max(most, domain.max_partners);
   return most;
 }
 

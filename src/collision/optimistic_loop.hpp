@@ -36,7 +36,7 @@ namespace keeler {
 class OptimisticLoop {
 public:
   /// How many domains a round may have: those of three rounds are numbered in a byte, beside their changes.
-  static constexpr std::size_t most_domains = 127;
+  static constexpr std::size_t max_domains = 127;
 
   /// Carries out everything that follows from the first contacts of a step, for an exact finder, in so many domains.
   /// Returns false when that should be done in sequence, with everything as it was.
@@ -53,15 +53,15 @@ public:
   /// Each particle that was hit; who was rolled back and hit again, again.
   void list_touched(std::vector<std::uint32_t>& touched) const;
   /// Of one particle in one search of the step.
-  std::uint64_t most_partners() const;
+  std::uint64_t max_partners() const;
 
   std::uint64_t deferred = 0, last_deferred = 0, rolled_back = 0; ///< so far: events to round 2, to the last; contacts
   std::size_t bytes() const;
 
 private:
   static constexpr std::size_t rounds = 3;
-  static constexpr std::uint32_t most_changes = 1u << 24; // of a domain
-  static_assert((2 * most_domains + 1) * std::uint64_t{most_changes} < std::uint64_t{1} << 32);
+  static constexpr std::uint32_t max_changes = 1u << 24; // of a domain
+  static_assert((2 * max_domains + 1) * std::uint64_t{max_changes} < std::uint64_t{1} << 32);
 
   /// The end of a particle's path, and what it takes to roll it back. Each contact makes two that follow each other.
   struct Change {
@@ -94,7 +94,7 @@ private:
     std::vector<NewPath> unresolved;          // that meet what is not the domain's
     std::vector<std::uint32_t> touched;       // by it first of all domains
     EventQueue events;
-    std::uint64_t most_partners = 0;
+    std::uint64_t max_partners = 0;
     std::uint64_t rolled_back = 0;
     bool failed = false;
 
@@ -114,11 +114,11 @@ private:
   }
   // Numbers of changes, from 1 on, tell their domain.
   static std::uint32_t number_of(std::size_t domain, std::size_t change) {
-    return static_cast<std::uint32_t>(domain * most_changes + change + 1);
+    return static_cast<std::uint32_t>(domain * max_changes + change + 1);
   }
-  Domain& domain_of(std::uint32_t number) { return domains_[(number - 1) / most_changes]; }
+  Domain& domain_of(std::uint32_t number) { return domains_[(number - 1) / max_changes]; }
   const Change& change(std::uint32_t number) const {
-    return domains_[(number - 1) / most_changes].changes[(number - 1) % most_changes];
+    return domains_[(number - 1) / max_changes].changes[(number - 1) % max_changes];
   }
   std::uint32_t newest(std::size_t place) const { return so_far_->stamp(place) > 0 ? newest_[place] : 0; }
 
@@ -156,8 +156,8 @@ template<class Visit> void OptimisticLoop::visit_contacts(const Visit& visit) co
 
 template<class Visit> void OptimisticLoop::visit_changes(std::uint32_t place, const Visit& visit) const {
   for (std::uint32_t number = newest(place); number; number = change(number).earlier) {
-    const std::vector<Vec3>& spins = domains_[(number - 1) / most_changes].spins;
-    visit(change(number).time, change(number).ended, spins.empty() ? Vec3::Zero() : spins[(number - 1) % most_changes]);
+    const std::vector<Vec3>& spins = domains_[(number - 1) / max_changes].spins;
+    visit(change(number).time, change(number).ended, spins.empty() ? Vec3::Zero() : spins[(number - 1) % max_changes]);
   }
 }
 

@@ -101,7 +101,7 @@ struct OptimisticLoop::Orbits {
       const Change& past = all.change(number);
       if (past.time < path.from)
         break;
-      if ((number - 1) / most_changes != this->number() && meets(path.place, path.from, j, past))
+      if ((number - 1) / max_changes != this->number() && meets(path.place, path.from, j, past))
         first = number;
     }
     return first;
@@ -114,7 +114,7 @@ struct OptimisticLoop::Orbits {
     while (!to_undo.empty()) {
       const std::uint32_t last = to_undo.back(), partner = ((last - 1) ^ 1u) + 1;
       Domain& its = all.domain_of(last);
-      const std::size_t contact = (last - 1) % most_changes / 2;
+      const std::size_t contact = (last - 1) % max_changes / 2;
       if (its.is_rolled_back[contact]) {
         to_undo.pop_back();
         continue;
@@ -132,7 +132,7 @@ struct OptimisticLoop::Orbits {
       for (const std::uint32_t undone : {last, partner}) {
         const Change& change = all.change(undone);
         all.so_far_->renew(change.place, change.begin);
-        all.restore(its, (undone - 1) % most_changes, is_last());
+        all.restore(its, (undone - 1) % max_changes, is_last());
         paths.push_back({change.place, change.time});
         again.push_back(change.place);
       }
@@ -159,9 +159,9 @@ struct OptimisticLoop::Orbits {
     Body& body = all.particles_->bodies[i];
     const std::uint32_t earlier = all.newest(i);
     assert(!earlier || all.change(earlier).time <= time);
-    if (earlier && (earlier - 1) / most_changes != number()) // made at this instant: ids can't tell their order
+    if (earlier && (earlier - 1) / max_changes != number()) // made at this instant: ids can't tell their order
       domain.failed |= all.change(earlier).time >= time;
-    domain.failed |= domain.changes.size() + 3 > most_changes;
+    domain.failed |= domain.changes.size() + 3 > max_changes;
     if (!earlier)
       domain.touched.push_back(i);
     all.newest_[i] = number_of(number(), domain.changes.size());

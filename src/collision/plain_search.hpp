@@ -2,8 +2,8 @@
 // or single precision. It is what these are held against.
 #pragma once
 
-#include <keeler/box/shearing_box.hpp>
-#include <keeler/contacts/straight_line.hpp>
+#include <keeler/finders/straight_line.hpp>
+#include <keeler/hill/shearing_box.hpp>
 #include <keeler/particles/store.hpp>
 
 #include <algorithm>

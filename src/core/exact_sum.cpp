@@ -9,7 +9,7 @@
 namespace keeler {
 namespace {
 
-constexpr int most_taken = 1024; // of less than 2⁵² each, on the 32 bits that carry() leaves
+constexpr int max_taken = 1024; // of less than 2⁵² each, on the 32 bits that carry() leaves
 
 } // namespace
 
@@ -37,7 +37,7 @@ void ExactSum::take(double term) {
   const std::int64_t sign = bits >> 63 != 0 ? -1 : 1;
   words_[word] += sign * static_cast<std::int64_t>((mantissa << shift) & 0xFFFFFFFF);
   words_[word + 1] += sign * static_cast<std::int64_t>(mantissa >> (32 - shift));
-  if (++taken_ == most_taken)
+  if (++taken_ == max_taken)
     carry();
 }
 
@@ -46,7 +46,7 @@ void ExactSum::take(double term) {
 // is Σ |term|.
 void ExactSum::take_in_parts(double sizes) {
   const double upper_unit = std::ldexp(1.0, std::ilogb(sizes) - 49), lower_unit = 0x1p-46 * upper_unit;
-  static_assert(most_terms <= 128); // 2⁷ times half an upper unit are 2⁵² lower ones
+  static_assert(max_terms <= 128); // 2⁷ times half an upper unit are 2⁵² lower ones
   // added to a number, these leave no bits below the unit
   const double upper_cut = 0x1.8p52 * upper_unit, lower_cut = 0x1.8p52 * lower_unit;
   double upper = 0.0, middle = 0.0, left = 0.0;

@@ -1,6 +1,6 @@
 #include <keeler/core/key.hpp>
 
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,13 +15,13 @@ bool KeyRange::contains(double value) const {
 
 std::string KeyRange::words() const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  const std::string below = fmt::format("{} {}", high_open ? "below" : "at most", figures(high));
+  const std::string below = fmt::format("{} {}", high_open ? "below" : "at most", format_number(high));
   if (low == -infinity)
     return high == infinity ? "" : below;
   if (high == infinity)
-    return low_open ? fmt::format("above {}", figures(low)) : fmt::format("from {} up", figures(low));
-  return low_open ? fmt::format("above {} and {}", figures(low), below)
-                  : fmt::format("from {} to {}", figures(low), figures(high));
+    return low_open ? fmt::format("above {}", format_number(low)) : fmt::format("from {} up", format_number(low));
+  return low_open ? fmt::format("above {} and {}", format_number(low), below)
+                  : fmt::format("from {} to {}", format_number(low), format_number(high));
 }
 
 bool KeyCondition::allows(const std::string& value) const {

@@ -1,7 +1,7 @@
 #include <keeler/core/memory.hpp>
 
 #include <keeler/core/error.hpp>
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 
 #include <fmt/format.h>
 
@@ -87,7 +87,7 @@ void require_memory(double bytes, const std::string& what, const std::string& re
   const double left = available_memory();
   if (!(bytes <= left))
     throw UsageError(fmt::format("{} needs {} GB of memory, and {} GB can be had here; {}", what,
-                                 figures(1e-9 * bytes, 3), figures(1e-9 * left, 3), remedy));
+                                 format_number(1e-9 * bytes, 3), format_number(1e-9 * left, 3), remedy));
 }
 
 std::size_t affordable_size(double count, double bytes_each, const std::string& what, const std::string& remedy) {

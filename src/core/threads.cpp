@@ -8,10 +8,10 @@
 namespace keeler {
 
 void set_threads(int count) {
-  if (count > most_threads)
+  if (count > max_threads)
     throw UsageError(fmt::format("{} threads are asked for (by --threads or OMP_NUM_THREADS), and {} is the most; ask "
                                  "for no more than there are processors ({})",
-                                 count, most_threads, omp_get_num_procs()));
+                                 count, max_threads, omp_get_num_procs()));
   omp_set_num_threads(std::max(1, count));
 }
 

@@ -8,7 +8,7 @@
 #include <keeler/diagnostics/spin.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/diagnostics/viscosity.hpp>
-#include <keeler/orbit/toomre.hpp>
+#include <keeler/hill/toomre.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +50,7 @@ void add(LocalAnalysis& sum, const Patch& patch, double share) {
   sum.crowding_radius_m += share * crowding_radius(patch);
   sum.optical_depth += share * crowd.optical_depth;
   sum.filling_factor += share * crowd.filling;
-  sum.thin_area_share += share * crowd.thin_area;
+  sum.thin_area_fraction += share * crowd.thin_area;
   sum.thin_cell_m += share * std::sqrt(crowd.cell_x * crowd.cell_y);
 }
 
@@ -96,7 +96,7 @@ void add(std::vector<SizeClass>& sum, const Patch& patch, double share) {
   const std::vector<SizeClass> classes = size_classes(patch);
   if (sum.empty())
     for (const SizeClass& c : classes)
-      sum.push_back({c.smallest, c.largest, c.count, c.mass_share, Vec3::Zero(), 0.0});
+      sum.push_back({c.smallest, c.largest, c.count, c.mass_fraction, Vec3::Zero(), 0.0});
   for (std::size_t c = 0; c < std::min(sum.size(), classes.size()); ++c) {
     sum[c].dispersion += share * velocity_si(patch, classes[c].dispersion);
     sum[c].scale_height += share * classes[c].scale_height;

@@ -184,21 +184,21 @@ ClusterAnalysis analyze_clusters(std::span<const Patch> patches, double gap) {
     const std::vector<Cluster> clusters = find_clusters(patch, gap);
     mean.count += share * static_cast<double>(clusters.size());
     for (const Cluster& cluster : clusters) {
-      const double mass_share = share * cluster.mass / mass;
-      mean.mass_share += mass_share;
+      const double mass_fraction = share * cluster.mass / mass;
+      mean.mass_fraction += mass_fraction;
       const auto power = static_cast<std::size_t>(std::bit_width(cluster.members.size())) - 2; // 0: two or three
       while (mean.spectrum.size() <= power)
         mean.spectrum.push_back({std::size_t{2} << mean.spectrum.size(), 0.0, 0.0});
       mean.spectrum[power].count += share;
-      mean.spectrum[power].mass_share += mass_share;
+      mean.spectrum[power].mass_fraction += mass_fraction;
       if (cluster.spin) {
-        spinning += mass_share;
-        spin += mass_share * *cluster.spin;
+        spinning += mass_fraction;
+        spin += mass_fraction * *cluster.spin;
       }
     }
     if (clusters.empty())
       continue;
-    mean.largest_mass_share += share * clusters[0].mass / mass;
+    mean.largest_mass_fraction += share * clusters[0].mass / mass;
     if (clusters[0].half_axes) {
       ++with_axes;
       for (std::size_t axis = 0; axis < 3; ++axis)

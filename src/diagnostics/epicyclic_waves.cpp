@@ -64,8 +64,8 @@ struct Binned {
     return *this;
   }
 
-  void merge(const Ranks& ranks) {
-    if (!ranks.many())
+  void merge(const Communicator& ranks) {
+    if (!ranks.distributed())
       return;
     for (Numbers* const numbers : {&mass, &cosine, &sine})
       ranks.sum(*numbers);
@@ -151,7 +151,7 @@ std::optional<EpicyclicWaves> epicyclic_waves(const Patch& patch) {
 // By Cauchy and Schwarz Σ m |e cos φ| ≤ √(Σ m Σ m e²), which bounds the sums before they are made.
 std::optional<EpicyclicWaves> epicyclic_waves(const Particles& particles, double box_length,
                                               const Frequencies& frequencies, double after, const ParticleMeans& means,
-                                              const Ranks& ranks) {
+                                              const Communicator& ranks) {
   const double bound = std::sqrt(2.0 * means.mass * means.epicyclic_energy) / frequencies.kappa;
   if (!std::isfinite(bound) || !(bound > 0.0))
     return std::nullopt;

@@ -68,7 +68,7 @@ bool itself(std::size_t i, std::size_t j, const Image& image) {
 }
 
 // Share of the cells, all of one size, whose discs cover less than thin_optical_depth.
-double thin_share(const Patch& patch, int columns, int rows) {
+double thin_fraction(const Patch& patch, int columns, int rows) {
   const ShearingBox& box = patch.box;
   std::vector<double> discs(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), 0.0);
   const auto cell = [](double place, double size, int cells) {
@@ -141,7 +141,7 @@ Crowding crowding(const Patch& patch, double radius) {
   Crowding result;
   result.optical_depth = sums.discs / (sums.mass * radius * radius);
   result.filling = sums.cuts / (sums.mass * radius * radius);
-  result.thin_area = thin_share(patch, columns, rows);
+  result.thin_area = thin_fraction(patch, columns, rows);
   result.cell_x = patch.box.size_x / columns;
   result.cell_y = patch.box.size_y / rows;
   return result;

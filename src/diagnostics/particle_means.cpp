@@ -41,7 +41,7 @@ struct SpinSums {
   }
 };
 
-SpinMeans spin_means(const Particles& particles, double after, const Ranks& ranks) {
+SpinMeans spin_means(const Particles& particles, double after, const Communicator& ranks) {
   if (!particles.rough)
     return {};
   const SpinTurn turn(after);
@@ -69,7 +69,7 @@ SpinMeans spin_means(const Particles& particles, double after, const Ranks& rank
 
 // Of the particle with the least id: all ranks have the same.
 Vec3 one_velocity(const Particles& particles, const Frequencies& frequencies, const Rotation& rotation,
-                  const Ranks& ranks) {
+                  const Communicator& ranks) {
   struct One {
     std::uint64_t id = std::numeric_limits<std::uint64_t>::max();
     double x = 0.0, y = 0.0, z = 0.0;
@@ -80,7 +80,7 @@ Vec3 one_velocity(const Particles& particles, const Frequencies& frequencies, co
     const Vec3 c = peculiar_velocity(particles.bodies[k].elements, frequencies, rotation);
     one = {*least, c.x(), c.y(), c.z()};
   }
-  for (const std::vector<One>& other : ranks.exchange(std::vector(ranks.count(), std::vector{one})))
+  for (const std::vector<One>& other : ranks.exchange(std::vector(ranks.size(), std::vector{one})))
     if (other.front().id < one.id)
       one = other.front();
   return {one.x, one.y, one.z};
@@ -91,8 +91,8 @@ Vec3 one_velocity(const Particles& particles, const Frequencies& frequencies, co
 // Variances in one pass: squares are taken about the velocity of one of the particles, so that a common motion of all
 // does not cancel digits.
 ParticleMeans particle_means(const Particles& particles, const Frequencies& frequencies, double after,
-                             const Ranks& ranks) {
-  if (particles.size() == 0 && !ranks.many())
+                             const Communicator& ranks) {
+  if (particles.size() == 0 && !ranks.distributed())
     return {};
   const Rotation rotation(frequencies, after);
   const Vec3 near = one_velocity(particles, frequencies, rotation, ranks);

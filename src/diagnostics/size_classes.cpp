@@ -39,7 +39,7 @@ SizeClass size_class(const Patch& patch, double smallest, double largest, bool l
   result.smallest = smallest;
   result.largest = largest;
   result.count = sums.count;
-  result.mass_share = sums.mass / total_mass(patch);
+  result.mass_fraction = sums.mass / total_mass(patch);
   if (sums.count > 0) {
     result.dispersion = (sums.squares / sums.mass).cwiseSqrt();
     result.scale_height = std::sqrt(sums.heights / sums.mass);

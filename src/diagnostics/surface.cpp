@@ -3,7 +3,7 @@
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/mean.hpp>
-#include <keeler/orbit/toomre.hpp>
+#include <keeler/hill/toomre.hpp>
 
 #include <algorithm>
 #include <cmath>

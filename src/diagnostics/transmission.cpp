@@ -1,9 +1,9 @@
 #include <keeler/diagnostics/transmission.hpp>
 
+#include <keeler/core/format.hpp>
 #include <keeler/core/memory.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/core/threads.hpp>
-#include <keeler/core/words.hpp>
 
 #include <fmt/format.h>
 
@@ -76,7 +76,7 @@ RayLattice::RayLattice(const ShearingBox& box, std::size_t rays, double footprin
   constexpr double bytes = sizeof(Place) + 2 * sizeof(std::uint8_t) + sizeof(double);
   places_.resize(affordable_size(columns * rows, bytes,
                                  fmt::format("a lattice of {} rays, at least one in each footprint of {} m,",
-                                             figures(columns * rows, 4), figures(footprint, 4)),
+                                             format_number(columns * rows, 4), format_number(footprint, 4)),
                                  "lower --rays or raise --footprint"));
   across_ = static_cast<std::size_t>(across), along_ = static_cast<std::size_t>(along);
   columns_ = static_cast<std::size_t>(columns), rows_ = static_cast<std::size_t>(rows);

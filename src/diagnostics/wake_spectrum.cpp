@@ -10,7 +10,7 @@
 namespace keeler {
 namespace {
 
-constexpr double least_significance = 5.0;
+constexpr double min_significance = 5.0;
 
 // What a cloud leaves of the amplitude of a wave that turns by `turn` from node to node.
 double cloud_window(double turn) {
@@ -87,7 +87,7 @@ WakeWaves wake_waves(const WakePower& sums) {
   if (sums.snapshots == 0)
     return waves;
   waves.contrast = std::sqrt(2.0 * std::max(0.0, sums.power) / sums.snapshots);
-  if (std::hypot(sums.cosine, sums.sine) <= least_significance * std::sqrt(sums.noise_squares))
+  if (std::hypot(sums.cosine, sums.sine) <= min_significance * std::sqrt(sums.noise_squares))
     return waves;
   WakePower::Bin total;
   for (const WakePower::Bin& bin : sums.bins)

@@ -9,10 +9,10 @@
 namespace keeler {
 namespace {
 
-constexpr double least_amplitude = 0.02; // relative density waves of 20 %: no published wake is weaker
-constexpr double least_ridge_significance = 5.0;
+constexpr double min_amplitude = 0.02; // relative density waves of 20 %: no published wake is weaker
+constexpr double min_ridge_significance = 5.0;
 constexpr double inner_end = 0.5, outer_end = 1.5; // parts of the crest, in λ_cr from zero lag
-constexpr std::size_t least_rows = 3;              // of a part whose direction is fitted
+constexpr std::size_t min_rows = 3;                // of a part whose direction is fitted
 
 // Mean of ξ over a line of half-length `reach` through (dx, 0), turned by `pitch` (rad) from the y axis.
 double line_mean(const AutocorrelationMap& map, double dx, double pitch, double reach) {
@@ -173,15 +173,15 @@ Wakes find_wakes(const AutocorrelationMap& map, double critical_wavelength) {
   const int count = static_cast<int>(map.half_width() * (2.0 / 3.0) / wakes.profile_spacing) + 1;
   for (int k = 0; k < count; ++k)
     wakes.profile.push_back(line_mean(map, k * wakes.profile_spacing, pitch, wakes.reach));
-  if (ridge.amplitude < std::max(least_amplitude, least_ridge_significance * line_noise))
+  if (ridge.amplitude < std::max(min_amplitude, min_ridge_significance * line_noise))
     return wakes;
 
   wakes.pitch_degrees = pitch * 180.0 / pi;
   const auto inner = within(crest, inner_end * critical_wavelength);
-  if (inner.size() >= least_rows)
+  if (inner.size() >= min_rows)
     wakes.inner_pitch_degrees = pitch_through_centre(inner, pitch) * 180.0 / pi;
   const auto outer = within(crest, outer_end * critical_wavelength).subspan(inner.size());
-  if (outer.size() >= least_rows && outer.back().distance() > critical_wavelength)
+  if (outer.size() >= min_rows && outer.back().distance() > critical_wavelength)
     wakes.outer_pitch_degrees = pitch_of_part(outer) * 180.0 / pi;
   const std::vector<double> smoothed = smooth(wakes.profile, critical_wavelength / 20.0 / wakes.profile_spacing);
   if (const auto entry = first_side_maximum(smoothed, 3.0 * line_noise))

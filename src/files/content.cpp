@@ -18,7 +18,7 @@ namespace keeler {
 namespace {
 
 constexpr std::size_t never_too_large = 1000000; // bytes: so little is not worth a look at the memory
-constexpr std::size_t most_of_device = std::size_t{1} << 26;
+constexpr std::size_t max_of_device = std::size_t{1} << 26;
 constexpr std::size_t largest_piece = std::size_t{1} << 26;
 
 // A pipe of this process that is opened a second time would wait for another writer.
@@ -56,7 +56,7 @@ Source::~Source() {
 // A part of the memory: what grows is copied as it does, and what it says takes memory too.
 std::size_t Source::most() const {
   if (!on_disk_ && !is_pipe_)
-    return most_of_device;
+    return max_of_device;
   return static_cast<std::size_t>((on_disk_ ? 0.5 : 0.25) * available_memory());
 }
 

@@ -37,8 +37,8 @@ void refuse_utf16(std::string_view text, const std::string& what) {
 }
 
 std::string read_input(const std::filesystem::path& file, const std::string& place) {
-  constexpr std::size_t most_bytes = std::size_t{1} << 30;
-  std::optional<std::string> text = content_of<std::string>(file, most_bytes);
+  constexpr std::size_t max_bytes = std::size_t{1} << 30;
+  std::optional<std::string> text = content_of<std::string>(file, max_bytes);
   const std::string what = file == place ? "" : file.string() + " ";
   if (!text)
     throw UsageError(fmt::format("{}: {}cannot be read ({}); check the path and its permissions", place, what,

@@ -115,9 +115,9 @@ std::shared_ptr<Descriptor> opened_stream(const fs::path& name) {
 } // namespace
 
 std::optional<int> descriptor_named(const fs::path& name) {
-  constexpr int most_links = 40; // as the kernel has it
+  constexpr int max_links = 40; // as the kernel has it
   fs::path path = name;
-  for (int link = 0; link < most_links; ++link) {
+  for (int link = 0; link < max_links; ++link) {
     if (const std::optional<int> number = descriptor_at(path))
       return number;
     std::error_code none;

@@ -9,7 +9,7 @@
 namespace keeler {
 namespace {
 
-constexpr std::size_t most_bytes = std::size_t{64} << 20; // parsed, a text takes some 50 times its size
+constexpr std::size_t max_bytes = std::size_t{64} << 20; // parsed, a text takes some 50 times its size
 
 // No TOML goes on behind a control character: a file that is no text is called that.
 std::string_view text_before_control(std::string_view text) {
@@ -41,11 +41,11 @@ private:
   bool is_too_deep(char c) {
     switch (c) {
     case '.':
-      return ++dots_ >= most_toml_depth;
+      return ++dots_ >= max_toml_depth;
     case '[':
     case '{':
       dots_ = 0;
-      return ++open_ > most_toml_depth;
+      return ++open_ > max_toml_depth;
     case ']':
     case '}':
       open_ -= open_ > 0 ? 1 : 0;
@@ -83,8 +83,8 @@ private:
             static_cast<std::size_t>(std::count_if(line.begin(), line.end(), begins_character)) + 1,
             fmt::format("{} (nothing that is read here has more than a few); shorten it",
                         dots_ > 0
-                            ? fmt::format("a name of more than {} parts", most_toml_depth)
-                            : fmt::format("lists or tables inside each other, more than {} deep", most_toml_depth))};
+                            ? fmt::format("a name of more than {} parts", max_toml_depth)
+                            : fmt::format("lists or tables inside each other, more than {} deep", max_toml_depth))};
   }
 
   std::string_view text_;
@@ -94,11 +94,11 @@ private:
 } // namespace
 
 std::optional<TomlExcess> toml_excess(std::string_view text) {
-  if (text.size() > most_bytes)
+  if (text.size() > max_bytes)
     return TomlExcess{1, 1,
                       fmt::format("the text has more than {} MB (a table of numbers goes into a file of its own); "
                                   "shorten it",
-                                  most_bytes >> 20)};
+                                  max_bytes >> 20)};
   return Nesting(text_before_control(text)).excess();
 }
 

@@ -14,9 +14,9 @@
 #include <keeler/forces/satellite.hpp>
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/core/words.hpp>
 
 #include <fmt/format.h>
 
@@ -96,7 +96,7 @@ void require_outside(const Parameters& p, double size_x) {
     throw UsageError(
         fmt::format("satellite.distance = {} m with its eccentricity of {} m is inside the box (it reaches "
                     "{} m from its middle); move it out, or make it a [[moonlet]]",
-                    figures(distance, 4), figures(eccentricity, 4), figures(0.5 * size_x, 4)));
+                    format_number(distance, 4), format_number(eccentricity, 4), format_number(0.5 * size_x, 4)));
 }
 
 // An encounter at d moves a particle by about 2.24 G m/(Ω² d²): at two Hill radii by as much as it is away.
@@ -108,7 +108,7 @@ void require_weak(const Parameters& p, const ForceContext& context) {
         fmt::format("satellite.mass = {} kg is too much (its Hill radius is {} m, and it comes within {} m of "
                     "the box; nearer than two Hill radii it throws particles out of the ring); lower it, or "
                     "move the satellite out",
-                    figures(p.number("mass"), 4), figures(hill_radius, 4), figures(apart, 4)));
+                    format_number(p.number("mass"), 4), format_number(hill_radius, 4), format_number(apart, 4)));
 }
 
 // Where the run begins; a run that goes on may have passed it.
@@ -119,12 +119,12 @@ void require_passages(const Parameters& p) {
     throw UsageError(
         fmt::format("satellite.every = {} orbits is too short (no satellite comes back before {}); raise it, or "
                     "give 0 for one passage alone",
-                    figures(every, 4), shortest));
+                    format_number(every, 4), shortest));
   if (every == 0.0 && passage < 0.0)
     throw UsageError(
         fmt::format("satellite.passage = {} orbits is before the run begins, and every = 0 lets it pass only "
                     "once (the run would not see it); give a passage from 0 up, or every",
-                    figures(passage, 4)));
+                    format_number(passage, 4)));
 }
 
 void check(const Parameters& p, double size_x) {

@@ -1,10 +1,10 @@
 #include <keeler/gravity/axisymmetric.hpp>
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/core/memory.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/core/words.hpp>
 
 #include <fftw3.h>
 #include <fmt/format.h>
@@ -75,18 +75,19 @@ double radial_mesh_nodes(double size_x, double shortest_wavelength) {
 }
 
 std::string radial_mesh_fault(double size_x, double shortest_wavelength) {
-  constexpr double most_nodes = 0x1p27; // 10⁷ waves, of a metre in the widest box that there is
+  constexpr double max_nodes = 0x1p27; // 10⁷ waves, of a metre in the widest box that there is
   const double nodes = radial_mesh_nodes(size_x, shortest_wavelength);
   const bool too_long = !(waves_in(size_x, shortest_wavelength) >= 1.0);
-  if (!too_long && nodes <= most_nodes)
+  if (!too_long && nodes <= max_nodes)
     return {};
-  const std::string begin = fmt::format("gravity.shortest_wavelength = {} m is ", figures(shortest_wavelength, 4)),
-                    width = figures(size_x, 4);
+  const std::string begin =
+                        fmt::format("gravity.shortest_wavelength = {} m is ", format_number(shortest_wavelength, 4)),
+                    width = format_number(size_x, 4);
   if (too_long)
     return fmt::format("{}longer than the box is wide ({} m: no wave is left); shorten it", begin, width);
   return fmt::format(
       "{}too short (in a box that is {} m wide it needs a mesh of {} nodes, and {} are the most); raise it", begin,
-      width, figures(nodes, 3), figures(most_nodes, 3));
+      width, format_number(nodes, 3), format_number(max_nodes, 3));
 }
 
 // The sums, the waves and what FFTW notes for its plans; and a mesh of whole numbers a thread.
@@ -120,7 +121,8 @@ void AxisymmetricSolver::Mesh::prepare(const ShearingBox& box) {
   modes = 0; // until all is there
   const double nodes_needed = radial_mesh_nodes(box.size_x, shortest_wavelength);
   require_memory(radial_mesh_bytes(box.size_x, shortest_wavelength, threads()),
-                 fmt::format("a mesh of {} nodes", figures(nodes_needed, 4)), "raise gravity.shortest_wavelength");
+                 fmt::format("a mesh of {} nodes", format_number(nodes_needed, 4)),
+                 "raise gravity.shortest_wavelength");
   nodes = static_cast<std::size_t>(nodes_needed);
   real.reset(there(fftw_alloc_real(nodes)));
   waves.reset(there(fftw_alloc_complex(nodes / 2 + 1)));

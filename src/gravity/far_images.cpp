@@ -150,7 +150,7 @@ private:
 ImageSettings rings_for_height(ImageSettings images, const ShearingBox& box, double height) {
   const double halves = std::ceil(2.0 * height / std::min(box.size_x, box.size_y));
   if (images.far)
-    images.rings = std::max({1, images.rings, static_cast<int>(std::min<double>(halves, most_rings))});
+    images.rings = std::max({1, images.rings, static_cast<int>(std::min<double>(halves, max_rings))});
   return images;
 }
 

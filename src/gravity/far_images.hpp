@@ -13,10 +13,10 @@
 #include "far_kernels.hpp"
 #include "lattice.hpp"
 
-#include <keeler/box/shearing_box.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/vector.hpp>
 #include <keeler/gravity/solver.hpp>
+#include <keeler/hill/shearing_box.hpp>
 
 #include <algorithm>
 #include <vector>
@@ -26,7 +26,7 @@ namespace keeler {
 /// The settings with at least one ring, and with more where bodies stand as high as `height` (m) above a plane that is
 /// not much wider: one for each half of the shorter side, up to `most_rings`. Without far images they stay as they are.
 ImageSettings rings_for_height(ImageSettings images, const ShearingBox& box, double height);
-inline constexpr int most_rings = 6;
+inline constexpr int max_rings = 6;
 
 /// The greatest distance of a body from the plane, m.
 template<class Body> double height_of(const std::vector<Body>& bodies) {

@@ -23,7 +23,7 @@ double band_for(double cut) {
 
 } // namespace
 
-double mass_spread(std::span<const double> masses, const Ranks& ranks) {
+double mass_spread(std::span<const double> masses, const Communicator& ranks) {
   auto sum = exact_total<ExactSum>(masses.size(), [&](ExactSum& total, std::size_t k) { total += masses[k]; });
   auto squares =
       exact_total<ExactSum>(masses.size(), [&](ExactSum& total, std::size_t k) { total += masses[k] * masses[k]; });
@@ -134,9 +134,9 @@ ExactSum FftSolver::Parts::squared_masses(std::size_t begin, std::size_t end) co
 }
 
 double FftSolver::Parts::mesh_potential(const GravityProblem& problem, double offset) {
-  if constexpr (Ranks::possible)
-    if (problem.ranks.many())
-      return share_of_potential(problem, offset);
+  if constexpr (Communicator::possible)
+    if (problem.ranks.distributed())
+      return fraction_of_potential(problem, offset);
   spread(problem, offset);
   std::vector<double> sums(transform.waves());
   transform.visit(mesh, [&](std::size_t m, const std::complex<float>* from, std::complex<float>* to) {
@@ -160,9 +160,9 @@ NearSums FftSolver::Parts::near_sums(const ShearingBox& box, double offset, std:
 }
 
 NearForces::Energy FftSolver::Parts::near_energy(const GravityProblem& problem, double offset) {
-  if constexpr (Ranks::possible)
-    if (problem.ranks.many())
-      return share_of_near_energy(problem, offset);
+  if constexpr (Communicator::possible)
+    if (problem.ranks.distributed())
+      return fraction_of_near_energy(problem, offset);
   places.sort(problem, offset, tiling_for(mesh.shape(), problem.positions.size()));
   const NearSums sums = near_sums(problem.box, offset, 0, places.tiling().count());
   return {sums.potential.value(), sums.stress.value()};
@@ -178,8 +178,8 @@ std::string FftSolver::name() const {
 }
 
 void FftSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) {
-  if constexpr (Ranks::possible)
-    if (problem.ranks.many())
+  if constexpr (Communicator::possible)
+    if (problem.ranks.distributed())
       return parts_->accelerate_share(problem, accelerations);
   const std::size_t count = problem.positions.size();
   if (count == 0)

@@ -55,14 +55,14 @@ struct FftSolver::Parts {
 
   /// One rank's part in a solve of many (fft_ranks.cpp).
   void accelerate_share(const GravityProblem& problem, std::span<Vec3> accelerations);
-  double share_of_potential(const GravityProblem& problem, double offset);
-  NearForces::Energy share_of_near_energy(const GravityProblem& problem, double offset);
+  double fraction_of_potential(const GravityProblem& problem, double offset);
+  NearForces::Energy fraction_of_near_energy(const GravityProblem& problem, double offset);
   struct Known;
   Known know(const GravityProblem& problem, double offset, bool with_neighbours);
-  void turn_to_waves(const Ranks& ranks, const Known& known);
+  void turn_to_waves(const Communicator& ranks, const Known& known);
   std::vector<Blocks> columns_of_share(const Known& known);
   std::vector<Blocks> waves_of_share(const Known& known);
-  void fill_share(const Ranks& ranks, const Known& known);
+  void fill_share(const Communicator& ranks, const Known& known);
 
   FftSettings settings;
   MeshKernels kernels;

@@ -56,10 +56,10 @@ std::vector<std::uint64_t> count_in_columns(std::span<const InsideParticle> part
 
 // Collective. The mesh's origin may wander against the ranks' particles. So shares are dealt out round the box from
 // where most particles are in the share of the rank that has them already.
-void deal_out(std::vector<MeshShare>& shares, std::span<const std::uint64_t> here, const Ranks& ranks) {
+void deal_out(std::vector<MeshShare>& shares, std::span<const std::uint64_t> here, const Communicator& ranks) {
   std::vector<std::uint64_t> stay(shares.size(), 0); // by how far the shares are turned
   for (std::size_t turn = 0; turn < stay.size(); ++turn) {
-    const IndexRange& own = shares[(ranks.own() + turn) % shares.size()].own;
+    const IndexRange& own = shares[(ranks.rank() + turn) % shares.size()].own;
     const auto its = here.subspan(own.begin, own.size());
     stay[turn] = std::accumulate(its.begin(), its.end(), std::uint64_t{0});
   }
@@ -70,10 +70,10 @@ void deal_out(std::vector<MeshShare>& shares, std::span<const std::uint64_t> her
 
 // Collective: the share of each rank. `here` counts this one's particles in the columns of tiles.
 std::vector<MeshShare> shares_of(const std::vector<std::uint64_t>& here, const MeshShape& shape, const Tiling& tiling,
-                                 const ShearingBox& box, double reach, const Ranks& ranks) {
+                                 const ShearingBox& box, double reach, const Communicator& ranks) {
   std::vector<std::uint64_t> all = here;
   ranks.sum(std::span(all));
-  std::vector<MeshShare> shares = share_mesh(shape, tiling, box, reach, all, ranks.count());
+  std::vector<MeshShare> shares = share_mesh(shape, tiling, box, reach, all, ranks.size());
   deal_out(shares, here, ranks);
   return shares;
 }
@@ -88,16 +88,16 @@ public:
   /// Collective: sends particles to all that must know them. The rank's own ones, so many in each column, become those
   /// that it must know.
   Guests(std::vector<InsideParticle>& particles, std::span<const std::uint64_t> counts, const TileFinder& find,
-         std::span<const MeshShare> shares, const Tiling& tiling, const Ranks& ranks)
-      : sent_(ranks.count()), owned_(ranks.count()) {
+         std::span<const MeshShare> shares, const Tiling& tiling, const Communicator& ranks)
+      : sent_(ranks.size()), owned_(ranks.size()) {
     const auto knowers = who_must_know(shares, tiling);
-    const IndexRange& here = shares[ranks.own()].own;
+    const IndexRange& here = shares[ranks.rank()].own;
     std::vector<std::vector<InsideParticle>> parcels = room_for_parcels(counts, knowers, ranks);
     for (std::size_t rank = 0; rank < shares.size(); ++rank) {
       const auto its = counts.subspan(shares[rank].own.begin, shares[rank].own.size());
       sent_[rank].reserve(std::accumulate(its.begin(), its.end(), std::uint64_t{0}));
     }
-    owned_[ranks.own()].reserve(sent_[ranks.own()].capacity());
+    owned_[ranks.rank()].reserve(sent_[ranks.rank()].capacity());
     std::size_t stay = 0;
     for (std::size_t k = 0; k < particles.size(); ++k) {
       const InsideParticle particle = particles[k];
@@ -106,7 +106,7 @@ public:
         const bool owns = is_in(shares[rank].own, column);
         if (owns)
           sent_[rank].push_back(static_cast<std::uint32_t>(k));
-        if (rank != ranks.own()) {
+        if (rank != ranks.rank()) {
           parcels[rank].push_back(particle);
           continue;
         }
@@ -134,20 +134,20 @@ public:
 
   /// Collective: from values of all that it must know, in their order, that of each particle comes home from its owner
   /// in the mesh.
-  template<class Take> void send_home(std::span<const Vec3> values, const Ranks& ranks, const Take& take) const {
+  template<class Take> void send_home(std::span<const Vec3> values, const Communicator& ranks, const Take& take) const {
     using Row = std::array<double, 3>;
-    std::vector<std::vector<Row>> rows(ranks.count());
+    std::vector<std::vector<Row>> rows(ranks.size());
     for (std::size_t rank = 0; rank < rows.size(); ++rank)
-      if (rank != ranks.own()) {
+      if (rank != ranks.rank()) {
         rows[rank].reserve(owned_[rank].size());
         for (const std::uint32_t k : owned_[rank])
           rows[rank].push_back({values[k].x(), values[k].y(), values[k].z()});
       }
     rows = ranks.exchange(rows);
-    for (std::size_t i = 0; i < owned_[ranks.own()].size(); ++i)
-      take(sent_[ranks.own()][i], values[owned_[ranks.own()][i]]);
+    for (std::size_t i = 0; i < owned_[ranks.rank()].size(); ++i)
+      take(sent_[ranks.rank()][i], values[owned_[ranks.rank()][i]]);
     for (std::size_t rank = 0; rank < rows.size(); ++rank) {
-      assert(rank == ranks.own() || rows[rank].size() == sent_[rank].size());
+      assert(rank == ranks.rank() || rows[rank].size() == sent_[rank].size());
       for (std::size_t i = 0; i < rows[rank].size(); ++i)
         take(sent_[rank][i], Vec3(rows[rank][i][0], rows[rank][i][1], rows[rank][i][2]));
     }
@@ -156,12 +156,12 @@ public:
 private:
   static std::vector<std::vector<InsideParticle>> room_for_parcels(std::span<const std::uint64_t> counts,
                                                                    std::span<const std::vector<std::uint32_t>> knowers,
-                                                                   const Ranks& ranks) {
-    std::vector<std::size_t> sizes(ranks.count(), 0);
+                                                                   const Communicator& ranks) {
+    std::vector<std::size_t> sizes(ranks.size(), 0);
     for (std::size_t column = 0; column < counts.size(); ++column)
       for (const std::uint32_t rank : knowers[column])
-        sizes[rank] += rank == ranks.own() ? 0 : counts[column];
-    std::vector<std::vector<InsideParticle>> parcels(ranks.count());
+        sizes[rank] += rank == ranks.rank() ? 0 : counts[column];
+    std::vector<std::vector<InsideParticle>> parcels(ranks.size());
     for (std::size_t rank = 0; rank < sizes.size(); ++rank)
       parcels[rank].reserve(sizes[rank]);
     return parcels;
@@ -211,7 +211,7 @@ struct FftSolver::Parts::Known {
 
 // Collective: chooses the mesh, shares it, and puts the particles in order that this rank must know.
 FftSolver::Parts::Known FftSolver::Parts::know(const GravityProblem& problem, double offset, bool with_neighbours) {
-  const Ranks& ranks = problem.ranks;
+  const Communicator& ranks = problem.ranks;
   const std::uint64_t count = ranks.sum(problem.positions.size());
   const MeshShape shape = choose_mesh(problem.box, common_extent(problem), count);
   const Tiling tiling = tiling_for(shape, count);
@@ -219,7 +219,7 @@ FftSolver::Parts::Known FftSolver::Parts::know(const GravityProblem& problem, do
   const TileFinder find(tiling, problem.box);
   const std::vector<std::uint64_t> here = count_in_columns(inside, tiling, find);
   std::vector<MeshShare> shares = shares_of(here, shape, tiling, problem.box, with_neighbours ? radius : 0.0, ranks);
-  const MeshShare own = shares[ranks.own()];
+  const MeshShare own = shares[ranks.rank()];
   Guests guests(inside, here, find, shares, tiling, ranks);
   places.sort(inside, problem.box, tiling, own.known, common_mass_unit(problem, count));
   SpectrumOfAll spectrum = spectrum_of_all(shares);
@@ -227,7 +227,7 @@ FftSolver::Parts::Known FftSolver::Parts::know(const GravityProblem& problem, do
 }
 
 // Spreads the masses on the share's nodes; some waves of the whole mesh are then this rank's.
-void FftSolver::Parts::turn_to_waves(const Ranks& ranks, const Known& known) {
+void FftSolver::Parts::turn_to_waves(const Communicator& ranks, const Known& known) {
   const MeshShare& own = known.own;
   const MeshShape& shape = known.shape;
   mesh.reset(shape, own.stored);
@@ -260,7 +260,7 @@ std::vector<Blocks> FftSolver::Parts::waves_of_share(const Known& known) {
 }
 
 // Turns the masses into the potential that the share's particles feel.
-void FftSolver::Parts::fill_share(const Ranks& ranks, const Known& known) {
+void FftSolver::Parts::fill_share(const Communicator& ranks, const Known& known) {
   turn_to_waves(ranks, known);
   transform.change_waves(by_waves, [&](std::size_t m, const std::complex<float>* from, std::complex<float>* to) {
     waves.apply(known.shape, transform, m, kernels, from, to);
@@ -271,7 +271,7 @@ void FftSolver::Parts::fill_share(const Ranks& ranks, const Known& known) {
 }
 
 void FftSolver::Parts::accelerate_share(const GravityProblem& problem, std::span<Vec3> accelerations) {
-  const Ranks& ranks = problem.ranks;
+  const Communicator& ranks = problem.ranks;
   const std::uint64_t count = ranks.sum(problem.positions.size());
   if (count == 0)
     return;
@@ -294,7 +294,7 @@ void FftSolver::Parts::accelerate_share(const GravityProblem& problem, std::span
   by_columns.give_memory(AlignedArray<std::complex<float>>(std::move(memory)));
 }
 
-double FftSolver::Parts::share_of_potential(const GravityProblem& problem, double offset) {
+double FftSolver::Parts::fraction_of_potential(const GravityProblem& problem, double offset) {
   const Known known = know(problem, offset, false);
   turn_to_waves(problem.ranks, known);
   std::vector<double> sums(known.own.waves.size());
@@ -312,7 +312,7 @@ double FftSolver::Parts::share_of_potential(const GravityProblem& problem, doubl
   return sum.value() - 0.5 * squares.value() * split.potential()[0] / radius;
 }
 
-NearForces::Energy FftSolver::Parts::share_of_near_energy(const GravityProblem& problem, double offset) {
+NearForces::Energy FftSolver::Parts::fraction_of_near_energy(const GravityProblem& problem, double offset) {
   const Known known = know(problem, offset, true);
   NearSums sums = near_sums(problem.box, offset, known.first_tile(places.tiling()), known.tiles(places.tiling()));
   problem.ranks.merge({&sums.potential, &sums.stress});

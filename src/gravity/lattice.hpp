@@ -6,8 +6,8 @@
 // the plane. The wave k = 0 is the mean sheet, which pulls by 2π/A far above and nowhere along the plane. G = 1.
 #pragma once
 
-#include <keeler/box/shearing_box.hpp>
 #include <keeler/core/vector.hpp>
+#include <keeler/hill/shearing_box.hpp>
 
 #include <vector>
 

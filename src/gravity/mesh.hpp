@@ -13,7 +13,7 @@
 #include "mesh_kernels.hpp"
 #include "places.hpp"
 
-#include <keeler/box/shearing_box.hpp>
+#include <keeler/hill/shearing_box.hpp>
 
 #include <utility>
 

@@ -1,7 +1,7 @@
 #include "mesh_choice.hpp"
 
 #include <keeler/core/error.hpp>
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 
 #include <fmt/format.h>
 
@@ -29,7 +29,7 @@ void require_layer(const ShearingBox& box, const Extent& z) {
     throw InvariantError(
         fmt::format("a particle is {} sides of the box away from the mid-plane, and gravity's mesh reaches to it "
                     "(at most {} sides); remove it, or take a shorter time.step",
-                    figures(farthest / side, 3), highest));
+                    format_number(farthest / side, 3), highest));
 }
 
 double mesh_nodes(const ShearingBox& box, double spacing, const Extent& z) {

@@ -10,7 +10,7 @@
 #include "mesh.hpp"
 #include "places.hpp"
 
-#include <keeler/box/shearing_box.hpp>
+#include <keeler/hill/shearing_box.hpp>
 
 #include <cstdint>
 #include <span>

@@ -16,8 +16,8 @@
 #include "aligned_array.hpp"
 #include "mesh.hpp"
 
+#include <keeler/comm/communicator.hpp>
 #include <keeler/core/threads.hpp>
-#include <keeler/ranks/ranks.hpp>
 
 #include <fftw3.h>
 

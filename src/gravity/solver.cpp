@@ -21,7 +21,7 @@ bool pairwise(const GravitySettings& settings) {
 }
 
 std::unique_ptr<FftSolver> make_fft(const GravitySettings& settings, std::span<const double> masses, double area,
-                                    const Ranks& ranks) {
+                                    const Communicator& ranks) {
   const std::size_t count = ranks.sum(masses.size());
   const double distance = std::sqrt(area / static_cast<double>(std::max<std::size_t>(count, 1)));
   const double cut =
@@ -41,7 +41,7 @@ GravitySettings chosen_for(std::size_t count, GravitySettings settings) {
 }
 
 std::unique_ptr<GravitySolver> make_gravity_solver(const GravitySettings& settings, std::span<const double> masses,
-                                                   double area, const Ranks& ranks) {
+                                                   double area, const Communicator& ranks) {
   const InstructionSet set = choose_instruction_set();
   const GravitySettings chosen = chosen_for(ranks.sum(masses.size()), settings);
   if (chosen.solver == Solver::direct)
@@ -58,7 +58,7 @@ bool has_energy_meter(const GravitySettings& settings) {
 }
 
 std::unique_ptr<EnergyMeter> make_energy_meter(const GravitySettings& settings, std::span<const double> masses,
-                                               double area, const Ranks& ranks) {
+                                               double area, const Communicator& ranks) {
   if (!has_energy_meter(settings))
     return nullptr;
   if (settings.solver == Solver::axisymmetric)

@@ -180,9 +180,9 @@ hdf5::Handle create_field(const hdf5::Handle& root, const Field& field, const hd
 // The first rank's file, for all.
 class NewCheckpoint {
 public:
-  NewCheckpoint(const std::filesystem::path& file, const CheckpointHeader& header, const Ranks& ranks)
+  NewCheckpoint(const std::filesystem::path& file, const CheckpointHeader& header, const Communicator& ranks)
       : header_(header), ranks_(ranks) {
-    ranks_.first_does([&] { file_.emplace(file); });
+    ranks_.on_root([&] { file_.emplace(file); });
     write([&](const hdf5::Handle& root) { write_header(root, header); });
   }
 
@@ -208,16 +208,16 @@ public:
 
   void finish() {
     write([&](const hdf5::Handle& root) { hdf5::write_attribute(root, "checksum", checksum_.finish(header_.scene)); });
-    ranks_.first_does([&] { file_->finish(); });
+    ranks_.on_root([&] { file_->finish(); });
   }
 
 private:
   template<class Work> void write(const Work& work) {
-    ranks_.first_does([&] { file_->write(work); });
+    ranks_.on_root([&] { file_->write(work); });
   }
 
   const CheckpointHeader& header_;
-  Ranks ranks_;
+  Communicator ranks_;
   std::optional<SealedFile> file_;
   ContentChecksum checksum_;
 };
@@ -233,7 +233,7 @@ std::vector<const Field*> by_name(const FieldTable& table) {
 } // namespace
 
 void write_checkpoint(const std::filesystem::path& file, const FieldTable& table, const CheckpointHeader& header,
-                      const Ranks& ranks) {
+                      const Communicator& ranks) {
   NewCheckpoint made(file, header, ranks);
   for (const Field* field : by_name(table))
     made.add(*field);
@@ -242,7 +242,7 @@ void write_checkpoint(const std::filesystem::path& file, const FieldTable& table
 
 struct Checkpoint::Parts {
   std::filesystem::path file;
-  Ranks ranks;
+  Communicator ranks;
   CheckpointHeader header;
   std::optional<hdf5::Handle> root;
   std::vector<StoredField> fields; // by name
@@ -275,26 +275,27 @@ struct Checkpoint::Parts {
   // All rows, or this rank's part of them.
   void fill(const Field& field) const {
     const StoredField& source = match(fields, field);
-    const std::size_t all = source.rows(), parts = field.divided ? ranks.count() : 1,
-                      part = field.divided ? ranks.own() : 0;
+    const std::size_t all = source.rows(), parts = field.divided ? ranks.size() : 1,
+                      part = field.divided ? ranks.rank() : 0;
     const std::size_t first = all * part / parts, end = all * (part + 1) / parts;
     field.resize(end - first);
     read_field(source, first, end - first, field.data());
   }
 };
 
-Checkpoint::Checkpoint(const std::filesystem::path& file, const Ranks& ranks) : parts_(std::make_unique<Parts>()) {
+Checkpoint::Checkpoint(const std::filesystem::path& file, const Communicator& ranks)
+    : parts_(std::make_unique<Parts>()) {
   parts_->file = file;
   parts_->ranks = ranks;
   std::string seal;
-  ranks.first_does([&] {
+  ranks.on_root([&] {
     const KeptStreams kept; // a pipe is looked at twice
     parts_->open(std::nullopt);
     seal = seal_in(file);
   });
-  ranks.from_first(seal);
+  ranks.broadcast(seal);
   ranks.together([&] {
-    if (!ranks.is_first())
+    if (!ranks.is_root())
       parts_->open(seal);
   });
 }

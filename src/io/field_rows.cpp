@@ -6,16 +6,16 @@
 
 namespace keeler {
 
-FieldRows::FieldRows(const Field& field, const Ranks& ranks, std::size_t most_bytes)
-    : field_(field), ranks_(ranks), gathers_(field.divided && ranks.many()),
+FieldRows::FieldRows(const Field& field, const Communicator& ranks, std::size_t max_bytes)
+    : field_(field), ranks_(ranks), gathers_(field.divided && ranks.distributed()),
       row_bytes_(field.components * size_of(field.type)),
-      rows_at_a_time_(std::max<std::size_t>(1, most_bytes / row_bytes_)), count_(ranks.from_first(field.rows())) {
+      rows_at_a_time_(std::max<std::size_t>(1, max_bytes / row_bytes_)), count_(ranks.broadcast(field.rows())) {
   if (!gathers_)
     return;
-  std::vector<std::uint64_t> counts(ranks.count());
-  counts[ranks.own()] = field.rows();
+  std::vector<std::uint64_t> counts(ranks.size());
+  counts[ranks.rank()] = field.rows();
   ranks.sum(std::span(counts));
-  before_ = std::accumulate(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(ranks.own()), std::size_t{0});
+  before_ = std::accumulate(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(ranks.rank()), std::size_t{0});
   count_ = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
 }
 

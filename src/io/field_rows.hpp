@@ -2,8 +2,8 @@
 // nobody needs room for all.
 #pragma once
 
+#include <keeler/comm/communicator.hpp>
 #include <keeler/core/field_table.hpp>
-#include <keeler/ranks/ranks.hpp>
 
 #include <cstddef>
 #include <functional>
@@ -17,7 +17,7 @@ public:
   static constexpr std::size_t largest_piece = std::size_t{16} << 20; // bytes
 
   /// Collective. Field and data must outlive it, and stay as they are.
-  FieldRows(const Field& field, const Ranks& ranks, std::size_t most_bytes = largest_piece);
+  FieldRows(const Field& field, const Communicator& ranks, std::size_t max_bytes = largest_piece);
 
   /// Of a divided field those of all ranks.
   std::size_t count() const { return count_; }
@@ -30,7 +30,7 @@ private:
   std::span<const std::byte> own(std::size_t first, std::size_t count) const;
 
   const Field& field_;
-  Ranks ranks_;
+  Communicator ranks_;
   bool gathers_;
   std::size_t row_bytes_, rows_at_a_time_;
   std::size_t before_ = 0, count_; ///< rows of the ranks before this one, and of all

@@ -184,17 +184,17 @@ Snapshot read_whole(const std::filesystem::path& file) {
 }
 
 // Collective: whether the ids increase from each rank's part to the next one's.
-bool increase_over_ranks(const std::vector<std::uint64_t>& ids, const Ranks& ranks) {
-  std::vector<std::uint64_t> sizes(ranks.count()), firsts(ranks.count()), lasts(ranks.count());
+bool increase_over_ranks(const std::vector<std::uint64_t>& ids, const Communicator& ranks) {
+  std::vector<std::uint64_t> sizes(ranks.size()), firsts(ranks.size()), lasts(ranks.size());
   if (!ids.empty()) {
-    sizes[ranks.own()] = ids.size();
-    firsts[ranks.own()] = ids.front();
-    lasts[ranks.own()] = ids.back();
+    sizes[ranks.rank()] = ids.size();
+    firsts[ranks.rank()] = ids.front();
+    lasts[ranks.rank()] = ids.back();
   }
   for (auto* const numbers : {&sizes, &firsts, &lasts})
     ranks.sum(std::span(*numbers));
   std::optional<std::uint64_t> last;
-  for (std::size_t rank = 0; rank < ranks.count(); ++rank)
+  for (std::size_t rank = 0; rank < ranks.size(); ++rank)
     if (sizes[rank] > 0) {
       if (last && *last >= firsts[rank])
         return false;
@@ -204,20 +204,20 @@ bool increase_over_ranks(const std::vector<std::uint64_t>& ids, const Ranks& ran
 }
 
 // The first rank looks whether the file is whole; then each reads its part.
-Snapshot read_part(const std::filesystem::path& file, const Ranks& ranks) {
+Snapshot read_part(const std::filesystem::path& file, const Communicator& ranks) {
   Snapshot snapshot;
   std::string seal;
   std::optional<hdf5::Handle> root;
-  ranks.first_does([&] {
+  ranks.on_root([&] {
     root.emplace(open_sealed(file));
     seal = seal_in(file);
   });
-  ranks.from_first(seal);
+  ranks.broadcast(seal);
   ranks.together([&] {
     if (!root)
       root.emplace(open_sealed(file, seal));
     naming(file, [&] {
-      snapshot = snapshot_in(*root, {ranks.own(), ranks.count()});
+      snapshot = snapshot_in(*root, {ranks.rank(), ranks.size()});
       require_consistent(snapshot.patch);
     });
   });
@@ -233,16 +233,16 @@ Snapshot read_part(const std::filesystem::path& file, const Ranks& ranks) {
 
 } // namespace
 
-Snapshot read_snapshot(const std::filesystem::path& file, const Ranks& ranks) {
-  if (!ranks.many())
+Snapshot read_snapshot(const std::filesystem::path& file, const Communicator& ranks) {
+  if (!ranks.distributed())
     return read_whole(file);
   const KeptStreams kept; // a pipe is looked at more than once
   bool sealed = false;
-  ranks.first_does([&] { sealed = has_seal(file); });
-  if (ranks.from_first(sealed))
+  ranks.on_root([&] { sealed = has_seal(file); });
+  if (ranks.broadcast(sealed))
     return read_part(file, ranks);
   Snapshot snapshot;
-  ranks.first_does([&] { snapshot = read_whole(file); });
+  ranks.on_root([&] { snapshot = read_whole(file); });
   return snapshot;
 }
 

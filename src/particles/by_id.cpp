@@ -28,7 +28,7 @@ Particles particles_at(const Particles& particles, std::span<const std::uint32_t
 }
 
 // Collective: those of all ranks on the first one, sorted.
-Particles gathered(const Particles& here, const Ranks& ranks) {
+Particles gathered(const Particles& here, const Communicator& ranks) {
   Particles all;
   all.bodies = ranks.gather(here.bodies);
   all.ids = ranks.gather(here.ids);
@@ -66,7 +66,7 @@ private:
 
 // Collective: the id below which the ranks' rests have `count` particles; none is below `low`, and there are more of
 // them. Most ids follow each other without gaps. Where they do not, halving finds it.
-std::uint64_t bound_of(const Rest& rest, const Ranks& ranks, std::uint64_t low, std::size_t count) {
+std::uint64_t bound_of(const Rest& rest, const Communicator& ranks, std::uint64_t low, std::size_t count) {
   const auto below = [&](std::uint64_t bound) { return ranks.sum(static_cast<std::uint64_t>(rest.below(bound))); };
   std::uint64_t bound = low + count, high = std::numeric_limits<std::uint64_t>::max();
   for (std::uint64_t found = below(bound); found != count && high - low > 1; found = below(bound)) {
@@ -78,7 +78,7 @@ std::uint64_t bound_of(const Rest& rest, const Ranks& ranks, std::uint64_t low, 
 
 } // namespace
 
-void visit_by_id(const Particles& own, const Ranks& ranks, std::size_t rows,
+void visit_by_id(const Particles& own, const Communicator& ranks, std::size_t rows,
                  const std::function<void(const Particles&)>& piece) {
   Rest rest(own);
   std::uint64_t bound = 0;
@@ -86,15 +86,15 @@ void visit_by_id(const Particles& own, const Ranks& ranks, std::size_t rows,
     const std::size_t count = std::min(rows, left);
     left -= count;
     std::size_t here = std::min(count, rest.size());
-    if (ranks.many()) {
+    if (ranks.distributed()) {
       if (left > 0)
         bound = bound_of(rest, ranks, bound, count);
       here = left > 0 ? rest.below(bound) : rest.size();
     }
     Particles all = rest.take(here);
-    if (ranks.many())
+    if (ranks.distributed())
       all = gathered(all, ranks);
-    ranks.first_does([&] { piece(all); });
+    ranks.on_root([&] { piece(all); });
   }
 }
 

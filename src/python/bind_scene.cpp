@@ -2,8 +2,8 @@
 #include "bindings.hpp"
 
 #include <keeler/collision/restitution.hpp>
-#include <keeler/scene/doubts.hpp>
 #include <keeler/scene/scene.hpp>
+#include <keeler/scene/warnings.hpp>
 
 #include <pybind11/stl.h>
 
@@ -24,8 +24,8 @@ void add_c_function(const std::string& name, std::uintptr_t address) {
 
 std::vector<std::string> remarks(const Scene& scene) {
   std::vector<std::string> lines = scene.notices;
-  for (const std::string& doubt : doubts(scene))
-    lines.push_back(doubt);
+  for (const std::string& warning : warnings(scene))
+    lines.push_back(warning);
   return lines;
 }
 

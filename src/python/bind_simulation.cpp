@@ -6,15 +6,15 @@
 #include "snapshot.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/core/threads.hpp>
-#include <keeler/core/words.hpp>
+#include <keeler/initial_conditions/broken.hpp>
+#include <keeler/initial_conditions/initial.hpp>
+#include <keeler/initial_conditions/possible.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/runs/state_hash.hpp>
 #include <keeler/scene/derived.hpp>
 #include <keeler/scene/resting_choice.hpp>
-#include <keeler/states/broken.hpp>
-#include <keeler/states/initial.hpp>
-#include <keeler/states/possible.hpp>
 
 #include <fmt/format.h>
 

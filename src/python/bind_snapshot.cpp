@@ -9,6 +9,11 @@
 #include <keeler/core/error.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/files/new_file.hpp>
+#include <keeler/initial_conditions/clumped.hpp>
+#include <keeler/initial_conditions/from_table.hpp>
+#include <keeler/initial_conditions/initial.hpp>
+#include <keeler/initial_conditions/possible.hpp>
+#include <keeler/initial_conditions/tiled.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/quantities/views.hpp>
@@ -17,11 +22,6 @@
 #include <keeler/runs/measurement.hpp>
 #include <keeler/runs/summary.hpp>
 #include <keeler/scene/resting_choice.hpp>
-#include <keeler/states/clumped.hpp>
-#include <keeler/states/from_table.hpp>
-#include <keeler/states/initial.hpp>
-#include <keeler/states/possible.hpp>
-#include <keeler/states/tiled.hpp>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -164,7 +164,7 @@ void bind_snapshot(py::module_& module) {
       .def_readonly("scene", &PythonSnapshot::scene)
       .def_readonly("is_a_start", &PythonSnapshot::is_a_start)
       .def("save", &write, py::arg("file"), py::arg("as_it_is") = false)
-      .def("start_doubts", [](Self self) { return doubts(scale_of(self.patch).start); })
+      .def("start_doubts", [](Self self) { return warnings(scale_of(self.patch).start); })
       .def("analyze", &analyze_snapshot)
       .def("tile", &tile, py::arg("nx"), py::arg("ny"), py::arg("name"))
       .def("render", &render, py::arg("file"), py::arg("title"), py::arg("width"));

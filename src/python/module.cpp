@@ -4,9 +4,9 @@
 #include "computing.hpp"
 
 #include <keeler/core/error_at_hand.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/version.hpp>
-#include <keeler/core/words.hpp>
 
 #include <new>
 

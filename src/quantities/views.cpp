@@ -1,7 +1,7 @@
 #include <keeler/quantities/views.hpp>
 
 #include <keeler/core/error.hpp>
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -124,21 +124,21 @@ std::string text_of(const Value& value, int digits) {
                  },
                  [](bool yes) { return std::string(yes ? "yes" : "no"); },
                  [](std::uint64_t count) { return fmt::format("{}", count); },
-                 [&](double number) { return figures(number, digits); },
+                 [&](double number) { return format_number(number, digits); },
                  [&](const Uncertain& number) {
-                   return figures(number.value, digits) +
-                          (number.spread ? fmt::format(" ± {}", figures(*number.spread, 2)) : std::string());
+                   return format_number(number.value, digits) +
+                          (number.spread ? fmt::format(" ± {}", format_number(*number.spread, 2)) : std::string());
                  },
                  [&](const std::vector<double>& numbers) {
                    std::vector<std::string> texts;
                    for (const double number : numbers)
-                     texts.push_back(figures(number, digits));
+                     texts.push_back(format_number(number, digits));
                    return fmt::format("{}", fmt::join(texts, " "));
                  },
                  [&](const NamedNumbers& numbers) {
                    std::vector<std::string> texts;
                    for (const auto& [name, number] : numbers)
-                     texts.push_back(fmt::format("{} {}", name, figures(number, digits)));
+                     texts.push_back(fmt::format("{} {}", name, format_number(number, digits)));
                    return fmt::format("{}", fmt::join(texts, ", "));
                  },
                  [](const std::string& text) { return text; },
@@ -193,8 +193,8 @@ std::string in_hours(const Value& value, const Unit& unit) {
   const auto* const seconds = std::get_if<double>(&value);
   if (unit != unit::seconds || !seconds || *seconds < 120.0)
     return {};
-  return *seconds < 7200.0 ? fmt::format(" = {} min", figures(*seconds / 60.0, 2))
-                           : fmt::format(" = {} h", figures(*seconds / 3600.0, 2));
+  return *seconds < 7200.0 ? fmt::format(" = {} min", format_number(*seconds / 60.0, 2))
+                           : fmt::format(" = {} h", format_number(*seconds / 3600.0, 2));
 }
 
 // A number under each of its names: in each of its systems of units, and its error or scatter once.

@@ -4,7 +4,7 @@
 #include "patch_views.hpp"
 
 #include <keeler/core/error.hpp>
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/surface.hpp>
 
@@ -111,10 +111,10 @@ void draw_colour_bar(Page& page, const PictureLayout& layout, ColourField field,
   page.place(bar, left, top);
   page.frame(left, top, bar.width(), bar.height(), mix(theme.page, theme.faint_ink, 0.5));
   const double below = top + bar.height() + 22 * u, right = left + bar.width();
-  page.text({0.5 * (left + right), below}, figures(range.middle(), 3), {17 * u, theme.faint_ink, Align::centre});
+  page.text({0.5 * (left + right), below}, format_number(range.middle(), 3), {17 * u, theme.faint_ink, Align::centre});
   if (range.high > range.low) {
-    page.text({static_cast<double>(left), below}, figures(range.low, 3), {17 * u, theme.faint_ink});
-    page.text({right, below}, figures(range.high, 3), {17 * u, theme.faint_ink, Align::right});
+    page.text({static_cast<double>(left), below}, format_number(range.low, 3), {17 * u, theme.faint_ink});
+    page.text({right, below}, format_number(range.high, 3), {17 * u, theme.faint_ink, Align::right});
   }
   page.text({right + 18 * u, top + 0.5 * bar.height() + 7 * u}, label_of(field), {20 * u, theme.ink});
 }
@@ -173,9 +173,9 @@ PictureLayout layout_of(const Patch& patch, const PictureOptions& options) {
 std::unique_ptr<Page> patch_page(const Patch& patch, const PictureOptions& asked) {
   if (patch.size() == 0)
     throw UsageError("the patch holds no particles, so there is nothing to draw; choose another snapshot");
-  if (asked.width < least_picture_width || asked.width > most_picture_width)
+  if (asked.width < min_picture_width || asked.width > max_picture_width)
     throw UsageError(fmt::format("a picture cannot be {} pixels wide (possible are {} to {}); choose another width",
-                                 asked.width, least_picture_width, most_picture_width));
+                                 asked.width, min_picture_width, max_picture_width));
   if (asked.oblique && asked.colour == ColourField::density)
     throw UsageError("no oblique view of the surface density: it is a map seen from above; choose another field");
   PictureOptions options = asked;

@@ -9,7 +9,7 @@
 namespace keeler {
 namespace {
 
-constexpr double least_radius = 0.6;  // pixels: a smaller sphere is drawn this large and fainter, with the same light
+constexpr double min_radius = 0.6;    // pixels: a smaller sphere is drawn this large and fainter, with the same light
 constexpr double shadow_reach = 1.45; // radii
 constexpr double shadow_depth = 0.45; // darkest, at the rim
 constexpr double shadow_radius = 5.0; // pixels: below it shadows fade, or a far view would only get darker
@@ -31,9 +31,9 @@ Raster::Raster(int width, int height, const Colour& background)
               background) {}
 
 void Raster::sphere(double x, double y, double radius, const Colour& colour) {
-  const double drawn = std::max(radius, least_radius);
-  const double light_share = radius * radius / (drawn * drawn);
-  const double shadow = shadow_depth * light_share * std::min(1.0, drawn / shadow_radius);
+  const double drawn = std::max(radius, min_radius);
+  const double light_fraction = radius * radius / (drawn * drawn);
+  const double shadow = shadow_depth * light_fraction * std::min(1.0, drawn / shadow_radius);
   const double reach = shadow_reach * drawn + 0.5;
   const int left = std::max(0, static_cast<int>(std::floor(x - reach)));
   const int right = std::min(width_ - 1, static_cast<int>(std::floor(x + reach)));
@@ -53,7 +53,7 @@ void Raster::sphere(double x, double y, double radius, const Colour& colour) {
         const double brightness = lit(u / drawn, v / drawn);
         const Colour shaded{std::min(1.0, colour.r * brightness), std::min(1.0, colour.g * brightness),
                             std::min(1.0, colour.b * brightness)};
-        here = mix(here, shaded, cover * light_share);
+        here = mix(here, shaded, cover * light_fraction);
       }
     }
 }

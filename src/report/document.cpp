@@ -1,6 +1,6 @@
 #include <keeler/report/document.hpp>
 
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/report/html.hpp>
 

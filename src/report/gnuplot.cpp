@@ -1,7 +1,7 @@
 #include <keeler/report/gnuplot.hpp>
 
 #include <keeler/core/error.hpp>
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/files/new_file.hpp>
 

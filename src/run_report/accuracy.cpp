@@ -1,6 +1,6 @@
 #include "accuracy.hpp"
 
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/report/html.hpp>
 #include <keeler/scene/derived.hpp>
 
@@ -17,15 +17,16 @@ using Rows = std::vector<std::vector<std::string>>;
 
 std::string number(const Record& summary, const std::string& name, int digits = 3) {
   const std::optional<double> value = number_in(summary, name);
-  return value ? figures(*value, digits) : "not measured";
+  return value ? format_number(*value, digits) : "not measured";
 }
 
 // "12 s, 31 % of the time".
 std::string price(const Record& summary, const std::string& part) {
   const double wall = number_in(summary, "wall").value_or(0.0),
                seconds = number_in(summary, "split." + part).value_or(0.0);
-  return wall > 0.0 ? fmt::format("{} s, {} % of the time", figures(seconds, 3), figures(100.0 * seconds / wall, 2))
-                    : figures(seconds, 3) + " s";
+  return wall > 0.0 ? fmt::format("{} s, {} % of the time", format_number(seconds, 3),
+                                  format_number(100.0 * seconds / wall, 2))
+                    : format_number(seconds, 3) + " s";
 }
 
 void add_gravity(Rows& rows, const Scene& scene, const Record& summary) {
@@ -72,9 +73,10 @@ std::string timing_table(const Record& summary) {
         seconds > 0.0 && entry.quantity.name.starts_with("split.")) {
       std::string part = entry.quantity.name.substr(6);
       std::replace(part.begin(), part.end(), '_', ' ');
-      rows.push_back({part, figures(seconds, 3), wall > 0.0 ? fmt::format("{:.1f} %", 100.0 * seconds / wall) : ""});
+      rows.push_back(
+          {part, format_number(seconds, 3), wall > 0.0 ? fmt::format("{:.1f} %", 100.0 * seconds / wall) : ""});
     }
-  rows.push_back({"**all**", figures(wall, 4), ""});
+  rows.push_back({"**all**", format_number(wall, 4), ""});
   return html_table(rows);
 }
 

@@ -1,7 +1,7 @@
 #include "number_tables.hpp"
 
+#include <keeler/core/format.hpp>
 #include <keeler/core/json_of_files.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/quantities/views.hpp>
@@ -21,7 +21,7 @@ using Rows = std::vector<std::vector<std::string>>;
 std::string derived_table(const Scene& scene, const Patch& patch) {
   const double wavelength = critical_wavelength(patch);
   const double density = material_density(patch);
-  const auto text = [](double value) { return figures(value, 4); };
+  const auto text = [](double value) { return format_number(value, 4); };
   Rows rows = {{"derived", ""}};
   rows.push_back({"box", fmt::format("{} m × {} m = {} × {} λ_cr", text(patch.box.size_x), text(patch.box.size_y),
                                      text(patch.box.size_x / wavelength), text(patch.box.size_y / wavelength))});

@@ -80,7 +80,7 @@ void ParticleView::choose_fields(const Patch& patch) {
 }
 
 void ParticleView::add(const Patch& patch, const std::string& file) {
-  const std::size_t count = std::min(patch.size(), most_particles_);
+  const std::size_t count = std::min(patch.size(), max_particles_);
   const bool first = snapshots_.empty();
   if (first) {
     of_ = patch.size();

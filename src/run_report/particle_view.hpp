@@ -16,7 +16,7 @@ namespace keeler {
 class ParticleView {
 public:
   /// Shows so many particles of each snapshot at most, the same ids in all.
-  explicit ParticleView(std::size_t most_particles) : most_particles_(most_particles) {}
+  explicit ParticleView(std::size_t max_particles) : max_particles_(max_particles) {}
 
   /// Snapshots of one run, oldest first.
   void add(const Patch& patch, const std::string& file);
@@ -42,7 +42,7 @@ private:
   void choose_fields(const Patch& patch);
   nlohmann::ordered_json fields() const;
 
-  std::size_t most_particles_, of_ = 0;
+  std::size_t max_particles_, of_ = 0;
   double size_x_ = 0.0, size_y_ = 0.0;
   std::vector<double> radii_;
   std::vector<Field> fields_;

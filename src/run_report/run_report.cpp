@@ -6,12 +6,14 @@
 #include "particle_view.hpp"
 #include "series_plots.hpp"
 
+#include <keeler/core/format.hpp>
 #include <keeler/core/json_of_files.hpp>
 #include <keeler/core/phase_progress.hpp>
 #include <keeler/core/version.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/initial_conditions/initial.hpp>
+#include <keeler/initial_conditions/possible.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/render/patch_picture.hpp>
@@ -21,9 +23,7 @@
 #include <keeler/runs/run_view.hpp>
 #include <keeler/runs/summary.hpp>
 #include <keeler/scene/derived.hpp>
-#include <keeler/scene/doubts.hpp>
-#include <keeler/states/initial.hpp>
-#include <keeler/states/possible.hpp>
+#include <keeler/scene/warnings.hpp>
 
 #include <fmt/format.h>
 
@@ -40,12 +40,12 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 // Pictures through time, and what keeps a page small: widths in pixels, and how many bytes a picture has at most.
-constexpr std::size_t most_pictures = 4;
+constexpr std::size_t max_pictures = 4;
 constexpr int picture_width = 1200, earlier_picture_width = 600, narrowest_picture = 300;
 constexpr std::size_t picture_bytes = 1'600'000, earlier_picture_bytes = 430'000;
 
 // Snapshots are measured only up to so many particles in all: a page of large patches is wanted soon, too.
-constexpr std::size_t most_measured_particles = 3'000'000;
+constexpr std::size_t max_measured_particles = 3'000'000;
 
 // `most` places out of `count`, evenly, the first and the last among them.
 std::vector<std::size_t> evenly(std::size_t count, std::size_t most) {
@@ -97,7 +97,7 @@ std::vector<std::byte> picture_within(std::size_t bytes, const Patch& patch, Pic
 
 // The newest of them in any case.
 void thin_out(std::vector<Patch>& patches) {
-  const std::size_t most = std::max<std::size_t>(1, most_measured_particles / patches.back().size());
+  const std::size_t most = std::max<std::size_t>(1, max_measured_particles / patches.back().size());
   std::vector<Patch> some;
   for (const std::size_t place : evenly(patches.size(), most))
     some.push_back(std::move(patches[place]));
@@ -107,13 +107,13 @@ void thin_out(std::vector<Patch>& patches) {
 std::string figure(const Patch& patch, const std::vector<std::byte>& png) {
   return fmt::format("<figure><img alt=\"the patch at orbit {0}\" src=\"data:image/png;base64,{1}\">"
                      "<figcaption>orbit {0}</figcaption></figure>\n",
-                     figures(patch.time_orbits, 4), base64(png));
+                     format_number(patch.time_orbits, 4), base64(png));
 }
 
 class RunPage {
 public:
   RunPage(const fs::path& folder, const RunReportOptions& options)
-      : folder_(folder), most_snapshots_(options.snapshots), progress_(options.progress), run_(view_run(folder)),
+      : folder_(folder), max_snapshots_(options.snapshots), progress_(options.progress), run_(view_run(folder)),
         files_(snapshots_in(folder)) {}
 
   std::string html();
@@ -131,11 +131,11 @@ private:
   std::string facts() const;
 
   fs::path folder_;
-  std::size_t most_snapshots_; // in the view
+  std::size_t max_snapshots_; // in the view
   PhaseProgress progress_;
   RunView run_;
   std::vector<fs::path> files_;
-  ParticleView particles_{most_particles_in_view};
+  ParticleView particles_{max_particles_in_view};
   std::vector<Patch> pictured_;
   SnapshotMeta meta_; // of the newest snapshot
   std::optional<Scene> scene_;
@@ -143,8 +143,8 @@ private:
 };
 
 void RunPage::look_at_snapshots() {
-  const std::vector<std::size_t> viewed = evenly(files_.size(), most_snapshots_);
-  const std::vector<std::size_t> drawn = evenly(viewed.size(), most_pictures);
+  const std::vector<std::size_t> viewed = evenly(files_.size(), max_snapshots_);
+  const std::vector<std::size_t> drawn = evenly(viewed.size(), max_pictures);
   progress_.begin("snapshots", static_cast<double>(viewed.size()));
   for (std::size_t k = 0; k < viewed.size(); ++k) {
     const fs::path& file = files_[viewed[k]];
@@ -203,7 +203,7 @@ std::string RunPage::plots(const TransportReport& report) const {
     words =
         fmt::format("Means are of orbits {} to {} (shaded), {}; errors by blocks, neighbouring rows being "
                     "correlated.",
-                    figures(steady->since_orbit, 3), figures(steady->until_orbit, 4),
+                    format_number(steady->since_orbit, 3), format_number(steady->until_orbit, 4),
                     steady->steady ? "where the run is steady" : "the best there is, though the run is not steady yet");
   if (steady && steady->waves)
     words += fmt::format(" Axisymmetric waves as long as the box hold {}.", words_of(*steady->waves));
@@ -223,7 +223,7 @@ std::string RunPage::measured(MeasuredPart part) {
       "measured", "Measured",
       note(fmt::format("As `keeler analyze` measures, structure in {}; viscosities and the balance are of the "
                        "same orbits as the means above.",
-                       counted(part.stored.patches.size(), "snapshot"))) +
+                       pluralize(part.stored.patches.size(), "snapshot"))) +
           measured_table(numbers) + folded("All numbers, by their names in JSON", all_numbers(numbers)));
 }
 
@@ -235,12 +235,13 @@ std::string RunPage::accuracy() const {
   const auto number = [&](const char* name) { return number_in(*summary_, name).value_or(0.0); };
   for (const char* const part : {"drift", "gravity", "series"})
     speed += fmt::format("{}{} {} ns", speed.empty() ? "" : ", ", part,
-                         figures(number(fmt::format("ns_per_particle_step.{}", part).c_str()), 3));
-  return section("accuracy", "Accuracy and its price",
-                 accuracy_table(*scene_, *summary_) + "<h3>Time</h3>\n" + timing_table(*summary_) +
-                     note(fmt::format("{}, {} s of processor time, {} MB at most. A particle and step: {}.",
-                                      counted(static_cast<std::uint64_t>(number("threads")), "thread"),
-                                      figures(number("cpu"), 4), figures(number("peak_memory"), 4), speed)));
+                         format_number(number(fmt::format("ns_per_particle_step.{}", part).c_str()), 3));
+  return section(
+      "accuracy", "Accuracy and its price",
+      accuracy_table(*scene_, *summary_) + "<h3>Time</h3>\n" + timing_table(*summary_) +
+          note(fmt::format("{}, {} s of processor time, {} MB at most. A particle and step: {}.",
+                           pluralize(static_cast<std::uint64_t>(number("threads")), "thread"),
+                           format_number(number("cpu"), 4), format_number(number("peak_memory"), 4), speed)));
 }
 
 std::string RunPage::scene_section() const {
@@ -250,8 +251,8 @@ std::string RunPage::scene_section() const {
     words += note("Note: " + notice);
   PatchScale scale = scale_of(last);
   scale.start = {}; // a later state is not judged as a start
-  for (const std::string& doubt : doubts(*scene_, scale))
-    words += note("Note: " + doubt);
+  for (const std::string& warning : warnings(*scene_, scale))
+    words += note("Note: " + warning);
   return section("scene", "The scene",
                  derived_table(*scene_, last) + words +
                      folded("As it was run, every key", "<pre>" + html_text(meta_.scene) + "</pre>\n"));
@@ -279,8 +280,8 @@ std::string RunPage::facts() const {
                             : !summary_             ? "broken off"
                             : finished && *finished ? "finished"
                                                     : "stopped before its end";
-  return note(fmt::format("{} particles, {} of {} orbits, {}.", pictured_.back().size(), figures(run_.orbits, 4),
-                          figures(run_.end_orbits, 4), state));
+  return note(fmt::format("{} particles, {} of {} orbits, {}.", pictured_.back().size(), format_number(run_.orbits, 4),
+                          format_number(run_.end_orbits, 4), state));
 }
 
 std::string RunPage::head() const {

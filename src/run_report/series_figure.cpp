@@ -3,7 +3,7 @@
 #include "series_plots.hpp"
 
 #include <keeler/core/error.hpp>
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/report/html.hpp>
 #include <keeler/runs/run_view.hpp>
 #include <keeler/runs/stored_patches.hpp>
@@ -60,7 +60,7 @@ double tick_step(const Range& range) {
 }
 
 std::string tick_label(double value, double step) {
-  return figures(std::fabs(value) < 1e-6 * step ? 0.0 : value, 4);
+  return format_number(std::fabs(value) < 1e-6 * step ? 0.0 : value, 4);
 }
 
 std::string text_at(double x, double y, const char* colour, double size, const char* anchor, const std::string& words) {
@@ -73,7 +73,7 @@ std::string mean_of(const Json& curve) {
   const Json& mean = curve["mean"];
   if (!mean.is_object() || !mean["value"].is_number())
     return "";
-  return figures(mean["value"], 3) + (mean["error"].is_number() ? " ± " + figures(mean["error"], 2) : "");
+  return format_number(mean["value"], 3) + (mean["error"].is_number() ? " ± " + format_number(mean["error"], 2) : "");
 }
 
 class Panel {
@@ -194,8 +194,9 @@ std::string series_svg(const Json& plots, const std::string& title, const Series
       look.width, drawing_height * look.width / drawing_width, drawing_width, drawing_height, ink.page);
   svg += text_at(frame_left, 40, ink.text, 24, "start", title);
   if (const Json& steady = plots["steady"]; steady.is_array())
-    svg += text_at(drawing_width - frame_right, 40, ink.faint, 14, "end",
-                   fmt::format("means of orbits {} to {} (shaded)", figures(steady[0], 3), figures(steady[1], 4)));
+    svg += text_at(
+        drawing_width - frame_right, 40, ink.faint, 14, "end",
+        fmt::format("means of orbits {} to {} (shaded)", format_number(steady[0], 3), format_number(steady[1], 4)));
   for (std::size_t k = 0; k < panels.size(); ++k) {
     const std::size_t row = k / 2;
     svg += Panel(panels[k], plots["steady"], ink, k % 2 == 0 ? 0.0 : panel_width,

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t most_points = 200; // of a curve
+constexpr std::size_t max_points = 200; // of a curve
 
 struct Curve {
   std::string column, name;
@@ -82,7 +82,7 @@ Points points_of(const SeriesTable& series, const Curve& curve, const RingScale&
 
 // [time, mean, standard error of the mean or null] of rows that follow each other.
 Json binned(const Points& points) {
-  const std::size_t bins = std::min(most_points, points.times.size());
+  const std::size_t bins = std::min(max_points, points.times.size());
   Json all = Json::array();
   for (std::size_t b = 0; b < bins; ++b) {
     const std::size_t from = b * points.times.size() / bins, to = (b + 1) * points.times.size() / bins;

@@ -1,6 +1,6 @@
 #include "broken_state.hpp"
 
-#include <keeler/states/broken.hpp>
+#include <keeler/initial_conditions/broken.hpp>
 
 #include <fmt/format.h>
 

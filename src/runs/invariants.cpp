@@ -1,8 +1,8 @@
 #include "invariants.hpp"
 
 #include <keeler/cells/overlap.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/core/random.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/gravity/direct.hpp>
 #include <keeler/particles/order.hpp>
@@ -95,7 +95,7 @@ std::string fault_of_books(const SimulationState& state, const ParticleMeans& me
   if (std::fabs(residual) <= allowed_residual * scale)
     return {};
   return fmt::format("the energy budget leaves {} of its sums open since the run began ({:g} is allowed)",
-                     figures(std::fabs(residual) / scale, 2), allowed_residual);
+                     format_number(std::fabs(residual) / scale, 2), allowed_residual);
 }
 
 std::string fault_of_numbers(const SimulationState& state) {
@@ -117,7 +117,7 @@ std::string fault_of_overlap(const Patch& patch) {
   if (overlap.depth <= allowed_overlap)
     return {};
   return fmt::format("particles {} and {} overlap by {} of their radius sum ({:g} is allowed)", overlap.id_i,
-                     overlap.id_j, figures(overlap.depth, 2), allowed_overlap);
+                     overlap.id_j, format_number(overlap.depth, 2), allowed_overlap);
 }
 
 std::string fault_of_neighbours(const NeighbourAudit& audit) {
@@ -126,7 +126,7 @@ std::string fault_of_neighbours(const NeighbourAudit& audit) {
   const MissedNeighbour& missed = *audit.missed;
   return fmt::format("particle {} may touch particle {} (image {}, {}), {} radius sums from it in the middle of the "
                      "step, and {}",
-                     missed.id, missed.other_id, missed.image.nx, missed.image.ny, figures(missed.distance, 3),
+                     missed.id, missed.other_id, missed.image.nx, missed.image.ny, format_number(missed.distance, 3),
                      missed.after_hit ? "was not searched against it after a collision"
                                       : "is not among its neighbours when the step begins");
 }
@@ -160,7 +160,7 @@ std::string fault_of_energy(const BeforeStep& before, const SimulationState& now
   if (change <= allowed_residual_of_step * scale)
     return {};
   return fmt::format("the step leaves {} of the energy budget's sums open ({:g} is allowed)",
-                     figures(change / scale, 2), allowed_residual_of_step);
+                     format_number(change / scale, 2), allowed_residual_of_step);
 }
 
 std::string fault_of_sums(const BeforeStep& before, const SimulationState& now, const Frequencies& f) {
@@ -190,8 +190,8 @@ std::string fault_of_sums(const BeforeStep& before, const SimulationState& now, 
   for (std::size_t c = thrown_far ? 2 : 0; c < sums.size(); ++c) {
     const double allowed = share * sizes[c] + (c < 2 ? rounding[c] + vectors : vectors);
     if (!(std::fabs(sums[c]) <= allowed))
-      return fmt::format("collisions changed the sum of {} by {} kg m ({} is allowed)", names[c], figures(sums[c], 2),
-                         figures(allowed, 2));
+      return fmt::format("collisions changed the sum of {} by {} kg m ({} is allowed)", names[c],
+                         format_number(sums[c], 2), format_number(allowed, 2));
   }
   return {};
 }
@@ -257,8 +257,8 @@ std::string fault_of_forces(const Scene& scene, const Boundary& boundary, const 
   return fmt::format(
       "the forces of {} err by {} of their size, the most on particle {} ({} is allowed: {:g} times what "
       "the solver is good for)",
-      counted(sample.size(), "particle"), figures(error, 2), state.particles.ids[worst_at],
-      figures(forces_factor * tolerance, 2), forces_factor);
+      pluralize(sample.size(), "particle"), format_number(error, 2), state.particles.ids[worst_at],
+      format_number(forces_factor * tolerance, 2), forces_factor);
 }
 
 } // namespace keeler

@@ -130,7 +130,7 @@ std::vector<Record> size_classes_of(Source m) {
       {{"smallest", unit::metres, "from"}, [](Class c) -> Value { return c.smallest; }},
       {{"largest", unit::metres, "to"}, [](Class c) -> Value { return c.largest; }},
       {{"count", unit::none, "particles"}, [](Class c) -> Value { return c.count; }},
-      {{"mass_share", unit::none, ""}, [](Class c) -> Value { return c.mass_share; }},
+      {{"mass_share", unit::none, ""}, [](Class c) -> Value { return c.mass_fraction; }},
       {{"dispersion", unit::metres_per_second, "dispersion"}, [](Class c) { return vector_of(c.dispersion); }},
       {{"scale_height", unit::metres, "scale height"}, [](Class c) -> Value { return c.scale_height; }}};
   std::vector<Record> classes;
@@ -160,7 +160,7 @@ Rows local_rows() {
       {{"crowding_filling_factor", unit::none, "mean particle: filling factor", "of the others there at z = 0"},
        [](Source m) -> Value { return m.analysis.local.filling_factor; }},
       {{"thin_area_share", unit::none, "thin area (τ < 0.1)", "share of cells with an optical depth below 0.1"},
-       [](Source m) -> Value { return m.analysis.local.thin_area_share; }},
+       [](Source m) -> Value { return m.analysis.local.thin_area_fraction; }},
       {{"thin_cell", unit::metres, "", "side of these cells"},
        [](Source m) -> Value { return m.analysis.local.thin_cell_m; }},
       {of_shape({"velocity_axis_ratios", unit::none, "velocity ellipsoid: ratios",
@@ -201,7 +201,7 @@ std::vector<Record> spectrum_of(Source m) {
   static const std::vector<QuantityRow<Class>> rows = {
       {{"least_members"}, [](const Class& c) -> Value { return c.least; }},
       {{"count"}, [](const Class& c) -> Value { return c.count; }},
-      {{"mass_share"}, [](const Class& c) -> Value { return c.mass_share; }}};
+      {{"mass_share"}, [](const Class& c) -> Value { return c.mass_fraction; }}};
   std::vector<Record> classes;
   for (const Class& c : m.analysis.clusters.spectrum)
     classes.push_back({entries_of(rows, c), m.units});
@@ -216,10 +216,10 @@ Rows cluster_rows() {
             Spread::none, Forms::si, 3},
            [](Source m) -> Value { return m.analysis.clusters.count; }},
           {{"clusters.mass_share", unit::unnamed("of the mass"), "clusters: all", "share of all mass in them"},
-           [](Source m) -> Value { return m.analysis.clusters.mass_share; }},
+           [](Source m) -> Value { return m.analysis.clusters.mass_fraction; }},
           {{"clusters.largest_mass_share", unit::unnamed("of the mass"), "clusters: the heaviest",
             "share of all mass in the heaviest one"},
-           [](Source m) -> Value { return m.analysis.clusters.largest_mass_share; }},
+           [](Source m) -> Value { return m.analysis.clusters.largest_mass_fraction; }},
           {of_shape({"clusters.largest_half_axes", unit::metres, "clusters: its half axes",
                      "of the homogeneous ellipsoid with the moments of inertia of the heaviest one"},
                     Shape::vector),

@@ -3,10 +3,10 @@
 #include "invariants.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/core/json_of_files.hpp>
 #include <keeler/core/simd.hpp>
 #include <keeler/core/stopwatch.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/diagnostics/force_error.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/forces/self_gravity.hpp>
@@ -66,11 +66,11 @@ void OutputCounters::list_fields(FieldTable& table, const Scene& scene) {
 
 Recorder::Recorder(const RunFolder& folder, const FolderLock* lock, const Scene& scene,
                    const std::vector<std::string>& arguments, OutputCounters counters,
-                   std::optional<std::int64_t> resumed_at, Notice notice, const Ranks& ranks)
+                   std::optional<std::int64_t> resumed_at, Notice notice, const Communicator& ranks)
     : folder_(folder), lock_(lock), ranks_(ranks), scene_(scene), provenance_(collect_provenance(arguments)),
       counters_(std::move(counters)), notice_(std::move(notice)), columns_(series_columns_of(scene)),
       moonlet_columns_(moonlet_columns_of(scene)) {
-  ranks_.first_does([&] { open(resumed_at); });
+  ranks_.on_root([&] { open(resumed_at); });
 }
 
 void Recorder::open(std::optional<std::int64_t> resumed_at) {
@@ -121,11 +121,11 @@ void Recorder::tell_lost_rows(const Series& series, const std::filesystem::path&
   for (const SeriesGap& gap : series.gaps())
     write_log("rows lost", {{"file", file.filename().string()}, {"from_step", gap.from}, {"to_step", gap.to}});
   tell(fmt::format("the rows of '{}' from step {} to {}{} are missing; it goes on without them", file.string(),
-                   first.from, first.to, others > 0 ? fmt::format(", and {} more,", counted(others, "gap")) : ""));
+                   first.from, first.to, others > 0 ? fmt::format(", and {} more,", pluralize(others, "gap")) : ""));
 }
 
 void Recorder::tell_losses() {
-  ranks_.first_does([&] { tell_what_was_lost(); });
+  ranks_.on_root([&] { tell_what_was_lost(); });
 }
 
 void Recorder::tell_what_was_lost() {
@@ -151,7 +151,7 @@ void Recorder::contacts() {
   if (!scene_.output.collisions)
     return;
   const Stopwatch watch(costs_.contacts);
-  ranks_.first_does([&] { contact_log_->write_full_files(); });
+  ranks_.on_root([&] { contact_log_->write_full_files(); });
 }
 
 void Recorder::require_sound(const SimulationState& state, const ParticleMeans& means) {
@@ -172,12 +172,12 @@ void Recorder::snapshot(const Simulation& simulation) {
   const Stopwatch watch(costs_.snapshots);
   require_sound(simulation);
   std::optional<SnapshotFile> file;
-  ranks_.first_does([&] {
+  ranks_.on_root([&] {
     file.emplace(folder_.snapshot(counters_.snapshots), simulation.frame(), simulation.count(),
                  simulation.state().particles.rough, SnapshotMeta{scene_.resolved, provenance_});
   });
   simulation.visit_patch(SnapshotFile::piece, [&](const Patch& piece) { file->add(piece); });
-  ranks_.first_does([&] {
+  ranks_.on_root([&] {
     file->finish();
     if (contact_log_)
       contact_log_->end_interval(counters_.last_snapshot_step, simulation.state().step);
@@ -188,17 +188,17 @@ void Recorder::snapshot(const Simulation& simulation) {
 }
 
 void Recorder::checkpoint(const Simulation& simulation) {
-  ranks_.first_does([&] { lock_->require_in_place(); });
+  ranks_.on_root([&] { lock_->require_in_place(); });
   require_sound(simulation);
   if (scene_.output.collisions) {
     const Stopwatch watch(costs_.contacts);
-    ranks_.first_does([&] {
+    ranks_.on_root([&] {
       contact_log_->write_all();
       counters_.contacts = contact_log_->counters();
     });
   }
   const Stopwatch watch(costs_.checkpoints);
-  ranks_.first_does([&] {
+  ranks_.on_root([&] {
     series_->sync();
     if (moonlets_)
       moonlets_->sync();
@@ -210,7 +210,7 @@ void Recorder::checkpoint(const Simulation& simulation) {
   counters.list_fields(table, scene_);
   const std::filesystem::path file = checkpoint_path(folder_.path(), counters_.checkpoints);
   write_checkpoint(file, table, {scene_.resolved, provenance_}, ranks_);
-  ranks_.first_does([&] {
+  ranks_.on_root([&] {
     lock_->require_in_place();
     remove_later_checkpoints(file);
     prune_checkpoints(file);
@@ -227,7 +227,7 @@ void Recorder::sample(const Simulation& simulation) {
   for (std::size_t k = 0; k < moonlets.size(); ++k)
     for (const MoonletColumn& column : moonlet_columns_)
       moonlets[k].push_back(column.value({scene_, simulation, k}));
-  ranks_.first_does([&] { append(row, moonlets); });
+  ranks_.on_root([&] { append(row, moonlets); });
 }
 
 void Recorder::append(const SeriesSample& row, const std::vector<std::vector<double>>& moonlets) {
@@ -272,11 +272,11 @@ void Recorder::check_forces(const Simulation& simulation) {
 }
 
 void Recorder::summary(const Record& summary) {
-  ranks_.first_does([&] { write_text(folder_.summary(), json_text(json_of(summary), 2) + "\n"); });
+  ranks_.on_root([&] { write_text(folder_.summary(), json_text(json_of(summary), 2) + "\n"); });
 }
 
 void Recorder::log(const std::string& event, const nlohmann::ordered_json& details) {
-  ranks_.first_does([&] { write_log(event, details); });
+  ranks_.on_root([&] { write_log(event, details); });
 }
 
 void Recorder::write_log(const std::string& event, const nlohmann::ordered_json& details) {

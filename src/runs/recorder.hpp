@@ -54,7 +54,7 @@ public:
   /// first rank alone has a lock.
   Recorder(const RunFolder& folder, const FolderLock* lock, const Scene& scene,
            const std::vector<std::string>& arguments, OutputCounters counters, std::optional<std::int64_t> resumed_at,
-           Notice notice, const Ranks& ranks);
+           Notice notice, const Communicator& ranks);
 
   /// From now on contacts are logged, where the scene asks for it. The simulation must outlive its last step only.
   void watch(Simulation& simulation);
@@ -96,7 +96,7 @@ private:
 
   RunFolder folder_;
   const FolderLock* lock_;
-  Ranks ranks_;
+  Communicator ranks_;
   NamingGuard guard_{[this] {
     if (lock_)
       lock_->require_in_place();

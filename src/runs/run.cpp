@@ -4,7 +4,7 @@
 #include "edited_scene.hpp"
 #include "recorder.hpp"
 #include "runner.hpp"
-#include "shared_request.hpp"
+#include "distributed_request.hpp"
 #include "summarise.hpp"
 
 #include <keeler/core/error.hpp>
@@ -12,13 +12,13 @@
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/io/checkpoint.hpp>
 #include <keeler/io/checkpoint_folder.hpp>
 #include <keeler/runs/folder_lock.hpp>
 #include <keeler/runs/state_hash.hpp>
 #include <keeler/scene/derived.hpp>
 #include <keeler/scene/resting_choice.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
 
@@ -60,7 +60,7 @@ struct Start {
 
 // The state is that of an unfinished step: what is on disk is all there is.
 [[noreturn]] void fail_given_up(const RunOptions& options, std::int64_t last_checkpoint, Recorder& recorder) {
-  if (options.ranks.is_first())
+  if (options.ranks.is_root())
     recorder.write_log("given up", {{"checkpoint_step", last_checkpoint}});
   if (last_checkpoint < 0)
     throw Error(ExitCode::run_time, "a step was given up on request before there was a checkpoint; start again, with "
@@ -84,11 +84,11 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
   } catch (const Interrupted&) {
     fail_given_up(options, runner.last_checkpoint(), recorder);
   } catch (const InvariantError& error) {
-    if (options.ranks.many())
+    if (options.ranks.distributed())
       throw; // its particles are on many ranks, and not all of them may know
     fail_broken(error, simulation, scene, folder, recorder);
   } catch (const IoError&) {
-    if (options.ranks.is_first())
+    if (options.ranks.is_root())
       recorder.require_folder(); // a folder that was moved away in the middle of a write is the better reason
     throw;
   }
@@ -104,7 +104,7 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
                         .shear = simulation.state().box.shear,
                         .driven = !scene.external_forces.empty()};
   std::optional<Transport> transport;
-  if (options.ranks.is_first())
+  if (options.ranks.is_root())
     transport = transport_of_run(folder.series(), scale, options.notice);
   result.summary = summarise(simulation, scene, transport, result, cost, recorder.provenance());
   recorder.summary(result.summary);
@@ -119,7 +119,7 @@ struct Loaded {
 };
 
 // Collective: each rank gets a part of the particles.
-Loaded load(const std::filesystem::path& file, const Ranks& ranks = {}) {
+Loaded load(const std::filesystem::path& file, const Communicator& ranks = {}) {
   Loaded loaded;
   const Checkpoint checkpoint(file, ranks);
   loaded.scene_text = checkpoint.header().scene;
@@ -163,7 +163,7 @@ struct Begun {
 // Until there is a run, a stop is heeded at once: there is nothing that could be kept. Ranks heed it together, after
 // a sweep of a fresh start.
 Begun first_simulation(const Scene& scene, const RunOptions& options, const RunRequests& requests) {
-  const Ranks& ranks = options.ranks;
+  const Communicator& ranks = options.ranks;
   const std::atomic<bool> never = false;
   const auto progress = [&](const StartProgress& now) {
     if (ranks.any(requests.stop))
@@ -172,11 +172,11 @@ Begun first_simulation(const Scene& scene, const RunOptions& options, const RunR
       options.start_progress(now);
   };
   try {
-    const Interruptible start(ranks.many() ? never : requests.stop);
+    const Interruptible start(ranks.distributed() ? never : requests.stop);
     if (!scene.start_from)
-      ranks.together([&] { require_memory_for(scene, (scene.particles.count + ranks.count() - 1) / ranks.count()); });
+      ranks.together([&] { require_memory_for(scene, (scene.particles.count + ranks.size() - 1) / ranks.size()); });
     const Patch patch = initial_patch(scene, progress, ranks);
-    const PatchScale scale = ranks.from_first(scale_of(patch, ranks));
+    const PatchScale scale = ranks.broadcast(scale_of(patch, ranks));
     const Scene decided = decided_by(scene, scale);
     return {decided, Simulation(decided, patch, ranks), scale};
   } catch (const Interrupted&) {
@@ -188,18 +188,18 @@ Begun first_simulation(const Scene& scene, const RunOptions& options, const RunR
 }
 
 // Before the work of an initial state, which tells how many particles there are.
-void require_shareable_start(const Scene& scene, const RunOptions& options) {
+void require_distributable_start(const Scene& scene, const RunOptions& options) {
   constexpr std::size_t many = 1000000;
-  if constexpr (Ranks::possible)
+  if constexpr (Communicator::possible)
     options.ranks.together([&] {
-      if (options.ranks.many())
-        Simulation::require_shareable(scene, many);
+      if (options.ranks.distributed())
+        Simulation::require_distributable(scene, many);
     });
 }
 
 void refuse_checks_of_many(const RunOptions& options) {
   options.ranks.together([&] {
-    if (options.check && options.ranks.many())
+    if (options.check && options.ranks.distributed())
       throw UsageError(
           "--check looks at all particles at once, and several ranks have them; leave it out, or run on one");
   });
@@ -210,19 +210,19 @@ void tell_notices(const Scene& scene, const RunOptions& options, const PatchScal
     return;
   for (const std::string& notice : scene.notices)
     options.notice(notice);
-  for (const std::string& doubt : doubts(scene, scale))
-    options.notice("note: " + doubt);
+  for (const std::string& warning : warnings(scene, scale))
+    options.notice("note: " + warning);
 }
 
 RunResult begin(const Scene& asked, const RunOptions& options, RunRequests& requests) {
   Start start;
-  const Ranks& ranks = options.ranks;
+  const Communicator& ranks = options.ranks;
   const RunFolder folder(options.folder);
   require_same_run(asked, options);
   refuse_checks_of_many(options);
-  ranks.first_does([&] { require_start_file(asked); });
-  require_shareable_start(asked, options);
-  ranks.first_does([&] {
+  ranks.on_root([&] { require_start_file(asked); });
+  require_distributable_start(asked, options);
+  ranks.on_root([&] {
     if (!options.force)
       folder.refuse_if_occupied(); // before the work of an initial state
     folder.require_writable();
@@ -232,7 +232,7 @@ RunResult begin(const Scene& asked, const RunOptions& options, RunRequests& requ
   Simulation& simulation = begun.simulation;
   start.made_s = start.watch.elapsed();
   std::optional<FolderLock> lock;
-  ranks.first_does([&] {
+  ranks.on_root([&] {
     folder.make();
     lock.emplace(folder.path());
     folder.claim(options.force);
@@ -242,7 +242,7 @@ RunResult begin(const Scene& asked, const RunOptions& options, RunRequests& requ
   recorder.log("started", {{"particles", simulation.count()},
                            {"end_orbits", end_orbits(scene)},
                            {"threads", threads()},
-                           {"ranks", ranks.count()}});
+                           {"ranks", ranks.size()}});
   recorder.snapshot(simulation);
   recorder.sample(simulation);
   return carry_on(scene, options, requests, folder, simulation, recorder, start);
@@ -251,14 +251,14 @@ RunResult begin(const Scene& asked, const RunOptions& options, RunRequests& requ
 // The newest whole checkpoint, which the first rank looks for. Each rank finds the folder by its own name of it.
 std::filesystem::path newest_checkpoint(const RunOptions& options) {
   std::string name;
-  options.ranks.first_does([&] {
+  options.ranks.on_root([&] {
     const NewestCheckpoint newest = newest_valid_checkpoint(options.folder);
     if (options.notice)
       for (const std::string& warning : newest.warnings)
         options.notice(warning);
     name = newest.path.filename().string();
   });
-  options.ranks.from_first(name);
+  options.ranks.broadcast(name);
   return options.folder / name;
 }
 
@@ -275,30 +275,30 @@ void tell_edited_scene(const RunFolder& folder, const Scene& scene, const Loaded
 
 RunResult go_on(const RunOptions& options, RunRequests& requests) {
   Start start;
-  const Ranks& ranks = options.ranks;
+  const Communicator& ranks = options.ranks;
   const RunFolder folder(options.folder);
   require_same_run(options);
   refuse_checks_of_many(options);
   std::optional<FolderLock> lock;
-  ranks.first_does([&] { lock.emplace(folder.path()); });
+  ranks.on_root([&] { lock.emplace(folder.path()); });
   const std::filesystem::path newest = newest_checkpoint(options);
   Loaded loaded = load(newest, ranks);
   Scene scene;
   ranks.together([&] { scene = until(std::move(loaded.run.scene), options, loaded.run.state.step); });
   const std::int64_t step = start.checkpoint_step = loaded.run.state.step;
-  ranks.first_does([&] { folder.cut_log(); });
-  if (step >= scene.time.end_step && ranks.from_first(says_finished(folder.path()))) {
-    ranks.first_does([&] { tell_edited_scene(folder, scene, loaded, options, false); });
+  ranks.on_root([&] { folder.cut_log(); });
+  if (step >= scene.time.end_step && ranks.broadcast(says_finished(folder.path()))) {
+    ranks.on_root([&] { tell_edited_scene(folder, scene, loaded, options, false); });
     if (options.notice)
       options.notice(fmt::format("the run in '{}' is finished, nothing was changed; --until with a later orbit than "
                                  "{:.6g} goes on",
                                  options.folder.string(), static_cast<double>(step) * scene.time.step));
     RunResult result{true, step, state_hash(loaded.run.state, scene, ranks), resume_command(options)};
-    ranks.first_does([&] { result.summary = read_summary(options.folder); });
+    ranks.on_root([&] { result.summary = read_summary(options.folder); });
     return result;
   }
   Simulation simulation(scene, std::move(loaded.run.state), ranks);
-  ranks.first_does([&] {
+  ranks.on_root([&] {
     tell_edited_scene(folder, scene, loaded, options, true);
     folder.cut_snapshots(loaded.counters.snapshots);
     folder.remove_summary();
@@ -312,7 +312,7 @@ RunResult go_on(const RunOptions& options, RunRequests& requests) {
                            {"orbits", simulation.orbits()},
                            {"end_orbits", end_orbits(scene)},
                            {"threads", threads()},
-                           {"ranks", ranks.count()}});
+                           {"ranks", ranks.size()}});
   return carry_on(scene, options, requests, folder, simulation, recorder, start);
 }
 

@@ -100,8 +100,8 @@ std::optional<double> RunView::wall_s(double now_s) const {
 }
 
 std::optional<double> RunView::remaining_s(double now_s) const {
-  constexpr double least_s = 2.0; // the log knows whole seconds
-  if (!running || !began_s || !(orbits > first_orbits) || now_s - *began_s < least_s)
+  constexpr double min_s = 2.0; // the log knows whole seconds
+  if (!running || !began_s || !(orbits > first_orbits) || now_s - *began_s < min_s)
     return std::nullopt;
   return (now_s - *began_s) / (orbits - first_orbits) * std::max(end_orbits - orbits, 0.0);
 }

@@ -12,9 +12,9 @@
 namespace keeler {
 namespace {
 
-constexpr double first_check = 5e-6;      // s a particle: what a check is taken to cost before there was one
-constexpr double share_of_checks = 0.005; // of the wall time, for the errors of forces; one at the end besides
-constexpr double least_patience = 5.0;    // s, with a stop
+constexpr double first_check = 5e-6;         // s a particle: what a check is taken to cost before there was one
+constexpr double fraction_of_checks = 0.005; // of the wall time, for the errors of forces; one at the end besides
+constexpr double min_patience = 5.0;         // s, with a stop
 
 } // namespace
 
@@ -27,7 +27,7 @@ Runner::Runner(const Scene& scene, const RunOptions& options, RunRequests& reque
   requests_.patience_s = patience();
   if (options.check)
     check_.emplace(scene, simulation);
-  assert(!check_ || !simulation.ranks().many());
+  assert(!check_ || !simulation.ranks().distributed());
 }
 
 RunResult Runner::run() {
@@ -64,8 +64,8 @@ bool Runner::must_stop() const {
     return false;
   // two passes more for the last checkpoint
   const double reserve = (passes_between_stops() + 2.0) * longest_pass_ + recorder_.force_checks().last_s;
-  return ranks().from_first(requests_.stop ||
-                            (options_.wall_time_s && watch_.elapsed() + reserve > *options_.wall_time_s));
+  return ranks().broadcast(requests_.stop ||
+                           (options_.wall_time_s && watch_.elapsed() + reserve > *options_.wall_time_s));
 }
 
 // An orbit before, when the satellite begins to pull.
@@ -85,7 +85,7 @@ void Runner::record() {
   recorder_.contacts();
   if (due(scene_.output.series_every))
     recorder_.sample(simulation_);
-  const bool asked = between_kicks() && ranks().from_first(requests_.snapshot.exchange(false));
+  const bool asked = between_kicks() && ranks().broadcast(requests_.snapshot.exchange(false));
   if (due(scene_.output.snapshot_every) || asked)
     recorder_.snapshot(simulation_);
   if (due(scene_.output.checkpoint_every) || checkpoint_due_by_clock()) {
@@ -101,7 +101,7 @@ void Runner::record() {
 
 bool Runner::checkpoint_due_by_clock() const {
   const double interval = 60.0 * scene_.output.checkpoint_every_minutes;
-  return interval > 0.0 && between_kicks() && ranks().from_first(watch_.elapsed() - last_checkpoint_time_ >= interval);
+  return interval > 0.0 && between_kicks() && ranks().broadcast(watch_.elapsed() - last_checkpoint_time_ >= interval);
 }
 
 // As often as a small share of the time allows: that is another number of steps for each solver and machine, and no
@@ -109,14 +109,14 @@ bool Runner::checkpoint_due_by_clock() const {
 bool Runner::force_check_due() const {
   const ForceChecks& checks = recorder_.force_checks();
   const double next = checks.count > 0 ? checks.last_s : first_check * static_cast<double>(simulation_.count());
-  return has_force_checks() && between_kicks() && checks.seconds + next <= share_of_checks * watch_.elapsed();
+  return has_force_checks() && between_kicks() && checks.seconds + next <= fraction_of_checks * watch_.elapsed();
 }
 
 // Three times as long as any pass so far is nothing unusual.
 unsigned Runner::patience() const {
-  if (!ranks().is_first())
+  if (!ranks().is_root())
     return 0; // it decides
-  return static_cast<unsigned>(std::ceil(std::max(least_patience, 3.0 * passes_between_stops() * longest_pass_)));
+  return static_cast<unsigned>(std::ceil(std::max(min_patience, 3.0 * passes_between_stops() * longest_pass_)));
 }
 
 // A mean over the steps so far whose weights grow with the third power of the step: steps get dearer as wakes grow,

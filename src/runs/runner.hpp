@@ -6,7 +6,7 @@
 
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/runs/run.hpp>
-#include <keeler/scene/doubts.hpp>
+#include <keeler/scene/warnings.hpp>
 
 #include <optional>
 
@@ -30,7 +30,7 @@ public:
   std::int64_t last_checkpoint() const { return last_checkpoint_; }
 
 private:
-  const Ranks& ranks() const { return simulation_.ranks(); }
+  const Communicator& ranks() const { return simulation_.ranks(); }
   void advance();
   bool due(std::int64_t every) const { return every > 0 && simulation_.state().step % every == 0; }
   // Half way through a kick interval the closing half kick is missing: stop and snapshot only at its end.
@@ -43,7 +43,7 @@ private:
   // The exact sum is over pairs, wherever they are. A particle alone has its own images, whose pulls cancel: nothing
   // that an error could be a part of.
   bool has_force_checks() const {
-    return scene_.gravity && scene_.gravity->by_pairs() && !ranks().many() && simulation_.count() > 1;
+    return scene_.gravity && scene_.gravity->by_pairs() && !ranks().distributed() && simulation_.count() > 1;
   }
   bool force_check_due() const;
   unsigned patience() const;

@@ -1,8 +1,8 @@
 #include <keeler/runs/series_columns.hpp>
 
 #include <keeler/cells/overlap.hpp>
-#include <keeler/contacts/finders.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/finders/finders.hpp>
 
 #include <algorithm>
 #include <iterator>

@@ -5,7 +5,7 @@
 
 namespace keeler {
 
-std::string state_hash(const SimulationState& state, const Scene& scene, const Ranks& ranks) {
+std::string state_hash(const SimulationState& state, const Scene& scene, const Communicator& ranks) {
   constexpr std::size_t rows = std::size_t{1} << 16;
   Hash hash;
   visit_by_id(state.particles, ranks, rows, [&](const Particles& particles) {
@@ -23,7 +23,7 @@ std::string state_hash(const SimulationState& state, const Scene& scene, const R
   hash.add(state.boundary_offset());
   hash.add_text(scene.motion);
   std::string digits = hash.hex();
-  ranks.from_first(digits);
+  ranks.broadcast(digits);
   return digits;
 }
 

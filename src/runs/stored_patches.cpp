@@ -3,9 +3,9 @@
 #include "run_folder.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/initial_conditions/possible.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/scene/scene.hpp>
-#include <keeler/states/possible.hpp>
 
 #include <fmt/format.h>
 

@@ -1,13 +1,13 @@
 #include "summarise.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/core/json_of_files.hpp>
 #include <keeler/core/memory.hpp>
 #include <keeler/core/threads.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/quantities/views.hpp>
-#include <keeler/scene/doubts.hpp>
+#include <keeler/scene/warnings.hpp>
 
 #include <fmt/format.h>
 
@@ -38,7 +38,7 @@ Value rate(From s, std::uint64_t contacts) {
                       : 0.0;
 }
 
-double unresolved_share(From s) {
+double unresolved_fraction(From s) {
   const std::uint64_t contacts = collisions(s).fast + collisions(s).slow;
   return static_cast<double>(collisions(s).unresolved) / static_cast<double>(std::max<std::uint64_t>(1, contacts));
 }
@@ -63,11 +63,11 @@ std::vector<std::string> notes(From s) {
     all.push_back(in_words(*passage));
   // How much such contacts lose depends on the kick interval too (docs/hard-spheres.md), so the balance of energy
   // decides.
-  if (!carries(s) && unresolved_share(s) > too_many)
+  if (!carries(s) && unresolved_fraction(s) > too_many)
     all.push_back(
         fmt::format("{} % of the contacts are slower than one kick of the pair's own gravity: where the energy "
                     "balance is above 1, set gravity.resting_contacts to \"carried\", or kick more often",
-                    figures(100.0 * unresolved_share(s), 2)));
+                    format_number(100.0 * unresolved_fraction(s), 2)));
   if (collisions(s).gave_up > 0 || s.largest_overlap > 1e-8)
     all.push_back(fmt::format("the collision finder gave up on {} {}, and may have missed contacts",
                               collisions(s).gave_up, collisions(s).gave_up == 1 ? "search" : "searches"));
@@ -75,7 +75,7 @@ std::vector<std::string> notes(From s) {
     all.push_back(
         fmt::format("left out of gravity: {} % of the rms acceleration, by choice: a mesh alone has no pull of "
                     "neighbours, rings of images none from beyond, and few particles feel little else",
-                    figures(100.0 * checks.last_rms, 2)));
+                    format_number(100.0 * checks.last_rms, 2)));
   return all;
 }
 
@@ -90,7 +90,7 @@ std::vector<SummaryRow> state_rows() {
        [](From s) -> Value { return static_cast<std::uint64_t>(s.simulation.state().control.steps); }},
       {{"particle_count", unit::none, "particles", "N"}, [](From s) -> Value { return s.simulation.count(); }},
       {{"ranks", unit::none, "ranks", "processes that share the run"},
-       [](From s) -> Value { return static_cast<std::uint64_t>(s.simulation.ranks().count()); }},
+       [](From s) -> Value { return static_cast<std::uint64_t>(s.simulation.ranks().size()); }},
       {{"threads", unit::none, "threads", "of each process"},
        [](From) -> Value { return static_cast<std::uint64_t>(threads()); }},
       {{"collisions_per_particle_orbit", unit::none, "collisions a particle and orbit",
@@ -102,7 +102,7 @@ std::vector<SummaryRow> state_rows() {
       {{"unresolved_contacts_share", unit::none, "unresolved contacts",
         "share of all contacts that are slower than what one kick of the pair's own gravity gives them", Spread::none,
         Forms::si, 3},
-       [](From s) -> Value { return unresolved_share(s); }},
+       [](From s) -> Value { return unresolved_fraction(s); }},
       {{"resting_contacts", unit::none, "contacts at rest",
         "pairs that rest on each other at the end and carry the kicks; null where the scene has none carried"},
        [](From s) -> Value {

@@ -17,10 +17,10 @@ namespace {
 
 using Values = std::vector<double>;
 
-constexpr std::size_t least_rows = 3;                         // for a viscosity
-constexpr std::size_t least_for_steady = 8;                   // to look for where a run becomes steady
-constexpr double least_orbits = 2.0, least_share = 1.0 / 3.0; // of a part that may be called steady
-constexpr double small_waves = 0.02;                          // fraction of the energy: 1 % of the dispersion
+constexpr std::size_t min_rows = 3;                       // for a viscosity
+constexpr std::size_t min_for_steady = 8;                 // to look for where a run becomes steady
+constexpr double min_orbits = 2.0, min_share = 1.0 / 3.0; // of a part that may be called steady
+constexpr double small_waves = 0.02;                      // fraction of the energy: 1 % of the dispersion
 
 // Whether the run had self-gravity, and whether its stress was measured.
 bool measures_gravity(const SeriesTable& series) {
@@ -126,7 +126,7 @@ Values random_motion(const SeriesTable& series, const std::vector<std::size_t>& 
 std::optional<WaveGrowth> waves_in(const SeriesTable& series, const std::vector<std::size_t>& rows) {
   constexpr double sure = 3.0; // errors
   const Values* const column = series.find("epicyclic_wave_fraction");
-  if (!column || rows.size() < least_for_steady)
+  if (!column || rows.size() < min_for_steady)
     return std::nullopt;
   const Values fractions = picked(*column, rows);
   if (!all_finite(fractions))
@@ -153,19 +153,19 @@ RingScale RingScale::of(const Patch& patch, bool driven) {
 }
 
 bool enough_rows(const SeriesTable& series) {
-  return series.find("translational_flux_kg_m2_s") && whole_rows(series).size() >= least_rows;
+  return series.find("translational_flux_kg_m2_s") && whole_rows(series).size() >= min_rows;
 }
 
 double steady_since(const SeriesTable& series, double until) {
   const Values& orbits = series.of("time_orbits");
   const std::vector<std::size_t> rows = within(whole_rows(series), orbits, -HUGE_VAL, until);
-  if (rows.size() < least_for_steady)
+  if (rows.size() < min_for_steady)
     return orbits.empty() ? 0.0 : orbits.front();
   const Rates rates = rates_of(series, rows, {.mass = 1.0, .orbital_frequency = 1.0, .shear = 1.0});
   std::size_t start = std::max(steady_start(rates.loss), steady_start(random_motion(series, rows)));
   if (!rates.gravitational.empty())
     start = std::max(start, steady_start(rates.gravitational));
-  return orbits[rows[std::min(start, rows.size() - least_for_steady)]];
+  return orbits[rows[std::min(start, rows.size() - min_for_steady)]];
 }
 
 Transport transport(const SeriesTable& series, const RingScale& scale, const OrbitWindow& window) {
@@ -174,8 +174,8 @@ Transport transport(const SeriesTable& series, const RingScale& scale, const Orb
   const double until = window.until ? *window.until : orbits.empty() ? 0.0 : orbits.back();
   const double since = window.since ? *window.since : steady_since(series, until);
   const std::vector<std::size_t> rows = within(whole_rows(series), orbits, since, until);
-  result.since_found = !window.since && rows.size() >= least_for_steady;
-  if (rows.size() < least_rows)
+  result.since_found = !window.since && rows.size() >= min_for_steady;
+  if (rows.size() < min_rows)
     throw UsageError(
         fmt::format("the series has {} between orbits {:.6g} and {:.6g}, too few for a viscosity; choose a "
                     "longer part of the run",
@@ -199,7 +199,7 @@ Transport transport(const SeriesTable& series, const RingScale& scale, const Orb
   }
   result.waves = waves_in(series, rows);
   const double length = result.until_orbit - result.since_orbit;
-  result.steady = length >= least_orbits && length >= least_share * (until - orbits.front()) && is_steady(rates.loss) &&
+  result.steady = length >= min_orbits && length >= min_share * (until - orbits.front()) && is_steady(rates.loss) &&
                   is_steady(random_motion(series, rows));
   return result;
 }

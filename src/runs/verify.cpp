@@ -6,13 +6,13 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/json_of_files.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/initial_conditions/possible.hpp>
 #include <keeler/io/contacts.hpp>
 #include <keeler/io/describe.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/runs/state_hash.hpp>
-#include <keeler/states/possible.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 #include "aggregates.hpp"
 
+#include <keeler/core/format.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/core/words.hpp>
 
 #include <fmt/format.h>
 
@@ -74,7 +74,7 @@ std::vector<AggregateSettings> read_aggregates(Settings& settings, const std::st
       fail_at(settings.place(table + ".count"),
               fmt::format("{}.count = {} is more than is left (the scene has {}, of which {} are in the aggregates "
                           "before); lower it or give the scene more particles",
-                          table, count, counted(particles.count, "particle"), total));
+                          table, count, pluralize(particles.count, "particle"), total));
     total += count;
     const std::vector<double> place = p.numbers("place");
     aggregates.push_back({.count = count,

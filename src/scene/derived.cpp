@@ -1,12 +1,12 @@
 #include <keeler/scene/derived.hpp>
 
+#include <keeler/core/format.hpp>
 #include <keeler/core/memory.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/gravity/axisymmetric.hpp>
 #include <keeler/gravity/fft.hpp>
-#include <keeler/orbit/toomre.hpp>
+#include <keeler/hill/toomre.hpp>
 #include <keeler/particles/patch.hpp>
 
 #include <fmt/format.h>
@@ -117,7 +117,7 @@ constexpr double own_room = 1.7; // of H² per τ R²
 } // namespace
 
 double layer_height(double optical_depth, const Crowd& crowd, double velocity_dispersion, double nu) {
-  const double motion = vertical_share * velocity_dispersion * crowd.mean_radius / nu;
+  const double motion = vertical_fraction * velocity_dispersion * crowd.mean_radius / nu;
   return std::sqrt(motion * motion + own_room * optical_depth * crowd.radius * crowd.radius);
 }
 
@@ -129,12 +129,12 @@ double midplane_filling(double optical_depth, const Crowd& crowd, double velocit
 double dispersion_for_filling(double optical_depth, const Crowd& crowd, double nu, double filling) {
   const double height = (4.0 / 3.0) * optical_depth * crowd.radius / (std::sqrt(two_pi) * filling);
   const double motion2 = height * height - own_room * optical_depth * crowd.radius * crowd.radius;
-  return motion2 > 0.0 ? nu * std::sqrt(motion2) / (vertical_share * crowd.mean_radius) : 0.0;
+  return motion2 > 0.0 ? nu * std::sqrt(motion2) / (vertical_fraction * crowd.mean_radius) : 0.0;
 }
 
 // With f = a τ / √(m² + b τ): a² τ² − f² b τ − f² m² = 0.
 double optical_depth_for_filling(const Crowd& crowd, double velocity_dispersion, double nu, double filling) {
-  const double motion = vertical_share * velocity_dispersion * crowd.mean_radius / nu;
+  const double motion = vertical_fraction * velocity_dispersion * crowd.mean_radius / nu;
   const double a = (4.0 / 3.0) * crowd.radius / (std::sqrt(two_pi) * filling);
   const double half = 0.5 * own_room * crowd.radius * crowd.radius;
   return (half + std::sqrt(half * half + a * a * motion * motion)) / (a * a);
@@ -163,7 +163,8 @@ Derived derive(const Scene& scene) {
 }
 
 void require_memory_for(const Scene& scene, std::size_t count) {
-  require_memory(run_bytes(scene, count), fmt::format("a run of {} particles", figures(static_cast<double>(count))),
+  require_memory(run_bytes(scene, count),
+                 fmt::format("a run of {} particles", format_number(static_cast<double>(count))),
                  "take fewer, a coarser mesh, or a machine that has more");
 }
 

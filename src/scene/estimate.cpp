@@ -1,7 +1,7 @@
 #include <keeler/scene/estimate.hpp>
 
+#include <keeler/core/format.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/gravity/axisymmetric.hpp>
 #include <keeler/gravity/fft.hpp>
 #include <keeler/gravity/near_image_count.hpp>
@@ -41,10 +41,10 @@ constexpr double closing = 1000.0;                        // a particle: overlap
 constexpr double force_check = 1500.0;                    // a particle; they also take half a per cent of the run
 } // namespace cost
 
-constexpr double usual_step = 1e-3;       // orbits, of the scenes that times were measured on
-constexpr double clumping_orbits = 0.9;   // after which wakes stand
-constexpr double least_wavelengths = 0.5; // of λ_cr along a side of a box that wakes can grow in: the fastest at Q = 1
-constexpr double aggregates = 1.1;        // the Hill parameter beyond which all hold together
+constexpr double usual_step = 1e-3;     // orbits, of the scenes that times were measured on
+constexpr double clumping_orbits = 0.9; // after which wakes stand
+constexpr double min_wavelengths = 0.5; // of λ_cr along a side of a box that wakes can grow in: the fastest at Q = 1
+constexpr double aggregates = 1.1;      // the Hill parameter beyond which all hold together
 constexpr double most_fast = 3e4, most_slow = 6e4; // contacts a particle and orbit, as packed as particles get
 
 // Lines of particles fall out of one cache after another.
@@ -133,13 +133,13 @@ double mesh_ns(const Scene& scene, const GravitySettings& gravity, double height
 
 // Particles stand up to three times the layer's height from the plane; a box that is narrower than that has more rings.
 double near_images(const Scene& scene, ImageSettings images) {
-  constexpr double highest = 3.0, most_rings = 6.0;
+  constexpr double highest = 3.0, max_rings = 6.0;
   const ParticleSettings& particles = scene.particles;
   const double height = highest * layer_height(scene.optical_depth(), crowd_of(particles),
                                                particles.velocity_dispersion, scene.planet.frequencies.nu);
   const double halves = std::ceil(2.0 * height / std::min(scene.size_x, scene.size_y));
   if (images.far)
-    images.rings = std::max({1, images.rings, static_cast<int>(std::min(halves, most_rings))});
+    images.rings = std::max({1, images.rings, static_cast<int>(std::min(halves, max_rings))});
   return static_cast<double>(near_image_count(box_of(scene), images));
 }
 
@@ -205,7 +205,7 @@ double saturating(double rate, double most) {
 
 bool has_room_for_wakes(const Scene& scene) {
   const double wavelength = critical_wavelength(scene.surface_density(), scene.planet);
-  return std::min(scene.size_x, scene.size_y) > least_wavelengths * wavelength;
+  return std::min(scene.size_x, scene.size_y) > min_wavelengths * wavelength;
 }
 
 } // namespace
@@ -296,7 +296,7 @@ const char* RunEstimate::dominating() const {
       ->name;
 }
 
-std::vector<std::string> dear_choices(const Scene& scene) {
+std::vector<std::string> expensive_settings(const Scene& scene) {
   constexpr double much = 5.0;
   const RunEstimate here = estimate_run(scene);
   std::vector<std::string> lines;
@@ -307,10 +307,10 @@ std::vector<std::string> dear_choices(const Scene& scene) {
     square.size_x = square.size_y = std::sqrt(scene.size_x * scene.size_y);
     const auto [shorter, longer] = std::minmax(scene.size_x, scene.size_y);
     if (const double times = here.gravity / estimate_run(square).gravity; times >= much)
-      lines.push_back(
-          fmt::format("a box of 1 : {} makes self-gravity about {} times as dear as a square one: a kick sums "
-                      "{:g} images of it one by one; gravity.solver = \"fft\" does not",
-                      figures(longer / shorter, 3), figures(times, 1), near_images(scene, scene.gravity->images)));
+      lines.push_back(fmt::format(
+          "a box of 1 : {} makes self-gravity about {} times as dear as a square one: a kick sums "
+          "{:g} images of it one by one; gravity.solver = \"fft\" does not",
+          format_number(longer / shorter, 3), format_number(times, 1), near_images(scene, scene.gravity->images)));
   }
   Scene bouncing = scene;
   bouncing.collisions.restitution = constant_restitution(0.5);
@@ -318,7 +318,7 @@ std::vector<std::string> dear_choices(const Scene& scene) {
     lines.push_back(
         fmt::format("a restitution of {} makes the drift about {} times as dear as one of 0.5: particles that lose "
                     "their speed stay together and meet again and again",
-                    figures(typical_restitution(scene), 2), figures(times, 1)));
+                    format_number(typical_restitution(scene), 2), format_number(times, 1)));
   return lines;
 }
 

@@ -6,7 +6,7 @@
 #include "start_pattern_keys.hpp"
 
 #include <keeler/collision/restitution.hpp>
-#include <keeler/contacts/finders.hpp>
+#include <keeler/finders/finders.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/particles/sizes.hpp>
 #include <keeler/scene/quality.hpp>
@@ -30,11 +30,11 @@ KeyRange from_0_to(double high) {
 // (without forces a drift is exact, however long), times up to where the shortest steps have no number any more. Every
 // key has both ends: what is finite and absurd must not become an infinity in the middle of a run.
 
-constexpr double most_orbits = 1e12;
+constexpr double max_orbits = 1e12;
 constexpr double largest_whole = 0x1p63; // that TOML has, but for 1
 
 // Each is held against each other, and a moonlet has columns of its own in series.csv.
-constexpr std::size_t most_placed_bodies = 1000;
+constexpr std::size_t max_placed_bodies = 1000;
 
 std::vector<std::string> finder_names() {
   std::vector<std::string> names;
@@ -272,7 +272,7 @@ std::vector<Key> course_keys() {
        .example = "3.0",
        .unit = "orbits",
        .meaning = "length of the run, rounded to whole kicks",
-       .range = up_to(most_orbits),
+       .range = up_to(max_orbits),
        .effect = output},
 
       {.path = "output.series_every",
@@ -280,28 +280,28 @@ std::vector<Key> course_keys() {
        .fallback = "0.02",
        .unit = "orbits",
        .meaning = "time between rows of series.csv, rounded to whole kicks; 0: only one at the start",
-       .range = from_0_to(most_orbits),
+       .range = from_0_to(max_orbits),
        .effect = output},
       {.path = "output.stress_every",
        .type = number,
        .fallback = "0.1",
        .unit = "orbits",
        .meaning = "time between rows of series.csv with the potential energy and the gravitational viscosity; 0: none",
-       .range = from_0_to(most_orbits),
+       .range = from_0_to(max_orbits),
        .effect = output},
       {.path = "output.snapshot_every",
        .type = number,
        .fallback = "0.0",
        .unit = "orbits",
        .meaning = "time between snapshots, rounded to whole kicks; 0: only at start and end",
-       .range = from_0_to(most_orbits),
+       .range = from_0_to(max_orbits),
        .effect = output},
       {.path = "output.checkpoint_every",
        .type = number,
        .fallback = "0.0",
        .unit = "orbits",
        .meaning = "time between checkpoints, rounded to whole kicks; 0: only those below, at the end and at a stop",
-       .range = from_0_to(most_orbits),
+       .range = from_0_to(max_orbits),
        .effect = output},
       {.path = "output.checkpoint_every_minutes",
        .type = number,
@@ -370,10 +370,10 @@ std::vector<Section> make_sections() {
       {.path = "particles.sizes", .needed = true, .meaning = "it says how large they are", .replaced_by = "start.from"},
       {.path = "particles.streamlines", .replaced_by = "start.from"},
       {.path = "particles.modes", .replaced_by = "start.from"},
-      {.path = "moonlet", .replaced_by = "start.from", .repeated = true, .most = most_placed_bodies},
+      {.path = "moonlet", .replaced_by = "start.from", .repeated = true, .most = max_placed_bodies},
       {.path = "particles.step", .replaced_by = "start.from"},
       {.path = "particles.wake", .replaced_by = "start.from"},
-      {.path = "particles.aggregate", .replaced_by = "start.from", .repeated = true, .most = most_placed_bodies},
+      {.path = "particles.aggregate", .replaced_by = "start.from", .repeated = true, .most = max_placed_bodies},
       {.path = "collisions"},
       {.path = "collisions.restitution"},
       {.path = "collisions.friction"},

@@ -2,8 +2,8 @@
 
 #include "key_table.hpp"
 
+#include <keeler/core/format.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/core/words.hpp>
 
 #include <fmt/format.h>
 
@@ -68,7 +68,7 @@ std::vector<MoonletSettings> read_moonlets(Settings& settings, const std::string
     if (p.has("mass") && !material_densities.contains(density))
       fail_at(settings.place(table + ".mass"),
               fmt::format("{}.mass makes a density of {} kg/m^3, but it must be {}; change the mass or the radius",
-                          table, figures(density, 3), material_densities.words()));
+                          table, format_number(density, 3), material_densities.words()));
     moonlets.push_back({radius, mass, vector_of(p.numbers("place")), vector_of(p.numbers("velocity"))});
   }
   return moonlets;

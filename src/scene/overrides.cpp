@@ -58,10 +58,10 @@ void drop_contradictions(SceneDocument& document, const DocumentEntry& by, std::
 }
 
 void add_parent_tables(SceneDocument& document, const std::string& path, const std::string& place) {
-  if (static_cast<std::size_t>(std::count(path.begin(), path.end(), '.')) >= most_toml_depth)
+  if (static_cast<std::size_t>(std::count(path.begin(), path.end(), '.')) >= max_toml_depth)
     fail_at(place, fmt::format("unknown key (it has more than {} parts, and no key has more than a few); "
                                "\"keeler check --defaults\" lists every key",
-                               most_toml_depth));
+                               max_toml_depth));
   for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1))
     if (!find_entry(document, path.substr(0, dot)))
       document.add({path.substr(0, dot), place, place, Table{}, true});

@@ -3,8 +3,8 @@
 #include "aggregates.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/scene/derived.hpp>
 #include <keeler/scene/keys.hpp>
 
@@ -21,7 +21,7 @@ void require_possible(const std::string& place, const std::string& from, const s
   const Key& key = *find_key(path);
   if (!key.range.contains(value))
     fail_at(place, fmt::format("{} makes {} {}, but it must be {} ({}, in {}); change {}", from, path,
-                               figures(value, 3), allowed_words(key), key.meaning, key.unit, from));
+                               format_number(value, 3), allowed_words(key), key.meaning, key.unit, from));
 }
 
 StreamlineSettings read_streamlines(const Settings& settings) {
@@ -32,8 +32,8 @@ StreamlineSettings read_streamlines(const Settings& settings) {
 }
 
 // Of all modes together: where their amplitudes sum up to 1 streamlines may cross.
-constexpr double most_bunching = 0.9;
-constexpr std::size_t most_modes = 1000; // each particle is placed by all of them
+constexpr double max_bunching = 0.9;
+constexpr std::size_t max_modes = 1000; // each particle is placed by all of them
 
 ModeSettings read_mode(const std::vector<double>& row, ModeSettings::Direction direction, const std::string& which) {
   const auto require = [&](const char* what, double value, const KeyRange& range, const char* why) {
@@ -44,7 +44,7 @@ ModeSettings read_mode(const std::vector<double>& row, ModeSettings::Direction d
   if (row[0] != std::floor(row[0]))
     throw UsageError(fmt::format("{} has {:g} waves (the box is periodic); give a whole number", which, row[0]));
   require("waves:", row[0], {.low = 1, .high = 1000}, "");
-  require("the amplitude", row[1], {.low = 0, .high = most_bunching, .low_open = true}, ": at 1 streamlines cross");
+  require("the amplitude", row[1], {.low = 0, .high = max_bunching, .low_open = true}, ": at 1 streamlines cross");
   require("the phase", row[2], {.low = -360, .high = 360}, " degrees");
   return {direction, static_cast<int>(row[0]), row[1], row[2]};
 }
@@ -76,18 +76,18 @@ std::vector<ModeSettings> read_modes(Settings& settings, const std::string& name
   read_modes(settings, name, "standing", ModeSettings::Direction::standing, modes);
   if (modes.empty())
     fail_at(place, "[particles.modes] has no mode in it; add for example outward = [[1, 0.1, 0.0]]");
-  if (modes.size() > most_modes)
+  if (modes.size() > max_modes)
     fail_at(place,
             fmt::format("[particles.modes] has {} modes (a start takes {} at most, for each particle is placed by all "
                         "of them); leave out the weakest",
-                        modes.size(), most_modes));
+                        modes.size(), max_modes));
   double sum = 0.0;
   for (const ModeSettings& mode : modes)
     sum += mode.amplitude;
-  if (!(sum <= most_bunching))
+  if (!(sum <= max_bunching))
     fail_at(place, fmt::format("the amplitudes of [particles.modes] sum up to {:.3g} (at 1 streamlines cross); lower "
                                "them to {} in all",
-                               sum, most_bunching));
+                               sum, max_bunching));
   return modes;
 }
 
@@ -97,7 +97,7 @@ void require_long(const Scene& scene, int waves, const std::string& place, const
   if (!(wavelength >= across))
     fail_at(place, fmt::format("{} has waves of {} m, shorter than the largest particle ({} m across); give at most {} "
                                "in the box",
-                               what, figures(wavelength, 4), figures(across, 4),
+                               what, format_number(wavelength, 4), format_number(across, 4),
                                std::max(1.0, std::floor(scene.size_x / across))));
 }
 
@@ -122,7 +122,7 @@ void read_step(const Scene& scene, const Settings& settings, DensityPattern& pat
         settings.place("particles.step.between"),
         fmt::format("particles.step.between is [{}, {}] (two rising x within the box, from {} to {}, and not all of "
                     "it); correct it",
-                    figures(between[0]), figures(between[1]), figures(-edge), figures(edge)));
+                    format_number(between[0]), format_number(between[1]), format_number(-edge), format_number(edge)));
   pattern.low = between[0];
   pattern.high = between[1];
   pattern.factor = settings.number("particles.step.factor");
@@ -139,25 +139,25 @@ void read_wake(Scene& scene, Settings& settings, DensityPattern& pattern) {
     fail_at(place,
             fmt::format("particles.wake.wavelength = {} is too long (no wave fits the box of {} m x {} m); lower "
                         "it or enlarge the box",
-                        figures(wavelength), figures(scene.size_x, 4), figures(scene.size_y, 4)));
+                        format_number(wavelength), format_number(scene.size_x, 4), format_number(scene.size_y, 4)));
   if (!(wavelength >= 2.0 * scene.particles.sizes.largest))
     fail_at(place,
             fmt::format("particles.wake.wavelength = {} is shorter than the largest particle ({} m across); raise "
                         "it",
-                        figures(wavelength), figures(2.0 * scene.particles.sizes.largest, 4)));
-  constexpr double most_waves = 1e9;
-  if (!(waves_x <= most_waves && waves_y <= most_waves))
+                        format_number(wavelength), format_number(2.0 * scene.particles.sizes.largest, 4)));
+  constexpr double max_waves = 1e9;
+  if (!(waves_x <= max_waves && waves_y <= max_waves))
     fail_at(place, fmt::format("particles.wake.wavelength = {} is too short ({} waves would be in the box); raise it",
-                               figures(wavelength), figures(std::max(waves_x, waves_y), 3)));
+                               format_number(wavelength), format_number(std::max(waves_x, waves_y), 3)));
   pattern.contrast = settings.number("particles.wake.contrast");
   pattern.waves_x = static_cast<int>(waves_x);
   pattern.waves_y = static_cast<int>(waves_y);
   if (std::fabs(pattern.wavelength() / wavelength - 1.0) > 1e-9 ||
       std::fabs(pattern.pitch() - pitch * 180.0 / pi) > 1e-9)
-    scene.notices.push_back(
-        fmt::format("the wake has a wavelength of {} m and a pitch of {} degrees ({} x {} waves fit "
-                    "the box)",
-                    figures(pattern.wavelength(), 4), figures(pattern.pitch(), 4), pattern.waves_x, pattern.waves_y));
+    scene.notices.push_back(fmt::format(
+        "the wake has a wavelength of {} m and a pitch of {} degrees ({} x {} waves fit "
+        "the box)",
+        format_number(pattern.wavelength(), 4), format_number(pattern.pitch(), 4), pattern.waves_x, pattern.waves_y));
   settings.resolve("particles.wake.wavelength", pattern.wavelength());
   settings.resolve("particles.wake.pitch", pattern.pitch());
 }
@@ -210,7 +210,7 @@ void read_box(Scene& scene, Settings& settings, const Amount& amount) {
     fail_at(place,
             fmt::format("the box of {} m x {} m is more than {:g} times as long as wide (its images on the short "
                         "side would be too many); make it less oblong",
-                        figures(size[0], 4), figures(size[1], 4), most_oblong));
+                        format_number(size[0], 4), format_number(size[1], 4), most_oblong));
   scene.size_x = size[0];
   scene.size_y = size[1];
   const double diameter = 2.0 * scene.particles.sizes.largest;

@@ -1,6 +1,6 @@
 #include "placed_bodies.hpp"
 
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 
 #include <fmt/format.h>
 
@@ -45,18 +45,18 @@ void check_in_box(const PlacedBody& body, const Scene& scene, const Settings& se
     fail_at(settings.place(size),
             fmt::format("{} is {} m across (more than a side of the box of {} m x {} m); enlarge the box or lower "
                         "the {}",
-                        body.table, figures(2.0 * body.radius, 4), figures(scene.size_x, 4), figures(scene.size_y, 4),
-                        body.size_key));
+                        body.table, format_number(2.0 * body.radius, 4), format_number(scene.size_x, 4),
+                        format_number(scene.size_y, 4), body.size_key));
   if (!(2.0 * std::fabs(body.place.x()) <= scene.size_x && 2.0 * std::fabs(body.place.y()) <= scene.size_y))
     fail_at(settings.place(place),
             fmt::format("{} is outside the box (it reaches {} m and {} m to each side of its middle); move it", place,
-                        figures(0.5 * scene.size_x, 4), figures(0.5 * scene.size_y, 4)));
+                        format_number(0.5 * scene.size_x, 4), format_number(0.5 * scene.size_y, 4)));
   if (const double longer = std::max(scene.size_x, scene.size_y); !(body.height <= longer))
     fail_at(
         settings.place(body.table),
         fmt::format("{} reaches {} m from the mid-plane (more than the longer side of the box, {} m: no part of this "
                     "ring); lower its place and its vertical velocity",
-                    body.table, figures(body.height, 4), figures(longer, 4)));
+                    body.table, format_number(body.height, 4), format_number(longer, 4)));
 }
 
 } // namespace
@@ -70,8 +70,8 @@ void check_placed_bodies(const Scene& scene, const Settings& settings) {
       if (const double apart = distance(body.place, bodies[j].place, scene); apart < body.radius + bodies[j].radius)
         fail_at(settings.place(body.table),
                 fmt::format("{} and {} overlap (their centres are {} m apart, their radii {} m and {} m); move one",
-                            bodies[j].table, body.table, figures(apart, 4), figures(bodies[j].radius, 4),
-                            figures(body.radius, 4)));
+                            bodies[j].table, body.table, format_number(apart, 4), format_number(bodies[j].radius, 4),
+                            format_number(body.radius, 4)));
   }
 }
 

@@ -1,7 +1,7 @@
 #include <keeler/scene/resting_choice.hpp>
 
+#include <keeler/core/format.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/scene/derived.hpp>
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ constexpr double aggregates_last = 1.0;     // r_h
 constexpr double allowed_excess = 0.015;    // half of what a balance of energy is trusted to (docs/hard-spheres.md)
 constexpr double much_larger = 3.0;         // radius of a body over that of its neighbours, which are grains to it
 constexpr double automatic_interval = 4e-3; // orbits: what an automatic step comes to in wakes
-constexpr double least_mass_share = 0.001;  // of the patch, in a body whose grains matter to the patch
+constexpr double min_mass_fraction = 0.001; // of the patch, in a body whose grains matter to the patch
 
 // The Hill radius of two bodies over their radius sum: that of equal spheres of this density.
 double pair_hill_parameter(const PatchScale::Sphere& a, const PatchScale::Sphere& b, double distance) {
@@ -40,14 +40,14 @@ double excess_of_bouncing(double optical_depth, double hill_parameter, double ki
 RestingChoice choose_resting_contacts(const PatchScale& patch, const Scene& scene) {
   const double r_h = hill_parameter(patch.density, distance_from_saturn(scene.planet));
   if (r_h >= aggregates_last)
-    return {true, fmt::format("aggregates last at r_h {}", figures(r_h, 3))};
-  if (patch.largest.mass >= least_mass_share * patch.mass && holds_grains(patch.largest, patch.grain, scene.planet))
-    return {true, fmt::format("grains stay on a body of {} m", figures(patch.largest.radius, 3))};
+    return {true, fmt::format("aggregates last at r_h {}", format_number(r_h, 3))};
+  if (patch.largest.mass >= min_mass_fraction * patch.mass && holds_grains(patch.largest, patch.grain, scene.planet))
+    return {true, fmt::format("grains stay on a body of {} m", format_number(patch.largest.radius, 3))};
   const double interval =
       scene.time.automatic ? automatic_interval : scene.time.step * static_cast<double>(scene.kick_interval());
   const double excess = excess_of_bouncing(patch.optical_depth, r_h, interval);
   return {excess >= allowed_excess,
-          fmt::format("bouncing loses about {} % more than the shear gives", figures(100.0 * excess, 2))};
+          fmt::format("bouncing loses about {} % more than the shear gives", format_number(100.0 * excess, 2))};
 }
 
 bool leaves_resting_open(const Scene& scene) {

@@ -9,16 +9,16 @@
 #include "quality.hpp"
 #include "settings.hpp"
 
+#include <keeler/core/format.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/gravity/axisymmetric.hpp>
 #include <keeler/scene/derived.hpp>
-#include <keeler/scene/doubts.hpp>
 #include <keeler/scene/examples.hpp>
 #include <keeler/scene/keys.hpp>
 #include <keeler/scene/resting_choice.hpp>
+#include <keeler/scene/warnings.hpp>
 
 #include <fmt/format.h>
 
@@ -131,13 +131,13 @@ std::int64_t whole_kicks(Scene& scene, Settings& settings, const std::string& ke
 void refuse_many_oscillations(const Scene& scene, const Settings& settings) {
   const Frequencies& frequencies = scene.planet.frequencies;
   const double fastest = std::max(frequencies.kappa, frequencies.nu);
-  if (oscillations_a_step(scene) > most_oscillations)
+  if (oscillations_a_step(scene) > max_oscillations)
     fail_at(settings.place("time.step"),
             fmt::format("time.step = {} holds {} {} oscillations of {} Omega (searches for contacts would not end in "
                         "reasonable time beyond 1.5); let it be {} orbits at most",
-                        figures(scene.time.step), figures(oscillations_a_step(scene), 3),
-                        frequencies.nu < frequencies.kappa ? "radial" : "vertical", figures(fastest),
-                        figures(few_oscillations / fastest, 3)));
+                        format_number(scene.time.step), format_number(oscillations_a_step(scene), 3),
+                        frequencies.nu < frequencies.kappa ? "radial" : "vertical", format_number(fastest),
+                        format_number(few_oscillations / fastest, 3)));
 }
 
 void read_times(Scene& scene, Settings& settings) {

@@ -21,24 +21,24 @@ void require_room(const ShearingBox& box, double largest, const std::string& nam
 }
 
 // Collective.
-void require_fit(const Scene& scene, const Patch& start, const std::string& name, const Ranks& ranks) {
+void require_fit(const Scene& scene, const Patch& start, const std::string& name, const Communicator& ranks) {
   ranks.together([&] {
     require_memory_for(scene, start.size());
     require_sound(start);
-    if (!ranks.many())
+    if (!ranks.distributed())
       require_apart(start, name);
   });
   const double largest = ranks.largest(start.size() ? *std::max_element(start.radii.begin(), start.radii.end()) : 0.0);
-  ranks.first_does([&] { require_room(start.box, largest, name); });
+  ranks.on_root([&] { require_room(start.box, largest, name); });
 }
 
 // Collective: what the first rank has of all but the particles, on the others too.
-void share(SimulationState& state, const Ranks& ranks) {
+void share(SimulationState& state, const Communicator& ranks) {
   const FieldTable table = state.fields();
   for (const Field& field : table.fields())
     if (!field.divided) {
-      field.resize(ranks.from_first(field.rows()));
-      ranks.from_first(std::span(static_cast<std::byte*>(field.data()), field.bytes()));
+      field.resize(ranks.broadcast(field.rows()));
+      ranks.broadcast(std::span(static_cast<std::byte*>(field.data()), field.bytes()));
     }
 }
 
@@ -61,12 +61,12 @@ Particles particles_of(const Patch& start, const Scene& scene, const SimulationS
 }
 
 // Collective: where moonlets start, which only fresh patches have, and these are the first rank's.
-void note_moonlets(SimulationState& state, const Ranks& ranks) {
+void note_moonlets(SimulationState& state, const Communicator& ranks) {
   const std::size_t count = state.moonlets.size();
   if (count == 0)
     return;
-  assert(!ranks.is_first() || state.particles.size() >= count);
-  for (std::size_t k = 0; k < count && ranks.is_first(); ++k) // in the order of the ids they come last
+  assert(!ranks.is_root() || state.particles.size() >= count);
+  for (std::size_t k = 0; k < count && ranks.is_root(); ++k) // in the order of the ids they come last
     state.moonlets[k].start_x = state.particles.bodies[state.particles.size() - count + k].elements.guiding_x;
   share(state, ranks);
 }
@@ -77,7 +77,7 @@ std::string start_name(const Scene& scene) {
   return scene.start_from ? fmt::format("'{}'", *scene.start_from) : "the initial state";
 }
 
-SimulationState first_state(const Scene& scene, const Patch& start, const Ranks& ranks) {
+SimulationState first_state(const Scene& scene, const Patch& start, const Communicator& ranks) {
   require_fit(scene, start, start_name(scene), ranks);
   SimulationState state(scene);
   if (scene.time.automatic)

@@ -19,7 +19,7 @@ Body Simulation::moonlet(std::size_t k) const {
   Body body{};
   if (moonlet_places_[k] != elsewhere)
     body = state_.particles.bodies[moonlet_places_[k]];
-  if (ranks_.many()) {
+  if (ranks_.distributed()) {
     double numbers[sizeof(Body) / sizeof(double)];
     static_assert(sizeof numbers == sizeof body);
     std::memcpy(numbers, &body, sizeof body);

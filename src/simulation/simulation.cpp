@@ -30,7 +30,8 @@ struct KickSums {
   }
 };
 
-std::vector<std::unique_ptr<Force>> make_forces(const Scene& scene, const SimulationState& state, const Ranks& ranks) {
+std::vector<std::unique_ptr<Force>> make_forces(const Scene& scene, const SimulationState& state,
+                                                const Communicator& ranks) {
   std::vector<double> masses;
   if (!state.forces.empty())
     for (const Body& body : state.particles.bodies)
@@ -46,21 +47,21 @@ std::vector<std::unique_ptr<Force>> make_forces(const Scene& scene, const Simula
 
 } // namespace
 
-Simulation::Simulation(const Scene& scene, const Patch& start, const Ranks& ranks)
+Simulation::Simulation(const Scene& scene, const Patch& start, const Communicator& ranks)
     : Simulation(scene, first_state(scene, start, ranks), ranks) {
-  if constexpr (Ranks::possible)
-    if (ranks_.many()) {
-      const Overlap largest = largest_overlap_shared();
+  if constexpr (Communicator::possible)
+    if (ranks_.distributed()) {
+      const Overlap largest = largest_overlap_distributed();
       ranks_.together([&] { require_apart(largest, start_name(scene_)); });
     }
   for (std::size_t f = 0; f < forces_.size(); ++f)
     accelerate(f);
 }
 
-Simulation::Simulation(const Scene& scene, SimulationState state, const Ranks& ranks)
+Simulation::Simulation(const Scene& scene, SimulationState state, const Communicator& ranks)
     : scene_(scene), ranks_(ranks), state_(std::move(state)), count_(ranks.sum(state_.particles.size())),
       drift_(scene.collisions, scene.planet.frequencies, scene.planet.orbital_frequency, state_.step_length) {
-  if constexpr (Ranks::possible)
+  if constexpr (Communicator::possible)
     divide();
   forces_ = make_forces(scene_, state_, ranks_);
   find_moonlets();
@@ -94,9 +95,9 @@ void Simulation::advance() {
 }
 
 void Simulation::collide() {
-  if constexpr (Ranks::possible)
-    if (ranks_.many())
-      return collide_shared();
+  if constexpr (Communicator::possible)
+    if (ranks_.distributed())
+      return collide_distributed();
   drift_.collide(state_.particles, state_.box, state_.epoch_offset(), state_.collisions, undisturbed_);
 }
 
@@ -165,8 +166,8 @@ void Simulation::sort_when_due() {
   const std::int64_t interval = longest * static_cast<std::int64_t>(intervals);
   if (state_.step % interval != 0)
     return;
-  if constexpr (Ranks::possible)
-    if (ranks_.many())
+  if constexpr (Communicator::possible)
+    if (ranks_.distributed())
       return slabs_->expire(); // new borders sort too
   const Stopwatch watch(split_.drift);
   drift_.release();
@@ -265,7 +266,7 @@ void Simulation::half_kick(std::size_t f) {
 }
 
 void Simulation::replace(Particles particles) {
-  assert(!ranks_.many() && state_.step % scene_.kick_interval() == 0 && particles.ids == state_.particles.ids);
+  assert(!ranks_.distributed() && state_.step % scene_.kick_interval() == 0 && particles.ids == state_.particles.ids);
   const Patch after = patch_of(particles);
   require_sound(after);
   require_apart(after, "the changed state");
@@ -315,7 +316,7 @@ Patch Simulation::patch_of(const Particles& particles) const {
 }
 
 Patch Simulation::patch() const {
-  assert(!ranks_.many());
+  assert(!ranks_.distributed());
   return patch_of(state_.particles);
 }
 
@@ -340,9 +341,9 @@ double Simulation::offset_at_break() const {
 
 double Simulation::largest_overlap() {
   drift_.release(); // room for what is looked for
-  if constexpr (Ranks::possible)
-    if (ranks_.many())
-      return largest_overlap_shared().depth;
+  if constexpr (Communicator::possible)
+    if (ranks_.distributed())
+      return largest_overlap_distributed().depth;
   return keeler::largest_overlap(patch()).depth;
 }
 

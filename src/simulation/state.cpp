@@ -53,7 +53,7 @@ FieldTable SimulationState::fields() {
   return table;
 }
 
-std::string SimulationState::fault(const Scene& scene, const Ranks& ranks) const {
+std::string SimulationState::fault(const Scene& scene, const Communicator& ranks) const {
   const std::size_t count = particles.size(), of_all = ranks.sum(count);
   if (of_all == 0 || particles.ids.size() != count || (particles.rough && particles.spins.size() != count))
     return "its particles are none, or their arrays have different lengths";

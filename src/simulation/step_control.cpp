@@ -11,7 +11,7 @@ constexpr std::uint64_t enough = 500; // contacts to judge by
 // In the wakes of the A ring the loss in collisions exceeds the work of the shear by about this share of contacts, and
 // a kick interval twice as long makes it three times as large.
 constexpr double most_unresolved = 0.015, few_unresolved = 0.004;
-constexpr double most_contacts = 0.5, few_contacts = 0.25; // of a particle in a drift
+constexpr double max_contacts = 0.5, few_contacts = 0.25; // of a particle in a drift
 
 std::int64_t kick_for(std::int64_t kick, double unresolved) {
   if (unresolved > most_unresolved)
@@ -21,7 +21,7 @@ std::int64_t kick_for(std::int64_t kick, double unresolved) {
 
 // `rate`: contacts of a particle in a tick.
 std::int64_t step_for(std::int64_t step, double rate) {
-  while (step > 1 && rate * static_cast<double>(step) > most_contacts)
+  while (step > 1 && rate * static_cast<double>(step) > max_contacts)
     step /= 2;
   while (step < TimeSettings::longest && rate * static_cast<double>(2 * step) <= few_contacts)
     step *= 2;

@@ -34,15 +34,15 @@ std::vector<double> blocks_of(std::span<const double> values, std::size_t length
 } // namespace
 
 Estimate block_mean(std::span<const double> values) {
-  constexpr std::size_t least_blocks = 4;
+  constexpr std::size_t min_blocks = 4;
   Estimate mean{mean_of(values), std::numeric_limits<double>::quiet_NaN()};
-  if (values.size() < least_blocks)
+  if (values.size() < min_blocks)
     return mean;
   const double alone = plain_error(values);
   mean.error = alone;
   if (alone == 0.0)
     return mean;
-  for (std::size_t length = 1; values.size() / length >= least_blocks; length *= 2) {
+  for (std::size_t length = 1; values.size() / length >= min_blocks; length *= 2) {
     const double error = plain_error(blocks_of(values, length)), b = static_cast<double>(length);
     mean.error = std::max(mean.error, error);
     if (b * b * b > 2.0 * static_cast<double>(values.size()) * std::pow(error / alone, 4.0)) {

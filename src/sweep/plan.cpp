@@ -2,9 +2,9 @@
 
 #include <keeler/batch/quantities.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/stopwatch.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/io/hash.hpp>
 
 #include <fmt/format.h>
@@ -125,7 +125,7 @@ double number_of_runs(const Grid& grid) {
     throw UsageError(
         fmt::format("{}:1:1: the grid makes {} runs (a sweep takes {} at most); give it fewer seeds or values, "
                     "or make several grids",
-                    grid.file.string(), figures(runs), figures(most)));
+                    grid.file.string(), format_number(runs), format_number(most)));
   return runs;
 }
 
@@ -133,7 +133,7 @@ constexpr std::size_t runs_a_word = 1000;
 
 Progress checked(std::size_t runs, double all, double elapsed_s) {
   const double share = static_cast<double>(runs) / all;
-  return {share, elapsed_s, elapsed_s * (1.0 / share - 1.0), fmt::format("checking {}", counted(runs, "run"))};
+  return {share, elapsed_s, elapsed_s * (1.0 / share - 1.0), fmt::format("checking {}", pluralize(runs, "run"))};
 }
 
 } // namespace

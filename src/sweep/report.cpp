@@ -1,6 +1,6 @@
 #include "output.hpp"
 
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/report/document.hpp>
 
@@ -33,8 +33,9 @@ std::vector<std::size_t> shown(const Grid& grid) {
 std::string with_error(const std::optional<Estimate>& value) {
   if (!value)
     return "–";
-  return std::isfinite(value->error) ? fmt::format("{} ± {}", figures(value->value, 4), figures(value->error, 2))
-                                     : figures(value->value, 4);
+  return std::isfinite(value->error)
+             ? fmt::format("{} ± {}", format_number(value->value, 4), format_number(value->error, 2))
+             : format_number(value->value, 4);
 }
 
 Table table_of_points(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points) {
@@ -63,15 +64,15 @@ Table table_of_points(const Grid& grid, const Plan& plan, const std::vector<Poin
 void write_report(const Grid& grid, const Plan& plan, const std::vector<RunRow>& runs,
                   const std::vector<PointRow>& points, const RunFolders& folders, Figure figure) {
   Document report("Sweep of " + grid.file.filename().string());
-  report.paragraph(fmt::format("{} of {}: {} finished, {} failed, {} not finished.", counted(runs.size(), "run"),
-                               counted(plan.points.size(), "point"), count_of(runs, RunStatus::finished),
+  report.paragraph(fmt::format("{} of {}: {} finished, {} failed, {} not finished.", pluralize(runs.size(), "run"),
+                               pluralize(plan.points.size(), "point"), count_of(runs, RunStatus::finished),
                                count_of(runs, RunStatus::failed), count_of(runs, RunStatus::unfinished)));
   report.paragraph(fmt::format(
       "Each run is measured {}. A number is the mean over the seeds, its error the standard error by the spread of the "
       "seeds; of one seed it is that run's own error by blocks, where it has one. `steady` counts the runs that are "
       "steady in the part "
       "measured.",
-      grid.since ? fmt::format("from orbit {} on", figures(*grid.since)) : "from where it becomes steady"));
+      grid.since ? fmt::format("from orbit {} on", format_number(*grid.since)) : "from where it becomes steady"));
   report.heading("Points");
   report.table(table_of_points(grid, plan, points));
   if (figure == Figure::drawn)

@@ -6,12 +6,12 @@
 #include <keeler/batch/claims.hpp>
 #include <keeler/batch/workers.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/json_of_files.hpp>
-#include <keeler/core/words.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/report/csv.hpp>
-#include <keeler/scene/doubts.hpp>
+#include <keeler/scene/warnings.hpp>
 
 #include <fmt/format.h>
 
@@ -60,7 +60,7 @@ void tell_doubts(const Plan& plan, const Notice& notice) {
   for (const PlannedRun& run : plan.runs) {
     for (const std::string& text : run.scene.notices)
       tell(run, text);
-    for (const std::string& text : doubts(run.scene))
+    for (const std::string& text : warnings(run.scene))
       tell(run, text);
   }
 }
@@ -118,7 +118,7 @@ SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
   }
   if (const std::size_t beside = folders.runs_beside(plan.runs); beside > 0)
     settings.notice(fmt::format("note: {} in '{}' that this grid does not have stay as they are and out of the tables",
-                                counted(beside, "run"), (folders.path() / "runs").string()));
+                                pluralize(beside, "run"), (folders.path() / "runs").string()));
   if (!settings.tables_only) {
     result.began = true;
     tell_doubts(plan, settings.notice);

@@ -1,9 +1,9 @@
 #include "growth.hpp"
 
 #include <keeler/bench/yardsticks.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/scene/resting_choice.hpp>
 #include <keeler/simulation/simulation.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include <keeler/tune/tune.hpp>
 
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@ namespace keeler {
 namespace {
 
 std::string per_cent(double share) {
-  return figures(100.0 * share, 2) + " %";
+  return format_number(100.0 * share, 2) + " %";
 }
 
 std::string with_point(double number) {
@@ -60,7 +60,7 @@ std::vector<KeyChange> chosen_keys(const Tuning& tuning, const TuneSettings& set
   keys.push_back({"time.step", with_point(step.step),
                   fmt::format("tune: {} processor seconds an orbit in the state after {:.3g} orbits, {} contacts a "
                               "particle and drift",
-                              figures(step.seconds, 2), tuning.orbits, figures(step.contacts, 2))});
+                              format_number(step.seconds, 2), tuning.orbits, format_number(step.contacts, 2))});
   return keys;
 }
 

@@ -20,9 +20,9 @@ constexpr std::array<int, 14> kicks_of_tenth = {100, 80, 64, 50, 40, 32, 25, 20,
 constexpr double longest_probe = 0.25;                     // of a kick interval from each state, over their age
 constexpr double usual_contacts = 0.3;                     // of a particle in a drift: near the cheapest
 constexpr double few_contacts = 0.04, many_contacts = 1.2; // where the cheapest is looked for
-constexpr std::size_t most_direct = 3000;                  // particles
+constexpr std::size_t max_direct = 3000;                   // particles
 constexpr int gravity_repeats = 3;
-constexpr double least_gain = 1.15; // of twice the threads
+constexpr double min_gain = 1.15; // of twice the threads
 constexpr double clock_noise = 1.03;
 
 double orbits_of(const Scene& scene) {
@@ -46,7 +46,7 @@ GravityChoice choice(const Scene& scene, GravitySettings::Solver solver, std::si
 std::vector<GravityChoice> gravity_candidates(const Scene& scene, std::size_t particles, double force_error) {
   using Solver = GravitySettings::Solver;
   std::vector<GravityChoice> candidates;
-  if (particles <= most_direct)
+  if (particles <= max_direct)
     candidates.push_back(choice(scene, Solver::direct, particles, 0.0));
   for (const double opening_angle : {0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9})
     candidates.push_back(choice(scene, Solver::tree, particles, opening_angle));
@@ -129,7 +129,7 @@ void choose_step(Tuning& tuning, const Scene& scene, const GrownScene& growth, d
 void choose_threads(Tuning& tuning) {
   ThreadProbe best = tuning.threads.front();
   for (const ThreadProbe& probe : tuning.threads)
-    if (probe.speedup >= least_gain * best.speedup)
+    if (probe.speedup >= min_gain * best.speedup)
       best = probe;
   tuning.chosen_threads = best.threads;
 }
@@ -192,7 +192,7 @@ Tuning tune(const Scene& scene, const TuneSettings& settings) {
   choose_step(tuning, chosen, growth, interval, progress);
   const StepProbe& step = tuning.steps[tuning.chosen_step];
   chosen = with_steps(chosen, step.step, step.drifts);
-  tuning.threads = probe_threads(chosen, growth.states.back(), settings.most_threads, progress);
+  tuning.threads = probe_threads(chosen, growth.states.back(), settings.max_threads, progress);
   choose_threads(tuning);
   predict(tuning, scene, growth);
   return tuning;

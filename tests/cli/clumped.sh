@@ -1,6 +1,6 @@
 #!/bin/bash
 # clumped.sh KEELER SOURCE_DIR: `generate --clumped` evolves a scene until its wakes have settled, says by which numbers,
-# keeps them in the file, and its state is where a run goes on. (The same for any number of threads: tests/unit/states.)
+# keeps them in the file, and its state is where a run goes on. (The same for any number of threads: tests/unit/initial_conditions.)
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 cat >"$work/scene.toml" <<END

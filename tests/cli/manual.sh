@@ -56,7 +56,7 @@ done <"$work/commands"
 names() {
   local name
   while read -r name; do
-    section "$1" | grep -qE "[\`.]$name[\`.]" || fail "the manual does not have the name $name of $1"
+    section "$1" | grep -qE "[\`.]${name}[\`.]" || fail "the manual does not have the name $name of $1"
   done < <(sed -nE 's/^ {2,4}"([a-z_0-9]+)":.*/\1/p' "$work/out" | sort -u)
 }
 # explained: every such name, but that of a scatter, stands in the page on numbers

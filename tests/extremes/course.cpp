@@ -4,7 +4,7 @@
 #include "unit/collision/same_bits.hpp"
 
 #include <keeler/cells/overlap.hpp>
-#include <keeler/states/initial.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 
 #include <fmt/format.h>
 

@@ -8,7 +8,7 @@
 #include <keeler/diagnostics/clusters.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/gravity/direct.hpp>
-#include <keeler/states/initial.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 
 #include <fmt/format.h>
 
@@ -130,7 +130,8 @@ std::vector<Row> aggregate() {
   const Patch patch = simulation.patch();
   std::vector<Row> rows = rows_of(e.state, course, 1e5);
   rows.push_back(at_least(e.state, "share of the mass in the largest cluster",
-                          analyze_clusters({&patch, 1}).largest_mass_share, 0.95, "a few grains may be off the heap"));
+                          analyze_clusters({&patch, 1}).largest_mass_fraction, 0.95,
+                          "a few grains may be off the heap"));
   rows.push_back(
       at_most(e.state, "contacts of a particle in the worst step", course.worst_step, 300.0, "a storm has 1e5"));
   return rows;

@@ -3,7 +3,7 @@
 
 #include "unit/files/disk.hpp"
 
-#include <keeler/states/initial.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 
 #include <fmt/format.h>
 

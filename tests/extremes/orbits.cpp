@@ -91,7 +91,7 @@ std::vector<Row> frequencies_of_runs() {
 }
 
 // Zeros of either sign and the least numbers that there are must lead to the same states.
-std::vector<Row> least_numbers() {
+std::vector<Row> min_numbers() {
   std::vector<Row> rows;
   for (const auto& [name, value] : {std::pair("−0", -0.0), {"denormals", denormal}}) {
     const State state{name, "60 circles in one plane with all e and i that small, 30 steps of 1e-2 orbit"};
@@ -119,7 +119,7 @@ std::vector<Subject> orbit_subjects() {
           {"rest", orbit_section, Length::usual, at_rest},
           {"frequencies", orbit_section, Length::quick, frequencies},
           {"frequencies-runs", orbit_section, Length::usual, frequencies_of_runs},
-          {"denormals", orbit_section, Length::quick, least_numbers}};
+          {"denormals", orbit_section, Length::quick, min_numbers}};
 }
 
 } // namespace keeler::extremes

@@ -4,9 +4,9 @@
 #include "unit/collision/ring.hpp"
 #include "unit/collision/spheres.hpp"
 
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/simulation.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
 

@@ -4,8 +4,8 @@
 #include "unit/collision/spheres.hpp"
 
 #include <keeler/cells/overlap.hpp>
-#include <keeler/core/words.hpp>
-#include <keeler/states/initial.hpp>
+#include <keeler/core/format.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 
 #include <fmt/format.h>
 
@@ -120,7 +120,7 @@ std::vector<Row> few() {
   for (const std::string solver : {"none", "direct", "tree", "fft"})
     for (int count = 0; count <= 3; ++count) {
       const State state{
-          fmt::format("{}, gravity: {}", counted(static_cast<std::size_t>(count), "particle"), solver),
+          fmt::format("{}, gravity: {}", pluralize(static_cast<std::size_t>(count), "particle"), solver),
           "spheres of 1 m and 900 kg/m^3 one above the other in a box of 20 x 20 m, 1000 steps of 1e-2 orbit"};
       const Scene scene = parse_scene(
           "planet.preset = \"saturn-a-ring\"\nbox.size = [20, 20]\nparticles = { count = 1, density = 900, sizes = { "

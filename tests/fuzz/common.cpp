@@ -1,7 +1,7 @@
 #include "targets.hpp"
 
 #include <keeler/core/error.hpp>
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 
 #include <cstdlib>
 #include <fstream>

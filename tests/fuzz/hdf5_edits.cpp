@@ -16,7 +16,7 @@
 namespace keeler::fuzz {
 namespace {
 
-constexpr std::size_t seal_size = 64, most_edits = 12;
+constexpr std::size_t seal_size = 64, max_edits = 12;
 
 struct Names {
   std::vector<std::string> objects, attributes; // attributes of any object
@@ -279,7 +279,7 @@ hdf5::Handle open_to_edit(const std::vector<std::byte>& content) {
 void edit(const hdf5::Handle& file, Draw& draw) {
   const hdf5::Quiet quiet;
   const Names names = all_names(file);
-  for (std::size_t k = 0; k < most_edits && !draw.empty(); ++k)
+  for (std::size_t k = 0; k < max_edits && !draw.empty(); ++k)
     try {
       edit_once(file, names, draw);
     } catch (const IoError&) { // what it was to change is something else by now

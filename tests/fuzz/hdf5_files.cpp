@@ -5,14 +5,14 @@
 #include "targets.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/initial_conditions/initial.hpp>
+#include <keeler/initial_conditions/possible.hpp>
 #include <keeler/io/contacts.hpp>
 #include <keeler/io/describe.hpp>
 #include <keeler/io/particle_table.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/simulation/simulation.hpp>
-#include <keeler/states/initial.hpp>
-#include <keeler/states/possible.hpp>
 
 namespace keeler::fuzz {
 namespace {

@@ -2,13 +2,13 @@
 #include "targets.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/initial_conditions/from_table.hpp>
 #include <keeler/io/particle_table.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/runs/transport.hpp>
 #include <keeler/scene/derived.hpp>
-#include <keeler/scene/doubts.hpp>
 #include <keeler/scene/scene.hpp>
-#include <keeler/states/from_table.hpp>
+#include <keeler/scene/warnings.hpp>
 
 #include <algorithm>
 #include <cstdio>
@@ -22,7 +22,7 @@ namespace {
 // What follows from a scene, and the promise that its resolved text is a scene that says the same.
 void look_at(const Scene& scene, const std::string& name) {
   derive(scene);
-  doubts(scene);
+  warnings(scene);
   try {
     parse_stored_scene(scene.resolved, name);
     if (parse_scene(scene.resolved, name).resolved != scene.resolved)

@@ -8,7 +8,7 @@
 #include <keeler/diagnostics/analysis.hpp>
 #include <keeler/diagnostics/viscosity.hpp>
 #include <keeler/forces/self_gravity.hpp>
-#include <keeler/states/clumped.hpp>
+#include <keeler/initial_conditions/clumped.hpp>
 
 #include <doctest/doctest.h>
 
@@ -76,7 +76,7 @@ void stays(const Ring& ring, std::uint64_t seed) {
                  << " m2/rad, errors " << c.settling.viscosity.before.error << " and "
                  << c.settling.viscosity.last.error << ", over the next four orbits " << next << ", ratio "
                  << next / accepted);
-  CHECK(c.orbits >= c.criterion.least_orbits());
+  CHECK(c.orbits >= c.criterion.min_orbits());
   CHECK(next == doctest::Approx(accepted).epsilon(ring.tolerance));
 }
 

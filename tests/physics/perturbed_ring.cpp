@@ -3,7 +3,7 @@
 // orbits at each collision, −a t²/2 to leading order, summed over collisions that happened on exact paths.
 #include "perturbed_ring/perturbed_ring.hpp"
 
-#include <keeler/contacts/finders.hpp>
+#include <keeler/finders/finders.hpp>
 
 #include <doctest/doctest.h>
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <keeler/diagnostics/dispersion.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/simulation/simulation.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
 

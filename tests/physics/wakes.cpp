@@ -36,14 +36,14 @@ void check_structure(const std::vector<Patch>& patches, const Analysis& a) {
                     << " radially, scatter " << *a.wakes.wavelength.scatter / a.critical_wavelength_m
                     << "; inner pitch " << *a.wakes.inner_pitch_degrees.value << ", outer "
                     << a.wakes.outer_pitch_degrees.value.value_or(0.0) << "; local Q " << a.local.toomre_q
-                    << ", thin area " << a.local.thin_area_share);
+                    << ", thin area " << a.local.thin_area_fraction);
   CHECK(across > 0.9); // 1.06, 1.09, 1.00 for seeds 1, 2, 3
   CHECK(across < 1.5);
   CHECK(*a.wakes.wavelength.scatter < 0.1 * *a.wakes.wavelength.value);
   CHECK(*a.wakes.inner_pitch_degrees.value > 15.0);
   CHECK(*a.wakes.inner_pitch_degrees.value < 35.0);
   CHECK(a.local.toomre_q < 0.6 * a.toomre_q);
-  CHECK(a.local.thin_area_share > 0.1);
+  CHECK(a.local.thin_area_fraction > 0.1);
 
   const RayLattice rays(patches[0].box, 200000, 10.0);
   std::vector<Occultation> looks;

@@ -1,3 +1,3 @@
 // What a source of the folder `orbit` may include: its own headers and those of the folder below.
 #include <keeler/core/units.hpp>
-#include <keeler/orbit/elements.hpp>
+#include <keeler/hill/elements.hpp>

@@ -1,3 +1,3 @@
 // What a source of the folder `orbit` may not include: a folder that stands above it.
-#include <keeler/orbit/elements.hpp>
+#include <keeler/hill/elements.hpp>
 #include <keeler/particles/store.hpp>

@@ -7,7 +7,7 @@
 #include "unit/collision/scenario.hpp"
 
 #include <keeler/collision/drift.hpp>
-#include <keeler/slabs/slabs.hpp>
+#include <keeler/decomposition/slabs.hpp>
 
 #include <doctest/doctest.h>
 
@@ -37,7 +37,7 @@ public:
         slabs.make_borders({own, {}}, offset, step_);
       }
       slabs.add_copies(own);
-      done = drift.collide_shared(own, slabs.borders(), keeler_test::launched(), box, offset, tally);
+      done = drift.collide_distributed(own, slabs.borders(), keeler_test::launched(), box, offset, tally);
       slabs.drop_copies(own);
       if (!done)
         slabs.widen();
@@ -76,7 +76,7 @@ struct Walk {
 
 // Some steps of a scenario's patch; all ranks see the same patch.
 Walk walk(const Scenario& s, std::uint64_t seed, int steps, const Slabs::Reach& reach = {}) {
-  const Ranks& ranks = keeler_test::launched();
+  const Communicator& ranks = keeler_test::launched();
   const CollisionSettings settings = test::settings_of(s);
   Ring ring(test::make_patch(s, seed), settings, s.step);
   Part part(ring, settings, reach);
@@ -127,7 +127,7 @@ TEST_CASE("ranks: where copies go other ways than their owners say, the step is 
       s.count = 200;
       s.filling = 0.45, s.optical_depth = 1.0;
       const Walk walked = walk(s, 7, 25, {.growth = growth, .rows_beyond = 0.0});
-      again += walked.costs.shared_again;
+      again += walked.costs.repeated_steps;
       rounds += walked.costs.rounds_again;
       strayed += walked.costs.steps - 25;
     }

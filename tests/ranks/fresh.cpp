@@ -3,8 +3,8 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/states/initial.hpp>
-#include <keeler/states/uniform.hpp>
+#include <keeler/initial_conditions/initial.hpp>
+#include <keeler/initial_conditions/uniform.hpp>
 
 #include <doctest/doctest.h>
 
@@ -58,7 +58,7 @@ std::size_t differences(const Patch& whole, const Patch& part) {
   return different;
 }
 
-std::string words_of(const Scene& scene, const Ranks& ranks) {
+std::string words_of(const Scene& scene, const Communicator& ranks) {
   try {
     initial_patch(scene, {}, ranks);
   } catch (const Error& error) {

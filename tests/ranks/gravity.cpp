@@ -111,7 +111,7 @@ Share own_share(const Sample& whole, Deal deal) {
   return share;
 }
 
-std::vector<Vec3> solve(FftSolver& solver, GravityProblem problem, const Ranks& ranks) {
+std::vector<Vec3> solve(FftSolver& solver, GravityProblem problem, const Communicator& ranks) {
   std::vector<Vec3> accelerations(problem.positions.size(), Vec3::Constant(1e300));
   problem.ranks = ranks;
   solver.accelerate(problem, accelerations);

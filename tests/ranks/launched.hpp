@@ -1,10 +1,10 @@
 // The ranks that mpirun has started together for a test.
 #pragma once
 
-#include <keeler/ranks/ranks.hpp>
+#include <keeler/comm/communicator.hpp>
 
 namespace keeler_test {
 
-const keeler::Ranks& launched();
+const keeler::Communicator& launched();
 
 } // namespace keeler_test

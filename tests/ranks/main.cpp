@@ -14,14 +14,14 @@
 using namespace keeler;
 
 namespace {
-Ranks ranks;
+Communicator ranks;
 
 // What MPI keeps of its start is not ours to find: parts of it are unloaded, and cannot be named in lsan.supp.
-Ranks start() {
+Communicator start() {
 #ifdef KEELER_LOOKS_FOR_LEAKS
   const __lsan::ScopedDisabler not_here;
 #endif
-  return Ranks::launched();
+  return Communicator::launched();
 }
 
 // While MPI is still loaded, so that lsan.supp tells what it keeps from ours.
@@ -35,14 +35,14 @@ bool leaks() {
 
 } // namespace
 
-const Ranks& keeler_test::launched() {
+const Communicator& keeler_test::launched() {
   return ranks;
 }
 
 int main(int argc, char** argv) {
   ranks = start();
   doctest::Context context(argc, argv);
-  if (!ranks.is_first())
+  if (!ranks.is_root())
     context.setOption("minimal", true); // speaks of failures alone
   const bool failed = ranks.any(context.run() != 0 || leaks());
   finish_ranks();

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t count = 600000;
 constexpr double piece = 16.0 * (1 << 20); // bytes
-constexpr double most_memory = 750.0;      // bytes an own particle; bodies and ids of all would be 288 more
+constexpr double max_memory = 750.0;       // bytes an own particle; bodies and ids of all would be 288 more
 
 Scene many_particles() {
   return parse_scene(R"(
@@ -43,12 +43,12 @@ checkpoint_every = 2e-3
 } // namespace
 
 TEST_CASE("a run and its snapshots, checkpoints, hash and resumption keep particles where they are") {
-  const Ranks& ranks = launched();
+  const Communicator& ranks = launched();
   std::unique_ptr<test::TemporaryFolder> folder;
-  if (ranks.is_first())
+  if (ranks.is_root())
     folder = std::make_unique<test::TemporaryFolder>();
   std::string path = folder ? *folder / "run" : "";
-  ranks.from_first(path);
+  ranks.broadcast(path);
 
   const double before = peak_memory();
   RunOptions options;
@@ -61,14 +61,14 @@ TEST_CASE("a run and its snapshots, checkpoints, hash and resumption keep partic
   CHECK(run.finished);
   CHECK(resumed.step == 4);
 
-  const double own = static_cast<double>(count) / static_cast<double>(ranks.count());
+  const double own = static_cast<double>(count) / static_cast<double>(ranks.size());
   CHECK(static_cast<double>(exchange_costs().largest) < 1.05 * piece);
   const double memory = (peak_memory() - before) / own;
-  MESSAGE("rank " << ranks.own() << ": " << 1e-6 * static_cast<double>(exchange_costs().largest) << " MB at once, "
+  MESSAGE("rank " << ranks.rank() << ": " << 1e-6 * static_cast<double>(exchange_costs().largest) << " MB at once, "
                   << memory << " bytes of memory for each own particle");
-  CHECK(memory < most_memory + (ranks.is_first() ? 2.0 * piece / own : 0.0)); // it writes the pieces
+  CHECK(memory < max_memory + (ranks.is_root() ? 2.0 * piece / own : 0.0)); // it writes the pieces
   // Its bodies in one place alone would be more than a piece: what is counted would show it.
   const std::vector<std::byte> bodies(64 * static_cast<std::size_t>(own));
   ranks.gather(bodies);
-  CHECK((!ranks.is_first() || static_cast<double>(exchange_costs().largest) > 2.0 * piece));
+  CHECK((!ranks.is_root() || static_cast<double>(exchange_costs().largest) > 2.0 * piece));
 }

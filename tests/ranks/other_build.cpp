@@ -1,6 +1,6 @@
 // A rank of another build of Keeler, as far as it can tell.
+#include <keeler/comm/communicator.hpp>
 #include <keeler/core/version.hpp>
-#include <keeler/ranks/ranks.hpp>
 
 // in place of those of keeler_core
 std::string keeler::program_version() {
@@ -18,7 +18,7 @@ std::string keeler::build_flags() {
 
 int main() {
   try {
-    keeler::Ranks::launched();
+    keeler::Communicator::launched();
   } catch (const keeler::Error& error) {
     keeler::fail_ranks(error.code());
     return static_cast<int>(error.code());

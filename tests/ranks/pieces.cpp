@@ -7,11 +7,11 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/random.hpp>
+#include <keeler/decomposition/slabs.hpp>
 #include <keeler/io/checkpoint.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/particles/by_id.hpp>
 #include <keeler/particles/order.hpp>
-#include <keeler/slabs/slabs.hpp>
 
 #include <doctest/doctest.h>
 
@@ -87,7 +87,7 @@ public:
     if (launched().is_first())
       folder_ = std::make_unique<test::TemporaryFolder>();
     path_ = folder_ ? folder_->path().string() : "";
-    launched().from_first(path_);
+    launched().broadcast(path_);
   }
   ~SharedFolder() { launched().any(false); } // when all are here it goes
   SharedFolder(const SharedFolder&) = delete;
@@ -177,7 +177,7 @@ TEST_CASE("a checkpoint that ranks write is that of one process, byte by byte, a
     return table;
   };
   write_checkpoint(folder / "shared.h5", table_of(own), header, launched());
-  launched().first_does([&] {
+  launched().on_root([&] {
     write_checkpoint(folder / "alone.h5", table_of(whole), header);
     CHECK(read_file(folder / "shared.h5") == read_file(folder / "alone.h5"));
   });
@@ -207,13 +207,13 @@ TEST_CASE("a snapshot whose particles come from all ranks is that of one process
     return patch;
   };
   std::optional<SnapshotFile> shared;
-  launched().first_does([&] {
+  launched().on_root([&] {
     write_snapshot(folder / "alone.hdf", patch_of(all), meta);
     shared.emplace(folder / "shared.hdf", patch_of(Particles()), all.size(), true, meta);
   });
   visit_by_id(part_of(all, launched().own()), launched(), SnapshotFile::piece,
               [&](const Particles& piece) { shared->add(patch_of(piece)); });
-  launched().first_does([&] {
+  launched().on_root([&] {
     shared->finish();
     CHECK(read_file(folder / "shared.hdf") == read_file(folder / "alone.hdf"));
   });
@@ -225,7 +225,7 @@ TEST_CASE("a damaged checkpoint is an error on all ranks") {
   FieldTable table;
   own.list_fields(table);
   write_checkpoint(folder / "a.h5", table, {}, launched());
-  launched().first_does([&] {
+  launched().on_root([&] {
     std::string bytes = read_text(folder / "a.h5");
     bytes[bytes.size() / 2] ^= 1;
     write_text(folder / "a.h5", bytes);

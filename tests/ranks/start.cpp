@@ -4,11 +4,11 @@
 #include "unit/files/disk.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/runs/state_hash.hpp>
 #include <keeler/simulation/simulation.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <doctest/doctest.h>
 
@@ -47,8 +47,8 @@ public:
     if (launched().is_first())
       folder_ = std::make_unique<test::TemporaryFolder>();
     path_ = folder_ ? (*folder_ / "start.hdf").string() : "";
-    launched().from_first(path_);
-    launched().first_does([&] { write_snapshot(path_, patch, {scene().resolved, {}}); });
+    launched().broadcast(path_);
+    launched().on_root([&] { write_snapshot(path_, patch, {scene().resolved, {}}); });
   }
   ~SharedSnapshot() { launched().any(false); } // when all are here it goes
   SharedSnapshot(const SharedSnapshot&) = delete;
@@ -56,7 +56,7 @@ public:
 
   const std::string& path() const { return path_; }
   void drop_seal() const {
-    launched().first_does([&] { std::filesystem::resize_file(path_, std::filesystem::file_size(path_) - 64); });
+    launched().on_root([&] { std::filesystem::resize_file(path_, std::filesystem::file_size(path_) - 64); });
   }
 
 private:
@@ -193,7 +193,7 @@ TEST_CASE("what no ring has is an error on all ranks, in the words of one proces
 TEST_CASE("a stop that one rank is asked for while a start is made ends all in the same words") {
   const test::TemporaryFolder own;
   std::string folder = (own / "run").string();
-  launched().from_first(folder); // all are asked for the same
+  launched().broadcast(folder); // all are asked for the same
   RunOptions options;
   options.folder = folder;
   options.ranks = launched();

@@ -30,7 +30,7 @@ std::vector<Row> spins() {
 }
 
 double largest_share(const Ran& ran) {
-  return analyze_clusters(std::span(&ran.snapshots.back(), 1), default_cluster_gap).largest_mass_share;
+  return analyze_clusters(std::span(&ran.snapshots.back(), 1), default_cluster_gap).largest_mass_fraction;
 }
 
 Row share_row(std::string what, const Ran& ran, double low, double high, const char* source) {

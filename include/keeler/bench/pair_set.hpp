@@ -27,7 +27,7 @@ private:
 };
 
 /// Processor time of one call, ns: the finder is asked about the whole set again and again for at least that long.
-double ns_per_call(const PairSet& pairs, Finder& finder, double least_seconds);
+double ns_per_call(const PairSet& pairs, Finder& finder, double min_seconds);
 
 /// A contact by dense scan: both particles on their own epicycles at 512 times of the span, the first approach that
 /// crosses contact refined by bisection; a minimum between two times is looked for when the pair turns there.

@@ -3,8 +3,8 @@
 
 #include <keeler/bench/gravity_choices.hpp>
 #include <keeler/bench/timed_steps.hpp>
+#include <keeler/comm/communicator.hpp>
 #include <keeler/core/progress.hpp>
-#include <keeler/ranks/ranks.hpp>
 
 #include <cstddef>
 #include <functional>
@@ -19,7 +19,7 @@ struct StepBenchSettings {
   std::optional<int> kick_every;     ///< none: 1, or what the snapshot's scene has
   std::optional<std::string> solver; ///< with its default settings; none: tree, or what the snapshot's scene has
   int repeats = 5;
-  Ranks ranks;                                   ///< that share the steps
+  Communicator ranks;                            ///< that share the steps
   std::function<void(const Progress&)> progress; ///< may be empty
 };
 

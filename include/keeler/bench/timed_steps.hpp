@@ -60,9 +60,9 @@ struct TimedSteps {
   Yardsticks yardsticks;
   Speedups speedup;
   ExchangeSplit exchange;
-  std::uint64_t shared_again = 0; ///< steps that ranks did again
-  std::uint64_t collisions = 0;   ///< faster than v_cut
-  std::uint64_t contacts = 0;     ///< fast and slow
+  std::uint64_t repeated_steps = 0; ///< steps that ranks did again
+  std::uint64_t collisions = 0;     ///< faster than v_cut
+  std::uint64_t contacts = 0;       ///< fast and slow
   std::uint64_t recontacts = 0, lists_made = 0, listed_anew = 0, deferred = 0, in_sequence = 0, rolled_back = 0;
   std::uint64_t pairs_tested = 0;     ///< when neighbours were found
   std::uint64_t survivors = 0;        ///< handed to the finder at the start of steps

@@ -2,8 +2,8 @@
 // No result depends on it.
 #pragma once
 
-#include <keeler/box/shearing_box.hpp>
 #include <keeler/core/threads.hpp>
+#include <keeler/hill/shearing_box.hpp>
 #include <keeler/particles/store.hpp>
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Cells of the sheared-periodic box and of its images, and the one walk over those that a window touches.
 #pragma once
 
-#include <keeler/box/shearing_box.hpp>
+#include <keeler/hill/shearing_box.hpp>
 
 #include <cstdint>
 

@@ -28,7 +28,8 @@ struct DriftCosts {
   std::uint64_t rolled_back = 0;  ///< contacts, because a deferred one had a say in them
   std::uint64_t widest_list = 0;  ///< most partners of one particle within one search
 
-  std::uint64_t shared_again = 0; ///< steps that ranks did again, because a copy went another way than its owner says,
+  std::uint64_t repeated_steps =
+      0;                          ///< steps that ranks did again, because a copy went another way than its owner says,
   std::uint64_t rounds_again = 0; ///< and how often
 
   /// Held by the drift phase now, the particles themselves included; without the records that an observer asks for.

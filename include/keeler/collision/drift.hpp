@@ -5,14 +5,14 @@
 // new orbit. The answer is that of the sequential order, for any number of threads: docs/dev/drift.md.
 #pragma once
 
-#include <keeler/box/shearing_box.hpp>
 #include <keeler/collision/costs.hpp>
 #include <keeler/collision/settings.hpp>
-#include <keeler/contacts/finder.hpp>
+#include <keeler/comm/communicator.hpp>
 #include <keeler/core/field_table.hpp>
+#include <keeler/decomposition/borders.hpp>
+#include <keeler/finders/finder.hpp>
+#include <keeler/hill/shearing_box.hpp>
 #include <keeler/particles/store.hpp>
-#include <keeler/ranks/ranks.hpp>
-#include <keeler/slabs/borders.hpp>
 
 #include <memory>
 #include <span>
@@ -115,8 +115,8 @@ public:
   /// owners. All ranks call it at once, with an exact finder and no onlookers. The own particles become what they would
   /// on one rank, and each contact counts on all ranks. Returns false on all, with everything as it was, where an own
   /// particle of one went farther than the margin.
-  bool collide_shared(Particles& particles, const Borders& borders, const Ranks& ranks, const ShearingBox& box,
-                      double offset, CollisionTally& tally);
+  bool collide_distributed(Particles& particles, const Borders& borders, const Communicator& ranks,
+                           const ShearingBox& box, double offset, CollisionTally& tally);
 
   const Finder& finder() const;
   DriftCosts costs() const;

@@ -3,7 +3,7 @@
 // ties are the same on every machine and for any number of threads.
 #pragma once
 
-#include <keeler/box/shearing_box.hpp>
+#include <keeler/hill/shearing_box.hpp>
 
 #include <cstdint>
 #include <span>

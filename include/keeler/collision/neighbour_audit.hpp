@@ -3,7 +3,7 @@
 // at its end for some of the particles that were hit in it. It only looks.
 #pragma once
 
-#include <keeler/box/shearing_box.hpp>
+#include <keeler/hill/shearing_box.hpp>
 
 #include <cstddef>
 #include <cstdint>

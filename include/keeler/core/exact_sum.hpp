@@ -21,7 +21,7 @@ class ExactSum {
 public:
   ExactSum& operator+=(double term) {
     terms_[waiting_++] = term;
-    if (waiting_ == most_terms)
+    if (waiting_ == max_terms)
       take_terms();
     return *this;
   }
@@ -43,9 +43,9 @@ private:
   void take(double term);
   void carry();
 
-  static constexpr std::size_t most_terms = 128;
+  static constexpr std::size_t max_terms = 128;
 
-  std::array<double, most_terms> terms_{}; // the first ones wait to be taken
+  std::array<double, max_terms> terms_{}; // the first ones wait to be taken
   std::size_t waiting_ = 0;
   std::array<std::int64_t, 67> words_{}; // in units of 2^(32 w − 1075)
   int taken_ = 0;                        // since the last carry

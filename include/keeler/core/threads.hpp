@@ -16,7 +16,7 @@
 namespace keeler {
 
 /// More threads than any one machine has processors for: they only take memory, until there is none.
-inline constexpr int most_threads = 1024;
+inline constexpr int max_threads = 1024;
 
 /// How many threads loops use from now on (at least 1). The default is what OpenMP offers. Throws UsageError when there
 /// are more than most_threads.

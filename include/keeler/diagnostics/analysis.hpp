@@ -25,7 +25,7 @@ struct LocalAnalysis {
   double crowding_radius_m = 0.0;         ///< of the disc in which density is counted
   double optical_depth = 0.0;             ///< that the mean particle sees
   double filling_factor = 0.0;            ///< at z = 0, that the mean particle sees
-  double thin_area_share = 0.0;           ///< of the cells, those with an optical depth below 0.1
+  double thin_area_fraction = 0.0;        ///< of the cells, those with an optical depth below 0.1
   double thin_cell_m = 0.0;               ///< side of these cells (of a square of the same area)
 };
 

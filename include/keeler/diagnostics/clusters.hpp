@@ -37,14 +37,14 @@ struct ClusterAnalysis {
   /// Clusters of `least` … 2 `least` − 1 members.
   struct Class {
     std::size_t least = 0;
-    double count = 0.0;      ///< clusters a snapshot
-    double mass_share = 0.0; ///< of all mass
+    double count = 0.0;         ///< clusters a snapshot
+    double mass_fraction = 0.0; ///< of all mass
   };
 
   double gap = default_cluster_gap;
   double count = 0.0;                                     ///< clusters of two or more
-  double mass_share = 0.0;                                ///< of all mass: in such clusters
-  double largest_mass_share = 0.0;                        ///< of all mass: in the heaviest one
+  double mass_fraction = 0.0;                             ///< of all mass: in such clusters
+  double largest_mass_fraction = 0.0;                     ///< of all mass: in the heaviest one
   std::optional<std::array<double, 3>> largest_half_axes; ///< m, over the snapshots whose heaviest has them
   std::optional<double> spin;                             ///< mean over the mass of all clusters that have one
   std::vector<Class> spectrum;                            ///< from `least` = 2 on, up to the largest

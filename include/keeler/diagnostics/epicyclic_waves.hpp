@@ -35,6 +35,6 @@ std::optional<EpicyclicWaves> epicyclic_waves(const Patch& patch);
 /// from the particles alone. Collective.
 std::optional<EpicyclicWaves> epicyclic_waves(const Particles& particles, double box_length,
                                               const Frequencies& frequencies, double after, const ParticleMeans& means,
-                                              const Ranks& ranks = {});
+                                              const Communicator& ranks = {});
 
 } // namespace keeler

@@ -3,9 +3,9 @@
 // rounding.
 #pragma once
 
-#include <keeler/orbit/elements.hpp>
+#include <keeler/comm/communicator.hpp>
+#include <keeler/hill/elements.hpp>
 #include <keeler/particles/store.hpp>
-#include <keeler/ranks/ranks.hpp>
 
 namespace keeler {
 
@@ -31,6 +31,6 @@ struct ParticleMeans {
 /// At `after` (rad) from the epoch of the elements. All are 0 without particles. Collective: of the particles of all
 /// ranks.
 ParticleMeans particle_means(const Particles& particles, const Frequencies& frequencies, double after,
-                             const Ranks& ranks = {});
+                             const Communicator& ranks = {});
 
 } // namespace keeler

@@ -11,15 +11,15 @@ namespace keeler {
 struct SizeClass {
   double smallest = 0.0, largest = 0.0; ///< m
   std::size_t count = 0;
-  double mass_share = 0.0;
+  double mass_fraction = 0.0;
   Vec3 dispersion = Vec3::Zero(); ///< about the mean velocity of the whole patch, m rad⁻¹; 0 in an empty class
   double scale_height = 0.0;      ///< √⟨z²⟩, m; 0 in an empty class
 };
 
-inline constexpr int most_size_classes = 4;
+inline constexpr int max_size_classes = 4;
 
 /// Classes of equal width in log r from the smallest to the largest radius, smallest first; none when all radii are
 /// equal. Means count mass.
-std::vector<SizeClass> size_classes(const Patch& patch, int classes = most_size_classes);
+std::vector<SizeClass> size_classes(const Patch& patch, int classes = max_size_classes);
 
 } // namespace keeler

@@ -11,7 +11,7 @@
 namespace keeler {
 
 /// Parts of a dotted name, and lists or tables inside each other. What Keeler reads has 4 at most.
-inline constexpr std::size_t most_toml_depth = 16;
+inline constexpr std::size_t max_toml_depth = 16;
 
 /// Where a text exceeds a bound, and in which way.
 struct TomlExcess {

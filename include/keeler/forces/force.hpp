@@ -3,11 +3,11 @@
 // state of the run, so that a restart goes on to the bit.
 #pragma once
 
-#include <keeler/box/shearing_box.hpp>
+#include <keeler/comm/communicator.hpp>
 #include <keeler/core/key.hpp>
 #include <keeler/gravity/solver.hpp>
+#include <keeler/hill/shearing_box.hpp>
 #include <keeler/particles/store.hpp>
-#include <keeler/ranks/ranks.hpp>
 
 #include <cstdint>
 #include <memory>
@@ -24,10 +24,10 @@ struct Boundary {
   Frequencies frequencies;
   double to_epoch; ///< from this boundary to the epoch, rad
   ShearingBox box;
-  double offset;     ///< the box's shear offset at this boundary, m
-  std::int64_t step; ///< steps done
-  double time = 0.0; ///< since the run began, rad
-  Ranks ranks = {};  ///< of many each has its own particles
+  double offset;           ///< the box's shear offset at this boundary, m
+  std::int64_t step;       ///< steps done
+  double time = 0.0;       ///< since the run began, rad
+  Communicator ranks = {}; ///< of many each has its own particles
 
   /// Turns elements at the epoch back to this boundary.
   Rotation rotation() const { return {frequencies, -to_epoch}; }
@@ -59,7 +59,7 @@ struct ForceContext {
   ShearingBox box;
   double orbital_frequency = 0.0; ///< rad/s
   std::uint64_t seed = 1;
-  Ranks ranks = {}; ///< of many each has its own particles, and makes each force at the same time
+  Communicator ranks = {}; ///< of many each has its own particles, and makes each force at the same time
 };
 
 /// A force that a scene can ask for by a table of its own: that table's name, its keys, and how it is made from them.

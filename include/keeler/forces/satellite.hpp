@@ -2,7 +2,7 @@
 #pragma once
 
 #include <keeler/forces/force.hpp>
-#include <keeler/orbit/elements.hpp>
+#include <keeler/hill/elements.hpp>
 
 #include <optional>
 

@@ -28,7 +28,7 @@ inline constexpr double cheapest_spacing = 1.6;
 double mesh_bytes(const ShearingBox& box, double spacing, double height, std::size_t count);
 
 /// √⟨m²⟩ / ⟨m⟩: 1 for equal masses. The same bits in any order. Collective: of the masses of all ranks.
-double mass_spread(std::span<const double> masses, const Ranks& ranks = {});
+double mass_spread(std::span<const double> masses, const Communicator& ranks = {});
 
 /// A cut, from 2 to 16, for a rms error of the force over its rms, with that spacing. It kept errors down to 1e-4 in
 /// every patch measured (docs/dev/gravity-fft.md).

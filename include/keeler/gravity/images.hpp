@@ -5,8 +5,8 @@
 // shift s, and reaches equally far to both sides on the average over a shear period.
 #pragma once
 
-#include <keeler/box/shearing_box.hpp>
 #include <keeler/core/vector.hpp>
+#include <keeler/hill/shearing_box.hpp>
 
 #include <vector>
 

@@ -4,10 +4,10 @@
 // in a mode to compare with other codes exactly n rings of them.
 #pragma once
 
-#include <keeler/box/shearing_box.hpp>
+#include <keeler/comm/communicator.hpp>
 #include <keeler/core/vector.hpp>
 #include <keeler/gravity/images.hpp>
-#include <keeler/ranks/ranks.hpp>
+#include <keeler/hill/shearing_box.hpp>
 
 #include <cstdint>
 #include <memory>
@@ -23,9 +23,9 @@ struct GravityProblem {
   std::span<const double> masses;     ///< kg
   std::span<const std::uint64_t> ids; ///< fix the order of sums where positions do not
   ShearingBox box;
-  double offset = 0.0;   ///< the box's shear offset at this instant, m
-  double newton_g = 0.0; ///< m^3 kg^-1 rad^-2
-  Ranks ranks = {};      ///< only `fft` can do with many
+  double offset = 0.0;     ///< the box's shear offset at this instant, m
+  double newton_g = 0.0;   ///< m^3 kg^-1 rad^-2
+  Communicator ranks = {}; ///< only `fft` can do with many
 };
 
 class GravitySolver {
@@ -77,13 +77,13 @@ GravitySettings chosen_for(std::size_t count, GravitySettings settings);
 /// The solver for particles of these masses on an area (m²). Collective: of the particles of all ranks. Throws
 /// UsageError when the environment variable KEELER_SIMD names instructions that are not to be had (simd.hpp).
 std::unique_ptr<GravitySolver> make_gravity_solver(const GravitySettings& settings, std::span<const double> masses,
-                                                   double area, const Ranks& ranks = {});
+                                                   double area, const Communicator& ranks = {});
 
 /// What measures the energy and the stress that belong to the forces of such a solver: of the same periodic sum for
 /// `direct` and `tree`, of the mesh or the radial waves alone for `mesh` and `axisymmetric`; null where only some rings
 /// of images act. Collective, and throws, as above.
 bool has_energy_meter(const GravitySettings& settings);
 std::unique_ptr<EnergyMeter> make_energy_meter(const GravitySettings& settings, std::span<const double> masses,
-                                               double area, const Ranks& ranks = {});
+                                               double area, const Communicator& ranks = {});
 
 } // namespace keeler

@@ -2,9 +2,9 @@
 // in docs/formats.md. A checkpoint that reads without an error is what was written, bit for bit.
 #pragma once
 
+#include <keeler/comm/communicator.hpp>
 #include <keeler/core/field_table.hpp>
 #include <keeler/io/provenance.hpp>
-#include <keeler/ranks/ranks.hpp>
 
 #include <filesystem>
 #include <memory>
@@ -22,14 +22,14 @@ struct CheckpointHeader {
 /// Collective: the first rank writes. Of divided fields the file has the rows of all ranks, in the order of the ranks,
 /// which come to the first one a piece at a time; of others it has those of the first. Throws IoError.
 void write_checkpoint(const std::filesystem::path& file, const FieldTable& table, const CheckpointHeader& header,
-                      const Ranks& ranks = {});
+                      const Communicator& ranks = {});
 
 /// A checkpoint that is whole, open for reading where it is.
 class Checkpoint {
 public:
   /// Looks through the whole file, a piece at a time. Collective: the first rank does, the others trust its seal.
   /// Throws IoError when it is damaged, of another kind or a newer version.
-  explicit Checkpoint(const std::filesystem::path& file, const Ranks& ranks = {});
+  explicit Checkpoint(const std::filesystem::path& file, const Communicator& ranks = {});
   ~Checkpoint();
 
   /// The scene says which table to make.

@@ -2,8 +2,8 @@
 // is in docs/formats.md. A file is written whole or not at all.
 #pragma once
 
-#include <keeler/box/shearing_box.hpp>
 #include <keeler/core/vector.hpp>
+#include <keeler/hill/shearing_box.hpp>
 #include <keeler/io/provenance.hpp>
 
 #include <cstdint>

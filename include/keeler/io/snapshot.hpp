@@ -2,9 +2,9 @@
 // unaided. The layout is in docs/formats.md; give the file the ending ".hdf", which ParaView wants.
 #pragma once
 
+#include <keeler/comm/communicator.hpp>
 #include <keeler/io/provenance.hpp>
 #include <keeler/particles/patch.hpp>
-#include <keeler/ranks/ranks.hpp>
 
 #include <filesystem>
 #include <map>
@@ -58,7 +58,7 @@ void write_snapshot(const std::filesystem::path& file, const Patch& patch, const
 ///
 /// Collective: each rank gets a part of the particles, and all else; where another tool has changed the file, the first
 /// rank gets all of it and the others nothing.
-Snapshot read_snapshot(const std::filesystem::path& file, const Ranks& ranks = {});
+Snapshot read_snapshot(const std::filesystem::path& file, const Communicator& ranks = {});
 
 /// Returns the seal at the end of a snapshot, which tells its content from another one's; empty where there is none, or
 /// no such file.

@@ -2,7 +2,7 @@
 // Internal units (m, kg, rad); output works on such a copy and never touches the state of a run.
 #pragma once
 
-#include <keeler/box/shearing_box.hpp>
+#include <keeler/hill/shearing_box.hpp>
 #include <keeler/particles/store.hpp>
 
 #include <cstdint>

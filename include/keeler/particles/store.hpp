@@ -3,7 +3,7 @@
 #pragma once
 
 #include <keeler/core/field_table.hpp>
-#include <keeler/orbit/elements.hpp>
+#include <keeler/hill/elements.hpp>
 
 #include <algorithm>
 #include <cstdint>

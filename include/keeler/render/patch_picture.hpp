@@ -34,7 +34,7 @@ struct PictureOptions {
   std::optional<PictureScale> scale;                ///< none: the patch's own
 };
 
-inline constexpr int least_picture_width = 200, most_picture_width = 8000; // pixels
+inline constexpr int min_picture_width = 200, max_picture_width = 8000; // pixels
 
 /// A rectangle of whole pixels; y runs down.
 struct PixelFrame {

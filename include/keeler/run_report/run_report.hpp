@@ -11,7 +11,7 @@
 
 namespace keeler {
 
-inline constexpr std::size_t most_particles_in_view = 100'000; ///< beyond that the view shows this many, evenly by id
+inline constexpr std::size_t max_particles_in_view = 100'000; ///< beyond that the view shows this many, evenly by id
 
 struct RunReportOptions {
   std::size_t snapshots = 8; ///< at most so many in the view, evenly through the run

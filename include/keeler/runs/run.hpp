@@ -6,11 +6,11 @@
 // summary.json is there when the run has ended or stopped, not while it works or when it was killed.
 #pragma once
 
+#include <keeler/comm/communicator.hpp>
+#include <keeler/initial_conditions/progress.hpp>
 #include <keeler/quantities/quantity.hpp>
-#include <keeler/ranks/ranks.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/simulation.hpp>
-#include <keeler/states/progress.hpp>
 
 #include <atomic>
 #include <filesystem>
@@ -49,7 +49,7 @@ struct RunOptions {
   std::vector<std::string> arguments; ///< the command line, for provenance
   std::function<void(const StartProgress&)> start_progress;
   std::function<void(const RunProgress&)> progress;
-  Ranks ranks = {}; ///< that share the run: all call with the same options, the first one writes the folder
+  Communicator ranks = {}; ///< that share the run: all call with the same options, the first one writes the folder
   std::function<void(const std::string&)> notice; ///< a line for the user: rounding, a damaged checkpoint passed over
 };
 

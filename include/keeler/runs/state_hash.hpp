@@ -1,7 +1,7 @@
 // A fingerprint of what a run has become: two runs with the same hash are the same run, however they got there.
 #pragma once
 
-#include <keeler/ranks/ranks.hpp>
+#include <keeler/comm/communicator.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/state.hpp>
 
@@ -12,6 +12,6 @@ namespace keeler {
 /// 32 hexadecimal digits over, in the order of the ids, the particles' elements, radii and masses, the step number and
 /// length, the box with its shear offset, the seed, and the scene's keys that change the physics. Not over end time,
 /// schedules, threads, memory order, counters or provenance. Collective: of the particles of all ranks, on all.
-std::string state_hash(const SimulationState& state, const Scene& scene, const Ranks& ranks = {});
+std::string state_hash(const SimulationState& state, const Scene& scene, const Communicator& ranks = {});
 
 } // namespace keeler

@@ -38,7 +38,7 @@ inline Crowd crowd_of(const ParticleSettings& particles) {
 }
 
 /// c_z / c_x of a fresh patch: equilibria without self-gravity have 0.64 to 0.72.
-inline constexpr double vertical_share = 0.65;
+inline constexpr double vertical_fraction = 0.65;
 
 /// Scale height √⟨z²⟩ of a layer in m, for a radial velocity dispersion in ⟨r⟩ Ω: H² = (c_z/ν)² + 1.7 τ R², where
 /// c_z = vertical_share c_x. The second term is the room that the particles themselves take: equilibria of equal

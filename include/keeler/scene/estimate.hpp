@@ -61,6 +61,6 @@ RunEstimate estimate_run(const Scene& scene, double pair_ns = reference_pair_ns)
 
 /// What makes a scene several times as dear as its like, which differs in that alone: a line each, with what to do;
 /// none where nothing does. For a scene whose particles are known.
-std::vector<std::string> dear_choices(const Scene& scene);
+std::vector<std::string> expensive_settings(const Scene& scene);
 
 } // namespace keeler

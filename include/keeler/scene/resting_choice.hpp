@@ -3,8 +3,8 @@
 // a snapshot and of a table. docs/dev/resting.md has the measurements behind it.
 #pragma once
 
-#include <keeler/scene/doubts.hpp>
 #include <keeler/scene/scene.hpp>
+#include <keeler/scene/warnings.hpp>
 
 #include <string>
 

@@ -2,12 +2,12 @@
 // open. A Scene that exists is valid: load_scene reports every fault with file, line and column.
 #pragma once
 
-#include <keeler/box/shearing_box.hpp>
 #include <keeler/collision/settings.hpp>
 #include <keeler/core/vector.hpp>
 #include <keeler/forces/force.hpp>
 #include <keeler/gravity/solver.hpp>
-#include <keeler/orbit/elements.hpp>
+#include <keeler/hill/elements.hpp>
+#include <keeler/hill/shearing_box.hpp>
 #include <keeler/particles/sizes.hpp>
 #include <keeler/scene/density_pattern.hpp>
 

@@ -6,12 +6,12 @@
 #pragma once
 
 #include <keeler/cells/overlap.hpp>
+#include <keeler/comm/communicator.hpp>
+#include <keeler/contact_solver/resting_contacts.hpp>
+#include <keeler/decomposition/slabs.hpp>
 #include <keeler/forces/force.hpp>
-#include <keeler/ranks/ranks.hpp>
-#include <keeler/resting/resting_contacts.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/state.hpp>
-#include <keeler/slabs/slabs.hpp>
 
 #include <functional>
 #include <map>
@@ -43,11 +43,11 @@ public:
   /// A new run from a patch; time starts at zero. Throws InvariantError when particles overlap by more than rounding.
   /// Collective, as all that follows from it: each rank gives a part of the particles, whichever, and the first one all
   /// else of the patch. Throws UsageError for what the scene asks for and ranks cannot share yet.
-  Simulation(const Scene& scene, const Patch& start, const Ranks& ranks = {});
+  Simulation(const Scene& scene, const Patch& start, const Communicator& ranks = {});
 
   /// A run that goes on from a state, to the bit. Collective: each rank gives a part of the particles, whichever, with
   /// their accelerations, and all else of the state.
-  Simulation(const Scene& scene, SimulationState state, const Ranks& ranks = {});
+  Simulation(const Scene& scene, SimulationState state, const Communicator& ranks = {});
 
   /// One step; collective. Throws InvariantError, or Interrupted when an Interruptible (interrupt.hpp) asks for it; the
   /// state is then that of an unfinished step and must not be stored.
@@ -70,9 +70,9 @@ public:
   /// The state itself, its arrays where they are in memory; nothing else may be asked of the simulation afterwards.
   SimulationState take_state() && { return std::move(state_); }
   /// Throws UsageError for what a scene of so many particles asks for and ranks cannot share yet. In builds with ranks.
-  static void require_shareable(const Scene& scene, std::size_t count);
+  static void require_distributable(const Scene& scene, std::size_t count);
 
-  const Ranks& ranks() const { return ranks_; }
+  const Communicator& ranks() const { return ranks_; }
   /// Particles of all ranks.
   std::size_t count() const { return count_; }
   double orbits() const { return static_cast<double>(state_.step) * scene_.time.step; }
@@ -134,8 +134,8 @@ private:
   // of a run that ranks share (shared.cpp)
   void divide();
   void require_borders();
-  void collide_shared();
-  Overlap largest_overlap_shared();
+  void collide_distributed();
+  Overlap largest_overlap_distributed();
   Slabs::Holding holding();
 
   void collide();
@@ -162,7 +162,7 @@ private:
   bool kick_due(std::size_t f) const { return state_.step % ticks_between_kicks(f) == 0; }
 
   Scene scene_;
-  Ranks ranks_;
+  Communicator ranks_;
   SimulationState state_;
   std::size_t count_;
   DriftPhase drift_;

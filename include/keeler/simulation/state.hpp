@@ -1,12 +1,12 @@
 // The whole state of a run at the boundary between two steps: what a checkpoint holds and nothing less.
 #pragma once
 
-#include <keeler/box/shearing_box.hpp>
 #include <keeler/collision/drift.hpp>
+#include <keeler/comm/communicator.hpp>
+#include <keeler/contact_solver/resting_contacts.hpp>
 #include <keeler/diagnostics/particle_means.hpp>
+#include <keeler/hill/shearing_box.hpp>
 #include <keeler/particles/patch.hpp>
-#include <keeler/ranks/ranks.hpp>
-#include <keeler/resting/resting_contacts.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/step_control.hpp>
 
@@ -82,7 +82,7 @@ struct SimulationState {
   /// What in it no run of this scene has: "its step is 0 ticks long"; empty where nothing is. Of what was read from a
   /// file: a step would read beyond arrays, or not end. The particles themselves are for the step to judge. Collective:
   /// each rank has a part of the particles, or none.
-  std::string fault(const Scene& scene, const Ranks& ranks = {}) const;
+  std::string fault(const Scene& scene, const Communicator& ranks = {}) const;
 
   /// Shear offset at the epoch of the elements, and at this boundary between steps.
   double epoch_offset() const { return box.offset(2 * step + control.step, 0.5 * tick()); }

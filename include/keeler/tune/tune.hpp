@@ -21,7 +21,7 @@ struct TuneSettings {
   double force_error = 4e-3;         ///< rms error of the force that is allowed
   double physics_error = 0.01;       ///< share of the loss of energy that kicks may make beyond the work of the shear
   std::optional<double> orbits = {}; ///< the state's age when it is probed; none: 4, or 8 without self-gravity
-  int most_threads = 1;
+  int max_threads = 1;
   std::function<void(const Progress&)> progress = {}; ///< may be empty
 };
 

@@ -17,7 +17,7 @@ constexpr std::size_t block_size = 4096;   // lines
 constexpr double nearest_share = 0.45;     // of the box: what reaches less far has one image in reach
 constexpr double cells_per_particle = 2.0; // no more,
 constexpr double fewest_cells = 64.0;      // unless these are
-constexpr std::size_t most_in_group = 8;   // lines that look around together,
+constexpr std::size_t max_in_group = 8;    // lines that look around together,
 constexpr std::int64_t fewest_columns = 8; // for that
 constexpr double longest_group = 4.0;      // in reaches of their level
 constexpr std::uint32_t few_lines = 8;     // of a level: looked at all together
@@ -25,8 +25,8 @@ constexpr std::uint32_t few_lines = 8;     // of a level: looked at all together
 } // namespace
 
 struct LineCells::Measured {
-  std::array<std::uint64_t, most_levels> counts{};
-  std::array<double, most_levels> reach_x{}, reach_y{};
+  std::array<std::uint64_t, max_levels> counts{};
+  std::array<double, max_levels> reach_x{}, reach_y{};
 };
 
 // Those that reach less than 2 of the least, then up to 8, 32, ...: each level that there is costs a look-up.
@@ -34,7 +34,7 @@ int LineCells::level_of(const Line& line) const {
   const double reach = std::max(reach_x(line), reach_y(line));
   return reach < 2.0 * least_ || without(Acceleration::levels)
              ? 0
-             : (std::min(std::ilogb(reach / least_), 2 * most_levels - 3) + 1) / 2;
+             : (std::min(std::ilogb(reach / least_), 2 * max_levels - 3) + 1) / 2;
 }
 
 std::size_t LineCells::cell_of(const Line& line, const Level& level) const {
@@ -75,7 +75,7 @@ void LineCells::measure(std::span<const Line> lines) {
       },
       1);
   levels_.clear();
-  for (int l = 0; l < most_levels; ++l) {
+  for (int l = 0; l < max_levels; ++l) {
     Level all;
     for (const Measured& m : measured) {
       all.count += m.counts[l];
@@ -201,7 +201,7 @@ std::size_t LineCells::group_end(std::size_t first, std::size_t end, const Level
     return std::abs(std::int64_t{line.x} - lines_[first].x) < near_x &&
            std::abs(std::int64_t{line.y} - lines_[first].y) < near_y;
   };
-  while (last < end && last - first < most_in_group && stands_near(lines_[last]))
+  while (last < end && last - first < max_in_group && stands_near(lines_[last]))
     ++last;
   return last;
 }

@@ -11,7 +11,7 @@
 
 #include "kernels.hpp"
 
-#include <keeler/box/shearing_box.hpp>
+#include <keeler/hill/shearing_box.hpp>
 
 #include <cmath>
 #include <span>
@@ -70,7 +70,7 @@ private:
     double around_x, around_y;
     double reach_x; // of the lines in the whole span
   };
-  static constexpr int most_levels = 32;
+  static constexpr int max_levels = 32;
   struct Measured;
 
   void measure(std::span<const Line> lines);
@@ -106,7 +106,7 @@ private:
   Kernels kernels_ = kernels(choose_instruction_set());
 
   std::vector<Level> levels_;         // the finest first; without empty ones
-  int level_index_[most_levels] = {}; // of level_of()
+  int level_index_[max_levels] = {};  // of level_of()
   std::vector<std::uint32_t> starts_; // first slot of each cell
   std::vector<std::uint32_t> cells_;  // of each place
   std::vector<std::uint32_t> slots_;  // of each place

@@ -83,7 +83,7 @@ bool NeighbourLists::make_cells(int life) {
   age_ = 0;
   make_references();
   cells_.build(std::span(lines_).first(particles_->size()), box_, instant(-since_middle()).offset, half_life(),
-               least_radius_ + slack_);
+               min_radius_ + slack_);
   return cells_.one_image();
 }
 

@@ -22,8 +22,8 @@
 #include "line_cells.hpp"
 #include "reach.hpp"
 
-#include <keeler/contacts/straight_line.hpp>
 #include <keeler/core/interrupt.hpp>
+#include <keeler/finders/straight_line.hpp>
 #include <keeler/particles/store.hpp>
 
 #include <algorithm>
@@ -219,7 +219,7 @@ private:
   std::vector<std::uint32_t> anew_;   // who has been listed anew since,
   std::vector<std::uint8_t> is_anew_; // of each particle whether
   std::size_t times_anew_ = 0;        // how often that was
-  double mean_radius_ = 0.0, least_radius_ = 0.0;
+  double mean_radius_ = 0.0, min_radius_ = 0.0;
 
   // what the lists have cost since they were made, ns on a usual processor: the next life is chosen by it
   double cost_ = 0.0, last_cost_ = 0.0; // the latter a step

@@ -12,8 +12,8 @@
 namespace keeler {
 namespace {
 
-constexpr double slack_share = 0.4; // of the mean radius
-constexpr double single = 4e-6;     // of a path: what single precision may do to a line
+constexpr double slack_fraction = 0.4; // of the mean radius
+constexpr double single = 4e-6;        // of a path: what single precision may do to a line
 
 // A place as fractions of the box, in the cell: x first, so that the image is the one that x says.
 struct Fractions {
@@ -135,9 +135,9 @@ void NeighbourLists::make_references() {
   if (mean_radius_ == 0.0) { // the first time
     const double sum = ordered_sum(count, [&](std::size_t k) { return particles_->bodies[k].radius; });
     mean_radius_ = sum / static_cast<double>(std::max<std::size_t>(1, count));
-    least_radius_ = mean_radius_;
+    min_radius_ = mean_radius_;
   }
-  slack_ = slack_share * mean_radius_;
+  slack_ = slack_fraction * mean_radius_;
   const Instant at = instant(-since_middle());
   const Rotation middle(frequencies_, at.after);
   const Radii radii = ordered_total<Radii>(count, [&](Radii& all, std::size_t k) {
@@ -155,7 +155,7 @@ void NeighbourLists::make_references() {
   if (radii.broken < count)
     throw InvariantError(fmt::format("particle {} has elements that are not finite", particles_->ids[radii.broken]));
   mean_radius_ = radii.sum / static_cast<double>(std::max<std::size_t>(1, count));
-  least_radius_ = count ? radii.least : 0.0;
+  min_radius_ = count ? radii.least : 0.0;
 }
 
 // The lines of the window, and who may leave its slack in it.

@@ -10,7 +10,7 @@
 namespace keeler {
 namespace {
 
-constexpr std::size_t most_checked = 20000; // particles: more take long
+constexpr std::size_t max_checked = 20000; // particles: more take long
 
 // Entries are mutual: each pair is there twice, once either way, and nobody is on its own list.
 void assert_mutual(const NeighbourLists& lists, std::size_t count) {
@@ -36,7 +36,7 @@ void assert_marked(const std::vector<std::uint32_t>& which, const std::vector<st
 } // namespace
 
 void NeighbourLists::assert_sound() const {
-  if (!made_ || ranges_.size() > most_checked)
+  if (!made_ || ranges_.size() > max_checked)
     return;
   assert(0 <= window_age_ && window_age_ < window_);
   assert(0 <= age_ && age_ - window_age_ + window_ <= life_);

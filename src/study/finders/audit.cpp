@@ -1,7 +1,7 @@
 #include "audit.hpp"
 
-#include <keeler/contacts/finders.hpp>
-#include <keeler/contacts/motion/relative.hpp>
+#include <keeler/finders/finders.hpp>
+#include <keeler/finders/motion/relative.hpp>
 
 namespace keeler {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <keeler/collision/drift.hpp>
-#include <keeler/contacts/counts.hpp>
+#include <keeler/finders/counts.hpp>
 
 #include <memory>
 #include <vector>

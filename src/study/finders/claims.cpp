@@ -19,7 +19,7 @@ std::string verdict(int in_favour, int cases) {
   return in_favour == 0 ? "refuted" : 2 * in_favour > cases ? "confirmed in most cases" : "refuted in most cases";
 }
 
-template<class Counts> std::string counted(const Counts& counts, const char* between) {
+template<class Counts> std::string pluralize(const Counts& counts, const char* between) {
   std::string text;
   for (const auto& [name, count] : counts)
     text += fmt::format("{}{}{}{}", text.empty() ? "" : ", ", name, between, count);
@@ -30,8 +30,8 @@ void time_in_finder(const FinderNumbers& n, Rows& rows) {
   double least = 1.0, most = 0.0;
   for (const StudyState& state : n.data.states)
     for (const std::string& finder : paper_finders) {
-      least = std::min(least, n.finder_share(state.name, finder));
-      most = std::max(most, n.finder_share(state.name, finder));
+      least = std::min(least, n.finder_fraction(state.name, finder));
+      most = std::max(most, n.finder_fraction(state.name, finder));
     }
   rows.push_back(
       {"Over 90 % of the run time is often spent in the finder.",
@@ -64,11 +64,11 @@ void ranking(const FinderNumbers& n, Rows& rows, const std::string& forms, const
       {forms + "linear-full is the fastest across the board.",
        fmt::format("fastest of the five, or within 2 %, in {} of {} panels (state × step), at worst {:.2f} times "
                    "the fastest (first: {})",
-                   first, n.panels(), worst_ratio, counted(fastest, " ")),
+                   first, n.panels(), worst_ratio, pluralize(fastest, " ")),
        verdict(first, n.panels())});
   rows.push_back(
       {forms + "original and newton-cubic compete for the last place.",
-       fmt::format("one of them is last in {} of {} panels (last: {})", last, n.panels(), counted(slowest, " ")),
+       fmt::format("one of them is last in {} of {} panels (last: {})", last, n.panels(), pluralize(slowest, " ")),
        verdict(last, n.panels())});
 }
 
@@ -150,7 +150,7 @@ void steps(const FinderNumbers& n, Rows& rows) {
     }
   rows.push_back({"The best step is often 1/1000 orbit, in some cases 3/1000 or 1/100.",
                   fmt::format("best step and number of curves, of {} (state × the paper's five): {}", curves,
-                              counted(best, " × ")),
+                              pluralize(best, " × ")),
                   verdict(best["0.001"], curves)});
   rows.push_back({"Time against step has a minimum within the range.",
                   fmt::format("{} of {} curves have their least time inside it", inside, curves),

@@ -2,10 +2,10 @@
 #include "perturbed_ring/perturbed_ring.hpp"
 #include "report.hpp"
 
-#include <keeler/contacts/finder.hpp>
-#include <keeler/contacts/motion/relative.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/finders/finder.hpp>
+#include <keeler/finders/motion/relative.hpp>
 #include <keeler/render/patch_picture.hpp>
 #include <keeler/report/gnuplot.hpp>
 

@@ -4,11 +4,11 @@
 
 #include <keeler/bench/pair_set.hpp>
 #include <keeler/cells/overlap.hpp>
-#include <keeler/contacts/finders.hpp>
-#include <keeler/contacts/motion/relative.hpp>
-#include <keeler/contacts/search/certified.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/core/stopwatch.hpp>
+#include <keeler/finders/finders.hpp>
+#include <keeler/finders/motion/relative.hpp>
+#include <keeler/finders/search/certified.hpp>
 #include <keeler/simulation/simulation.hpp>
 #include <keeler/statistics/median.hpp>
 
@@ -18,7 +18,7 @@
 namespace keeler {
 namespace {
 
-constexpr double least_seconds = 0.02; // of finder calls, for the time of one
+constexpr double min_seconds = 0.02; // of finder calls, for the time of one
 
 PairSet first_pairs(const StudyState& state, const Scene& scene, bool every_candidate) {
   const Simulation simulation(scene, state.patch);
@@ -122,7 +122,7 @@ Json times_per_call(const PairSet& pairs, int repeats) {
   std::vector<std::vector<double>> times(finders.size());
   for (int repeat = 0; repeat < repeats; ++repeat)
     for (std::size_t k = 0; k < finders.size(); ++k)
-      times[k].push_back(ns_per_call(pairs, *finders[k], least_seconds));
+      times[k].push_back(ns_per_call(pairs, *finders[k], min_seconds));
   Json json;
   for (std::size_t k = 0; k < finders.size(); ++k)
     json[finder_table()[k].name] = median(times[k]);
@@ -184,7 +184,7 @@ std::vector<std::string> all_finders() {
 Json timed_run(const StudyState& state, double step, const std::string& finder) {
   const Scene scene = state.timed(step, finder);
   const PairSet pairs = first_pairs(state, scene, true);
-  const double call = ns_per_call(pairs, *make_finder(finder), least_seconds);
+  const double call = ns_per_call(pairs, *make_finder(finder), min_seconds);
   return {{"cpu_s", run_seconds(state, scene, true)}, {"ns_per_call", call}};
 }
 
@@ -213,7 +213,7 @@ Json audited_run(const StudyState& state, double step, const std::string& finder
           {"exits", exits_of(verdict.counts)}};
 }
 
-Json finder_share(const StudyState& state, double step, const std::string& finder, int repeats) {
+Json finder_fraction(const StudyState& state, double step, const std::string& finder, int repeats) {
   const Scene scene = state.timed(step, finder);
   std::vector<FinderResult> answers;
   {
@@ -254,7 +254,7 @@ Json call_details(const StudyState& state, double step, int repeats) {
   std::vector<double> alone;
   MotionSearch<UnrejectedMotion, CertifiedSearch> search;
   for (int repeat = 0; repeat < repeats; ++repeat)
-    alone.push_back(ns_per_call(pairs, search, least_seconds));
+    alone.push_back(ns_per_call(pairs, search, min_seconds));
   return {{"begin_ns_per_particle", begin}, {"certified_search_alone_ns_per_call", median(alone)}};
 }
 

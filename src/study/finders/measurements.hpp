@@ -26,7 +26,7 @@ Json timed_run(const StudyState& state, double step, const std::string& finder);
 Json audited_run(const StudyState& state, double step, const std::string& finder);
 
 /// Runs with the finder and, on recorded answers, without: what share of the time is the finder's.
-Json finder_share(const StudyState& state, double step, const std::string& finder, int repeats);
+Json finder_fraction(const StudyState& state, double step, const std::string& finder, int repeats);
 
 /// What the time of a call leaves out: the start of a step for finders that keep something (ns a particle); and the
 /// certified search without its rejection (ns a call).

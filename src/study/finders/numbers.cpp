@@ -48,7 +48,7 @@ double mean_over(const Json& audit, const std::string& exit, const char* field) 
   return sum / of(calls, "calls");
 }
 
-double FinderNumbers::finder_share(const std::string& state, const std::string& finder) const {
+double FinderNumbers::finder_fraction(const std::string& state, const std::string& finder) const {
   const Json& share = data.result(job_name("share", state, data.shown_step, finder));
   return 1.0 - of(share, "cpu_s_without_finder") / of(share, "cpu_s");
 }

@@ -38,7 +38,7 @@ public:
     return data.timed(state, data.shown_step, finder, "ns_per_call");
   }
   /// Of a run's time, what a run on recorded answers does not need.
-  double finder_share(const std::string& state, const std::string& finder) const;
+  double finder_fraction(const std::string& state, const std::string& finder) const;
   /// Half the range of the repeats over their median; its median over all timed runs.
   double scatter() const;
   /// The audited run of the first state, equal sizes and early, at the step that is shown.

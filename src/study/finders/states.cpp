@@ -4,11 +4,11 @@
 
 #include <keeler/core/units.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/initial_conditions/clumped.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/scene/derived.hpp>
 #include <keeler/simulation/simulation.hpp>
-#include <keeler/states/clumped.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
 

@@ -128,7 +128,7 @@ private:
     add(job_name("details", state.name, 1e-3), 1e9, [&state, repeats] { return call_details(state, 1e-3, repeats); });
     for (const std::string& finder : paper_finders)
       add(job_name("share", state.name, 1e-3, finder), 2.0 * repeats * expected_cost(state, 1e-3),
-          [&state, finder, repeats] { return finder_share(state, 1e-3, finder, repeats); });
+          [&state, finder, repeats] { return finder_fraction(state, 1e-3, finder, repeats); });
   }
 
   void add_local_times(double step, double share) {

@@ -4,7 +4,7 @@
 
 #include <keeler/collision/drift.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/states/uniform.hpp>
+#include <keeler/initial_conditions/uniform.hpp>
 
 #include <fmt/format.h>
 

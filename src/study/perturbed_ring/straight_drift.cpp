@@ -8,8 +8,8 @@
 namespace keeler {
 namespace {
 
-constexpr std::uint32_t most_collisions = 100000; // of one particle in one step
-constexpr double wider = 1.0 + 1e-9;              // windows must hold after their own rounding
+constexpr std::uint32_t max_collisions = 100000; // of one particle in one step
+constexpr double wider = 1.0 + 1e-9;             // windows must hold after their own rounding
 
 // How fast a line leaves the shear that holds at its mid-step place.
 double own_speed(const Vec3& mid_place, const Vec3& velocity, double shear) {
@@ -133,7 +133,7 @@ bool StraightDrift::carry_out(const Event& event) {
   b.elements = elements_from(of_b, frequencies_, rotation);
   follow(event.low, of_a, event.time);
   follow(event.high, of_b, event.time);
-  if (++stamps_[event.low] > most_collisions || ++stamps_[event.high] > most_collisions)
+  if (++stamps_[event.low] > max_collisions || ++stamps_[event.high] > max_collisions)
     throw InvariantError("a particle collided more than 100000 times in one step on straight lines");
 
   visit_candidates(event.low, [&](std::size_t k, const Image& image) { predict(event.low, k, image); });

@@ -8,10 +8,10 @@
 // the epicycle.
 #pragma once
 
-#include <keeler/box/shearing_box.hpp>
 #include <keeler/cells/grid.hpp>
 #include <keeler/collision/events.hpp>
 #include <keeler/collision/settings.hpp>
+#include <keeler/hill/shearing_box.hpp>
 #include <keeler/particles/store.hpp>
 
 namespace keeler {

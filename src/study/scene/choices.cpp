@@ -15,7 +15,7 @@ namespace {
 using Solver = GravitySettings::Solver;
 
 constexpr double thousandth = 1e-3;     // of an orbit
-constexpr int most_steps_a_kick = 1000; // as gravity.kick_every allows
+constexpr int max_steps_a_kick = 1000;  // as gravity.kick_every allows
 constexpr double automatic_kick = 4e-3; // orbits, about what an automatic step has in wakes
 
 std::vector<std::string> step_overrides(const Scene& scene, const Kicks& kicks) {
@@ -163,12 +163,12 @@ bool shares_start(SceneStudyKind kind) {
 }
 
 Kicks steps_in(double interval, double longest) {
-  const int every = std::clamp(static_cast<int>(std::ceil(interval / longest * (1.0 - 1e-12))), 1, most_steps_a_kick);
+  const int every = std::clamp(static_cast<int>(std::ceil(interval / longest * (1.0 - 1e-12))), 1, max_steps_a_kick);
   return {interval / every, every};
 }
 
 Kicks kicks_of(double step, double interval) {
-  return {step, static_cast<int>(std::clamp(std::round(interval / step), 1.0, double{most_steps_a_kick}))};
+  return {step, static_cast<int>(std::clamp(std::round(interval / step), 1.0, double{max_steps_a_kick}))};
 }
 
 StudyChoices study_choices(SceneStudyKind kind, const Scene& scene, bool quick) {

@@ -2,7 +2,7 @@
 
 #include "verdict.hpp"
 
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/report/csv.hpp>
 #include <keeler/report/document.hpp>
@@ -53,10 +53,10 @@ std::string how_started(const StudyPlan& plan) {
         "state of their seed for {} and are measured from orbit {:g} of these on. Runs of a seed are "
         "compared as if they were independent. Contacts make them so in dense rings; where these are few, "
         "runs stay alike and the intervals of differences are wider than they need be.",
-        counted(plan.seeds, "seed"), in_orbits(plan.grow_orbits), in_orbits(plan.orbits), plan.since());
+        pluralize(plan.seeds, "seed"), in_orbits(plan.grow_orbits), in_orbits(plan.orbits), plan.since());
   return fmt::format("The setting changes the state itself, so there is no common one: each run has the scene's own "
                      "start and ends at orbit {:g}, measured from orbit {:g} on. There are {} of each.",
-                     plan.end(), plan.since(), counted(plan.seeds, "seed"));
+                     plan.end(), plan.since(), pluralize(plan.seeds, "seed"));
 }
 
 void introduce(const StudyPlan& plan, const std::map<std::string, std::string>& made, Document& document) {
@@ -73,8 +73,9 @@ std::string with_bound(const Scatter& scatter) {
   if (scatter.count == 0)
     return "–";
   const double bound = mean_bound(scatter);
-  return std::isnan(bound) || bound == 0.0 ? figures(scatter.mean, 4)
-                                           : fmt::format("{} ± {}", figures(scatter.mean, 4), figures(bound, 2));
+  return std::isnan(bound) || bound == 0.0
+             ? format_number(scatter.mean, 4)
+             : fmt::format("{} ± {}", format_number(scatter.mean, 4), format_number(bound, 2));
 }
 
 // Whether any setting has it.

@@ -13,8 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double least_forgetting = 1.0, forgetting = 0.25; // orbits, and share of the orbits asked for
-constexpr double least_orbits = 1.5;
-constexpr std::size_t least_count = 100; // particles of a state whose means are worth comparing
+constexpr double min_orbits = 1.5;
+constexpr std::size_t min_count = 100; // particles of a state whose means are worth comparing
 
 // How often the runs write what is measured, in orbits.
 const std::vector<std::string> output = {"output.series_every=0.02", "output.stress_every=0.1",
@@ -56,14 +56,14 @@ void check_choices(StudyPlan& plan, const std::function<void(const std::string&)
   for (std::size_t k = 0; k < plan.choices.choices.size(); ++k) {
     const StudyChoice& choice = plan.choices.choices[k];
     const std::size_t count = setting_run(plan, k, 0, std::nullopt).scene.particles.count;
-    if (count >= least_count || shares_start(plan.kind))
+    if (count >= min_count || shares_start(plan.kind))
       kept.push_back(choice);
     else
       notice(fmt::format("note: {} is left out, since it would have {} particles only", choice.name, count));
   }
   if (kept.size() < 2)
     throw UsageError(fmt::format("{}:1:1: too few particles to compare anything (a setting needs {}); enlarge the box",
-                                 plan.scene_name, least_count));
+                                 plan.scene_name, min_count));
   if (plan.choices.reference)
     plan.choices.reference = plan.kind == SceneStudyKind::box ? kept.size() - 1 : 0;
   plan.choices.choices = std::move(kept);
@@ -100,10 +100,10 @@ StudyPlan plan_study(const SceneStudySettings& settings) {
   plan.orbits = settings.orbits.value_or(settings.quick ? 2.0 : 6.0);
   if (plan.seeds < 2)
     throw UsageError("a study of one seed knows no scatter; --seeds takes 2 or more");
-  if (plan.orbits < least_orbits)
+  if (plan.orbits < min_orbits)
     throw UsageError(fmt::format("--orbits {:g} leaves too little to measure (the first orbit of a run is left out); "
                                  "give {:g} or more",
-                                 plan.orbits, least_orbits));
+                                 plan.orbits, min_orbits));
   check_choices(plan, settings.notice);
   return plan;
 }

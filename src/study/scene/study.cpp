@@ -7,7 +7,7 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/runs/folder_lock.hpp>
-#include <keeler/scene/doubts.hpp>
+#include <keeler/scene/warnings.hpp>
 
 #include <fmt/format.h>
 
@@ -31,7 +31,7 @@ Json options_of(const StudyPlan& plan) {
 void tell_doubts(const StudyPlan& plan, const SceneStudySettings& settings) {
   for (const std::string& text : plan.scene.notices)
     settings.notice("note: " + text);
-  for (const std::string& text : doubts(plan.scene))
+  for (const std::string& text : warnings(plan.scene))
     settings.notice("note: " + text);
 }
 

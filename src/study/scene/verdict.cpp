@@ -1,6 +1,6 @@
 #include "verdict.hpp"
 
-#include <keeler/core/words.hpp>
+#include <keeler/core/format.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -104,7 +104,7 @@ std::string verdict_text(const StudyMeans& means) {
   if (!best)
     return "**Verdict**: no run was finished, so nothing can be said.";
   const std::string& reference = means.settings[means.reference].name;
-  const std::string cost = fmt::format("{} s of processor time per orbit", figures(cost_of(means, *best), 3));
+  const std::string cost = fmt::format("{} s of processor time per orbit", format_number(cost_of(means, *best), 3));
   std::string text;
   if (*best == means.reference)
     text = fmt::format("**Verdict**: no setting that is cheaper than the most accurate one, `{}` ({}), has the same "
@@ -115,7 +115,7 @@ std::string verdict_text(const StudyMeans& means) {
                "**Verdict**: the cheapest setting whose loss over stress is within {:g} % of that of the most accurate "
                "one, `{}`, and whose other means cannot be told from its, is `{}`: {}, {} times the speed.",
                100.0 * balance_tolerance, reference, means.settings[*best].name, cost,
-               figures(cost_of(means, means.reference) / cost_of(means, *best), 3)) +
+               format_number(cost_of(means, means.reference) / cost_of(means, *best), 3)) +
            balance_words(verdict_on(means, *best));
   return text + refused_words(means, *best) + chance_words(means);
 }

@@ -7,7 +7,7 @@
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/diagnostics/wakes.hpp>
 #include <keeler/gravity/direct.hpp>
-#include <keeler/states/tiled.hpp>
+#include <keeler/initial_conditions/tiled.hpp>
 
 #include <doctest/doctest.h>
 

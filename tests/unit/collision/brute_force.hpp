@@ -2,8 +2,8 @@
 // precision with bisection, one event at a time. It shares no code with the finders, the grid or the event queue.
 #pragma once
 
-#include <keeler/box/shearing_box.hpp>
 #include <keeler/collision/drift.hpp>
+#include <keeler/hill/shearing_box.hpp>
 #include <keeler/particles/store.hpp>
 
 #include <algorithm>

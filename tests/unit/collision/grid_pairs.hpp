@@ -4,9 +4,9 @@
 
 #include "unit/collision/ring.hpp"
 
-#include <keeler/contacts/counts.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/states/uniform.hpp>
+#include <keeler/finders/counts.hpp>
+#include <keeler/initial_conditions/uniform.hpp>
 
 #include <algorithm>
 #include <memory>

@@ -5,7 +5,7 @@
 #include "draws.hpp"
 #include "unit/collision/spheres.hpp"
 
-#include <keeler/box/shearing_box.hpp>
+#include <keeler/hill/shearing_box.hpp>
 #include <keeler/particles/store.hpp>
 
 #include <doctest/doctest.h>

@@ -4,8 +4,8 @@
 #pragma once
 
 #include <keeler/collision/drift.hpp>
-#include <keeler/contacts/finders.hpp>
 #include <keeler/core/exact_sum.hpp>
+#include <keeler/finders/finders.hpp>
 
 #include <cmath>
 #include <map>

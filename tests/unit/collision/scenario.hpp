@@ -4,8 +4,8 @@
 #include <keeler/collision/settings.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/initial_conditions/uniform.hpp>
 #include <keeler/particles/sizes.hpp>
-#include <keeler/states/uniform.hpp>
 
 #include <cmath>
 #include <optional>

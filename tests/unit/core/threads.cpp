@@ -85,7 +85,7 @@ TEST_CASE("an exception in a loop reaches its caller, from any thread, and the n
 }
 
 TEST_CASE("absurd numbers of threads are refused") {
-  CHECK_THROWS_AS(set_threads(most_threads + 1), UsageError);
+  CHECK_THROWS_AS(set_threads(max_threads + 1), UsageError);
   CHECK(threads() == 1);
 }
 

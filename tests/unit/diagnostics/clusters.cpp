@@ -144,13 +144,13 @@ TEST_CASE("the analysis counts clusters by size") {
   const std::vector<Patch> patches = {patch, patch};
   const ClusterAnalysis a = analyze_clusters(patches);
   CHECK(a.count == doctest::Approx(2.0));
-  CHECK(a.mass_share == doctest::Approx(0.7));
-  CHECK(a.largest_mass_share == doctest::Approx(0.5));
+  CHECK(a.mass_fraction == doctest::Approx(0.7));
+  CHECK(a.largest_mass_fraction == doctest::Approx(0.5));
   REQUIRE(a.spectrum.size() == 2);
   CHECK(a.spectrum[0].least == 2);
   CHECK(a.spectrum[0].count == doctest::Approx(1.0));
   CHECK(a.spectrum[1].least == 4);
-  CHECK(a.spectrum[1].mass_share == doctest::Approx(0.5));
+  CHECK(a.spectrum[1].mass_fraction == doctest::Approx(0.5));
   REQUIRE(a.largest_half_axes);
   CHECK((*a.largest_half_axes)[0] == doctest::Approx(std::sqrt(5.0 * (8.0 + 0.2))).epsilon(1e-9));
   REQUIRE(a.spin);

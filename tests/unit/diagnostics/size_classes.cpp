@@ -38,7 +38,7 @@ TEST_CASE("each class has the motion and the height of its particles") {
   double share = 0.0;
   for (const SizeClass& c : classes) {
     count += c.count;
-    share += c.mass_share;
+    share += c.mass_fraction;
   }
   CHECK(count == 300);
   CHECK(share == doctest::Approx(1.0).epsilon(1e-12));
@@ -55,7 +55,7 @@ TEST_CASE("one class has the dispersion of the patch, equal spheres have none") 
   REQUIRE(all.size() == 1);
   CHECK((all[0].dispersion - velocity_dispersion(patch)).norm() < 1e-12);
   CHECK(all[0].scale_height == doctest::Approx(scale_height(patch)).epsilon(1e-12));
-  CHECK(all[0].mass_share == doctest::Approx(1.0).epsilon(1e-12));
+  CHECK(all[0].mass_fraction == doctest::Approx(1.0).epsilon(1e-12));
   CHECK(size_classes(test::uniform({60.0, 40.0, 1.5, 0.0}, 7.0, 50, 1)).empty());
 }
 

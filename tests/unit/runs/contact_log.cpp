@@ -5,8 +5,8 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/runs/run.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <doctest/doctest.h>
 

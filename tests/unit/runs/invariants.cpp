@@ -6,8 +6,8 @@
 #include "scenes.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/runs/state_hash.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <doctest/doctest.h>
 

@@ -4,10 +4,10 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/scene/keys.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

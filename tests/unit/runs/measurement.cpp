@@ -5,8 +5,8 @@
 
 #include <keeler/core/units.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/quantities/views.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <doctest/doctest.h>
 

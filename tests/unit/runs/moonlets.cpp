@@ -5,9 +5,9 @@
 #include "unit/files/disk.hpp"
 
 #include <keeler/files/files.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/runs/run.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <doctest/doctest.h>
 

@@ -7,8 +7,8 @@
 
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/runs/run.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -116,7 +116,7 @@ double held_by_recorder(const std::filesystem::path& folder, const Scene& scene)
   Simulation simulation(scene, initial_patch(scene));
   const FolderLock lock(run.path());
   std::optional<Recorder> recorder(std::in_place, run, &lock, scene, std::vector<std::string>{}, OutputCounters{},
-                                   std::nullopt, Recorder::Notice{}, Ranks());
+                                   std::nullopt, Recorder::Notice{}, Communicator());
   recorder->sample(simulation);
   recorder->watch(simulation);
   for (int k = 0; k < 3; ++k) {

@@ -5,7 +5,7 @@
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/viscosity.hpp>
 #include <keeler/files/files.hpp>
-#include <keeler/states/initial.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 
 #include <doctest/doctest.h>
 

@@ -3,9 +3,9 @@
 #include "moonlet_columns.hpp"
 #include "scenes.hpp"
 
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/runs/series_columns.hpp>
 #include <keeler/simulation/simulation.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <keeler/scene/keys.hpp>
 

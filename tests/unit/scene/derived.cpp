@@ -160,7 +160,7 @@ TEST_CASE("the layer's height is that of the reference equilibria, and the filli
   const Crowd equal{1.0, 1.0};
   const double reference[][3] = {{0.1, 1.80, 1.86}, {0.5, 1.45, 1.73}, {1.0, 1.17, 1.74}};
   for (const auto& [depth, c_z, height] : reference)
-    CHECK(layer_height(depth, equal, c_z / vertical_share, 1.0) == doctest::Approx(height).epsilon(0.05));
+    CHECK(layer_height(depth, equal, c_z / vertical_fraction, 1.0) == doctest::Approx(height).epsilon(0.05));
   for (const double dispersion : {1.0, 2.0, 7.0}) {
     const double filling = midplane_filling(0.8, equal, dispersion, 1.1);
     CHECK(dispersion_for_filling(0.8, equal, 1.1, filling) == doctest::Approx(dispersion).epsilon(1e-12));

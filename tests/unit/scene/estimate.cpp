@@ -217,18 +217,18 @@ TEST_CASE("a start takes time with the number of particles, and more where it is
 }
 
 TEST_CASE("what makes a scene dear is said with how dear, and nothing of one that is not") {
-  CHECK(dear_choices(a_ring()).empty());
-  CHECK(dear_choices(a_ring({"box.size=[100,400]"})).empty());
-  CHECK(dear_choices(with({"collisions.restitution={law=\"constant\",value=0.3}"})).empty());
+  CHECK(expensive_settings(a_ring()).empty());
+  CHECK(expensive_settings(a_ring({"box.size=[100,400]"})).empty());
+  CHECK(expensive_settings(with({"collisions.restitution={law=\"constant\",value=0.3}"})).empty());
   const auto says = [](const Scene& scene, const char* words) {
-    const std::vector<std::string> lines = dear_choices(scene);
+    const std::vector<std::string> lines = expensive_settings(scene);
     REQUIRE(lines.size() == 1);
     CAPTURE(lines[0]);
     CHECK(lines[0].find(words) != std::string::npos);
   };
   says(a_ring({"box.size=[10,10000]", "gravity.solver=tree"}), "a box of 1 : 1000 makes self-gravity about");
   says(a_ring({"box.size=[10000,10]", "gravity.solver=tree"}), "a box of 1 : 1000");
-  CHECK(dear_choices(a_ring({"box.size=[10,10000]", "gravity.solver=fft"})).empty());
+  CHECK(expensive_settings(a_ring({"box.size=[10,10000]", "gravity.solver=fft"})).empty());
   says(with({"collisions.restitution={law=\"constant\",value=0}"}), "a restitution of 0 makes the drift about");
 }
 

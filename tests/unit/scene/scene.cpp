@@ -326,8 +326,8 @@ end = 0.5
   CHECK(again.time.end_step == scene.time.end_step);
   CHECK(again.time.end_step == 501);
 
-  const Scene least_scene = parse_scene(least, "s.toml");
-  CHECK(least_scene.resolved == R"(title = ""
+  const Scene min_scene = parse_scene(least, "s.toml");
+  CHECK(min_scene.resolved == R"(title = ""
 quality = "balanced"
 
 [planet]

@@ -1,8 +1,8 @@
 // The automatic step: what it decides, and that a run with it is one run whatever the threads and the restarts.
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/simulation/simulation.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

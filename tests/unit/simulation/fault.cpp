@@ -1,6 +1,6 @@
 // A state from a file is the scene's, or it is refused: a step would read beyond arrays.
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/simulation/simulation.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <doctest/doctest.h>
 

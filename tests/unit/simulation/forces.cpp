@@ -1,7 +1,7 @@
 #include <keeler/core/units.hpp>
 #include <keeler/forces/self_gravity.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/simulation/simulation.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <doctest/doctest.h>
 

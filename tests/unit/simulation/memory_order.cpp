@@ -1,8 +1,8 @@
 // Memory order is for speed alone: a state whose particles stand in memory in another order goes on to the same state,
 // bit for bit, what is booked of kicks and collisions included.
 #include <keeler/cells/order.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/simulation/simulation.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -41,7 +41,7 @@ void put_in_order(SimulationState& state, const Order& order) {
       reorder_rows(field, order);
 }
 
-Order counted(std::size_t count) {
+Order pluralize(std::size_t count) {
   Order order(count);
   std::iota(order.begin(), order.end(), 0U);
   return order;
@@ -49,7 +49,7 @@ Order counted(std::size_t count) {
 
 // By id, with every number that a checkpoint holds.
 std::vector<std::string> content(SimulationState state) {
-  Order order = counted(state.particles.size());
+  Order order = pluralize(state.particles.size());
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t a, std::uint32_t b) { return state.particles.ids[a] < state.particles.ids[b]; });
   put_in_order(state, order);
@@ -86,7 +86,7 @@ void check_any_order(const Scene& scene, int steps_after) {
   const SimulationState start = beginning.state();
   const auto after = [&](const Shuffle& shuffle) {
     SimulationState state = start;
-    Order order = counted(state.particles.size());
+    Order order = pluralize(state.particles.size());
     shuffle(order);
     put_in_order(state, order);
     Simulation simulation(scene, state);

@@ -1,7 +1,7 @@
 // A state changed from outside while it runs.
 #include <keeler/core/error.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/simulation/simulation.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <doctest/doctest.h>
 

@@ -3,8 +3,8 @@
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/simulation/simulation.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // Friction and [[moonlet]] in one scene: what a contact of the two turns, and the same bits however many threads run.
 #include <keeler/core/threads.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/simulation/simulation.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>

@@ -3,8 +3,8 @@
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/forces/satellite.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/simulation/simulation.hpp>
-#include <keeler/states/initial.hpp>
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 #include "finders/audit.hpp"
 
 #include <keeler/bench/pair_set.hpp>
-#include <keeler/contacts/finders.hpp>
-#include <keeler/contacts/motion/relative.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/states/uniform.hpp>
+#include <keeler/finders/finders.hpp>
+#include <keeler/finders/motion/relative.hpp>
+#include <keeler/initial_conditions/uniform.hpp>
 
 #include <doctest/doctest.h>
 

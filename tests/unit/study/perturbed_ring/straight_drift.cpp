@@ -1,7 +1,7 @@
 #include "perturbed_ring/straight_drift.hpp"
 
 #include <keeler/core/units.hpp>
-#include <keeler/states/uniform.hpp>
+#include <keeler/initial_conditions/uniform.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,0 +1,196 @@
+// A finder: a form of motion under a form of search, with what the motion keeps for each particle through a step.
+//
+// Motion: how the relative path of two particles is represented. It has
+//   Motion(const Pair&, const DriftStep&)             or, when it keeps something for each particle,
+//   struct Memory; static Memory remember(const Elements&, const DriftStep&);
+//   Motion(const Pair&, const DriftStep&, const Memory& lo, const Memory& hi);
+//   Separation at(double time)                        one evaluation
+// and may have
+//   std::optional<Separation> at_start()              the separation at pair.start from what is kept, if that can be:
+//                                                     no evaluation
+//   static bool surely_apart(const Query&, const Body& low, const Body& high, const DriftStep&)
+//                                                     proves a miss before a pair is even set up
+// Search: how guesses move to the first contact. It has
+//   template<class Motion> static FinderResult find(Motion&, const Pair&);
+// and, when it never errs and never gives up,
+//   static constexpr bool exact = true;
+// A new finder is one such file and one line in src/finders/finders.cpp: docs/dev/finders.md shows one.
+#pragma once
+
+#include <keeler/core/threads.hpp>
+#include <keeler/finders/pair.hpp>
+#include <keeler/finders/straight_line.hpp>
+#include <keeler/particles/store.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace keeler {
+
+/// One step as finders see it. Times are relative to the epoch of the elements, rad.
+struct DriftStep {
+  std::span<const Body> bodies;
+  Frequencies frequencies;
+  double begin = 0.0, end = 0.0;
+  Rotation at_begin, at_end;
+  StraightLineTest straight_line;
+  bool tested = false; ///< straight lines have ruled most pairs out already: to test them again does not pay
+
+  /// `size` is the largest coordinate that occurs, m: it sets the allowance for rounding.
+  DriftStep(const Frequencies& f, double begin_time, double end_time, double size)
+      : frequencies(f), begin(begin_time), end(end_time), at_begin(f, begin_time), at_end(f, end_time) {
+    straight_line = {f, end, std::max(std::fabs(begin), std::fabs(end)), 1e-13 * size};
+  }
+};
+
+/// Which two particles (places in the store; `low` has the lower id), the shift of the image of `high` at the epoch,
+/// and from when on.
+struct Query {
+  std::uint32_t low = 0, high = 0;
+  double shift_x = 0.0, shift_y = 0.0; ///< m
+  double start = 0.0;                  ///< rad
+};
+
+inline bool may_touch(const Query& q, const Body& low, const Body& high, const DriftStep& s) {
+  return s.straight_line.may_touch(low, high, q.shift_x, q.shift_y, q.start);
+}
+
+inline Pair pair_of(const Query& q, const Body& low, const Body& high, const DriftStep& s) {
+  Pair pair;
+  pair.lo = low.elements;
+  pair.hi = high.elements;
+  pair.hi.guiding_x += q.shift_x;
+  pair.hi.guiding_y += q.shift_y;
+  pair.shift_x = q.shift_x;
+  pair.shift_y = q.shift_y;
+  pair.radius_sum = low.radius + high.radius;
+  pair.smaller = std::min(low.radius, high.radius);
+  pair.start = q.start;
+  pair.end = s.end;
+  pair.step = s.end - s.begin;
+  return pair;
+}
+
+inline Pair pair_of(const Query& q, const DriftStep& s) {
+  return pair_of(q, s.bodies[q.low], s.bodies[q.high], s);
+}
+
+/// What the image of `hi` adds to the state of the particle itself at a time: images drift with the shear, exactly.
+inline State image_offset(const Pair& pair, const Frequencies& f, double time) {
+  const double drift = -f.shear() * pair.shift_x;
+  return {Vec3(pair.shift_x, pair.shift_y + drift * time, 0.0), Vec3(0.0, drift, 0.0)};
+}
+
+/// The separation at the start of the span: from what the motion keeps when it can, else an evaluation, counted.
+template<class Motion> Separation first_separation(Motion& motion, const Pair& pair, FinderResult& result) {
+  if constexpr (requires { motion.at_start(); })
+    if (const std::optional<Separation> kept = motion.at_start())
+      return *kept;
+  ++result.evaluations;
+  return motion.at(pair.start);
+}
+
+class Finder {
+public:
+  virtual ~Finder() = default;
+
+  /// A step begins. The step and the particles it names must stay where they are until the next call.
+  virtual void begin(const DriftStep& step) = 0;
+
+  /// A particle has changed its velocity.
+  virtual void changed(std::size_t particle) = 0;
+
+  /// A contact's time lies in [query.start, end of the step): a root elsewhere is reported as `outside`.
+  virtual FinderResult find(const Query& query) const = 0;
+
+  /// The answers of find() to many queries, to the bit, in their order.
+  virtual void find_all(std::span<const Query> queries, std::span<FinderResult> results) const {
+    assert(results.size() == queries.size());
+    for (std::size_t k = 0; k < queries.size(); ++k)
+      results[k] = find(queries[k]);
+  }
+
+  /// Whether the finder keeps nothing for each particle, never gives up and never errs. Only such a one may be asked
+  /// about orbits that are not those of the step, by several threads.
+  virtual bool exact() const { return false; }
+  /// The same question about these orbits in place of the step's. Only for exact finders.
+  virtual FinderResult find_between(const Query&, const Body& /*low*/, const Body& /*high*/) const {
+    assert(!exact());
+    return {};
+  }
+
+  /// Kept for each particle beyond its elements.
+  virtual std::size_t bytes_per_particle() const = 0;
+};
+
+template<class Motion, class Search> class MotionSearch final : public Finder {
+public:
+  void begin(const DriftStep& step) override {
+    step_ = &step;
+    if constexpr (remembers) {
+      memories_.resize(step.bodies.size());
+      parallel_for(memories_.size(), [&](std::size_t k) { changed(k); });
+    }
+  }
+
+  void changed([[maybe_unused]] std::size_t k) override {
+    if constexpr (remembers)
+      memories_[k] = Motion::remember(step_->bodies[k].elements, *step_);
+  }
+
+  FinderResult find(const Query& query) const override {
+    return find_between(query, step_->bodies[query.low], step_->bodies[query.high]);
+  }
+
+  bool exact() const override {
+    if constexpr (requires { Search::exact; })
+      return !remembers;
+    else
+      return false;
+  }
+
+  FinderResult find_between(const Query& query, const Body& low, const Body& high) const override {
+    if constexpr (requires { Motion::surely_apart(query, low, high, *step_); })
+      if (Motion::surely_apart(query, low, high, *step_))
+        return {};
+    const Pair pair = pair_of(query, low, high, *step_);
+    Motion motion = motion_of(pair, query);
+    FinderResult result = Search::find(motion, pair);
+    if (result.contact() && !(result.time >= pair.start && result.time < pair.end))
+      result.exit = FinderExit::outside;
+    return result;
+  }
+
+  std::size_t bytes_per_particle() const override {
+    if constexpr (remembers)
+      return sizeof(typename Motion::Memory);
+    else
+      return 0;
+  }
+
+private:
+  static constexpr bool remembers = requires { typename Motion::Memory; };
+  struct Nothing {};
+  template<class M> struct MemoryOf { using Type = Nothing; };
+  template<class M>
+  requires requires { typename M::Memory; }
+  struct MemoryOf<M> {
+    using Type = typename M::Memory;
+  };
+
+  Motion motion_of(const Pair& pair, [[maybe_unused]] const Query& query) const {
+    if constexpr (remembers)
+      return Motion(pair, *step_, memories_[query.low], memories_[query.high]);
+    else
+      return Motion(pair, *step_);
+  }
+
+  const DriftStep* step_ = nullptr;
+  std::vector<typename MemoryOf<Motion>::Type> memories_;
+};
+
+} // namespace keeler

@@ -1,0 +1,60 @@
+#include <keeler/initial_conditions/broken.hpp>
+
+#include <keeler/core/format.hpp>
+#include <keeler/initial_conditions/possible.hpp>
+
+#include <fmt/format.h>
+
+namespace keeler {
+namespace {
+
+// "the state is in …", or why it is not.
+std::string save(Patch patch, const std::filesystem::path& file, const SnapshotMeta& meta) {
+  const std::size_t left_out = keep_possible(patch);
+  if (patch.size() == 0)
+    return "no particle of the state can be saved";
+  try {
+    write_snapshot(file, patch, meta);
+  } catch (const IoError& not_saved) {
+    return fmt::format("the state could not be saved: {}", not_saved.what());
+  }
+  return fmt::format(
+      "the state is in '{}'{}; look at it with keeler info, render or analyze", file.string(),
+      left_out > 0 ? fmt::format(", without {} that no snapshot may have", pluralize(left_out, "particle")) : "");
+}
+
+} // namespace
+
+std::size_t keep_possible(Patch& patch) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < patch.size(); ++k) {
+    if (!particle_fault(patch, k).empty())
+      continue;
+    patch.positions[kept] = patch.positions[k];
+    patch.velocities[kept] = patch.velocities[k];
+    patch.radii[kept] = patch.radii[k];
+    patch.masses[kept] = patch.masses[k];
+    patch.ids[kept] = patch.ids[k];
+    if (!patch.spins.empty())
+      patch.spins[kept] = patch.spins[k];
+    ++kept;
+  }
+  const std::size_t left_out = patch.size() - kept;
+  patch.positions.resize(kept);
+  patch.velocities.resize(kept);
+  patch.radii.resize(kept);
+  patch.masses.resize(kept);
+  patch.ids.resize(kept);
+  patch.spins.resize(patch.spins.empty() ? 0 : kept);
+  return left_out;
+}
+
+BrokenState::BrokenState(const InvariantError& error, const Simulation& simulation)
+    : InvariantError(error), step(simulation.state().step), patch(simulation.patch_at_break()) {}
+
+std::string save_broken(const BrokenState& broken, const std::filesystem::path& file, const SnapshotMeta& meta) {
+  return fmt::format("{}; this was at step {}, orbit {}, and {}", broken.what(), broken.step,
+                     format_number(broken.patch.time_orbits), save(broken.patch, file, meta));
+}
+
+} // namespace keeler

@@ -1,0 +1,101 @@
+#include <keeler/initial_conditions/from_table.hpp>
+
+#include "separation.hpp"
+
+#include <keeler/cells/overlap.hpp>
+#include <keeler/core/error.hpp>
+#include <keeler/core/format.hpp>
+#include <keeler/core/threads.hpp>
+#include <keeler/core/units.hpp>
+#include <keeler/initial_conditions/possible.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace keeler {
+namespace {
+
+[[noreturn]] void fail(const ParticleTable& table, std::size_t k, const std::string& fault) {
+  throw UsageError(fmt::format("{}: the particle has {}; correct it or remove the row", table.place_of(k), fault));
+}
+
+void require_fitting(const ParticleTable& table, const TableScene& of) {
+  if (table.masses.empty() && !of.density)
+    throw UsageError(
+        fmt::format("{}: no column m, and the scene has no particles.density (one of them gives the masses); "
+                    "add either",
+                    table.file));
+  if (!table.spins.empty() && !of.scene.collisions.friction)
+    throw UsageError(
+        fmt::format("{}: sx sy sz are spins, but the scene's particles are smooth (it has no [collisions.friction]); "
+                    "add that table to the scene or remove the columns",
+                    table.file));
+}
+
+} // namespace
+
+Patch patch_from_table(const ParticleTable& table, const TableScene& of) {
+  require_fitting(table, of);
+  const Scene& scene = of.scene;
+  Patch patch;
+  patch.frequencies = scene.planet.frequencies;
+  patch.orbital_frequency = scene.planet.orbital_frequency;
+  patch.box = {scene.size_x, scene.size_y, scene.planet.frequencies.shear(), 0.0};
+  patch.positions = table.places;
+  patch.radii = table.radii;
+  patch.masses = table.masses;
+  if (patch.masses.empty())
+    for (const double radius : patch.radii)
+      patch.masses.push_back(4.0 / 3.0 * pi * *of.density * radius * radius * radius);
+  for (std::size_t k = 0; k < table.size(); ++k)
+    patch.velocities.push_back(table.velocities.empty() ? Vec3(0.0, -patch.box.shear * table.places[k].x(), 0.0)
+                                                        : Vec3(table.velocities[k] / patch.orbital_frequency));
+  for (const Vec3& spin : table.spins)
+    patch.spins.emplace_back(spin / patch.orbital_frequency);
+  patch.ids.resize(table.size());
+  std::iota(patch.ids.begin(), patch.ids.end(), std::uint64_t{0});
+  for (std::size_t k = 0; k < patch.size(); ++k) {
+    std::string fault = particle_fault(patch, k);
+    if (fault.empty())
+      fault = box_fault({patch.positions[k], patch.velocities[k]}, patch.box, patch.frequencies);
+    if (!fault.empty())
+      fail(table, k, fault);
+  }
+  require_no_heap(patch, table.file);
+  return patch;
+}
+
+Relaxation relax(Patch& patch) {
+  constexpr int max_sweeps = 4000;
+  constexpr std::size_t max_each = 50; // an equal sphere has room for 12 neighbours
+  if (const std::size_t overlaps = count_overlaps(patch, allowed_overlap); overlaps > max_each * patch.size())
+    throw InvariantError(
+        fmt::format("{} overlap in {} pairs (more than {} each are a heap, for which no room can be made); "
+                    "spread them out",
+                    pluralize(patch.size(), "particle"), overlaps, max_each));
+  std::vector<Sphere> spheres(patch.size());
+  for (std::size_t k = 0; k < patch.size(); ++k)
+    spheres[k] = {patch.positions[k], patch.radii[k], patch.positions[k].z(), static_cast<std::uint32_t>(k)};
+  sort_by_place(spheres, patch.box);
+  SphereSlabs alone({}, patch.box);
+  if (!separate(spheres, patch.box, patch.offset, alone, max_sweeps, [](int) {}))
+    throw InvariantError(
+        fmt::format("particles still overlap after {} sweeps of moving them apart (the patch is too dense "
+                    "somewhere); thin it out there or take smaller radii",
+                    max_sweeps));
+  Relaxation result;
+  for (const Sphere& sphere : spheres) {
+    Vec3& place = patch.positions[sphere.particle];
+    const Vec3 shift = sphere.place - place;
+    result.moved += shift != Vec3::Zero();
+    result.farthest = std::max(result.farthest, shift.norm());
+    patch.velocities[sphere.particle].y() -= patch.box.shear * shift.x();
+    place = sphere.place;
+  }
+  return result;
+}
+
+} // namespace keeler

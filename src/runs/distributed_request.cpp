@@ -1,0 +1,65 @@
+#include "distributed_request.hpp"
+
+#include <keeler/comm/same_request.hpp>
+#include <keeler/files/files.hpp>
+#include <keeler/io/hash.hpp>
+#include <keeler/io/snapshot.hpp>
+#include <keeler/scene/keys_in_force.hpp>
+
+#include <fmt/format.h>
+
+namespace keeler {
+namespace {
+
+// By where it is, not by how it is written: ranks may be started in different folders.
+std::string location(const std::filesystem::path& folder) {
+  std::error_code unknown; // a current folder that is gone, or one that cannot be looked into
+  const std::filesystem::path whole = std::filesystem::absolute(folder, unknown);
+  const std::filesystem::path found = std::filesystem::weakly_canonical(whole, unknown);
+  return (unknown ? whole.lexically_normal() : found).string();
+}
+
+std::string in_words(const std::optional<double>& number) {
+  return number ? fmt::format("{}", *number) : "not given";
+}
+
+std::vector<Asked> asked_of(const RunOptions& options) {
+  const auto flag = [](bool given) { return given ? "given" : "not given"; };
+  return {{"the folder", location(options.folder)},
+          {"--force", flag(options.force)},
+          {"--check", flag(options.check)},
+          {"--until", in_words(options.until_orbits)},
+          {"--wall-time", in_words(options.wall_time_s)}};
+}
+
+// A start can be large, and is known by its seal; one without a seal is read by the first rank alone. Other files are
+// tables.
+std::string content_of(const Scene& scene, const std::string& file) {
+  if (file == scene.start_from)
+    return snapshot_seal(file);
+  Hash hash;
+  hash.add_bytes(read_file(file));
+  return hash.hex();
+}
+
+} // namespace
+
+void require_same_run(const Scene& scene, const RunOptions& options) {
+  if (!options.ranks.distributed())
+    return;
+  std::vector<Asked> request = asked_of(options);
+  options.ranks.together([&] {
+    for (const KeyInForce& key : keys_in_force(scene)) {
+      request.push_back({key.path, key.value});
+      if (key.file)
+        request.push_back({fmt::format("the content of '{}'", *key.file), content_of(scene, *key.file)});
+    }
+  });
+  require_same_request(request, options.ranks);
+}
+
+void require_same_run(const RunOptions& options) {
+  require_same_request(asked_of(options), options.ranks);
+}
+
+} // namespace keeler

@@ -1,0 +1,90 @@
+// A run that ranks share: docs/dev/ranks.md.
+#include <keeler/simulation/simulation.hpp>
+
+#include <keeler/cells/overlap.hpp>
+#include <keeler/collision/settings.hpp>
+#include <keeler/core/error.hpp>
+#include <keeler/finders/finders.hpp>
+
+#include <fmt/format.h>
+
+namespace keeler {
+
+namespace {
+
+const char* solver_words(GravitySettings::Solver solver) {
+  using enum GravitySettings::Solver;
+  return solver == direct ? "gravity by direct sums" : solver == tree ? "gravity by the tree" : "axisymmetric gravity";
+}
+
+} // namespace
+
+// What has an order, a place or a network of all particles still.
+void Simulation::require_distributable(const Scene& scene, std::size_t count) {
+  const auto refuse = [](const char* what, const char* instead) {
+    throw UsageError(fmt::format("{} cannot be shared by several ranks; {}, or run on one rank", what, instead));
+  };
+  if (scene.gravity) {
+    const GravitySettings gravity = chosen_for(count, *scene.gravity);
+    if (gravity.solver != GravitySettings::Solver::fft && gravity.solver != GravitySettings::Solver::mesh)
+      refuse(solver_words(gravity.solver), "take the solver \"fft\" (gravity.solver, of a bench --solver)");
+    if (gravity.carries())
+      refuse("contacts at rest that carry kicks", "set gravity.resting_contacts to \"bounced\"");
+  }
+  if (!make_finder(scene.collisions.finder)->exact())
+    refuse("an inexact finder", "set collisions.finder to \"certified\"");
+}
+
+void Simulation::divide() {
+  if (!ranks_.distributed())
+    return;
+  ranks_.together([&] { require_distributable(scene_, count_); });
+  slabs_ = std::make_unique<Slabs>(ranks_, state_.box, scene_.planet.frequencies);
+  slabs_->divide(holding());
+}
+
+// The particles, and the accelerations of their last kicks, which the next half kick needs.
+Slabs::Holding Simulation::holding() {
+  Slabs::Holding holding{state_.particles, {}};
+  for (ForceState& force : state_.forces)
+    holding.rows.push_back(&force.accelerations);
+  return holding;
+}
+
+// That are good for the step to come.
+void Simulation::require_borders() {
+  if (slabs_->serve(state_.particles, state_.step_length))
+    return;
+  drift_.release();
+  slabs_->make_borders(holding(), state_.epoch_offset(), state_.step_length);
+  find_moonlets();
+}
+
+// Whoever touches an own particle in the step to come has a copy here, and that step begins at this boundary.
+Overlap Simulation::largest_overlap_distributed() {
+  require_borders();
+  slabs_->add_copies(state_.particles);
+  const Overlap here = keeler::largest_overlap(patch_of(state_.particles));
+  slabs_->drop_copies(state_.particles);
+  Overlap largest;
+  for (const std::vector<Overlap>& its : ranks_.exchange(std::vector(ranks_.size(), std::vector{here})))
+    if (deeper(its.front(), largest))
+      largest = its.front();
+  return largest;
+}
+
+void Simulation::collide_distributed() {
+  const double offset = state_.epoch_offset();
+  for (;;) {
+    require_borders();
+    slabs_->add_copies(state_.particles);
+    const bool done =
+        drift_.collide_distributed(state_.particles, slabs_->borders(), ranks_, state_.box, offset, state_.collisions);
+    slabs_->drop_copies(state_.particles);
+    if (done)
+      return;
+    slabs_->widen();
+  }
+}
+
+} // namespace keeler
