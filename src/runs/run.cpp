@@ -1,10 +1,10 @@
 #include <keeler/runs/run.hpp>
 
 #include "broken_state.hpp"
+#include "distributed_request.hpp"
 #include "edited_scene.hpp"
 #include "recorder.hpp"
 #include "runner.hpp"
-#include "distributed_request.hpp"
 #include "summarise.hpp"
 
 #include <keeler/core/error.hpp>
