@@ -138,7 +138,7 @@ std::vector<Row> few() {
       }
       const CollisionTally& tally = simulation.state().collisions;
       const auto contacts = static_cast<double>(tally.fast + tally.slow);
-      rows.push_back(count < 2 ? exactly(state, "contacts", contacts, 0.0, "there is nobody to meet")
+      rows.push_back(count < 2 ? exactly(state, "contacts", contacts, 0.0, "there is no partner")
                                : at_least(state, "contacts", contacts, 10.0, "they swing through the same plane"));
       rows.push_back(at_most(state, "deepest overlap over the radius sum", overlap, 1e-13, "rounding of places"));
       if (count == 1) {
