@@ -1,12 +1,14 @@
 #include <keeler/runs/run.hpp>
 
 #include "broken_state.hpp"
+#include "distributed_request.hpp"
 #include "edited_scene.hpp"
 #include "recorder.hpp"
 #include "runner.hpp"
-#include "distributed_request.hpp"
 #include "summarise.hpp"
 
+#include <keeler/advice/derived.hpp>
+#include <keeler/advice/warnings.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/stopwatch.hpp>
@@ -17,8 +19,8 @@
 #include <keeler/io/checkpoint_folder.hpp>
 #include <keeler/runs/folder_lock.hpp>
 #include <keeler/runs/state_hash.hpp>
-#include <keeler/scene/derived.hpp>
-#include <keeler/scene/resting_choice.hpp>
+#include <keeler/scene/load.hpp>
+#include <keeler/scene/patch_scale.hpp>
 
 #include <fmt/format.h>
 
