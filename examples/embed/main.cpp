@@ -1,6 +1,6 @@
 // A patch of ring in a program of one's own, with a restitution law that no scene has.
 #include <keeler/initial_conditions/initial.hpp>
-#include <keeler/scene/scene.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <cmath>

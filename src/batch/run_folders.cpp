@@ -3,7 +3,7 @@
 #include <keeler/batch/claims.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/files/files.hpp>
-#include <keeler/scene/resting_choice.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <fmt/format.h>
 

@@ -1,8 +1,9 @@
 #include <keeler/bench/gravity_states.hpp>
 
+#include <keeler/advice/derived.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/initial_conditions/tiled.hpp>
-#include <keeler/scene/derived.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <fmt/format.h>

@@ -1,10 +1,12 @@
 #include <keeler/bench/states.hpp>
 
+#include <keeler/advice/derived.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/initial_conditions/tiled.hpp>
-#include <keeler/scene/derived.hpp>
+#include <keeler/scene/layer.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <fmt/format.h>
@@ -46,7 +48,7 @@ Recipe recipe_for(BenchSizes sizes) {
 // Equilibria of equal spheres at ε = 0.5 have 2.82, 2.18 and 1.62 at τ = 0.1, 0.5 and 1.
 double first_dispersion(const Recipe& recipe, std::size_t count, double optical_depth) {
   const SizeLaw& sizes = recipe.sizes;
-  const double placed = 1.001 * dispersion_for_filling(optical_depth, crowd_of(sizes, count), 1.0, largest_filling);
+  const double placed = 1.001 * dispersion_for_filling(optical_depth, layer_sizes(sizes, count), 1.0, largest_filling);
   const double mass_radius = sizes.mean_power(3) / sizes.mean_power(2);
   return std::max(3.0 * recipe.heat * mass_radius / sizes.mean_power(1) * std::exp(-0.62 * optical_depth), placed);
 }

@@ -7,6 +7,7 @@
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/scene/keys_in_force.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <fmt/format.h>
 

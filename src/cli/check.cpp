@@ -4,13 +4,18 @@
 #include "print_record.hpp"
 #include "scene_arguments.hpp"
 
+#include <keeler/advice/derived.hpp>
+#include <keeler/advice/estimate.hpp>
+#include <keeler/advice/warnings.hpp>
 #include <keeler/bench/yardsticks.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/memory.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/initial_conditions/initial.hpp>
-#include <keeler/scene/resting_choice.hpp>
+#include <keeler/scene/keys.hpp>
+#include <keeler/scene/load.hpp>
+#include <keeler/scene/patch_scale.hpp>
 
 #include <fmt/format.h>
 

@@ -1,8 +1,11 @@
 #include "check_numbers.hpp"
 
+#include <keeler/advice/estimate.hpp>
+#include <keeler/advice/grain_piles.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/scene/grain_piles.hpp>
+#include <keeler/scene/contact_rates.hpp>
+#include <keeler/scene/planet.hpp>
 #include <keeler/scene/resting_choice.hpp>
 
 #include <fmt/format.h>

@@ -1,11 +1,11 @@
 // What keeler check tells of a scene, as numbers with names.
 #pragma once
 
+#include <keeler/advice/derived.hpp>
+#include <keeler/advice/estimate.hpp>
 #include <keeler/quantities/quantity.hpp>
-#include <keeler/scene/derived.hpp>
-#include <keeler/scene/estimate.hpp>
+#include <keeler/scene/patch_scale.hpp>
 #include <keeler/scene/scene.hpp>
-#include <keeler/scene/warnings.hpp>
 
 #include <optional>
 #include <string>

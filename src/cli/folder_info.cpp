@@ -11,6 +11,7 @@
 #include <keeler/runs/folder_lock.hpp>
 #include <keeler/runs/run_stage.hpp>
 #include <keeler/runs/run_view.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/scene/scene.hpp>
 
 #include <fmt/format.h>

@@ -8,6 +8,7 @@
 #include "scene_arguments.hpp"
 #include "signals.hpp"
 
+#include <keeler/advice/warnings.hpp>
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/files/new_file.hpp>
@@ -16,7 +17,8 @@
 #include <keeler/initial_conditions/from_table.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/io/snapshot.hpp>
-#include <keeler/scene/resting_choice.hpp>
+#include <keeler/scene/load.hpp>
+#include <keeler/scene/patch_scale.hpp>
 
 #include <fmt/format.h>
 

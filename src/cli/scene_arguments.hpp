@@ -1,6 +1,7 @@
 // The arguments of every command that takes a scene: the file and its overrides.
 #pragma once
 
+#include <keeler/scene/load.hpp>
 #include <keeler/scene/scene.hpp>
 
 #include <CLI/CLI.hpp>

@@ -2,11 +2,11 @@
 
 #include "messages.hpp"
 
+#include <keeler/advice/derived.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/simd.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/version.hpp>
-#include <keeler/scene/derived.hpp>
 
 #include <fmt/format.h>
 

@@ -10,6 +10,7 @@
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/initial_conditions/tiled.hpp>
 #include <keeler/io/snapshot.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/scene/scene.hpp>
 
 #include <fmt/format.h>

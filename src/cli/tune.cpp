@@ -8,11 +8,14 @@
 #include "scene_arguments.hpp"
 #include "signals.hpp"
 
+#include <keeler/config/edit.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/json_of_files.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/scene/examples.hpp>
+#include <keeler/scene/keys.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/scene/quality.hpp>
 #include <keeler/tune/tune.hpp>
 
@@ -68,8 +71,9 @@ void refuse_what_cannot_be_written(const TuneOptions& options) {
   if (!options.output)
     return;
   if (!options.scene.overrides.empty())
-    throw UsageError("--output cannot stand beside --set (the file would not have what was tuned); write the keys into "
-                     "the scene first");
+    throw UsageError(
+        "--output cannot be combined with --set (the file would not have what was tuned); write the keys into "
+        "the scene first");
   require_new_file(output_named(*options.output), options.force, "a scene");
   if (options.json && fills_standard_output(options))
     throw UsageError("--json and --output are both for standard output; name a file for the scene");
@@ -190,7 +194,7 @@ ExitCode tune_scene(const TuneOptions& options) {
   if (!options.talk.quiet)
     warn(tuning);
   if (options.output) {
-    write_text(output_named(*options.output), edit_scene(text, options.scene.path, keys));
+    write_text(output_named(*options.output), edit_document(scene_schema(), text, options.scene.path, keys));
     if (!options.json)
       print_written(output_named(*options.output));
   } else if (!options.json) {

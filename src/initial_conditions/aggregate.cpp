@@ -55,7 +55,7 @@ std::vector<HeldBody> aggregate_bodies(const AggregateSettings& aggregate, std::
   Vec3 centre = Vec3::Zero();
   for (std::size_t k = 0; k < places.size(); ++k) {
     const double radius = material.radii[k], mass = 4.0 / 3.0 * pi * material.densities[k] * radius * radius * radius;
-    bodies.push_back({aggregate.place + places[k], Vec3::Zero(), radius, mass});
+    bodies.push_back({aggregate.position + places[k], Vec3::Zero(), radius, mass});
     centre += mass / aggregate.mass * bodies.back().place;
   }
   const double turning = aggregate.spin - 1.0; // in the rotating frame

@@ -6,7 +6,8 @@
 #include <keeler/diagnostics/viscosity.hpp>
 #include <keeler/initial_conditions/broken.hpp>
 #include <keeler/initial_conditions/initial.hpp>
-#include <keeler/scene/resting_choice.hpp>
+#include <keeler/scene/load.hpp>
+#include <keeler/scene/patch_scale.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <fmt/format.h>

@@ -8,6 +8,7 @@
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/initial_conditions/possible.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <fmt/format.h>
 

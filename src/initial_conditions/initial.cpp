@@ -15,8 +15,9 @@
 #include <keeler/initial_conditions/possible.hpp>
 #include <keeler/initial_conditions/uniform.hpp>
 #include <keeler/io/snapshot.hpp>
-#include <keeler/scene/derived.hpp>
-#include <keeler/scene/keys.hpp>
+#include <keeler/scene/layer.hpp>
+#include <keeler/scene/patch_scale.hpp>
+#include <keeler/scene/planet.hpp>
 
 #include <fmt/format.h>
 
@@ -113,17 +114,17 @@ void hold_aggregates(const Scene& scene, const DrawnSizes& sizes, UniformRequest
 
 void hold_moonlets(const Scene& scene, UniformRequest& request) {
   for (const MoonletSettings& m : scene.moonlets) {
-    const Vec3 circular(0.0, -scene.planet.frequencies.shear() * m.place.x(), 0.0);
-    request.held.push_back({m.place, circular + m.velocity / scene.planet.orbital_frequency, m.radius, m.mass});
+    const Vec3 circular(0.0, -scene.planet.frequencies.shear() * m.position.x(), 0.0);
+    request.held.push_back({m.position, circular + m.velocity / scene.planet.orbital_frequency, m.radius, m.mass});
   }
 }
 
 std::vector<ClosedBall> closed_balls(const Scene& scene) {
   std::vector<ClosedBall> balls;
   for (const AggregateSettings& aggregate : scene.particles.aggregates)
-    balls.push_back({aggregate.place, aggregate.radius});
+    balls.push_back({aggregate.position, aggregate.radius});
   for (const MoonletSettings& moonlet : scene.moonlets)
-    balls.push_back({moonlet.place, moonlet.radius});
+    balls.push_back({moonlet.position, moonlet.radius});
   return balls;
 }
 

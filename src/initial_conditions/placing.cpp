@@ -6,7 +6,7 @@
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/initial_conditions/layer.hpp>
-#include <keeler/scene/derived.hpp>
+#include <keeler/scene/layer.hpp>
 
 #include <fmt/format.h>
 

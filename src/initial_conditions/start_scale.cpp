@@ -3,6 +3,7 @@
 
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
+#include <keeler/scene/patch_scale.hpp>
 
 #include <algorithm>
 #include <array>

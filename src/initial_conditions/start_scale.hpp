@@ -3,7 +3,7 @@
 
 #include <keeler/comm/communicator.hpp>
 #include <keeler/particles/patch.hpp>
-#include <keeler/scene/warnings.hpp>
+#include <keeler/scene/patch_scale.hpp>
 
 namespace keeler {
 

@@ -1,9 +1,10 @@
 // Scenes, and restitution laws of a user's own.
 #include "bindings.hpp"
 
+#include <keeler/advice/warnings.hpp>
 #include <keeler/collision/restitution.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/scene/scene.hpp>
-#include <keeler/scene/warnings.hpp>
 
 #include <pybind11/stl.h>
 

@@ -5,6 +5,7 @@
 #include "held_simulation.hpp"
 #include "snapshot.hpp"
 
+#include <keeler/advice/derived.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/threads.hpp>
@@ -13,8 +14,8 @@
 #include <keeler/initial_conditions/possible.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/runs/state_hash.hpp>
-#include <keeler/scene/derived.hpp>
-#include <keeler/scene/resting_choice.hpp>
+#include <keeler/scene/load.hpp>
+#include <keeler/scene/patch_scale.hpp>
 
 #include <fmt/format.h>
 

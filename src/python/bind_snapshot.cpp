@@ -5,6 +5,7 @@
 #include "numbers.hpp"
 #include "snapshot.hpp"
 
+#include <keeler/advice/warnings.hpp>
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/files/files.hpp>
@@ -21,7 +22,8 @@
 #include <keeler/runs/measured_part.hpp>
 #include <keeler/runs/measurement.hpp>
 #include <keeler/runs/summary.hpp>
-#include <keeler/scene/resting_choice.hpp>
+#include <keeler/scene/load.hpp>
+#include <keeler/scene/patch_scale.hpp>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>

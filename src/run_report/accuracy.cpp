@@ -1,8 +1,8 @@
 #include "accuracy.hpp"
 
+#include <keeler/advice/derived.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/report/html.hpp>
-#include <keeler/scene/derived.hpp>
 
 #include <fmt/format.h>
 

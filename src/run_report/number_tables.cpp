@@ -6,7 +6,7 @@
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/quantities/views.hpp>
 #include <keeler/report/html.hpp>
-#include <keeler/scene/derived.hpp>
+#include <keeler/scene/planet.hpp>
 
 #include <fmt/format.h>
 

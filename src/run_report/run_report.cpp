@@ -6,6 +6,7 @@
 #include "particle_view.hpp"
 #include "series_plots.hpp"
 
+#include <keeler/advice/warnings.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/json_of_files.hpp>
 #include <keeler/core/phase_progress.hpp>
@@ -22,8 +23,8 @@
 #include <keeler/runs/measurement.hpp>
 #include <keeler/runs/run_view.hpp>
 #include <keeler/runs/summary.hpp>
-#include <keeler/scene/derived.hpp>
-#include <keeler/scene/warnings.hpp>
+#include <keeler/scene/load.hpp>
+#include <keeler/scene/patch_scale.hpp>
 
 #include <fmt/format.h>
 

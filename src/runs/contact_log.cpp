@@ -30,12 +30,12 @@ bool is_logged(const ContactLogSettings& settings, const CollisionRecord& record
                double orbital_frequency) {
   if (record.normal_speed * orbital_frequency < settings.min_speed || record.radius_sum < settings.min_radius_sum)
     return false;
-  if (settings.share >= 1.0)
+  if (settings.fraction >= 1.0)
     return true;
   constexpr std::uint64_t odd = 0x9e3779b97f4a7c15; // one number for both ids
   RandomStream random(std::bit_cast<std::uint64_t>(time_orbits), RandomPurpose::contact,
                       odd * record.low_id + record.high_id);
-  return random.uniform() < settings.share;
+  return random.uniform() < settings.fraction;
 }
 
 ContactLog::ContactLog(const RunFolder& folder, const Scene& scene, const Provenance& provenance,

@@ -2,6 +2,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -7,6 +7,8 @@
 #include "runner.hpp"
 #include "summarise.hpp"
 
+#include <keeler/advice/derived.hpp>
+#include <keeler/advice/warnings.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/stopwatch.hpp>
@@ -17,8 +19,8 @@
 #include <keeler/io/checkpoint_folder.hpp>
 #include <keeler/runs/folder_lock.hpp>
 #include <keeler/runs/state_hash.hpp>
-#include <keeler/scene/derived.hpp>
-#include <keeler/scene/resting_choice.hpp>
+#include <keeler/scene/load.hpp>
+#include <keeler/scene/patch_scale.hpp>
 
 #include <fmt/format.h>
 

@@ -21,7 +21,7 @@ constexpr double min_patience = 5.0;         // s, with a stop
 Runner::Runner(const Scene& scene, const RunOptions& options, RunRequests& requests, Simulation& simulation,
                Recorder& recorder, const Stopwatch& watch, std::int64_t last_checkpoint)
     : scene_(scene), options_(options), requests_(requests), simulation_(simulation), recorder_(recorder),
-      watch_(watch), passage_(doubtful_passage(scene, simulation.orbits(), end_orbits(scene))),
+      watch_(watch), passage_(unresolved_passage(scene, simulation.orbits(), end_orbits(scene))),
       first_step_(simulation.state().step), last_checkpoint_(last_checkpoint),
       first_collisions_(simulation.state().collisions.fast + simulation.state().collisions.slow) {
   requests_.patience_s = patience();
@@ -76,7 +76,7 @@ void Runner::tell_of_passage() {
   recorder_.log("satellite passage", {{"orbits", passage_->orbits}, {"drag", passage_->drag}});
   if (options_.notice)
     options_.notice(fmt::format("note: {}", in_words(*passage_)));
-  passage_ = doubtful_passage(scene_, passage_->orbits + next, end_orbits(scene_));
+  passage_ = unresolved_passage(scene_, passage_->orbits + next, end_orbits(scene_));
 }
 
 void Runner::record() {

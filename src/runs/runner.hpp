@@ -5,8 +5,8 @@
 #include "step_check.hpp"
 
 #include <keeler/core/stopwatch.hpp>
+#include <keeler/forces/satellite.hpp>
 #include <keeler/runs/run.hpp>
-#include <keeler/scene/warnings.hpp>
 
 #include <optional>
 

@@ -5,6 +5,7 @@
 #include <keeler/core/error.hpp>
 #include <keeler/initial_conditions/possible.hpp>
 #include <keeler/io/snapshot.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/scene/scene.hpp>
 
 #include <fmt/format.h>

@@ -1,5 +1,6 @@
 #include "summarise.hpp"
 
+#include <keeler/advice/warnings.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/json_of_files.hpp>
@@ -7,7 +8,6 @@
 #include <keeler/core/threads.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/quantities/views.hpp>
-#include <keeler/scene/warnings.hpp>
 
 #include <fmt/format.h>
 
@@ -59,7 +59,7 @@ bool has_balance(From s) {
 std::vector<std::string> notes(From s) {
   constexpr double too_many = 0.1, left_out = 0.05; // no solver of all forces errs as much
   std::vector<std::string> all;
-  if (const std::optional<SatellitePassage> passage = doubtful_passage(s.scene, 0.0, s.simulation.orbits()))
+  if (const std::optional<SatellitePassage> passage = unresolved_passage(s.scene, 0.0, s.simulation.orbits()))
     all.push_back(in_words(*passage));
   // How much such contacts lose depends on the kick interval too (docs/hard-spheres.md), so the balance of energy
   // decides.

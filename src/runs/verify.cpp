@@ -13,6 +13,7 @@
 #include <keeler/io/snapshot.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/runs/state_hash.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -5,15 +5,17 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-// The ball is that of the radii as they are drawn: aggregates and their surroundings must not overlap.
+// Sets mass and radius of each ball by the radii that are drawn, so that balls and other particles cannot overlap.
 void find_balls(std::vector<AggregateSettings>& aggregates, const ParticleSettings& particles) {
   if (aggregates.empty())
     return;
+  assert(aggregates.back().first + aggregates.back().count == particles.count);
   const DrawnSizes sizes(particles.sizes, particles.count, particles.seed);
   for (AggregateSettings& a : aggregates) {
     double cubes = 0.0;
@@ -40,19 +42,19 @@ std::vector<Key> aggregate_keys() {
            .type = integer,
            .example = "500",
            .unit = "1",
-           .meaning = "how many of the particles make a ball at the start, one in each table [[particles.aggregate]]",
+           .meaning = "number of particles that form a ball at the start, one ball per table [[particles.aggregate]]",
            .range = {.low = 1, .high = 1e9}}),
       own({.path = "filling",
            .type = number,
            .fallback = "0.5",
            .unit = "1",
-           .meaning = "their volume over that of the ball, packed at random",
+           .meaning = "filling factor of the ball, whose particles are packed at random",
            .range = {.low = 0, .high = 0.64, .low_open = true}}),
       own({.path = "place",
            .type = triple,
            .fallback = "[0.0, 0.0, 0.0]",
            .unit = "m",
-           .meaning = "the middle of the ball: outward, along the orbit and up from the middle of the box",
+           .meaning = "centre of the ball: outward, along the orbit and up from the centre of the box",
            .range = {.low = -1e7, .high = 1e7}}),
       own({.path = "spin",
            .type = number,
@@ -65,21 +67,22 @@ std::vector<Key> aggregate_keys() {
 
 std::vector<AggregateSettings> read_aggregates(Settings& settings, const std::string& name,
                                                const ParticleSettings& particles) {
+  assert(particles.count > 0);
   std::vector<AggregateSettings> aggregates;
   std::size_t total = 0;
   for (const std::string& table : settings.tables("particles.aggregate")) {
     const Parameters p = settings.parameters(table, name);
     const auto count = static_cast<std::size_t>(p.integer("count"));
     if (count > particles.count - total)
-      fail_at(settings.place(table + ".count"),
-              fmt::format("{}.count = {} is more than is left (the scene has {}, of which {} are in the aggregates "
-                          "before); lower it or give the scene more particles",
+      fail_at(settings.location(table + ".count"),
+              fmt::format("{}.count = {} is too large (the scene has {}, of which {} are in earlier aggregates); "
+                          "lower it or give the scene more particles",
                           table, count, pluralize(particles.count, "particle"), total));
     total += count;
-    const std::vector<double> place = p.numbers("place");
+    const std::vector<double> position = p.numbers("place");
     aggregates.push_back({.count = count,
                           .filling = p.number("filling"),
-                          .place = {place[0], place[1], place[2]},
+                          .position = {position[0], position[1], position[2]},
                           .spin = p.number("spin")});
   }
   std::size_t first = particles.count - total;

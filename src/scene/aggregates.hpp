@@ -1,8 +1,7 @@
-// The scene's [[particles.aggregate]] tables: balls of the scene's own particles, placed in the start.
+// The scene's [[particles.aggregate]] tables: balls of the scene's particles at the start.
 #pragma once
 
-#include "settings.hpp"
-
+#include <keeler/config/settings.hpp>
 #include <keeler/scene/scene.hpp>
 
 #include <vector>
@@ -11,7 +10,8 @@ namespace keeler {
 
 std::vector<Key> aggregate_keys();
 
-/// Of a fresh start, whose number of particles is known. Throws UsageError where it has too few of them.
+/// Returns the aggregates of a fresh start. Throws UsageError if the scene has too few particles for them.
+/// Precondition: particles.count is set.
 std::vector<AggregateSettings> read_aggregates(Settings& settings, const std::string& name,
                                                const ParticleSettings& particles);
 

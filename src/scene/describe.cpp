@@ -1,6 +1,5 @@
-#include <keeler/scene/scene.hpp>
-
 #include <keeler/scene/keys.hpp>
+
 #include <keeler/scene/quality.hpp>
 
 #include <fmt/format.h>

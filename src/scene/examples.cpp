@@ -25,7 +25,7 @@ std::string nearest_example(const std::string& name) {
   return closest(name, names);
 }
 
-// Without folders and an ending, as examples are named.
+// True if the path has neither folder nor ending: examples are named so.
 bool could_be_example(const std::string& path) {
   return path.find_first_of("/.") == std::string::npos;
 }
@@ -50,12 +50,13 @@ std::string read_scene_text(const std::string& path) {
   std::error_code unknown;
   const ExampleScene* const example = could_be_example(path) ? example_named(path) : nullptr;
   const bool exists = std::filesystem::exists(path, unknown);
-  if (example && (!exists || std::filesystem::is_directory(path, unknown))) // runs often have their example's name
+  if (example &&
+      (!exists || std::filesystem::is_directory(path, unknown))) // folders of runs often have their example's name
     return std::string(example->toml);
   if (!could_be_example(path) || exists)
     return read_input(path, path);
   const std::string near = nearest_example(path);
-  throw UsageError(fmt::format("{}: there is no such file, and no example of this name; {}", path,
+  throw UsageError(fmt::format("{}: there is no file and no example of this name; {}", path,
                                near.empty() ? "check the path, or see \"keeler new --list\""
                                             : fmt::format("did you mean '{}'?", near)));
 }

@@ -1,6 +1,7 @@
 #include "key_table.hpp"
 
 #include "aggregates.hpp"
+#include "material.hpp"
 #include "moonlets.hpp"
 #include "presets.hpp"
 #include "start_pattern_keys.hpp"
@@ -24,16 +25,16 @@ KeyRange from_0_to(double high) {
   return {.low = 0, .high = high};
 }
 
-// Ranges are wide, so that only slips of units lie outside: orbits of ten minutes to 20 years, patches up to a tenth of
-// a ring's distance from its planet (1e8 m), materials up to the densest metals, motions up to 1000 times the shear
+// Ranges are wide, so that they exclude only wrong units: orbits of ten minutes to 20 years, patches up to a tenth of a
+// ring's distance from its planet (1e8 m), materials up to the densest metals, motions up to 1000 times the shear
 // across a particle, v_cut up to where a rebound would heat (it is at least v_cut / 1000), steps up to 0.3 orbit
-// (without forces a drift is exact, however long), times up to where the shortest steps have no number any more. Every
-// key has both ends: what is finite and absurd must not become an infinity in the middle of a run.
+// (without forces a drift of any length is exact), times up to where the shortest steps can no longer be counted. Every
+// range is closed at both ends, so that a finite but absurd value cannot overflow during a run.
 
 constexpr double max_orbits = 1e12;
-constexpr double largest_whole = 0x1p63; // that TOML has, but for 1
+constexpr double largest_whole = 0x1p63; // one above the largest integer of TOML
 
-// Each is held against each other, and a moonlet has columns of its own in series.csv.
+// All pairs are checked for overlap, and each moonlet adds columns to series.csv.
 constexpr std::size_t max_placed_bodies = 1000;
 
 std::vector<std::string> finder_names() {
@@ -50,7 +51,7 @@ std::vector<std::string> quality_names() {
   return names;
 }
 
-// The keys of the entries of a registry of laws, of which the scene names one.
+// Adds the keys of all laws of a registry, and the key by which a scene chooses one of them.
 template<class Entry>
 void add_laws(std::vector<Key>& keys, Key law, const std::string& section, const std::vector<Entry>& entries) {
   law.path = section + ".law";
@@ -65,7 +66,7 @@ void add_laws(std::vector<Key>& keys, Key law, const std::string& section, const
     }
 }
 
-// The keys of a force, whose paths and conditions are relative to its table.
+// Adds the keys of a force. Their paths and conditions are declared relative to its table.
 void add_table(std::vector<Key>& keys, const std::string& table, const std::vector<Key>& own) {
   for (Key key : own) {
     key.path = table + "." + key.path;
@@ -87,15 +88,16 @@ std::vector<Key> patch_keys() {
       {.path = "quality",
        .type = choice,
        .fallback = fmt::format("\"{}\"", default_quality),
-       .meaning = "how accurate steps, kicks and gravity are where their own keys do not say it; custom: one step of "
-                  "1e-3 orbit a kick, the tree",
+       .meaning =
+           "accuracy of steps, kicks and gravity where their keys are absent; custom: one step of 1e-3 orbit per "
+           "kick, the tree",
        .choices = quality_names(),
        .effect = output},
 
       {.path = "planet.preset",
        .type = choice,
        .example = "\"saturn-a-ring\"",
-       .meaning = "a place whose three frequencies are known",
+       .meaning = "a location in a ring whose three frequencies are known",
        .choices = preset_names(),
        .alternatives = {"planet.orbital_frequency"}},
       {.path = "planet.orbital_frequency",
@@ -191,7 +193,7 @@ std::vector<Key> collision_keys() {
       {.path = "collisions.finder",
        .type = choice,
        .fallback = "\"certified\"",
-       .meaning = "how the times of contact are found",
+       .meaning = "method that finds the times of contact",
        .choices = finder_names()},
       {.path = "collisions.elastic_below",
        .type = number,
@@ -202,7 +204,7 @@ std::vector<Key> collision_keys() {
   };
 }
 
-// Of every law.
+// The keys that apply to every law.
 std::vector<Key> restitution_keys() {
   return {
       {.path = "collisions.restitution.largest",
@@ -210,8 +212,8 @@ std::vector<Key> restitution_keys() {
        .fallback = "1.0",
        .unit = "1",
        .meaning =
-           "no bounce faster than elastic_below keeps more of the normal speed; below 1 for piles that are to come "
-           "to rest",
+           "upper limit of the coefficient of restitution for impacts faster than elastic_below; below 1 for piles "
+           "that are to come to rest",
        .range = {.low = 0, .high = 1},
        .unhashed = "1.0"},
   };
@@ -224,13 +226,13 @@ std::vector<Key> friction_keys() {
        .type = number,
        .example = "0.5",
        .unit = "1",
-       .meaning = "the slip of the surfaces after a contact over that before, where they do not slide all through it",
+       .meaning = "slip velocity of the surfaces after a contact over that before, if they do not slide throughout it",
        .range = {.low = -1, .high = 1}},
       {.path = "collisions.friction.coefficient",
        .type = number,
        .fallback = "\"unlimited\"",
        .unit = "1",
-       .meaning = "Coulomb's coefficient: the impulse along the surfaces is at most this times the normal one",
+       .meaning = "Coulomb's coefficient: the tangential impulse is at most this times the normal impulse",
        .range = from_0_to(1e6),
        .choices = {"unlimited"}},
   };
@@ -243,20 +245,20 @@ std::vector<Key> course_keys() {
       {.path = "start.from",
        .type = path,
        .example = "\"wakes.hdf\"",
-       .meaning = "snapshot to start from, relative to the scene file; without [start] the patch is fresh",
+       .meaning = "snapshot to start from, relative to the scene file; without [start] the patch is generated",
        .effect = start},
       {.path = "start.keep",
        .type = number,
        .fallback = "1.0",
        .unit = "1",
-       .meaning = "share of its particles that is kept, drawn by a hash of their ids",
+       .meaning = "fraction of its particles that is kept, drawn by a hash of their ids",
        .range = up_to(1),
        .effect = start},
       {.path = "start.keep_seed",
        .type = integer,
        .fallback = "1",
        .unit = "1",
-       .meaning = "seed of that draw",
+       .meaning = "seed of this draw",
        .range = from_0_to(largest_whole),
        .effect = start},
 
@@ -264,7 +266,7 @@ std::vector<Key> course_keys() {
        .type = number,
        .fallback = "1e-3",
        .unit = "orbits",
-       .meaning = "length of a step; with \"auto\" it follows the state",
+       .meaning = "length of a step; \"auto\" adapts it to the state",
        .range = {.low = 1e-9, .high = 0.3},
        .choices = {"auto"}},
       {.path = "time.end",
@@ -329,7 +331,7 @@ std::vector<Key> course_keys() {
        .type = number,
        .fallback = "1.0",
        .unit = "1",
-       .meaning = "share of these contacts that is logged, drawn by a hash",
+       .meaning = "fraction of these contacts that is logged, drawn by a hash",
        .range = up_to(1),
        .effect = output},
   };
@@ -340,19 +342,18 @@ std::vector<Key> course_keys() {
 std::vector<Key> make_keys() {
   std::vector<Key> keys = patch_keys();
   const auto add = [&](const std::vector<Key>& more) { keys.insert(keys.end(), more.begin(), more.end()); };
-  add_laws(keys,
-           {.type = KeyType::choice,
-            .example = "\"equal\"",
-            .meaning = "how sizes are distributed",
-            .effect = KeyEffect::start},
-           "particles.sizes", size_laws());
+  add_laws(
+      keys,
+      {.type = KeyType::choice, .example = "\"equal\"", .meaning = "size distribution", .effect = KeyEffect::start},
+      "particles.sizes", size_laws());
   add(start_pattern_keys());
   add(aggregate_keys());
   add(moonlet_keys());
   add(collision_keys());
-  add_laws(keys,
-           {.type = KeyType::choice, .fallback = "\"bridges\"", .meaning = "how much normal speed a bounce keeps"},
-           "collisions.restitution", restitution_laws());
+  add_laws(
+      keys,
+      {.type = KeyType::choice, .fallback = "\"bridges\"", .meaning = "law of the coefficient of normal restitution"},
+      "collisions.restitution", restitution_laws());
   add(restitution_keys());
   add(friction_keys());
   add_table(keys, "gravity", gravity_keys());
@@ -364,23 +365,29 @@ std::vector<Key> make_keys() {
 
 std::vector<Section> make_sections() {
   std::vector<Section> sections = {
-      {.path = "planet", .needed = true, .meaning = "it says where the patch orbits"},
-      {.path = "box", .needed = true, .meaning = "it says how large the patch is", .replaced_by = "start.from"},
-      {.path = "particles", .needed = true, .meaning = "it says what is in the patch", .replaced_by = "start.from"},
-      {.path = "particles.sizes", .needed = true, .meaning = "it says how large they are", .replaced_by = "start.from"},
+      {.path = "planet", .needed = true, .meaning = "it sets the orbit of the patch"},
+      {.path = "box", .needed = true, .meaning = "it sets the size of the patch", .replaced_by = "start.from"},
+      {.path = "particles",
+       .needed = true,
+       .meaning = "it sets the material of the patch",
+       .replaced_by = "start.from"},
+      {.path = "particles.sizes",
+       .needed = true,
+       .meaning = "it sets the sizes of the particles",
+       .replaced_by = "start.from"},
       {.path = "particles.streamlines", .replaced_by = "start.from"},
       {.path = "particles.modes", .replaced_by = "start.from"},
       {.path = "moonlet", .replaced_by = "start.from", .repeated = true, .most = max_placed_bodies},
       {.path = "particles.step", .replaced_by = "start.from"},
       {.path = "particles.wake", .replaced_by = "start.from"},
       {.path = "particles.aggregate", .replaced_by = "start.from", .repeated = true, .most = max_placed_bodies},
-      {.path = "collisions"},
-      {.path = "collisions.restitution"},
+      {.path = "collisions", .defaults_if_absent = true},
+      {.path = "collisions.restitution", .defaults_if_absent = true},
       {.path = "collisions.friction"},
       {.path = "gravity"},
       {.path = "start"},
-      {.path = "time", .needed = true, .meaning = "it says how long the run is"},
-      {.path = "output"},
+      {.path = "time", .needed = true, .meaning = "it sets the length of the run"},
+      {.path = "output", .defaults_if_absent = true},
       {.path = "output.collisions"},
   };
   for (const ForceEntry& force : external_forces())

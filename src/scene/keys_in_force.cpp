@@ -1,14 +1,13 @@
 #include <keeler/scene/keys_in_force.hpp>
 
-#include "document.hpp"
-
+#include <keeler/config/document.hpp>
 #include <keeler/scene/keys.hpp>
 
 namespace keeler {
 
 std::vector<KeyInForce> keys_in_force(const Scene& scene) {
   std::vector<KeyInForce> keys;
-  for (const DocumentEntry& entry : parse_document(scene.resolved, "the resolved scene")) {
+  for (const DocumentEntry& entry : parse_document(scene.resolved, "the resolved scene", scene_schema())) {
     const Key* const key = find_key(entry.path);
     if (!key)
       continue; // the header of a table

@@ -1,8 +1,7 @@
-// The scene's [[moonlet]] tables: bodies at places of their own among the particles.
+// The scene's [[moonlet]] tables: bodies among the particles, at given positions.
 #pragma once
 
-#include "settings.hpp"
-
+#include <keeler/config/settings.hpp>
 #include <keeler/scene/scene.hpp>
 
 #include <vector>
@@ -11,7 +10,7 @@ namespace keeler {
 
 std::vector<Key> moonlet_keys();
 
-/// Of a scene that goes on too: how many there are, runs must know.
+/// Returns the moonlets, also for a scene that is continued: a run needs their number.
 std::vector<MoonletSettings> read_moonlets(Settings& settings, const std::string& name);
 
 } // namespace keeler

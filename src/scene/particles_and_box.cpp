@@ -5,23 +5,24 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/scene/derived.hpp>
 #include <keeler/scene/keys.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-// What follows from a key must be possible as well: it has the range of the key that it stands for.
-void require_possible(const std::string& place, const std::string& from, const std::string& path, double value) {
+// Throws UsageError if a value that follows from the key `from` is outside the range of the key `path`.
+void require_possible(const std::string& location, const std::string& from, const std::string& path, double value) {
+  assert(find_key(path));
   const Key& key = *find_key(path);
   if (!key.range.contains(value))
-    fail_at(place, fmt::format("{} makes {} {}, but it must be {} ({}, in {}); change {}", from, path,
-                               format_number(value, 3), allowed_words(key), key.meaning, key.unit, from));
+    fail_at(location, fmt::format("{} makes {} {}, but it must be {} ({}, in {}); change {}", from, path,
+                                  format_number(value, 3), allowed_words(key), key.meaning, key.unit, from));
 }
 
 StreamlineSettings read_streamlines(const Settings& settings) {
@@ -31,11 +32,12 @@ StreamlineSettings read_streamlines(const Settings& settings) {
           settings.number("particles.streamlines.bunching"), settings.number("particles.streamlines.inclination")};
 }
 
-// Of all modes together: where their amplitudes sum up to 1 streamlines may cross.
+// Upper limit of the sum of all amplitudes: at 1, streamlines may cross.
 constexpr double max_bunching = 0.9;
-constexpr std::size_t max_modes = 1000; // each particle is placed by all of them
+constexpr std::size_t max_modes = 1000; // the position of each particle takes all of them
 
 ModeSettings read_mode(const std::vector<double>& row, ModeSettings::Direction direction, const std::string& which) {
+  assert(row.size() == 3);
   const auto require = [&](const char* what, double value, const KeyRange& range, const char* why) {
     if (!range.contains(value))
       throw UsageError(
@@ -52,14 +54,14 @@ ModeSettings read_mode(const std::vector<double>& row, ModeSettings::Direction d
 void read_modes(Settings& settings, const std::string& name, const char* key, ModeSettings::Direction direction,
                 std::vector<ModeSettings>& modes) {
   const std::string section = "particles.modes", path = fmt::format("{}.{}", section, key),
-                    place = settings.place(path);
+                    location = settings.location(path);
   const Parameters parameters = settings.parameters(section, name);
   const NumberRows& rows = parameters.rows(key);
   try {
     for (std::size_t k = 0; k < rows.size(); ++k)
       modes.push_back(read_mode(rows[k], direction, fmt::format("row {} of {}", k + 1, path)));
   } catch (const UsageError& fault) {
-    fail_at(place, fault.what());
+    fail_at(location, fault.what());
   }
 }
 
@@ -67,50 +69,54 @@ std::vector<ModeSettings> read_modes(Settings& settings, const std::string& name
   std::vector<ModeSettings> modes;
   if (!settings.has("particles.modes"))
     return modes;
-  const std::string place = settings.place("particles.modes");
+  const std::string location = settings.location("particles.modes");
   if (settings.has("particles.streamlines"))
-    fail_at(place, "[particles.modes] cannot stand beside [particles.streamlines] (either is the mean motion at the "
-                   "start); keep one of the two");
+    fail_at(location,
+            "[particles.modes] cannot be combined with [particles.streamlines] (each sets the mean motion at the "
+            "start); keep one of the two");
   read_modes(settings, name, "outward", ModeSettings::Direction::outward, modes);
   read_modes(settings, name, "inward", ModeSettings::Direction::inward, modes);
   read_modes(settings, name, "standing", ModeSettings::Direction::standing, modes);
   if (modes.empty())
-    fail_at(place, "[particles.modes] has no mode in it; add for example outward = [[1, 0.1, 0.0]]");
+    fail_at(location, "[particles.modes] has no modes; add for example outward = [[1, 0.1, 0.0]]");
   if (modes.size() > max_modes)
-    fail_at(place,
-            fmt::format("[particles.modes] has {} modes (a start takes {} at most, for each particle is placed by all "
-                        "of them); leave out the weakest",
+    fail_at(location,
+            fmt::format("[particles.modes] has {} modes (at most {}: the position of each particle takes all of them); "
+                        "remove the weakest",
                         modes.size(), max_modes));
   double sum = 0.0;
   for (const ModeSettings& mode : modes)
     sum += mode.amplitude;
   if (!(sum <= max_bunching))
-    fail_at(place, fmt::format("the amplitudes of [particles.modes] sum up to {:.3g} (at 1 streamlines cross); lower "
-                               "them to {} in all",
-                               sum, max_bunching));
+    fail_at(location,
+            fmt::format("the amplitudes of [particles.modes] sum up to {:.3g} (at 1 streamlines cross); lower "
+                        "them to {} in all",
+                        sum, max_bunching));
   return modes;
 }
 
-// So many waves of `what` in the box would be shorter than particles that should show them.
-void require_long(const Scene& scene, int waves, const std::string& place, const std::string& what) {
+// Throws UsageError if `waves` waves in the box are shorter than a particle; `what` names their key.
+void require_long(const Scene& scene, int waves, const std::string& location, const std::string& what) {
+  assert(waves > 0 && scene.size_x > 0.0);
   const double across = 2.0 * scene.particles.sizes.largest, wavelength = scene.size_x / waves;
   if (!(wavelength >= across))
-    fail_at(place, fmt::format("{} has waves of {} m, shorter than the largest particle ({} m across); give at most {} "
-                               "in the box",
-                               what, format_number(wavelength, 4), format_number(across, 4),
-                               std::max(1.0, std::floor(scene.size_x / across))));
+    fail_at(location,
+            fmt::format("{} has waves of {} m, shorter than the largest particle ({} m across); give at most {} "
+                        "in the box",
+                        what, format_number(wavelength, 4), format_number(across, 4),
+                        std::max(1.0, std::floor(scene.size_x / across))));
 }
 
-// Once the box is known.
+// Precondition: the box is known.
 void require_long_waves(const Scene& scene, const Settings& settings) {
   const ParticleSettings& particles = scene.particles;
   if (particles.streamlines.bunching > 0.0)
-    require_long(scene, particles.streamlines.waves, settings.place("particles.streamlines.waves"),
+    require_long(scene, particles.streamlines.waves, settings.location("particles.streamlines.waves"),
                  "particles.streamlines");
   const char* const directions[] = {"outward", "inward", "standing"};
   for (const ModeSettings& mode : particles.modes) {
     const std::string key = std::string("particles.modes.") + directions[static_cast<std::size_t>(mode.direction)];
-    require_long(scene, mode.waves, settings.place(key), key);
+    require_long(scene, mode.waves, settings.location(key), key);
   }
 }
 
@@ -119,36 +125,36 @@ void read_step(const Scene& scene, const Settings& settings, DensityPattern& pat
   const double edge = 0.5 * scene.size_x;
   if (!(between[0] < between[1] && between[0] >= -edge && between[1] <= edge && between[1] - between[0] < scene.size_x))
     fail_at(
-        settings.place("particles.step.between"),
-        fmt::format("particles.step.between is [{}, {}] (two rising x within the box, from {} to {}, and not all of "
-                    "it); correct it",
+        settings.location("particles.step.between"),
+        fmt::format("particles.step.between is [{}, {}] (it must be two rising x within the box, from {} to {}, and "
+                    "not all of it); correct it",
                     format_number(between[0]), format_number(between[1]), format_number(-edge), format_number(edge)));
   pattern.low = between[0];
   pattern.high = between[1];
   pattern.factor = settings.number("particles.step.factor");
 }
 
-// Whole waves fit a periodic box, along both sides.
+// Rounds the wave vector so that whole waves fit the periodic box along both sides.
 void read_wake(Scene& scene, Settings& settings, DensityPattern& pattern) {
   const double wavelength = settings.number("particles.wake.wavelength"),
                pitch = settings.number("particles.wake.pitch") * pi / 180.0;
   const double waves_x = std::round(scene.size_x * std::cos(pitch) / wavelength),
                waves_y = std::round(scene.size_y * std::sin(pitch) / wavelength);
-  const std::string place = settings.place("particles.wake.wavelength");
+  const std::string location = settings.location("particles.wake.wavelength");
   if (waves_x == 0.0 && waves_y == 0.0)
-    fail_at(place,
+    fail_at(location,
             fmt::format("particles.wake.wavelength = {} is too long (no wave fits the box of {} m x {} m); lower "
                         "it or enlarge the box",
                         format_number(wavelength), format_number(scene.size_x, 4), format_number(scene.size_y, 4)));
   if (!(wavelength >= 2.0 * scene.particles.sizes.largest))
-    fail_at(place,
+    fail_at(location,
             fmt::format("particles.wake.wavelength = {} is shorter than the largest particle ({} m across); raise "
                         "it",
                         format_number(wavelength), format_number(2.0 * scene.particles.sizes.largest, 4)));
   constexpr double max_waves = 1e9;
   if (!(waves_x <= max_waves && waves_y <= max_waves))
-    fail_at(place, fmt::format("particles.wake.wavelength = {} is too short ({} waves would be in the box); raise it",
-                               format_number(wavelength), format_number(std::max(waves_x, waves_y), 3)));
+    fail_at(location, fmt::format("particles.wake.wavelength = {} is too short (the box would hold {} waves); raise it",
+                                  format_number(wavelength), format_number(std::max(waves_x, waves_y), 3)));
   pattern.contrast = settings.number("particles.wake.contrast");
   pattern.waves_x = static_cast<int>(waves_x);
   pattern.waves_y = static_cast<int>(waves_y);
@@ -171,7 +177,7 @@ void read_pattern(Scene& scene, Settings& settings) {
   scene.particles.pattern = pattern;
 }
 
-// The key that sets how much there is, and the optical depth it asks for (0 when a count waits for the box).
+// The key that sets the amount of material, and the optical depth that it asks for (0 if it is a count).
 struct Amount {
   std::string key;
   double optical_depth = 0.0;
@@ -190,13 +196,14 @@ void read_box(Scene& scene, Settings& settings, const Amount& amount) {
   const std::string wavelengths = "box.size_in_wavelengths";
   const bool by_wavelength = settings.has(wavelengths);
   const std::string key = by_wavelength ? wavelengths : "box.size";
-  const std::string place = settings.place(key);
+  const std::string location = settings.location(key);
   std::vector<double> size = settings.numbers(key);
   if (by_wavelength) {
     if (amount.key == "particles.count")
-      fail_at(place,
-              "box.size_in_wavelengths cannot stand beside particles.count (the wavelength follows from the surface "
-              "density, and with a count this follows from the box); give box.size or particles.optical_depth");
+      fail_at(
+          location,
+          "box.size_in_wavelengths cannot be combined with particles.count (the wavelength follows from the surface "
+          "density, and with a count this follows from the box); give box.size or particles.optical_depth");
     const double surface_density =
         amount.optical_depth * surface_density_per_depth(scene.particles.sizes, scene.particles.density);
     const double wavelength = critical_wavelength(surface_density, scene.planet);
@@ -205,24 +212,23 @@ void read_box(Scene& scene, Settings& settings, const Amount& amount) {
     settings.resolve("box.size", size, wavelengths);
   }
   for (const double length : size)
-    require_possible(place, key, "box.size", length);
+    require_possible(location, key, "box.size", length);
   if (!(std::max(size[0], size[1]) <= most_oblong * std::min(size[0], size[1])))
-    fail_at(place,
-            fmt::format("the box of {} m x {} m is more than {:g} times as long as wide (its images on the short "
-                        "side would be too many); make it less oblong",
-                        format_number(size[0], 4), format_number(size[1], 4), most_oblong));
+    fail_at(location, fmt::format("the box of {} m x {} m is more than {:g} times as long as wide (it would need too "
+                                  "many images of its short side); make it squarer",
+                                  format_number(size[0], 4), format_number(size[1], 4), most_oblong));
   scene.size_x = size[0];
   scene.size_y = size[1];
   const double diameter = 2.0 * scene.particles.sizes.largest;
   if (!(std::min(size[0], size[1]) >= diameter))
-    fail_at(place,
+    fail_at(location,
             fmt::format("the box of {:.4g} m x {:.4g} m is smaller than a particle (the largest is {:.4g} m across); "
                         "enlarge the box or lower the radius",
                         size[0], size[1], diameter));
 }
 
 void read_count(Scene& scene, Settings& settings, const Amount& amount) {
-  const std::string place = settings.place(amount.key);
+  const std::string location = settings.location(amount.key);
   ParticleSettings& particles = scene.particles;
   double count = 0.0;
   if (amount.key == "particles.count") {
@@ -232,43 +238,47 @@ void read_count(Scene& scene, Settings& settings, const Amount& amount) {
     count = std::round(amount.optical_depth * scene.size_x * scene.size_y / particle_area);
   }
   if (!(count >= 1.0 && count <= 1e9))
-    fail_at(place, fmt::format("{} with this box makes {:.3g} particles (a run takes 1 to 1e9); change the box or {}",
-                               amount.key, count, amount.key));
+    fail_at(location,
+            fmt::format("{} with this box makes {:.3g} particles (a run takes 1 to 1e9); change the box or {}",
+                        amount.key, count, amount.key));
   particles.count = static_cast<std::size_t>(count);
-  require_possible(place, amount.key, "particles.optical_depth", scene.optical_depth());
-  require_possible(place, amount.key, "particles.surface_density", scene.surface_density());
+  require_possible(location, amount.key, "particles.optical_depth", scene.optical_depth());
+  require_possible(location, amount.key, "particles.surface_density", scene.surface_density());
   if (amount.key != "particles.count")
     settings.resolve("particles.count", static_cast<std::int64_t>(particles.count), amount.key);
 }
 
-// What a Gaussian layer of the scene's height would be; see largest_filling in scene/derived.hpp.
-void check_filling(Scene& scene, const std::string& place) {
+// Checks the mid-plane filling of a Gaussian layer of the scene's height (largest_filling in scene/layer.hpp).
+void check_filling(Scene& scene, const std::string& location) {
+  assert(scene.particles.count > 0);
   const ParticleSettings& particles = scene.particles;
   const double nu = scene.planet.frequencies.nu, depth = scene.optical_depth(), bunched = scene.bunched_optical_depth();
-  const Crowd crowd = crowd_of(particles);
-  const double filling = midplane_filling(bunched, crowd, particles.velocity_dispersion, nu);
+  const LayerSizes sizes = particles.layer_sizes();
+  const double filling = midplane_filling(bunched, sizes, particles.velocity_dispersion, nu);
   if (!(filling <= refused_filling)) {
-    const double hot = dispersion_for_filling(bunched, crowd, nu, refused_filling);
-    const double thin = optical_depth_for_filling(crowd, particles.velocity_dispersion, nu, refused_filling);
-    fail_at(place, fmt::format("too dense (the mid-plane would be filled to {:.2f}, and {:.2f} is the most that can be "
-                               "placed without overlap); raise velocity_dispersion to at least {:.2f} or lower the "
-                               "optical depth from {:.3g} to at most {:.2f}{}",
-                               filling, refused_filling, std::ceil(hot * 100.0) / 100.0, depth,
-                               std::floor(thin * depth / bunched * 100.0) / 100.0,
-                               !(bunched > depth)             ? ""
-                               : !particles.pattern.uniform() ? " or even out the step or the wake"
-                               : particles.modes.empty()      ? " or lower the bunching"
-                                                              : " or lower the amplitudes of the modes"));
+    const double hot = dispersion_for_filling(bunched, sizes, nu, refused_filling);
+    const double thin = optical_depth_for_filling(sizes, particles.velocity_dispersion, nu, refused_filling);
+    fail_at(location, fmt::format("too dense (the mid-plane filling factor would be {:.2f}, and at most {:.2f} can be "
+                                  "placed without overlap); raise velocity_dispersion to at least {:.2f} or lower the "
+                                  "optical depth from {:.3g} to at most {:.2f}{}",
+                                  filling, refused_filling, std::ceil(hot * 100.0) / 100.0, depth,
+                                  std::floor(thin * depth / bunched * 100.0) / 100.0,
+                                  !(bunched > depth)             ? ""
+                                  : !particles.pattern.uniform() ? " or even out the step or the wake"
+                                  : particles.modes.empty()      ? " or lower the bunching"
+                                                                 : " or lower the amplitudes of the modes"));
   }
   if (filling > largest_filling)
-    scene.notices.push_back(fmt::format("the start has a flat-topped layer, its mid-plane filled to {:.2f}: a Gaussian "
-                                        "one of this optical depth and height would be filled to {:.2f}",
-                                        largest_filling, filling));
+    scene.notices.push_back(
+        fmt::format("the start has a flat-topped layer with a mid-plane filling factor of {:.2f}: a "
+                    "Gaussian layer of this optical depth and height would have {:.2f}",
+                    largest_filling, filling));
 }
 
 } // namespace
 
 void read_particles_and_box(Scene& scene, Settings& settings, const std::string& name) {
+  assert(scene.planet.orbital_frequency > 0.0);
   ParticleSettings& particles = scene.particles;
   particles.sizes = make_law(size_laws(), "particles.sizes", settings, name);
   particles.density = particles.sizes.density ? particles.sizes.mean_density : settings.number("particles.density");
@@ -280,10 +290,10 @@ void read_particles_and_box(Scene& scene, Settings& settings, const std::string&
   read_box(scene, settings, amount);
   require_long_waves(scene, settings);
   read_pattern(scene, settings);
-  const std::string place = settings.place(amount.key); // before it is resolved to a count
+  const std::string location = settings.location(amount.key); // before read_count() resolves it
   read_count(scene, settings, amount);
   particles.aggregates = read_aggregates(settings, name, particles);
-  check_filling(scene, place);
+  check_filling(scene, location);
 }
 
 } // namespace keeler

@@ -1,13 +1,12 @@
-// How much ring there is: sizes, box and count, each of which the scene may give in more than one way.
+// Sizes, box and number of particles, each of which the scene may give in more than one way.
 #pragma once
 
-#include "settings.hpp"
-
+#include <keeler/config/settings.hpp>
 #include <keeler/scene/scene.hpp>
 
 namespace keeler {
 
-/// Fills in the scene's particles and box; the planet is already there. `name` is the scene file.
+/// Reads the scene's particles and box. `name` is the scene file. Precondition: scene.planet is set.
 void read_particles_and_box(Scene& scene, Settings& settings, const std::string& name);
 
 } // namespace keeler

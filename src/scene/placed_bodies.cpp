@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
@@ -12,27 +13,29 @@ namespace {
 
 struct PlacedBody {
   std::string table;
-  std::string size_key; // what makes it large
-  Vec3 place;
+  std::string size_key; // the key that sets its size
+  Vec3 position;
   double radius;
-  double height; // that it reaches, m from the mid-plane
+  double height; // largest distance from the mid-plane, m
 };
 
 std::vector<PlacedBody> placed_bodies(const Scene& scene) {
   std::vector<PlacedBody> bodies;
   for (const AggregateSettings& a : scene.particles.aggregates)
-    bodies.push_back({fmt::format("particles.aggregate[{}]", bodies.size() + 1), "count", a.place, a.radius,
-                      std::fabs(a.place.z())});
+    bodies.push_back({fmt::format("particles.aggregate[{}]", bodies.size() + 1), "count", a.position, a.radius,
+                      std::fabs(a.position.z())});
   const std::size_t before_moonlets = bodies.size();
   const double vertical = scene.planet.frequencies.nu * scene.planet.orbital_frequency; // rad/s
+  assert(vertical > 0.0);
   for (const MoonletSettings& m : scene.moonlets)
-    bodies.push_back({fmt::format("moonlet[{}]", bodies.size() - before_moonlets + 1), "radius", m.place, m.radius,
-                      std::hypot(m.place.z(), m.velocity.z() / vertical)});
+    bodies.push_back({fmt::format("moonlet[{}]", bodies.size() - before_moonlets + 1), "radius", m.position, m.radius,
+                      std::hypot(m.position.z(), m.velocity.z() / vertical)});
   return bodies;
 }
 
-// Of the nearest images.
+// Returns the distance of the nearest images.
 double distance(const Vec3& a, const Vec3& b, const Scene& scene) {
+  assert(scene.size_x > 0.0 && scene.size_y > 0.0);
   Vec3 d = a - b;
   d.x() -= scene.size_x * std::round(d.x() / scene.size_x);
   d.y() -= scene.size_y * std::round(d.y() / scene.size_y);
@@ -40,23 +43,22 @@ double distance(const Vec3& a, const Vec3& b, const Scene& scene) {
 }
 
 void check_in_box(const PlacedBody& body, const Scene& scene, const Settings& settings) {
-  const std::string size = body.table + "." + body.size_key, place = body.table + ".place";
+  const std::string size = body.table + "." + body.size_key, key = body.table + ".place";
   if (!(2.0 * body.radius <= std::min(scene.size_x, scene.size_y)))
-    fail_at(settings.place(size),
-            fmt::format("{} is {} m across (more than a side of the box of {} m x {} m); enlarge the box or lower "
+    fail_at(settings.location(size),
+            fmt::format("{} is {} m across (more than one side of the box of {} m x {} m); enlarge the box or lower "
                         "the {}",
                         body.table, format_number(2.0 * body.radius, 4), format_number(scene.size_x, 4),
                         format_number(scene.size_y, 4), body.size_key));
-  if (!(2.0 * std::fabs(body.place.x()) <= scene.size_x && 2.0 * std::fabs(body.place.y()) <= scene.size_y))
-    fail_at(settings.place(place),
-            fmt::format("{} is outside the box (it reaches {} m and {} m to each side of its middle); move it", place,
+  if (!(2.0 * std::fabs(body.position.x()) <= scene.size_x && 2.0 * std::fabs(body.position.y()) <= scene.size_y))
+    fail_at(settings.location(key),
+            fmt::format("{} is outside the box (it extends {} m and {} m to each side of its centre); move it", key,
                         format_number(0.5 * scene.size_x, 4), format_number(0.5 * scene.size_y, 4)));
   if (const double longer = std::max(scene.size_x, scene.size_y); !(body.height <= longer))
-    fail_at(
-        settings.place(body.table),
-        fmt::format("{} reaches {} m from the mid-plane (more than the longer side of the box, {} m: no part of this "
-                    "ring); lower its place and its vertical velocity",
-                    body.table, format_number(body.height, 4), format_number(longer, 4)));
+    fail_at(settings.location(body.table),
+            fmt::format("{} reaches {} m from the mid-plane (more than the longer side of the box, {} m: too far for a "
+                        "ring); lower its place and its vertical velocity",
+                        body.table, format_number(body.height, 4), format_number(longer, 4)));
 }
 
 } // namespace
@@ -67,8 +69,9 @@ void check_placed_bodies(const Scene& scene, const Settings& settings) {
     const PlacedBody& body = bodies[k];
     check_in_box(body, scene, settings);
     for (std::size_t j = 0; j < k; ++j)
-      if (const double apart = distance(body.place, bodies[j].place, scene); apart < body.radius + bodies[j].radius)
-        fail_at(settings.place(body.table),
+      if (const double apart = distance(body.position, bodies[j].position, scene);
+          apart < body.radius + bodies[j].radius)
+        fail_at(settings.location(body.table),
                 fmt::format("{} and {} overlap (their centres are {} m apart, their radii {} m and {} m); move one",
                             bodies[j].table, body.table, format_number(apart, 4), format_number(bodies[j].radius, 4),
                             format_number(body.radius, 4)));

@@ -1,13 +1,12 @@
-// What a scene puts at places of its own: moonlets and aggregates.
+// Bodies at positions that the scene gives: moonlets and aggregates.
 #pragma once
 
-#include "settings.hpp"
-
+#include <keeler/config/settings.hpp>
 #include <keeler/scene/scene.hpp>
 
 namespace keeler {
 
-/// Throws UsageError at the first that stands outside the box or is too large for it, or that overlaps another.
+/// Throws UsageError for the first body that lies outside the box, is too large for it, or overlaps another body.
 void check_placed_bodies(const Scene& scene, const Settings& settings);
 
 } // namespace keeler

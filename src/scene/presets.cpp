@@ -1,6 +1,6 @@
 #include "presets.hpp"
 
-#include "document.hpp"
+#include <keeler/config/document.hpp>
 
 #include <algorithm>
 #include <cassert>
@@ -18,7 +18,8 @@ PlanetSettings find_preset(const std::string& name) {
   const auto& presets = preset_texts();
   const auto preset = std::find_if(presets.begin(), presets.end(), [&](const PresetText& p) { return p.name == name; });
   assert(preset != presets.end());
-  const SceneDocument document = parse_document(std::string(preset->toml), "preset " + name);
+  const Schema no_schema; // the file has three numbers at its top level
+  const TomlDocument document = parse_document(std::string(preset->toml), "preset " + name, no_schema);
   const auto number = [&](const char* key) { return std::get<double>(find_entry(document, key)->value); };
   return {name, number("orbital_frequency"), {number("epicyclic_ratio"), number("vertical_ratio")}};
 }

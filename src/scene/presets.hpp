@@ -1,7 +1,7 @@
-// Places with known frequencies: the files of data/presets, embedded at build so that the program runs from anywhere.
+// Locations in rings with known frequencies: the files of data/presets, embedded at build time.
 #pragma once
 
-#include <keeler/scene/scene.hpp>
+#include <keeler/scene/planet.hpp>
 
 #include <string>
 #include <string_view>
@@ -14,12 +14,12 @@ struct PresetText {
   std::string_view toml;
 };
 
-/// Generated from data/presets by the build.
+/// Returns all presets; the build generates it from data/presets.
 const std::vector<PresetText>& preset_texts();
 
 std::vector<std::string> preset_names();
 
-/// The frequencies of a preset; the name is one of preset_names().
+/// Returns the frequencies of a preset. Precondition: `name` is one of preset_names().
 PlanetSettings find_preset(const std::string& name);
 
 } // namespace keeler

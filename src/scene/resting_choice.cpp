@@ -2,10 +2,10 @@
 
 #include <keeler/core/format.hpp>
 #include <keeler/core/units.hpp>
-#include <keeler/scene/derived.hpp>
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -13,12 +13,12 @@ namespace keeler {
 namespace {
 
 constexpr double aggregates_last = 1.0;     // r_h
-constexpr double allowed_excess = 0.015;    // half of what a balance of energy is trusted to (docs/hard-spheres.md)
-constexpr double much_larger = 3.0;         // radius of a body over that of its neighbours, which are grains to it
-constexpr double automatic_interval = 4e-3; // orbits: what an automatic step comes to in wakes
-constexpr double min_mass_fraction = 0.001; // of the patch, in a body whose grains matter to the patch
+constexpr double allowed_excess = 0.015;    // half the accuracy of an energy balance (docs/hard-spheres.md)
+constexpr double much_larger = 3.0;         // radius of a body over that of its grains
+constexpr double automatic_interval = 4e-3; // orbits: typical of an automatic step in wakes
+constexpr double min_mass_fraction = 0.001; // of the patch, in a body that must hold grains to matter
 
-// The Hill radius of two bodies over their radius sum: that of equal spheres of this density.
+// Returns the Hill radius of two bodies over their radius sum, by equal spheres of the density below.
 double pair_hill_parameter(const PatchScale::Sphere& a, const PatchScale::Sphere& b, double distance) {
   const double density = 3.0 / pi * (a.mass + b.mass) / std::pow(a.radius + b.radius, 3);
   return hill_parameter(density, distance);
@@ -26,14 +26,16 @@ double pair_hill_parameter(const PatchScale::Sphere& a, const PatchScale::Sphere
 
 } // namespace
 
-// Grains stay on a large body at a lower density than on each other.
+// A large body holds grains at a lower density than grains hold each other.
 bool holds_grains(const PatchScale::Sphere& body, const PatchScale::Sphere& grain, const PlanetSettings& planet) {
+  assert(body.radius >= 0.0 && body.mass >= 0.0);
   return grain.radius > 0.0 && body.radius >= much_larger * grain.radius &&
          pair_hill_parameter(body, grain, distance_from_saturn(planet)) >= aggregates_last;
 }
 
 // A fit to the tables of docs/hard-spheres.md: optical depths 1 to 3, r_h 0.6 to 1.2, kicks 1e-3 to 1e-2 orbits apart.
 double excess_of_bouncing(double optical_depth, double hill_parameter, double kick_interval) {
+  assert(optical_depth >= 0.0 && hill_parameter >= 0.0 && kick_interval > 0.0);
   return 0.033 * std::pow(optical_depth, 1.2) * std::pow(hill_parameter / 0.93, 7.5) * (kick_interval / 5e-3);
 }
 
@@ -46,22 +48,8 @@ RestingChoice choose_resting_contacts(const PatchScale& patch, const Scene& scen
   const double interval =
       scene.time.automatic ? automatic_interval : scene.time.step * static_cast<double>(scene.kick_interval());
   const double excess = excess_of_bouncing(patch.optical_depth, r_h, interval);
-  return {excess >= allowed_excess,
-          fmt::format("bouncing loses about {} % more than the shear gives", format_number(100.0 * excess, 2))};
-}
-
-bool leaves_resting_open(const Scene& scene) {
-  return scene.resolved.find("\nresting_contacts = \"auto\"\n") != std::string::npos;
-}
-
-Scene decided_by(const Scene& scene, const PatchScale& start) {
-  if (!leaves_resting_open(scene))
-    return scene;
-  const RestingChoice choice = choose_resting_contacts(start, scene);
-  const char* const word = choice.carried ? "carried" : "bounced";
-  Scene decided = parse_scene(scene.resolved, "the resolved scene", {fmt::format("gravity.resting_contacts={}", word)});
-  decided.notices = scene.notices;
-  return decided;
+  return {excess >= allowed_excess, fmt::format("bouncing loses about {} % more energy than the shear supplies",
+                                                format_number(100.0 * excess, 2))};
 }
 
 } // namespace keeler

@@ -13,7 +13,7 @@ std::vector<Key> streamline_keys() {
        .type = integer,
        .example = "1",
        .unit = "1",
-       .meaning = "waves in the box of a pattern in the eccentricity vectors: phases at the start are 2 pi n X / L_x",
+       .meaning = "number n of waves in the box: eccentricity vectors have the phases 2 pi n X / L_x at the start",
        .range = {.low = 1, .high = 1000},
        .effect = start},
       {.path = "particles.streamlines.bunching",
@@ -27,7 +27,7 @@ std::vector<Key> streamline_keys() {
        .type = number,
        .fallback = "0.0",
        .unit = "mean r",
-       .meaning = "inclination common to all particles, which swing up and down together; rising at the start",
+       .meaning = "inclination common to all particles, which oscillate in phase; rising at the start",
        .range = {.low = 0, .high = 1000},
        .effect = start},
   };
@@ -45,8 +45,8 @@ std::vector<Key> mode_keys() {
                .effect = KeyEffect::start};
   };
   return {key("outward", "epicyclic waves along the radius at the start that travel outward"),
-          key("inward", "the same, inward"),
-          key("standing", "the same, standing; their density is largest at the start")};
+          key("inward", "epicyclic waves along the radius at the start that travel inward"),
+          key("standing", "standing epicyclic waves along the radius; their density is largest at the start")};
 }
 
 std::vector<Key> pattern_keys() {
@@ -57,14 +57,14 @@ std::vector<Key> pattern_keys() {
        .type = pair,
        .example = "[-20.0, 20.0]",
        .unit = "m",
-       .meaning = "between these x the surface density is another one at the start; its mean over the box stays",
+       .meaning = "x between which the surface density differs at the start; its mean over the box is kept",
        .range = {.low = -1e7, .high = 1e7},
        .effect = start},
       {.path = "particles.step.factor",
        .type = number,
        .example = "2.0",
        .unit = "1",
-       .meaning = "surface density there over that beside it; 0: a gap",
+       .meaning = "surface density between these x over that outside; 0: a gap",
        .range = {.low = 0, .high = 100},
        .effect = start},
       {.path = "particles.wake.contrast",
@@ -78,14 +78,14 @@ std::vector<Key> pattern_keys() {
        .type = number,
        .example = "60.0",
        .unit = "m",
-       .meaning = "distance of its crests, rounded so that whole waves fit the box",
+       .meaning = "distance between crests, rounded so that whole waves fit the box",
        .range = {.low = 0, .high = 1e7, .low_open = true},
        .effect = start},
       {.path = "particles.wake.pitch",
        .type = number,
        .fallback = "20.0",
        .unit = "degrees",
-       .meaning = "angle of its crests to the orbit, rounded likewise; above 0 they trail, at 0 they are rings",
+       .meaning = "angle of the crests to the orbit, rounded likewise; above 0 they trail, at 0 they are rings",
        .range = {.low = -90, .high = 90},
        .effect = start},
   };

@@ -1,4 +1,4 @@
-// The keys of what a fresh start may be patterned with: streamlines, radial modes, a step or a wave of the density.
+// The keys of the patterns that a fresh start may have: streamlines, radial modes, a step or a wave of the density.
 #pragma once
 
 #include <keeler/core/key.hpp>

@@ -1,8 +1,8 @@
 #include "first_state.hpp"
 
+#include <keeler/advice/derived.hpp>
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
-#include <keeler/scene/derived.hpp>
 
 #include <fmt/format.h>
 

@@ -180,7 +180,7 @@ private:
     std::set<std::string> seen;
     for (const GridValue& value : values)
       if (!seen.insert(value.label).second)
-        fail_at(value.override.value_place,
+        fail_at(value.override.value_location,
                 fmt::format("the {} {} stands here twice (both would be one run); remove one", what, value.label));
   }
 
@@ -291,7 +291,7 @@ private:
       for (const GridValue& value : point)
         labels.push_back(value.label);
       if (!seen.insert(labels).second)
-        fail_at(point.front().override.value_place,
+        fail_at(point.front().override.value_location,
                 fmt::format("{} stands here twice (both would be one run); remove one", fmt::join(labels, ", ")));
     }
   }

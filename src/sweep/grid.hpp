@@ -16,6 +16,7 @@
 #pragma once
 
 #include <keeler/batch/quantities.hpp>
+#include <keeler/config/overrides.hpp>
 #include <keeler/scene/scene.hpp>
 
 #include <filesystem>

@@ -1,11 +1,13 @@
 #include "plan.hpp"
 
 #include <keeler/batch/quantities.hpp>
+#include <keeler/config/overrides.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/io/hash.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -3,6 +3,7 @@
 #include "output.hpp"
 #include "tables.hpp"
 
+#include <keeler/advice/warnings.hpp>
 #include <keeler/batch/claims.hpp>
 #include <keeler/batch/workers.hpp>
 #include <keeler/core/error.hpp>
@@ -11,7 +12,6 @@
 #include <keeler/core/json_of_files.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/report/csv.hpp>
-#include <keeler/scene/warnings.hpp>
 
 #include <fmt/format.h>
 

@@ -2,7 +2,8 @@
 
 #include <keeler/bench/yardsticks.hpp>
 #include <keeler/initial_conditions/initial.hpp>
-#include <keeler/scene/resting_choice.hpp>
+#include <keeler/scene/load.hpp>
+#include <keeler/scene/patch_scale.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <algorithm>

@@ -3,10 +3,10 @@
 #include "growth.hpp"
 #include "probes.hpp"
 
+#include <keeler/advice/estimate.hpp>
 #include <keeler/bench/yardsticks.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
-#include <keeler/scene/estimate.hpp>
 
 #include <algorithm>
 #include <array>

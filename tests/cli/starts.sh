@@ -26,7 +26,7 @@ prints "overlap" "largest overlap                    0 of"
 
 sed -e 's/^sizes = .*/sizes = { law = "equal", radius = 1.0 }/' -e 's/_depth = .*/_depth = 3.0/' "$work/scene.toml" \
   >"$work/dense.toml"
-notice="the start has a flat-topped layer, its mid-plane filled to 0.55"
+notice="the start has a flat-topped layer with a mid-plane filling factor of 0.55"
 runs 0 check "$work/dense.toml"
 prints "check" "$notice"
 prints "check" "mid-plane filling at the start     0.55"
@@ -58,14 +58,14 @@ runs 0 generate "$work/scene.toml" --set particles.density=3000 --set "$(aggrega
 runs 0 check "$work/scene.toml" --set "start.from='$work/heavy.hdf'" --set 'gravity={solver="direct",kick_every=20}'
 prints "check of a start from a file" "Hill parameter r_h                 1.22"
 prints "check of a start from a file" "  why                              aggregates last at r_h 1.22"
-prints "check of a start from a file" "note: kicks are 0.02 orbits apart: aggregates last at r_h 1.2 and cannot rest"
+prints "check of a start from a file" "note: kicks are 0.02 orbits apart: aggregates form at r_h 1.2, cannot rest"
 runs 0 check "$work/scene.toml" --set "$(aggregate 200 0.5)"
 prints "check" "aggregate                          id "
 refuses "too full an aggregate" "particles.aggregate[1]: 12 particles cannot be packed at random to a filling of 0.64" \
   generate "$work/scene.toml" --set "$(aggregate 12 0.64)" --set particles.sizes.min=3.9 -o "$work/none.hdf"
 refuses "an aggregate of more than there are" "is more than is left" \
   generate "$work/scene.toml" --set "$(aggregate 100000000 0.5)" -o "$work/none.hdf"
-refuses "an aggregate wider than the box" "across (more than a side of the box" \
+refuses "an aggregate wider than the box" "across (more than one side of the box" \
   generate "$work/scene.toml" --set "$(aggregate 200 0.0001)" -o "$work/none.hdf"
 refuses "an aggregate in a moonlet" "particles.aggregate[1] and moonlet[1] overlap" generate "$work/scene.toml" \
   --set "$(aggregate 200 0.5)" --set 'moonlet=[{ radius = 11.0, density = 900.0 }]' -o "$work/none.hdf"

@@ -110,18 +110,18 @@ far() { # NAME WORDS: said by generate, by check and by run of a start from it
   runs 0 run "$work/scene.toml" --from "$work/$1.hdf" --set time.end=0.001 -o "$work/$1"
   grep -qF "$2" "$work/err" || fail "$1, run: $(cat "$work/err")"
 }
-far still "the velocities lack the shear: v_y changes with x by "
+far still "the velocities lack the shear: dv_y/dx is "
 far mirrored "the shear of the velocities has the wrong sign"
 far cm_s "as much as on circular orbits (-0.0002925): are lengths in m and velocities in m/s"
 far hot "mean r Omega), where collisions and self-gravity keep up some 3.6: are velocities in m/s"
-far km "all particles are in the middle 0.093 % of the box: are their lengths in m"
+far km "all particles are in the central 0.093 % of the box: are positions and the box in m"
 generated ring
 grep -q "shear\|are lengths\|are velocities" "$work/out" && fail "a ring is doubted: $(cat "$work/out")"
 runs 0 check "$source_dir/examples/two-body/scene.toml"
 grep -q "shear\|are lengths\|are velocities" "$work/out" && fail "two bodies are doubted: $(cat "$work/out")"
 runs 0 check "$work/scene.toml" --set particles.density=900 --set particles.count=50 --set particles.sizes.law=equal \
   --set particles.sizes.radius=1 --set particles.velocity_dispersion=200
-prints "a hot fresh start" "the velocity dispersion is 39 mm/s (200 mean r Omega), where"
+prints "a hot fresh start" "the velocity dispersion is 39 mm/s (200 mean r Omega); collisions"
 
 made x,y,z,r,m, 0,0,0,1,4000,
 refused 2 "a trailing comma" "table.csv:1: the last column has no name (the line ends with a ','); remove that ','"
@@ -145,10 +145,10 @@ printf 'x,y,z,r\n\0\0,0,0,1\n' >"$work/table.csv"
 refused 2 "zero bytes" "table.csv:2: x is '??' (it must be a number); correct it or remove the row"
 
 made x,y,z,r,m 0,0,0,1,4000
-refuses "a start beside it" "start.from cannot stand beside a table of particles" \
+refuses "a start beside it" "start.from cannot be combined with a table of particles" \
   generate "$work/scene.toml" --set start.from="$work/good.hdf" --from-table "$work/table.csv" -o "$work/none.hdf"
 sed 's/^size = .*/size_in_wavelengths = [4, 4]/' "$work/scene.toml" >"$work/wavelengths.toml"
-refuses "a box in wavelengths" "box.size_in_wavelengths cannot stand beside a table" \
+refuses "a box in wavelengths" "box.size_in_wavelengths cannot be combined with a table" \
   generate "$work/wavelengths.toml" --from-table "$work/table.csv" -o "$work/none.hdf"
 refuses "--relax alone" "--relax requires --from-table" generate "$work/scene.toml" --relax -o "$work/none.hdf"
 refuses "an existing file" "exists already" generate "$work/scene.toml" --from-table "$work/table.csv" -o "$work/good.hdf"

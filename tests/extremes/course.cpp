@@ -5,6 +5,7 @@
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/initial_conditions/initial.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <fmt/format.h>
 

@@ -5,6 +5,7 @@
 #include "unit/collision/spheres.hpp"
 
 #include <keeler/initial_conditions/initial.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/simulation.hpp>
 
@@ -43,7 +44,7 @@ std::vector<Row> refused_scenes() {
            {"ε above 1", {"collisions.restitution.value=1.1"}, {"restitution.value is 1.1", "from 0 to 1"}},
            {"filling above 0.62",
             {"particles.optical_depth=5"},
-            {"too dense", "0.62 is the most", "raise velocity_dispersion"}},
+            {"too dense", "at most 0.62", "raise velocity_dispersion"}},
            {"a box below a particle", {"box.size=[1.5,100]"}, {"is smaller than a particle", "enlarge the box"}},
            {"aspect above 1 : 1000", {"box.size=[3,3300]"}, {"1000"}}})
     rows.push_back(refused(

@@ -6,6 +6,7 @@
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/initial_conditions/initial.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <fmt/format.h>
 

@@ -7,6 +7,7 @@
 #include <keeler/runs/run.hpp>
 #include <keeler/runs/run_view.hpp>
 #include <keeler/runs/stored_patches.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <array>
 #include <map>

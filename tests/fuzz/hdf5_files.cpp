@@ -12,6 +12,7 @@
 #include <keeler/io/particle_table.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/runs/run.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 namespace keeler::fuzz {

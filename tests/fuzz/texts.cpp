@@ -1,14 +1,15 @@
 // Targets that read text: scenes, assignments, lists of radii, tables of particles, series.
 #include "targets.hpp"
 
+#include <keeler/advice/derived.hpp>
+#include <keeler/advice/warnings.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/initial_conditions/from_table.hpp>
 #include <keeler/io/particle_table.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/runs/transport.hpp>
-#include <keeler/scene/derived.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/scene/scene.hpp>
-#include <keeler/scene/warnings.hpp>
 
 #include <algorithm>
 #include <cstdio>

@@ -3,6 +3,7 @@
 #include "scenes.hpp"
 
 #include <keeler/diagnostics/clusters.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>
 

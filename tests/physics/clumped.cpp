@@ -9,6 +9,7 @@
 #include <keeler/diagnostics/viscosity.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/initial_conditions/clumped.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>
 

@@ -2,7 +2,8 @@
 // what the estimate promises; the rates themselves differ by 140 over these cases.
 #include "physics/scenes.hpp"
 
-#include <keeler/scene/estimate.hpp>
+#include <keeler/scene/contact_rates.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>
 

@@ -9,6 +9,7 @@
 
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <fmt/format.h>

@@ -3,6 +3,7 @@
 
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/initial_conditions/initial.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <fmt/format.h>

@@ -5,6 +5,7 @@
 
 #include <keeler/core/random.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>
 

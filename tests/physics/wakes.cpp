@@ -7,6 +7,7 @@
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/analysis.hpp>
 #include <keeler/diagnostics/occultation.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>
 

@@ -46,7 +46,7 @@ class ForeignFiles(unittest.TestCase):
         for command in (("analyze", self.file), ("render", self.file, "-o", self.folder / "picture.png"),
                         ("run", self.scene, "--from", self.file, "-o", self.folder / "run")):
             done = keeler(*command)
-            lines = [line for line in done.stderr.decode().splitlines() if "takes its place" not in line]
+            lines = [line for line in done.stderr.decode().splitlines() if "replaces it" not in line]
             self.assertEqual((done.returncode, len(lines)), (code, 1), (command[0], lines[:3]))
             self.assertIn(words, lines[0])
             self.assertIn("changed.hdf", lines[0])

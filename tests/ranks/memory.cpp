@@ -5,6 +5,7 @@
 
 #include <keeler/core/memory.hpp>
 #include <keeler/runs/run.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>
 

@@ -8,6 +8,8 @@
 #include <keeler/io/snapshot.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/runs/state_hash.hpp>
+#include <keeler/scene/load.hpp>
+#include <keeler/scene/patch_scale.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <doctest/doctest.h>

@@ -7,6 +7,7 @@
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/diagnostics/transmission.hpp>
 #include <keeler/gravity/fft.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include "lattice.hpp"

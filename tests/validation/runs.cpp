@@ -4,6 +4,7 @@
 
 #include <keeler/runs/run.hpp>
 #include <keeler/runs/stored_patches.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <fmt/format.h>
 

@@ -3,6 +3,7 @@
 
 #include <keeler/io/particle_table.hpp>
 #include <keeler/particles/patch.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/scene/scene.hpp>
 
 #include <cstddef>

@@ -4,8 +4,8 @@
 #include <keeler/comm/communicator.hpp>
 #include <keeler/initial_conditions/progress.hpp>
 #include <keeler/particles/patch.hpp>
+#include <keeler/scene/patch_scale.hpp>
 #include <keeler/scene/scene.hpp>
-#include <keeler/scene/warnings.hpp>
 
 #include <functional>
 #include <string>

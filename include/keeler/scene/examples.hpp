@@ -1,5 +1,4 @@
-// The scenes of examples/, embedded at build so that the program has them anywhere: to be run by their names, and to
-// begin one's own from.
+// The scenes of examples/, embedded at build time: they run by their names, and are templates for scenes.
 #pragma once
 
 #include <string>
@@ -16,17 +15,17 @@ struct ExampleScene {
   std::string_view name, toml;
   std::vector<Table> tables;
 
-  /// Its first line, a comment that says what it shows.
+  /// Returns the text of its first line, a comment that says what the example shows.
   std::string_view about() const;
 };
 
-/// In the order of their names.
+/// Returns all examples in the order of their names.
 const std::vector<ExampleScene>& example_scenes();
 
-/// Throws UsageError with the nearest name when there is none of this one.
+/// Returns the example of this name. Throws UsageError with the nearest name if there is none.
 const ExampleScene& find_example(const std::string& name);
 
-/// The text of the scene file at this path, or else of the example of this name. Throws UsageError when there is
+/// Returns the text of the scene file at this path, or else of the example of this name. Throws UsageError if there is
 /// neither.
 std::string read_scene_text(const std::string& path);
 

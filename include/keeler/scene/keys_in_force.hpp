@@ -1,4 +1,4 @@
-// What a checked scene says, key by key.
+// The keys of a checked scene, one by one.
 #pragma once
 
 #include <keeler/scene/scene.hpp>
@@ -13,7 +13,7 @@ namespace keeler {
 struct KeyInForce {
   std::string path;                ///< "time.end", "moonlet[2].radius"
   std::string value;               ///< as TOML
-  std::optional<std::string> file; ///< the absolute path of the file that the value names, if it names one
+  std::optional<std::string> file; ///< absolute path, if the value is the path of a file
 };
 
 /// Returns every key of the resolved scene, in its order.

@@ -4,8 +4,8 @@
 #pragma once
 
 #include <keeler/bench/gravity.hpp>
+#include <keeler/config/edit.hpp>
 #include <keeler/core/progress.hpp>
-#include <keeler/scene/edit.hpp>
 #include <keeler/scene/scene.hpp>
 
 #include <functional>

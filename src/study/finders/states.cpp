@@ -7,7 +7,8 @@
 #include <keeler/initial_conditions/clumped.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/io/snapshot.hpp>
-#include <keeler/scene/derived.hpp>
+#include <keeler/scene/load.hpp>
+#include <keeler/scene/planet.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <fmt/format.h>

@@ -1,6 +1,7 @@
 #include "runs.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <fmt/format.h>
 

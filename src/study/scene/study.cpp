@@ -3,11 +3,11 @@
 #include "report.hpp"
 #include "study_folder.hpp"
 
+#include <keeler/advice/warnings.hpp>
 #include <keeler/batch/workers.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/runs/folder_lock.hpp>
-#include <keeler/scene/warnings.hpp>
 
 #include <fmt/format.h>
 

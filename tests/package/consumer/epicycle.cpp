@@ -1,5 +1,6 @@
 // A shared library that is made with the installed package.
 #include <keeler/core/units.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 double gap_after_one_orbit() {

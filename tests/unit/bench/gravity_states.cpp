@@ -8,6 +8,7 @@
 #include <keeler/diagnostics/wakes.hpp>
 #include <keeler/gravity/direct.hpp>
 #include <keeler/initial_conditions/tiled.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>
 

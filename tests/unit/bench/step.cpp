@@ -6,6 +6,7 @@
 #include <keeler/core/threads.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/io/snapshot.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>
 

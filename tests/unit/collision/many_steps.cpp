@@ -4,6 +4,7 @@
 #include "unit/collision/twin.hpp"
 
 #include <keeler/core/threads.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <fmt/format.h>

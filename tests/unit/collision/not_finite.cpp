@@ -4,6 +4,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <array>

@@ -3,6 +3,7 @@
 #include "unit/collision/spheres.hpp"
 
 #include <keeler/cells/overlap.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <doctest/doctest.h>

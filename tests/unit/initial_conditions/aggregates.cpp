@@ -7,6 +7,7 @@
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/initial_conditions/initial.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>
 
@@ -43,7 +44,7 @@ Pile pile_of(const Patch& patch, const AggregateSettings& a) {
     pile.cubes += std::pow(patch.radii[k], 3);
     pile.place += patch.masses[k] * patch.positions[k];
     pile.velocity += patch.masses[k] * patch.velocities[k];
-    pile.farthest = std::max(pile.farthest, (patch.positions[k] - a.place).norm() + patch.radii[k]);
+    pile.farthest = std::max(pile.farthest, (patch.positions[k] - a.position).norm() + patch.radii[k]);
   }
   pile.place /= pile.mass;
   pile.velocity /= pile.mass;
@@ -93,7 +94,7 @@ TEST_CASE("aggregates have the filling, the place and the spin of the scene, on 
       CHECK(pile.mass == doctest::Approx(a.mass).epsilon(1e-12));
       CHECK(pile.farthest <= a.radius);
       CHECK(pile.cubes / std::pow(a.radius, 3) == doctest::Approx(a.filling).epsilon(1e-12));
-      CHECK((pile.place - a.place).norm() < (sizes == equal ? 0.1 : 0.4) * a.radius);
+      CHECK((pile.place - a.position).norm() < (sizes == equal ? 0.1 : 0.4) * a.radius);
       const Vec3 circular(0.0, -shear * pile.place.x(), 0.0);
       CHECK((pile.velocity - circular).norm() < 1e-12 * shear * 70.0);
       for (std::size_t k = a.first; k < a.first + a.count; ++k) {
@@ -102,7 +103,7 @@ TEST_CASE("aggregates have the filling, the place and the spin of the scene, on 
         CHECK(patch.ids[k] == k);
       }
       for (std::size_t k = 0; k < scene.particles.free_count(); ++k) // nobody inside
-        CHECK((patch.positions[k] - a.place).norm() > a.radius + patch.radii[k]);
+        CHECK((patch.positions[k] - a.position).norm() > a.radius + patch.radii[k]);
     }
     Vec3 momentum = Vec3::Zero(); // of the others, beyond the shear
     double mass = 0.0;

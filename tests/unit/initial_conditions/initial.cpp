@@ -3,7 +3,8 @@
 #include <keeler/cells/overlap.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/surface.hpp>
-#include <keeler/scene/derived.hpp>
+#include <keeler/scene/layer.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -51,7 +52,7 @@ TEST_CASE("dense scenes whose equilibria exist start, at the default dispersion"
     CHECK(largest_overlap(patch).depth == 0.0);
     CHECK(optical_depth(patch) == doctest::Approx(scene.optical_depth()).epsilon(1e-12));
     // 5 % for the room that is made and for the draw: 1/√(2N) of 2000 particles and more
-    const double height = layer_height(scene.optical_depth(), crowd_of(scene.particles),
+    const double height = layer_height(scene.optical_depth(), scene.particles.layer_sizes(),
                                        scene.particles.velocity_dispersion, scene.planet.frequencies.nu);
     CHECK(scale_height(patch) == doctest::Approx(height).epsilon(0.08));
     const double c_x = velocity_dispersion(patch).x(), count = static_cast<double>(patch.size());

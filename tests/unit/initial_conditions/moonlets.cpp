@@ -2,6 +2,7 @@
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/initial_conditions/initial.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>
 

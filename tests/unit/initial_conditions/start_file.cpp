@@ -1,7 +1,10 @@
 #include <keeler/initial_conditions/initial.hpp>
 
+#include <keeler/advice/warnings.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/io/snapshot.hpp>
+#include <keeler/scene/load.hpp>
+#include <keeler/scene/patch_scale.hpp>
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -96,15 +99,15 @@ TEST_CASE("rough particles that start.keep keeps have their spins") {
 TEST_CASE("doubts about a patch have numbers, and a large one none") {
   const std::vector<std::string> small = warnings(scene());
   REQUIRE(small.size() == 2);
-  CHECK(small[0].find("34 particles are few: one measurement of their velocity dispersion scatters by 12 %") == 0);
+  CHECK(small[0].find("34 particles are few: one measurement of the velocity dispersion scatters by 12 %") == 0);
   CHECK(small[1].find("the box spans 6.1 lambda_cr") == 0);
   CHECK(warnings(scene(), scale_of(initial_patch(scene()))) == small);
   const std::vector<std::string> wakes = {"box.size_in_wavelengths=[4,4]", "particles.optical_depth=0.5",
                                           "particles.velocity_dispersion=3.5"};
   REQUIRE(warnings(scene(wakes)).size() == 1);
   CHECK(warnings(scene(wakes)).front() ==
-        "the box spans 4 lambda_cr: in wakes, 4 x 4 show 12 % less velocity dispersion "
-        "and 18 % less viscosity than 8 x 8");
+        "the box spans 4 lambda_cr: in wakes, a box of 4 x 4 has 12 % less velocity dispersion "
+        "and 18 % less viscosity than one of 8 x 8");
   CHECK(warnings(scene({"box.size_in_wavelengths=[8,8]", "particles.optical_depth=0.5",
                         "particles.velocity_dispersion=3.5"}))
             .empty());
@@ -122,7 +125,8 @@ TEST_CASE("a restitution without an equilibrium is doubted, in a scene and of a 
     overrides.insert(overrides.end(), many.begin(), many.end());
     const auto of = [](const std::vector<std::string>& lines) {
       return std::count_if(lines.begin(), lines.end(), [](const std::string& line) {
-        return line.find("above 0.716 at an optical depth of 0.503 collisions lose less than the shear gives") !=
+        return line.find(
+                   "above 0.716 at an optical depth of 0.503 collisions lose less energy than the shear supplies") !=
                std::string::npos;
       });
     };
@@ -182,7 +186,7 @@ TEST_CASE("starts far from any ring are doubted, and others are not, however the
   };
   CHECK(changed([](Patch& p, std::size_t k) {
           p.velocities[k].y() += 1.5 * p.positions[k].x();
-        }).find("the velocities lack the shear: v_y changes with x by ") == 0);
+        }).find("the velocities lack the shear: dv_y/dx is ") == 0);
   CHECK(changed([](Patch& p, std::size_t k) {
           p.velocities[k].y() += 3.0 * p.positions[k].x();
         }).find("the shear of the velocities has the wrong sign") == 0);
@@ -193,7 +197,7 @@ TEST_CASE("starts far from any ring are doubted, and others are not, however the
           p.positions[k] *= 1e-3;
           p.velocities[k] *= 1e-3;
           p.radii[k] *= 1e-3;
-        }).find("all particles are in the middle 0.") == 0);
+        }).find("all particles are in the central 0.") == 0);
 }
 
 TEST_CASE("of a start from a file the kick interval is judged by the file's own density") {

@@ -5,6 +5,7 @@
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/radial_modes.hpp>
 #include <keeler/initial_conditions/initial.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <doctest/doctest.h>

@@ -5,6 +5,7 @@
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/initial_conditions/initial.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <doctest/doctest.h>

@@ -8,6 +8,7 @@
 #include <keeler/io/snapshot.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/scene/keys.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

@@ -8,6 +8,7 @@
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/runs/run.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>
 

@@ -9,6 +9,7 @@
 #include <keeler/core/units.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/runs/run.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

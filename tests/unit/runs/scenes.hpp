@@ -1,6 +1,7 @@
 // The scene of these tests: a patch that collides and clumps a little in a fraction of a second.
 #pragma once
 
+#include <keeler/scene/load.hpp>
 #include <keeler/scene/scene.hpp>
 
 namespace keeler::test {

@@ -5,6 +5,7 @@
 
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/runs/series_columns.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <keeler/scene/keys.hpp>

@@ -2,6 +2,7 @@
 #include "scenes.hpp"
 
 #include <keeler/core/units.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>
 
@@ -30,7 +31,7 @@ TEST_CASE("aggregates take the last particles of the scene, and leave all number
   CHECK(a[0].count == 64);
   CHECK(a[0].filling == 0.5);
   CHECK(a[0].spin == 1.0);
-  CHECK(a[0].place == Vec3(-20.0, 5.0, 1.0));
+  CHECK(a[0].position == Vec3(-20.0, 5.0, 1.0));
   CHECK(a[0].radius == doctest::Approx(std::cbrt(64.0 / 0.5)).epsilon(1e-14));
   CHECK(a[0].mass == doctest::Approx(64.0 * 900.0 * 4.0 / 3.0 * pi).epsilon(1e-14));
   CHECK(a[1].first == 200);
@@ -60,19 +61,20 @@ TEST_CASE("what is in aggregates does not crowd the layer") {
 
 TEST_CASE("what is wrong with an aggregate is told with its number and line") {
   CHECK(with_two("count = 64", "count = 201") ==
-        "s.toml:15:9: particles.aggregate[2].count = 100 is more than is left (the scene has 300 particles, of which "
-        "201 are in the aggregates before); lower it or give the scene more particles");
-  CHECK(with_two("count = 64", "count = 301").find("s.toml:12:9: particles.aggregate[1].count = 301 is more than") ==
+        "s.toml:15:9: particles.aggregate[2].count = 100 is too large (the scene has 300 particles, of which "
+        "201 are in earlier aggregates); lower it or give the scene more particles");
+  CHECK(with_two("count = 64", "count = 301").find("s.toml:12:9: particles.aggregate[1].count = 301 is too large") ==
         0);
   CHECK(with_two("count = 64\n", "").find("s.toml:11:1: particles.aggregate[1].count is missing") == 0);
   CHECK(with_two("filling = 0.4", "filling = 0.7")
             .find("particles.aggregate[2].filling is 0.7, but must be a number above 0 and at most 0.64") !=
         std::string::npos);
-  CHECK(with_two("filling = 0.4", "filling = 0.006") ==
-        "s.toml:15:9: particles.aggregate[2] is 51.09 m across (more than a side of the box of 100 m x 50 m); enlarge "
-        "the box or lower the count");
+  CHECK(
+      with_two("filling = 0.4", "filling = 0.006") ==
+      "s.toml:15:9: particles.aggregate[2] is 51.09 m across (more than one side of the box of 100 m x 50 m); enlarge "
+      "the box or lower the count");
   CHECK(with_two("[30, 0, 0]", "[30, 30, 0]")
-            .find("s.toml:17:9: particles.aggregate[2].place is outside the box (it reaches 50 m and 25 m") == 0);
+            .find("s.toml:17:9: particles.aggregate[2].place is outside the box (it extends 50 m and 25 m") == 0);
   CHECK(with_two("[30, 0, 0]", "[30, 0, 1e6]").find("particles.aggregate[2] reaches 1000000 m from the mid-plane") !=
         std::string::npos);
   CHECK(with_two("[30, 0, 0]", "[-15, 0, 0]") ==

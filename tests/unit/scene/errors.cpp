@@ -1,6 +1,8 @@
 #include "scenes.hpp"
 
+#include <keeler/config/schema.hpp>
 #include <keeler/scene/keys.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>
 
@@ -91,9 +93,9 @@ TEST_CASE("depth and number of things in a scene are bounded") {
   CHECK(fault("[a.\"" + repeated("x", 1000000) + "\"]\n" + repeated("b", 1000000) + " = 1\n")
             .rfind("s.toml:1:2: unknown table a ", 0) == 0);
   CHECK(fault(least + repeated("[[moonlet]]\nradius = 1.0\ndensity = 900.0\n", 20000))
-            .find("20000 tables [[moonlet]] are too many (a scene takes 1000 at most") != std::string::npos);
+            .find("20000 tables [[moonlet]] are too many (at most 1000") != std::string::npos);
   CHECK(fault(least + "[particles.modes]\noutward = [" + repeated("[1, 1e-6, 0.0],", 200000) + "]\n")
-            .find("[particles.modes] has 200000 modes (a start takes 1000 at most") != std::string::npos);
+            .find("[particles.modes] has 200000 modes (at most 1000") != std::string::npos);
   CHECK(fault(least, {"moonlet=[" + repeated("{radius=1.0,density=900.0},", 20000) + "]"}).size() < 1000);
 }
 
@@ -113,12 +115,13 @@ TEST_CASE("values out of range are told with the range") {
   };
   CHECK(oscillating("1e-3").empty());
   CHECK(oscillating("\"auto\"").empty());
-  CHECK(oscillating("0.02") == "s.toml:12:8: time.step = 0.02 holds 2 vertical oscillations of 100 Omega (searches for "
-                               "contacts would not end in "
-                               "reasonable time beyond 1.5); let it be 0.005 orbits at most");
+  CHECK(
+      oscillating("0.02") ==
+      "s.toml:12:8: time.step = 0.02 is 2 vertical oscillations of 100 Omega (above 1.5 the searches for contacts take "
+      "too long); lower it to at most 0.005 orbits");
   CHECK(with("end = 2", "end = 2\nstep = 0.31") ==
-        "s.toml:11:8: time.step is 0.31, but must be a number from 1e-9 to 0.3, or \"auto\" (length of a step; with "
-        "\"auto\" it follows the state, in orbits); write for example step = 1e-3");
+        "s.toml:11:8: time.step is 0.31, but must be a number from 1e-9 to 0.3, or \"auto\" (length of a step; "
+        "\"auto\" adapts it to the state, in orbits); write for example step = 1e-3");
   CHECK(fault(least + "[gravity]\nsolver = \"trea\"\n") ==
         "s.toml:12:10: gravity.solver is \"trea\", but must be one of \"direct\", \"tree\", \"fft\", "
         "\"mesh\", \"axisymmetric\", \"auto\" (how accelerations are computed); did you mean \"tree\"?");
@@ -130,7 +133,7 @@ TEST_CASE("values out of range are told with the range") {
 
 TEST_CASE("what is missing is told with an example") {
   CHECK(with("[time]\nend = 2\n", "") ==
-        "s.toml:1:1: [time] is missing (it says how long the run is); add a table [time]");
+        "s.toml:1:1: [time] is missing (it sets the length of the run); add a table [time]");
   CHECK(with("end = 2\n", "") ==
         "s.toml:9:2: time.end is missing (length of the run, rounded to whole kicks, in orbits); "
         "add for example end = 3.0");
@@ -142,8 +145,8 @@ TEST_CASE("what is missing is told with an example") {
   CHECK(with("law = \"equal\", radius = 1.0", "law = \"power\", exponent = 3, min = 1")
             .find("particles.sizes.max is missing") != std::string::npos);
   CHECK(with("sizes = { law = \"equal\", radius = 1.0 }\n", "") ==
-        "s.toml:5:2: [particles.sizes] is missing (it says how large they are); add a table [particles.sizes]");
-  CHECK(fault("") == "s.toml:1:1: [planet] is missing (it says where the patch orbits); add a table [planet]");
+        "s.toml:5:2: [particles.sizes] is missing (it sets the sizes of the particles); add a table [particles.sizes]");
+  CHECK(fault("") == "s.toml:1:1: [planet] is missing (it sets the orbit of the patch); add a table [planet]");
   CHECK(with("count = 300", "count = 300\nstreamlines = { waves = 2 }").find("streamlines.bunching is missing") !=
         std::string::npos);
   CHECK(fault(least + "[collisions]\nrestitution = { law = \"constant\" }\n").find("restitution.value is missing") !=
@@ -152,18 +155,18 @@ TEST_CASE("what is missing is told with an example") {
 
 TEST_CASE("contradictions are told") {
   CHECK(with("count = 300", "count = 300\noptical_depth = 0.5") ==
-        "s.toml:7:1: particles.optical_depth cannot stand beside particles.count (either gives the other); keep one of "
+        "s.toml:7:1: particles.optical_depth cannot be combined with particles.count (each determines the other); keep "
+        "one of "
         "the two");
   CHECK(with("orbital_frequency = 2e-4", "preset = \"saturn-a-ring\"\nvertical_ratio = 3.6") ==
-        "s.toml:3:1: planet.vertical_ratio has no meaning here (it belongs to planet.orbital_frequency); remove it or "
+        "s.toml:3:1: planet.vertical_ratio does not apply here (it needs planet.orbital_frequency); remove it or "
         "give planet.orbital_frequency");
-  CHECK(
-      with("radius = 1.0", "radius = 1.0, min = 0.1") ==
-      "s.toml:8:40: particles.sizes.min has no meaning here (it belongs to particles.sizes.law = \"power\"); remove it "
-      "or give particles.sizes.law = \"power\"");
-  CHECK(fault(least + "[start]\nfrom = \"wakes.hdf\"\n") ==
-        "s.toml:3:2: [box] cannot stand beside start.from (the start file holds the box and its particles); remove one "
-        "of the two");
+  CHECK(with("radius = 1.0", "radius = 1.0, min = 0.1") ==
+        "s.toml:8:40: particles.sizes.min does not apply here (it needs particles.sizes.law = \"power\"); remove it "
+        "or give particles.sizes.law = \"power\"");
+  CHECK(fault(least + "[start]\nfrom = \"wakes.hdf\"\n") == "s.toml:3:2: [box] cannot be combined with start.from (the "
+                                                            "start file holds the box and its particles); remove one "
+                                                            "of the two");
 }
 
 TEST_CASE("impossible requests are told") {
@@ -172,19 +175,19 @@ TEST_CASE("impossible requests are told") {
       "s.toml:4:8: the box of 100 m x 1.5 m is smaller than a particle (the largest is 2 m across); enlarge the box or "
       "lower the radius");
   CHECK(with("size = ", "size_in_wavelengths = ") ==
-        "s.toml:4:23: box.size_in_wavelengths cannot stand beside particles.count (the wavelength follows from the "
+        "s.toml:4:23: box.size_in_wavelengths cannot be combined with particles.count (the wavelength follows from the "
         "surface density, and with a count this follows from the box); give box.size or particles.optical_depth");
   // H² = (0.65 × 2)² + 1.7 × 3.6 = 7.81, (4/3) 3.6 / (√(2π) H) = 0.685; 0.62 needs H² = 9.54, so c_x = 2.845, rounded
   // up, or τ = 3.06: (4/3) 3.06 / (√(2π) √(1.69 + 1.7 × 3.06))
   CHECK(with("count = 300", "optical_depth = 3.6") ==
-        "s.toml:6:17: too dense (the mid-plane would be filled to 0.69, and 0.62 is the most that can be placed "
+        "s.toml:6:17: too dense (the mid-plane filling factor would be 0.69, and at most 0.62 can be placed "
         "without overlap); raise velocity_dispersion to at least 2.85 or lower the optical depth from 3.6 to at most "
         "3.05");
   CHECK(with("count = 300", "optical_depth = 3.6\nvelocity_dispersion = 2.85") == "");
   CHECK(with("count = 300", "optical_depth = 3.05") == "");
   // 1.8 bunched by q = 0.5 is 3.6 where streamlines are closest
   CHECK(with("count = 300", "optical_depth = 1.8\nstreamlines = { waves = 1, bunching = 0.5 }") ==
-        "s.toml:6:17: too dense (the mid-plane would be filled to 0.69, and 0.62 is the most that can be placed "
+        "s.toml:6:17: too dense (the mid-plane filling factor would be 0.69, and at most 0.62 can be placed "
         "without overlap); raise velocity_dispersion to at least 2.85 or lower the optical depth from 1.8 to at most "
         "1.52 or lower the bunching");
   CHECK(with("count = 300", "optical_depth = 1e-6").find("makes 0 particles") != std::string::npos);
@@ -219,16 +222,16 @@ TEST_CASE("modes that fit no box, or would make streamlines cross, are told") {
         "s.toml:11:1: the amplitudes of [particles.modes] sum up to 1 (at 1 streamlines cross); lower them to 0.9 in "
         "all");
   CHECK(modes("outward = [[1, 0.1]]").find("rows in place: waves in the box, amplitude") != std::string::npos);
-  CHECK(modes("") == "s.toml:11:1: [particles.modes] has no mode in it; add for example outward = [[1, 0.1, 0.0]]");
-  CHECK(modes("outward = []").find("has no mode in it") != std::string::npos);
+  CHECK(modes("") == "s.toml:11:1: [particles.modes] has no modes; add for example outward = [[1, 0.1, 0.0]]");
+  CHECK(modes("outward = []").find("has no modes") != std::string::npos);
   CHECK(modes("outwards = [[1, 0.1, 0]]").find("did you mean \"outward\"?") != std::string::npos);
   CHECK(fault(changed(least, "count = 300", "count = 300\nstreamlines = { waves = 1, bunching = 0.1 }") +
               "[particles.modes]\noutward = [[1, 0.1, 0]]\n") ==
-        "s.toml:12:1: [particles.modes] cannot stand beside [particles.streamlines] (either is the mean motion at the "
-        "start); keep one of the two");
+        "s.toml:12:1: [particles.modes] cannot be combined with [particles.streamlines] (each sets the mean motion at "
+        "the start); keep one of the two");
   CHECK(fault("planet.preset = \"saturn-b-ring\"\ntime.end = 1\nstart.from = \"w.hdf\"\n"
               "[particles.modes]\noutward = [[1, 0.1, 0]]\n")
-            .find("cannot stand beside start.from") != std::string::npos);
+            .find("cannot be combined with start.from") != std::string::npos);
   CHECK(fault(changed(least, "count = 300", "optical_depth = 1.8") + "[particles.modes]\noutward = [[1, 0.5, 0]]\n")
             .find("to at most 1.52 or lower the amplitudes of the modes") != std::string::npos);
 }

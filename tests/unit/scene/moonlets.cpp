@@ -2,7 +2,7 @@
 #include "scenes.hpp"
 
 #include <keeler/core/units.hpp>
-#include <keeler/scene/keys.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>
 
@@ -27,11 +27,11 @@ TEST_CASE("moonlets reach their place, in the order of the scene") {
   REQUIRE(scene.moonlets.size() == 2);
   CHECK(scene.moonlets[0].radius == 5.0);
   CHECK(scene.moonlets[0].mass == doctest::Approx(450.0 * 4.0 / 3.0 * pi * 125.0).epsilon(1e-15));
-  CHECK(scene.moonlets[0].place == Vec3::Zero());
+  CHECK(scene.moonlets[0].position == Vec3::Zero());
   CHECK(scene.moonlets[0].velocity == Vec3::Zero());
   CHECK(scene.moonlets[1].radius == 2.0);
   CHECK(scene.moonlets[1].mass == 3e4);
-  CHECK(scene.moonlets[1].place == Vec3(-20.0, 10.0, 0.5));
+  CHECK(scene.moonlets[1].position == Vec3(-20.0, 10.0, 0.5));
   CHECK(scene.moonlets[1].velocity == Vec3(0.0, 1e-3, 0.0));
   CHECK(parse_scene(least, "s.toml").moonlets.empty());
   CHECK(scene.particles.count == 300); // the particles' numbers stay theirs
@@ -59,30 +59,31 @@ TEST_CASE("overrides replace all moonlets") {
 
 TEST_CASE("what is wrong with a moonlet is told with its number and line") {
   CHECK(with_two("radius = 2", "radius = -2") ==
-        "s.toml:16:10: moonlet[2].radius is -2, but must be a number from 1e-6 to 1000000 (radius of a body beside the "
-        "particles, one in each table [[moonlet]], in m); write for example radius = 30.0");
+        "s.toml:16:10: moonlet[2].radius is -2, but must be a number from 1e-6 to 1000000 (radius of a body among the "
+        "particles, one per table [[moonlet]], in m); write for example radius = 30.0");
   CHECK(with_two("mass = 3e4", "mass = -3e4")
             .find("s.toml:17:8: moonlet[2].mass is -30000.0, but must be a number "
                   "from 1e-20 to 1e24") == 0);
   CHECK(with_two("mass = 3e4", "mass = 3e4\ndensity = 900") ==
-        "s.toml:18:1: moonlet[2].density cannot stand beside moonlet[2].mass (either gives the other); keep one of the "
+        "s.toml:18:1: moonlet[2].density cannot be combined with moonlet[2].mass (each determines the other); keep one "
+        "of the "
         "two");
-  CHECK(with_two("density = 450.0\n", "") ==
-        "s.toml:11:1: moonlet[1].density is missing (density of its material, in kg/m^3); add for example density = "
-        "900.0 or mass");
-  CHECK(with_two("mass = 3e4", "mass = 3e9").find("s.toml:17:8: moonlet[2].mass makes a density of 8.95e7 kg/m^3") ==
+  CHECK(with_two("density = 450.0\n", "") == "s.toml:11:1: moonlet[1].density is missing (density of the body's "
+                                             "material, in kg/m^3); add for example density = "
+                                             "900.0 or mass");
+  CHECK(with_two("mass = 3e4", "mass = 3e9").find("s.toml:17:8: moonlet[2].mass gives a density of 8.95e7 kg/m^3") ==
         0);
   CHECK(with_two("[-20, 10, 0.5]", "[-20, 10]")
             .find("moonlet[2].place is a list of 2 numbers, but must be three "
                   "numbers") != std::string::npos);
   CHECK(with_two("[-20, 10, 0.5]", "[-51, 10, 0]")
-            .find("moonlet[2].place is outside the box (it reaches 50 m and 25 m") != std::string::npos);
+            .find("moonlet[2].place is outside the box (it extends 50 m and 25 m") != std::string::npos);
   CHECK(with_two("[-20, 10, 0.5]", "[-20, 10, -101]")
             .find("moonlet[2] reaches 101 m from the mid-plane (more than the longer side of the box, 100 m") !=
         std::string::npos);
   CHECK(with_two("[0, 1e-3, 0]", "[0, 0, 1]").find("moonlet[2] reaches ") != std::string::npos);
   CHECK(with_two("radius = 5.0", "radius = 25.5")
-            .find("moonlet[1] is 51 m across (more than a side of the box of 100 m "
+            .find("moonlet[1] is 51 m across (more than one side of the box of 100 m "
                   "x 50 m)") != std::string::npos);
   CHECK(with_two("radius = 2", "radus = 2")
             .find("unknown key moonlet[2].radus (no scene has it); did you mean "
@@ -98,7 +99,7 @@ TEST_CASE("what is wrong with a moonlet is told with its number and line") {
                                         "1.0 }\n",
                                         "[start]\nfrom = \"a.hdf\"\n");
   CHECK(fault(elsewhere).empty());
-  CHECK(fault(elsewhere + two).find("[[moonlet]] cannot stand beside start.from") != std::string::npos);
+  CHECK(fault(elsewhere + two).find("[[moonlet]] cannot be combined with start.from") != std::string::npos);
 }
 
 TEST_CASE("moonlets that overlap are refused, also across the edge") {

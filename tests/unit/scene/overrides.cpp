@@ -1,5 +1,7 @@
 #include "scenes.hpp"
 
+#include <keeler/scene/load.hpp>
+
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -29,14 +31,14 @@ TEST_CASE("no scene takes more overrides than it can have keys") {
   CHECK(parse_scene(least, "s.toml", overrides).particles.count == 42);
   overrides.emplace_back("particles.count=43");
   CHECK_THROWS_WITH_AS(parse_scene(least, "s.toml", overrides),
-                       doctest::Contains("1001 overrides are too many (a scene takes 1000 at most"), UsageError);
+                       doctest::Contains("1001 overrides are too many (at most 1000"), UsageError);
 }
 
 TEST_CASE("an override replaces what the file says against it, with a notice") {
   const Scene depth = parse_scene(least, "s.toml", {"particles.optical_depth=0.2"});
   CHECK(depth.particles.count == 318); // 0.2 × 5000 / π = 318.3
-  CHECK(depth.notices == std::vector<std::string>{"particles.count of the scene is dropped: --set "
-                                                  "particles.optical_depth=0.2 takes its place"});
+  CHECK(depth.notices == std::vector<std::string>{"particles.count of the scene is ignored: --set "
+                                                  "particles.optical_depth=0.2 replaces it"});
 
   const std::string frequencies = changed(least, "2e-4", "2e-4\nvertical_ratio = 3.6");
   const Scene preset = parse_scene(frequencies, "s.toml", {"planet.preset=saturn-f-ring"});
@@ -60,9 +62,8 @@ TEST_CASE("an override replaces what the file says against it, with a notice") {
 TEST_CASE("--from is called by its own name") {
   const Scene start = parse_scene(least, "s.toml", {}, "wakes.hdf");
   CHECK(*start.start_from == (std::filesystem::current_path() / "wakes.hdf").string());
-  CHECK(start.notices ==
-        std::vector<std::string>{"box of the scene is dropped: --from wakes.hdf takes its place",
-                                 "particles of the scene is dropped: --from wakes.hdf takes its place"});
+  CHECK(start.notices == std::vector<std::string>{"box of the scene is ignored: --from wakes.hdf replaces it",
+                                                  "particles of the scene is ignored: --from wakes.hdf replaces it"});
   try {
     parse_scene(least, "s.toml", {}, "");
     CHECK(false);
@@ -84,7 +85,7 @@ TEST_CASE("a faulty override is told by its own text") {
   for (const std::string bad : {"particles.count", "=5", ".count=5", "particles..count=5", "a b=5", ""})
     CHECK(fault(least, {bad}) ==
           "--set " + bad + ": not an override (it needs a key and a value); write --set table.key=value");
-  CHECK(fault(least, {"particles.count=5", "particles.optical_depth=0.5"}).find("cannot stand beside") !=
+  CHECK(fault(least, {"particles.count=5", "particles.optical_depth=0.5"}).find("cannot be combined with") !=
         std::string::npos);
   CHECK(fault(least, {"title=a\nb=2"}) == "");
   CHECK(fault(least, {"particles=3"}).find("particles is a whole number, but must be a table") != std::string::npos);

@@ -1,5 +1,6 @@
 // quality = "…" becomes fixed numbers, by the table of docs/manual/scene.md.
 #include <keeler/core/error.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/scene/quality.hpp>
 #include <keeler/scene/scene.hpp>
 

@@ -1,7 +1,7 @@
 #include "scenes.hpp"
 
 #include <keeler/core/units.hpp>
-#include <keeler/scene/derived.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>
 
@@ -165,7 +165,7 @@ TEST_CASE("populations bring their densities") {
         doctest::Approx(4.0 / 3.0 * pi * (800.0 * 450 + 200.0 * 900) / 5000.0).epsilon(1e-14));
   CHECK(parse_scene(scene.resolved, "r.toml").resolved == scene.resolved);
   CHECK_THROWS_WITH_AS(parse_scene(changed(text, "count = 300\n", "count = 300\ndensity = 900\n"), "s.toml"),
-                       doctest::Contains("cannot stand beside"), UsageError);
+                       doctest::Contains("cannot be combined with"), UsageError);
   CHECK_THROWS_WITH_AS(parse_scene(changed(text, "900]]", "-900]]"), "s.toml"), doctest::Contains("populations"),
                        UsageError);
   CHECK_THROWS_WITH_AS(parse_scene(changed(text, "900]]", "9e4]]"), "s.toml"),
@@ -198,7 +198,6 @@ TEST_CASE("a start file takes the place of box and particles") {
   CHECK(scene.size_x == 0.0);
   CHECK(scene.optical_depth() == 0.0);
   CHECK(scene.surface_density() == 0.0);
-  CHECK(!derive(scene).particles_known);
   CHECK(parse_scene(scene.resolved, "elsewhere/r.toml").start_from == scene.start_from);
 }
 
@@ -259,7 +258,7 @@ TEST_CASE("radii come from a file beside the scene") {
       UsageError);
   CHECK_THROWS_WITH_AS(with("empty.txt"),
                        (here + "/s.toml:8:32: " + here +
-                        "/empty.txt has no numbers in it (it is empty or all comments); write radius in m on each line")
+                        "/empty.txt has no numbers (it is empty, or has only comments); write radius in m on each line")
                            .c_str(),
                        UsageError);
   CHECK_THROWS_WITH_AS(with("absent.txt"),

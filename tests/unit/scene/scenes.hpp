@@ -2,6 +2,7 @@
 #pragma once
 
 #include <keeler/core/error.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/scene/scene.hpp>
 
 #include <string>

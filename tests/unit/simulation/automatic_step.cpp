@@ -2,6 +2,7 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/initial_conditions/initial.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <doctest/doctest.h>
@@ -163,7 +164,8 @@ TEST_CASE("an automatic step is a word, and sets the kick interval itself") {
   };
   CHECK_THROWS_WITH_AS(with("step = \"aut\"", ""), doctest::Contains("did you mean \"auto\"?"), UsageError);
   CHECK_THROWS_WITH_AS(with("step = \"auto\"", "gravity.kick_every = 5"),
-                       doctest::Contains("gravity.kick_every cannot stand beside time.step = \"auto\""), UsageError);
+                       doctest::Contains("gravity.kick_every cannot be combined with time.step = \"auto\""),
+                       UsageError);
   CHECK(with("step = \"auto\"", "output.series_every = 0.02").output.series_every == 64);
 }
 

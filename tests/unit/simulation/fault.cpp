@@ -1,5 +1,6 @@
 // A state from a file is the scene's, or it is refused: a step would read beyond arrays.
 #include <keeler/initial_conditions/initial.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <doctest/doctest.h>

@@ -1,6 +1,7 @@
 #include <keeler/core/units.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/initial_conditions/initial.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <doctest/doctest.h>

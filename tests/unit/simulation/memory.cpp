@@ -1,8 +1,9 @@
 // What a run holds in memory: bounded, and no more than `keeler check` says beforehand.
+#include <keeler/advice/derived.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/initial_conditions/initial.hpp>
-#include <keeler/scene/derived.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <doctest/doctest.h>

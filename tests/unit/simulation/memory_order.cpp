@@ -2,6 +2,7 @@
 // bit for bit, what is booked of kicks and collisions included.
 #include <keeler/cells/order.hpp>
 #include <keeler/initial_conditions/initial.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <doctest/doctest.h>

@@ -1,5 +1,6 @@
 // A simulation may be moved, as a value in a container is.
 #include <keeler/initial_conditions/initial.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <doctest/doctest.h>

@@ -1,4 +1,5 @@
 #include <keeler/core/units.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <doctest/doctest.h>

@@ -1,6 +1,7 @@
 // A state changed from outside while it runs.
 #include <keeler/core/error.hpp>
 #include <keeler/initial_conditions/initial.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <doctest/doctest.h>

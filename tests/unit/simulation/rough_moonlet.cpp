@@ -1,6 +1,7 @@
 // Friction and [[moonlet]] in one scene: what a contact of the two turns, and the same bits however many threads run.
 #include <keeler/core/threads.hpp>
 #include <keeler/initial_conditions/initial.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <Eigen/Geometry>

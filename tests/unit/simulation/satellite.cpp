@@ -4,6 +4,7 @@
 #include <keeler/core/units.hpp>
 #include <keeler/forces/satellite.hpp>
 #include <keeler/initial_conditions/initial.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <fmt/format.h>

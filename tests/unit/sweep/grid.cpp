@@ -44,7 +44,7 @@ y_log = true
   CHECK(grid.axes[0].points[1].front().label == "1");
   CHECK(grid.axes[0].points[1].front().override.value == "1.0");
   CHECK(grid.axes[0].points[1].front().number == 1.0);
-  CHECK(grid.axes[0].points[0].front().override.value_place == file.path().string() + ":11:11");
+  CHECK(grid.axes[0].points[0].front().override.value_location == file.path().string() + ":11:11");
   CHECK(grid.axes[1].points[0][0].label == "[50, 60.5]");
   CHECK_FALSE(grid.axes[1].points[0][0].number);
   CHECK(grid.axes[1].points[0][1].override.value ==

@@ -1,4 +1,7 @@
 // What tune chooses meets the tolerances and is the cheapest of what does; its keys are a scene's.
+#include <keeler/config/edit.hpp>
+#include <keeler/scene/keys.hpp>
+#include <keeler/scene/load.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/tune/tune.hpp>
 
@@ -79,14 +82,14 @@ TEST_CASE("the keys say the choices, in the text of the scene") {
   t.steps = {{1.25e-3, 4, 0.3, 2.0}};
   const Scene scene = parse_scene(text, "s.toml");
   for (int again = 0; again < 2; ++again) {
-    const std::string edited = edit_scene(text, "s.toml", chosen_keys(t, {}, scene));
+    const std::string edited = edit_document(scene_schema(), text, "s.toml", chosen_keys(t, {}, scene));
     const Scene tuned_scene = parse_scene(edited, "t.toml");
     CHECK(tuned_scene.gravity->solver == GravitySettings::Solver::fft);
     CHECK(tuned_scene.gravity->force_error == 5e-3);
     CHECK(tuned_scene.gravity->kick_every == 4);
     CHECK(tuned_scene.time.step == 1.25e-3);
     CHECK(edited.find("# tune: an rms force error of 0.2 %") != std::string::npos);
-    CHECK(edit_scene(edited, "t.toml", chosen_keys(t, {}, scene)) == edited);
+    CHECK(edit_document(scene_schema(), edited, "t.toml", chosen_keys(t, {}, scene)) == edited);
   }
   Tuning none;
   none.steps = {{5e-3, 1, 0.3, 2.0}};

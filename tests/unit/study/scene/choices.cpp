@@ -1,6 +1,7 @@
 #include "scene/choices.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,0 +1,129 @@
+#include <keeler/advice/derived.hpp>
+
+#include <keeler/core/format.hpp>
+#include <keeler/core/memory.hpp>
+#include <keeler/core/threads.hpp>
+#include <keeler/core/units.hpp>
+#include <keeler/gravity/axisymmetric.hpp>
+#include <keeler/gravity/fft.hpp>
+#include <keeler/particles/patch.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace keeler {
+namespace {
+
+// Peak memory of `keeler run` of examples/a-ring-wakes and examples/equilibrium, measured at N = 10⁵ and 4 × 10⁵.
+namespace cost {
+constexpr double program_bytes = 33e6;  // code, libraries, buffers that do not grow with N
+constexpr double drift_bytes = 590.0;   // lines, cells, lists, event counts, buffers: at most 660 with state
+constexpr double tree_node_bytes = 120; // box, mass, centre, quadrupole, links
+constexpr double nodes_per_particle = 0.5;
+constexpr double tiled_bytes = 80.0; // copies of the particles in the order of the mesh's tiles
+} // namespace cost
+
+double bytes_per_particle(const Scene& scene, std::size_t count) {
+  const double state = sizeof(Body) + sizeof(std::uint64_t);
+  const double output_copy = 2 * sizeof(Vec3) + 2 * sizeof(double) + sizeof(std::uint64_t); // a Patch
+  const double spins = scene.collisions.friction ? 2.0 * sizeof(Vec3) : 0.0;                // in the state and a Patch
+  double total = state + spins + output_copy + cost::drift_bytes;
+  if (scene.gravity) {
+    total += 2 * sizeof(Vec3) + sizeof(double) + sizeof(std::uint64_t); // a GravityProblem and its result
+    const auto solver = chosen_for(count, *scene.gravity).solver;
+    if (solver == GravitySettings::Solver::fft || solver == GravitySettings::Solver::mesh)
+      total += cost::tiled_bytes;
+    if (solver == GravitySettings::Solver::tree)
+      total += cost::nodes_per_particle * cost::tree_node_bytes + 4 * sizeof(double);
+    const bool pairwise = solver == GravitySettings::Solver::tree || solver == GravitySettings::Solver::direct;
+    if (pairwise && scene.output.stress_every > 0)
+      total += cost::tiled_bytes; // the mesh that measures their energy
+  }
+  return total;
+}
+
+// Scale heights on each side of the mid-plane that hold nearly all of 10⁷ particles.
+constexpr double mesh_scale_heights = 5.0;
+
+// Returns the bytes of the mesh that gravity, or the measurement of its energy, makes for `count` particles in a box.
+double mesh_memory(const Scene& scene, std::size_t count, double size_x, double size_y) {
+  assert(count > 0 && size_x > 0.0 && size_y > 0.0);
+  using Solver = GravitySettings::Solver;
+  if (!scene.gravity)
+    return 0.0;
+  const GravitySettings gravity = chosen_for(count, *scene.gravity);
+  if (gravity.solver == Solver::axisymmetric)
+    return radial_mesh_bytes(size_x, gravity.shortest_wavelength, threads());
+  const bool pairwise = gravity.solver == Solver::tree || gravity.solver == Solver::direct;
+  if (pairwise && (scene.output.stress_every == 0 || !has_energy_meter(gravity)))
+    return 0.0;
+  ShearingBox box;
+  box.size_x = size_x;
+  box.size_y = size_y;
+  const double distance = std::sqrt(size_x * size_y / static_cast<double>(count));
+  const double height = layer_height(scene.optical_depth(), scene.particles.layer_sizes(),
+                                     scene.particles.velocity_dispersion, scene.planet.frequencies.nu);
+  const double spacing = pairwise ? cheapest_spacing : gravity.mesh_spacing;
+  return mesh_bytes(box, spacing * distance, 2.0 * mesh_scale_heights * height, count);
+}
+
+// Returns the bytes of a run without the program. The mesh of a patch from a file is unknown here; the solver checks
+// it.
+double run_bytes(const Scene& scene, std::size_t count) {
+  const double particles = bytes_per_particle(scene, count) * static_cast<double>(count);
+  if (scene.start_from || scene.particles.count == 0 || count == 0)
+    return particles;
+  const double factor = std::sqrt(static_cast<double>(count) / static_cast<double>(scene.particles.count));
+  return particles + mesh_memory(scene, count, factor * scene.size_x, factor * scene.size_y);
+}
+
+} // namespace
+
+Derived derive(const Scene& scene) {
+  Derived d;
+  d.steps = scene.time.end_step;
+  d.particles_known = !scene.start_from.has_value();
+  if (!d.particles_known)
+    return d;
+  const ParticleSettings& particles = scene.particles;
+  d.particle_count = particles.count;
+  d.optical_depth = scene.optical_depth();
+  d.surface_density = scene.surface_density();
+  d.lambda_cr = critical_wavelength(d.surface_density, scene.planet);
+  const double dispersion =
+      particles.velocity_dispersion * particles.sizes.mean_power(1) * scene.planet.orbital_frequency;
+  d.toomre_q = toomre_q(d.surface_density, dispersion, scene.planet);
+  d.hill_parameter = hill_parameter(particles.density, distance_from_saturn(scene.planet));
+  d.midplane_filling =
+      std::min(largest_filling, midplane_filling(scene.bunched_optical_depth(), particles.layer_sizes(),
+                                                 particles.velocity_dispersion, scene.planet.frequencies.nu));
+  d.memory_mb = 1e-6 * (cost::program_bytes + run_bytes(scene, particles.count));
+  return d;
+}
+
+void require_memory_for(const Scene& scene, std::size_t count) {
+  require_memory(run_bytes(scene, count),
+                 fmt::format("a run of {} particles", format_number(static_cast<double>(count))),
+                 "take fewer particles, a coarser mesh, or a machine with more memory");
+}
+
+std::string in_words(const GravitySettings& gravity) {
+  using Solver = GravitySettings::Solver;
+  switch (gravity.solver) {
+  case Solver::direct:
+    return "direct sum";
+  case Solver::tree:
+    return fmt::format("tree, opening angle {:g}", gravity.opening_angle);
+  case Solver::mesh:
+    return fmt::format("mesh, spacing {:g} mean distances", gravity.mesh_spacing);
+  case Solver::axisymmetric:
+    return fmt::format("axisymmetric, waves from {:g} m up", gravity.shortest_wavelength);
+  default:
+    return fmt::format("fft, requested rms force error {:g}", gravity.force_error);
+  }
+}
+
+} // namespace keeler

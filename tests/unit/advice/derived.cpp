@@ -1,0 +1,74 @@
+// The numbers that `keeler check` prints.
+#include "unit/scene/scenes.hpp"
+
+#include <keeler/advice/derived.hpp>
+#include <keeler/core/threads.hpp>
+#include <keeler/scene/load.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+namespace derived_test {
+
+using namespace keeler;
+using namespace keeler::test;
+
+TEST_CASE("the A-ring example has the numbers that the design gives for it") {
+  const Scene scene = load_scene(KEELER_SOURCE_DIR "/examples/a-ring-wakes/scene.toml");
+  const Derived d = derive(scene);
+  CHECK(scene.notices.empty());
+  CHECK(d.particle_count == doctest::Approx(9600).epsilon(0.002)); // "about 9600"
+  CHECK(d.lambda_cr == doctest::Approx(61.4).epsilon(0.002));      // "61 m"
+  CHECK(d.surface_density == doctest::Approx(400).epsilon(1e-4));  // half a particle of 9600
+  CHECK(d.optical_depth == doctest::Approx(0.5).epsilon(1e-4));
+  CHECK(d.hill_parameter == doctest::Approx(0.82 * std::cbrt(600.0 / 900) * 1.3).epsilon(3e-4));
+  CHECK(d.steps == 2400);
+  CHECK(d.memory_mb == doctest::Approx(40.0).epsilon(0.1)); // 33 MB and some 700 bytes a particle
+}
+
+TEST_CASE("the estimated memory includes the meshes") {
+  const auto megabytes = [](const std::string& gravity) {
+    return derive(parse_scene(R"(
+[planet]
+preset = "saturn-a-ring"
+[box]
+size = [1000, 1000]
+[particles]
+count = 20000
+density = 600.0
+sizes = { law = "equal", radius = 1.0 }
+[time]
+end = 1.0
+)" + gravity,
+                              "scene"))
+        .memory_mb;
+  };
+  const double without = megabytes("");
+  CHECK(without < 60.0);
+  // 12 · 10⁶ waves: 2²⁷ nodes
+  const double nodes = 0x1p27, radial = megabytes("[gravity]\nsolver = 'axisymmetric'\nshortest_wavelength = 1e-4\n");
+  CHECK(radial - without > 1e-6 * 24 * nodes); // one number a node, half a complex one, a whole one on each thread
+  CHECK(radial - without < 1e-6 * 64 * nodes * threads());
+  // at most 2²¹ nodes and 64 a particle, 8 bytes each
+  const double fine = megabytes("[gravity]\nsolver = 'mesh'\nmesh_spacing = 0.1\n"),
+               coarse = megabytes("[gravity]\nsolver = 'mesh'\n");
+  CHECK(fine - coarse > 5.0);
+  CHECK(fine - coarse < 1e-6 * 16 * (0x1p21 + 64 * 20000));
+}
+
+TEST_CASE("the equilibrium example has about 1500 particles and no gravity") {
+  const Scene scene = load_scene(KEELER_SOURCE_DIR "/examples/equilibrium/scene.toml");
+  CHECK(std::fabs(static_cast<double>(scene.particles.count) - 1500) < 20);
+  CHECK(!scene.gravity);
+  CHECK(scene.time.end_step == 15000);
+}
+
+TEST_CASE("of a start file only the steps are known") {
+  const Scene scene =
+      parse_scene("planet.preset = \"saturn-b-ring\"\ntime.end = 1\nstart.from = \"wakes.hdf\"\n", "s.toml");
+  CHECK(!derive(scene).particles_known);
+  CHECK(derive(scene).steps == scene.time.end_step);
+}
+
+} // namespace derived_test

@@ -1,0 +1,33 @@
+// A small schema that the tests share: no scene has it.
+#pragma once
+
+#include <keeler/config/schema.hpp>
+
+namespace keeler::test {
+
+inline const Schema& schema() {
+  static const Schema all(
+      {{.path = "title", .fallback = "\"\"", .meaning = "a name", .effect = KeyEffect::output},
+       {.path = "gravity.solver", .type = KeyType::choice, .fallback = "\"tree\"", .choices = {"tree", "fft"}},
+       {.path = "gravity.opening_angle",
+        .type = KeyType::number,
+        .fallback = "0.6",
+        .only_with = {"gravity.solver", {"tree"}}},
+       {.path = "gravity.force_error",
+        .type = KeyType::number,
+        .fallback = "2e-3",
+        .only_with = {"gravity.solver", {"fft"}}},
+       {.path = "moonlet.radius",
+        .type = KeyType::number,
+        .example = "1.0",
+        .range = {.low = 0.0},
+        .effect = KeyEffect::start},
+       {.path = "time.end", .type = KeyType::number, .example = "3.0", .alternatives = {"time.steps"}},
+       {.path = "time.steps", .type = KeyType::integer, .example = "3", .alternatives = {"time.end"}}},
+      {{.path = "gravity"},
+       {.path = "moonlet", .repeated = true, .most = 3},
+       {.path = "time", .needed = true, .meaning = "it ends"}});
+  return all;
+}
+
+} // namespace keeler::test
