@@ -98,7 +98,7 @@ Found check_contacts(const std::string& file) {
   const ContactFile contacts = read_contacts(file);
   std::int64_t last = 0;
   for (const ContactRow& row : contacts.rows) {
-    const bool finite = std::isfinite(row.time_orbits) && row.place.allFinite() && std::isfinite(row.normal_speed) &&
+    const bool finite = std::isfinite(row.time_orbits) && row.position.allFinite() && std::isfinite(row.normal_speed) &&
                         std::isfinite(row.tangential_speed);
     if (!finite || row.step < last || row.low_id >= row.high_id)
       throw IoError(fmt::format("row {} of '{}' is no contact, or not of its place",
