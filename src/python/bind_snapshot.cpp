@@ -62,7 +62,7 @@ PythonSnapshot tile(const PythonSnapshot& snapshot, std::size_t nx, std::size_t 
   return made([&] {
     const Scene scene = parse_scene(snapshot.scene, name, {"start.keep=1.0"}, name);
     const Patch patch = patch_from_snapshot(snapshot.patch, name, scene);
-    require_apart(patch, "'" + name + "'");
+    require_no_overlap(patch, "'" + name + "'");
     return PythonSnapshot{tiled_patch(patch, nx, ny), scene.resolved, true};
   });
 }
@@ -88,7 +88,7 @@ PythonSnapshot from_arrays(const std::string& text, const std::string& name, con
     Patch patch = patch_from_table(table, of);
     if (relaxed)
       relax(patch);
-    require_apart(patch, table.file);
+    require_no_overlap(patch, table.file);
     const Scene scene = decided_by(parse_scene(of.scene.resolved, name, {}, table.file), scale_of(patch));
     return PythonSnapshot{std::move(patch), scene.resolved, true};
   });

@@ -55,7 +55,7 @@ void require_fit(const Patch& patch, const Scene& scene, const std::string& file
   if (patch.spins.empty() == scene.collisions.friction.has_value())
     throw IoError(fmt::format("'{}' and the scene in it do not agree whether particles have spins", file));
   if (misses_nothing(scene))
-    require_apart(patch, "'" + file + "'");
+    require_no_overlap(patch, "'" + file + "'");
 }
 
 // A checkpoint's elements at the boundary where it was written.

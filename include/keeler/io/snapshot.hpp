@@ -33,8 +33,8 @@ public:
   /// Particles per piece; the last piece may have fewer.
   static constexpr std::size_t piece = std::size_t{1} << 17;
 
-  /// Creates a file for `count` particles, with spins if `rough`. Everything else is taken from `frame`, whose
-  /// particles are ignored. Precondition: frame.orbital_frequency > 0.
+  /// Creates a file for `count` particles, with spins if `rough`. Everything else is taken from `frame`;
+  /// its particles are ignored. Precondition: frame.orbital_frequency > 0.
   SnapshotFile(const std::filesystem::path& file, const Patch& frame, std::size_t count, bool rough,
                const SnapshotMeta& meta);
   ~SnapshotFile();

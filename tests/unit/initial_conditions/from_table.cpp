@@ -104,8 +104,8 @@ TEST_CASE("a particle that no ring has, or outside the box, is named by its row"
     CHECK(fault(table).find("t.csv:2: the particle has " + words) == 0);
     CHECK(fault(table).find("; correct it or remove the row") != std::string::npos);
   };
-  says(one({1.0, NAN, 0.0}, still), "a place or a velocity that is not finite");
-  says(one(here, {0.0, INFINITY, 0.0}), "a place or a velocity that is not finite");
+  says(one({1.0, NAN, 0.0}, still), "a position or velocity that is not finite");
+  says(one(here, {0.0, INFINITY, 0.0}), "a position or velocity that is not finite");
   ParticleTable table = one(here, still);
   table.radii[0] = -1.0;
   says(table, "a radius (m) of -1 (possible is from 1e-6 to 1000000)");
