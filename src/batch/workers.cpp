@@ -224,7 +224,7 @@ private:
     const auto finished = std::count_if(states_.begin(), states_.end(), [](const State& s) { return s.finished; });
     const double now = done(), gained = now - done_at_start_, elapsed = watch_.elapsed();
     Progress progress;
-    progress.share = finished == std::ssize(states_) ? 1.0 : std::min(now / all, 0.999);
+    progress.fraction = finished == std::ssize(states_) ? 1.0 : std::min(now / all, 0.999);
     progress.elapsed_s = elapsed;
     progress.remaining_s = gained > 0.0 ? elapsed * (all - now) / gained : 0.0;
     progress.what = fmt::format("{} of {} done, {} running", finished, pluralize(states_.size(), "run"), running());

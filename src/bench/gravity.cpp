@@ -25,7 +25,7 @@ constexpr std::size_t max_direct = 10000;    // particles, unless it is asked fo
 
 // The patch in the order of places, as a run has its particles.
 Patch in_memory_order(const Patch& patch) {
-  const std::vector<std::uint32_t> order = order_by_place(particles_from(patch, 0.0), patch.box, patch.offset);
+  const std::vector<std::uint32_t> order = order_by_position(particles_from(patch, 0.0), patch.box, patch.offset);
   Patch sorted = patch;
   reorder(sorted.positions, order);
   reorder(sorted.velocities, order);

@@ -3,6 +3,7 @@
 #include <keeler/core/counting_sort.hpp>
 
 #include <algorithm>
+#include <cassert>
 
 namespace keeler {
 namespace {
@@ -11,29 +12,30 @@ constexpr double particles_per_cell = 2.0;
 
 } // namespace
 
-std::vector<std::uint32_t> order_by_place(const Particles& particles, const ShearingBox& box, double offset) {
+std::vector<std::uint32_t> order_by_position(const Particles& particles, const ShearingBox& box, double offset) {
+  assert(particles.ids.size() == particles.size() && box.size_x > 0.0 && box.size_y > 0.0);
   const std::size_t count = particles.size();
   const double cells = std::max(1.0, static_cast<double>(count) / particles_per_cell);
   const auto columns =
       static_cast<std::size_t>(std::ceil(std::clamp(std::sqrt(cells * box.size_x / box.size_y), 1.0, cells)));
   const auto rows = static_cast<std::size_t>(std::ceil(cells / static_cast<double>(columns)));
-  const auto part = [](double place, double size, std::size_t parts) {
-    const double number = (place / size + 0.5) * static_cast<double>(parts);
-    return static_cast<std::size_t>(std::clamp(number, 0.0, static_cast<double>(parts) - 0.5));
+  const auto part = [](double coordinate, double size, std::size_t parts) {
+    const double index = (coordinate / size + 0.5) * static_cast<double>(parts);
+    return static_cast<std::size_t>(std::clamp(index, 0.0, static_cast<double>(parts) - 0.5));
   };
   std::vector<std::uint32_t> cell_of(count);
   parallel_for(count, [&](std::size_t k) {
-    Vec3 place = state_at(particles.bodies[k].elements, {}, Rotation()).position;
+    Vec3 position = state_at(particles.bodies[k].elements, {}, Rotation()).position;
     cell_of[k] = 0;
-    if (!place.allFinite())
-      return; // no matter where: whoever uses it will refuse it
-    place += box.displacement(box.image_into_cell(place.x(), place.y(), offset), offset);
-    cell_of[k] =
-        static_cast<std::uint32_t>(part(place.x(), box.size_x, columns) * rows + part(place.y(), box.size_y, rows));
+    if (!position.allFinite())
+      return; // arbitrary; later checks reject the particle
+    position += box.displacement(box.image_into_cell(position.x(), position.y(), offset), offset);
+    cell_of[k] = static_cast<std::uint32_t>(part(position.x(), box.size_x, columns) * rows +
+                                            part(position.y(), box.size_y, rows));
   });
   std::vector<std::uint32_t> starts, order(count);
   counting_sort(cell_of, columns * rows, starts,
-                [&](std::size_t k, std::size_t place) { order[place] = static_cast<std::uint32_t>(k); });
+                [&](std::size_t k, std::size_t position) { order[position] = static_cast<std::uint32_t>(k); });
   parallel_for(columns * rows, [&](std::size_t c) {
     std::sort(order.begin() + starts[c], order.begin() + starts[c + 1],
               [&](std::uint32_t a, std::uint32_t b) { return particles.ids[a] < particles.ids[b]; });

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -17,15 +18,16 @@
 namespace keeler {
 namespace {
 
-// From the one with the lower id, so that the bits do not depend on who found whom.
+// Measured from the particle with the lower id, so that the bits do not depend on which of the two found the pair.
 Overlap overlap_of(const Patch& patch, std::size_t low, std::size_t high, const Image& image_of_high) {
+  assert(patch.ids[low] < patch.ids[high]);
   const Vec3 d = patch.positions[high] + patch.box.displacement(image_of_high, patch.offset) - patch.positions[low];
   const double sum = patch.radii[low] + patch.radii[high];
   return {(sum - d.norm()) / sum, patch.ids[low], patch.ids[high]};
 }
 
-// Calls visit(overlap) for each pair that overlaps, from any thread. The larger of two particles looks for the smaller
-// one, so that few look far.
+// Calls visit(overlap) for each overlapping pair, from any thread. The larger particle of a pair searches for the
+// smaller one, so that only large particles have a long reach.
 template<class Visit> void for_each_overlap(const Patch& patch, const Visit& visit) {
   if (patch.size() == 0)
     return;
@@ -55,11 +57,11 @@ bool deeper(const Overlap& a, const Overlap& b) {
 }
 
 Overlap largest_overlap(const Patch& patch) {
-  std::vector<Overlap> worst(static_cast<std::size_t>(threads())); // of each thread
-  for_each_overlap(patch, [&](const Overlap& here) {
-    Overlap& its = worst[static_cast<std::size_t>(omp_get_thread_num()) % worst.size()];
-    if (deeper(here, its))
-      its = here;
+  std::vector<Overlap> worst(static_cast<std::size_t>(threads())); // per thread
+  for_each_overlap(patch, [&](const Overlap& overlap) {
+    Overlap& deepest = worst[static_cast<std::size_t>(omp_get_thread_num()) % worst.size()];
+    if (deeper(overlap, deepest))
+      deepest = overlap;
   });
   Overlap result;
   for (const Overlap& candidate : worst)
@@ -70,11 +72,12 @@ Overlap largest_overlap(const Patch& patch) {
 
 std::size_t count_overlaps(const Patch& patch, double depth) {
   std::atomic<std::size_t> count = 0;
-  for_each_overlap(patch, [&](const Overlap& here) { count += here.depth > depth ? 1 : 0; });
+  for_each_overlap(patch, [&](const Overlap& overlap) { count += overlap.depth > depth ? 1 : 0; });
   return count;
 }
 
 void require_no_heap(const Patch& patch, const std::string& state) {
+  assert(patch.radii.size() == patch.size());
   const std::size_t count = patch.size();
   const double width = 2.0 * std::accumulate(patch.radii.begin(), patch.radii.end(), 0.0) / static_cast<double>(count);
   std::vector<std::pair<double, double>> cells(count);
@@ -87,7 +90,7 @@ void require_no_heap(const Patch& patch, const std::string& state) {
       ++next;
     pairs += std::pow(static_cast<double>(next - first), 2);
   }
-  constexpr double always_allowed = 1e7, allowed_each = 1000.0; // a layer has some tens
+  constexpr double always_allowed = 1e7, allowed_each = 1000.0; // pairs; a layer has some tens per particle
   if (pairs > always_allowed + allowed_each * static_cast<double>(count))
     throw InvariantError(
         fmt::format("the {} of {} lie on each other in heaps (a column as wide as a particle holds {} on "
@@ -95,12 +98,12 @@ void require_no_heap(const Patch& patch, const std::string& state) {
                     pluralize(count, "particle"), state, format_number(pairs / static_cast<double>(count), 3)));
 }
 
-void require_apart(const Patch& patch, const std::string& state) {
+void require_no_overlap(const Patch& patch, const std::string& state) {
   require_no_heap(patch, state);
-  require_apart(largest_overlap(patch), state);
+  require_no_overlap(largest_overlap(patch), state);
 }
 
-void require_apart(const Overlap& largest, const std::string& state) {
+void require_no_overlap(const Overlap& largest, const std::string& state) {
   if (largest.depth > allowed_overlap)
     throw InvariantError(fmt::format("particles {} and {} of {} overlap by {:.2e} of their radius sum; start from a "
                                      "state without overlaps",

@@ -103,7 +103,7 @@ void part(Patch& patch, const GenerateOptions& options, const ParticleTable& tab
   const Overlap worst = largest_overlap(patch);
   const std::string found =
       fmt::format("{} of particles overlap, worst those of {} and {}, by {:.2g} of their radius sum",
-                  pluralize(overlaps, "pair"), table.place_of(worst.id_i), table.place_of(worst.id_j), worst.depth);
+                  pluralize(overlaps, "pair"), table.location_of(worst.id_i), table.location_of(worst.id_j), worst.depth);
   if (!options.relax)
     throw InvariantError(found + "; correct them, or move them apart by --relax");
   const Relaxation moved = unless_stopped(stopped, [&] { return relax(patch); });

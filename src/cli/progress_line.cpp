@@ -103,13 +103,13 @@ void ProgressLine::show(const RunProgress& p) {
 
 void ProgressLine::show(const Progress& p) {
   begin_phase(p.what, p.elapsed_s);
-  if (!due(p.elapsed_s, p.share == 1.0))
+  if (!due(p.elapsed_s, p.fraction == 1.0))
     return;
-  Parts parts = {fmt::format("{:3.0f} %", 100.0 * p.share)};
-  for (const std::string& left : time_left(p.share, p.elapsed_s, p.remaining_s))
+  Parts parts = {fmt::format("{:3.0f} %", 100.0 * p.fraction)};
+  for (const std::string& left : time_left(p.fraction, p.elapsed_s, p.remaining_s))
     parts.push_back(left);
   parts.push_back(p.what);
-  print(p.share, parts);
+  print(p.fraction, parts);
 }
 
 void ProgressLine::show_if_long(const Progress& p) {

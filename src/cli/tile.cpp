@@ -46,7 +46,7 @@ ExitCode tile(const TileOptions& options, const std::vector<std::string>& argume
   // No fresh start makes this state: the scene that goes with it starts from the file, and keeps all of it.
   const Scene scene = parse_scene(snapshot.meta.scene, options.file, {"start.keep=1.0"}, options.output);
   const Patch patch = patch_from_snapshot(std::move(snapshot.patch), options.file, scene);
-  require_apart(patch, "'" + options.file + "'");
+  require_no_overlap(patch, "'" + options.file + "'");
   const TiledPatch tiled(patch, options.nx, options.ny);
   write(tiled, options.output, {scene.resolved, collect_provenance(arguments)});
   const ShearingBox box = tiled.some(0, 0).box;

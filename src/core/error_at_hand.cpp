@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <filesystem>
 #include <new>
 #include <stdexcept>
@@ -10,7 +11,7 @@
 namespace keeler {
 namespace {
 
-// The call that failed without a name was about the working folder.
+// An error without a path concerns the working folder.
 IoError error_of(const std::filesystem::filesystem_error& error) {
   const std::string why = error.code().message();
   if (error.path1().empty())
@@ -22,6 +23,7 @@ IoError error_of(const std::filesystem::filesystem_error& error) {
 } // namespace
 
 Error error_at_hand() {
+  assert(std::current_exception());
   try {
     throw;
   } catch (const Error& error) {
@@ -33,12 +35,12 @@ Error error_at_hand() {
   } catch (const std::filesystem::filesystem_error& error) {
     return error_of(error);
   } catch (const std::system_error& error) {
-    return {ExitCode::run_time, fmt::format("the system refuses what this needs ({}); end other programs, or raise the "
-                                            "limit that is met",
+    return {ExitCode::run_time, fmt::format("the system refuses a resource ({}); end other programs, or raise the "
+                                            "limit that is reached",
                                             error.code().message())};
   } catch (...) {
-    return {ExitCode::run_time, "something happened that Keeler does not foresee; it is a fault of the program: please "
-                                "report it, with the command and its files"};
+    return {ExitCode::run_time, "an unexpected error occurred, which is a fault of the program; please report it, with "
+                                "the command and its files"};
   }
 }
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
@@ -12,7 +13,7 @@
 namespace keeler {
 namespace {
 
-bool continues(unsigned char byte) {
+bool is_continuation(unsigned char byte) {
   return (byte & 0xc0) == 0x80;
 }
 
@@ -20,8 +21,10 @@ unsigned char byte_of(std::string_view text, std::size_t k) {
   return k < text.size() ? static_cast<unsigned char>(text[k]) : static_cast<unsigned char>(0);
 }
 
-// How many bytes the character at the beginning of a text that is not empty has; 0 when there is none (RFC 3629).
+// Returns the number of bytes of the first UTF-8 character (RFC 3629) of a text; 0 if it is invalid. Precondition: the
+// text is not empty.
 std::size_t character_at(std::string_view text) {
+  assert(!text.empty());
   const unsigned char first = byte_of(text, 0), second = byte_of(text, 1);
   if (first < 0x80)
     return 1;
@@ -29,7 +32,7 @@ std::size_t character_at(std::string_view text) {
   if (first < 0xc2 || first > 0xf4)
     return 0;
   for (std::size_t k = 1; k < length; ++k)
-    if (!continues(byte_of(text, k)))
+    if (!is_continuation(byte_of(text, k)))
       return 0;
   const bool too_long = (first == 0xe0 && second < 0xa0) || (first == 0xf0 && second < 0x90);
   const bool no_character = (first == 0xed && second > 0x9f) || (first == 0xf4 && second > 0x8f);
@@ -41,7 +44,7 @@ bool is_control(std::string_view character) {
   return first < 0x20 || first == 0x7f || (first == 0xc2 && byte_of(character, 1) < 0xa0);
 }
 
-// Keeps those control characters alone.
+// Replaces invalid UTF-8 and control characters, except those in `kept`, by '?'.
 std::string printable(std::string_view text, std::string_view kept) {
   std::string all;
   for (std::size_t at = 0; at < text.size();) {
@@ -56,6 +59,7 @@ std::string printable(std::string_view text, std::string_view kept) {
 } // namespace
 
 std::string format_number(double value, int digits) {
+  assert(digits > 0);
   std::string text = fmt::format("{:.{}g}", value, digits);
   const std::size_t exponent = text.find('e');
   if (exponent == std::string::npos)
@@ -86,14 +90,14 @@ std::string printable_text(std::string_view text) {
 }
 
 std::string printable_line(const std::string& line) {
-  constexpr std::size_t longest = 2000, end = 500;
+  constexpr std::size_t max_size = 2000, end = 500;
   std::string text = printable(line, "");
-  if (text.size() <= longest)
+  if (text.size() <= max_size)
     return text;
-  std::size_t head = longest - end, tail = text.size() - end;
-  while (continues(static_cast<unsigned char>(text[head])))
+  std::size_t head = max_size - end, tail = text.size() - end;
+  while (is_continuation(static_cast<unsigned char>(text[head])))
     --head;
-  while (continues(static_cast<unsigned char>(text[tail])))
+  while (is_continuation(static_cast<unsigned char>(text[tail])))
     ++tail;
   return text.substr(0, head) + " [...] " + text.substr(tail);
 }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <fstream>
 #include <limits>
 
@@ -15,33 +16,33 @@ namespace keeler {
 namespace {
 
 constexpr double address_space = 0x1p47;
-constexpr double nothing_said = std::numeric_limits<double>::quiet_NaN();
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-// The number in KiB behind a name in a file of proc(5), in bytes.
+// Returns the entry `name` (in KiB) of a file of proc(5), in bytes.
 double read_kib(const char* file, const std::string& name) {
   std::ifstream text(file);
   for (std::string word; text >> word;)
     if (double kib = 0.0; word == name && text >> kib)
       return 1024.0 * kib;
-  return nothing_said;
+  return unknown;
 }
 
-// The number that a file begins with; a control group without a limit says "max".
+// Returns the number at the beginning of a file; unknown for "max", a control group without a limit.
 double read_number(const std::string& file) {
   std::ifstream text(file);
   double number = 0.0;
-  return text >> number ? number : nothing_said;
+  return text >> number ? number : unknown;
 }
 
-// What is left of a control group and of those above it (cgroups(7), version 2), whose files a container sees at the
-// top. Caches of files that can be dropped count as free.
-double left_in_groups() {
+// Returns the free memory of this process's control group and its ancestors (cgroups(7), version 2); a container sees
+// its own group at the root. File caches that can be dropped count as free.
+double free_in_groups() {
   std::ifstream text("/proc/self/cgroup");
   std::string line, path;
   while (std::getline(text, line))
     if (line.starts_with("0::"))
       path = line.substr(3);
-  double least = address_space;
+  double min_free = address_space;
   for (;;) {
     const std::string folder = "/sys/fs/cgroup" + (path == "/" ? std::string() : path);
     const double limit = read_number(folder + "/memory.max"), used = read_number(folder + "/memory.current");
@@ -51,15 +52,16 @@ double left_in_groups() {
       for (std::string name; parts >> name >> bytes;)
         if (name == "inactive_file" || name == "active_file")
           droppable += bytes;
-      least = std::min(least, std::max(0.0, limit - used + droppable));
+      min_free = std::min(min_free, std::max(0.0, limit - used + droppable));
     }
     if (path.empty() || path == "/")
-      return least;
+      return min_free;
     path.resize(path.rfind('/'));
   }
 }
 
-double left_below_limit() {
+// Returns the memory left below the address space limit.
+double free_address_space() {
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
     return address_space;
@@ -69,7 +71,7 @@ double left_below_limit() {
 
 } // namespace
 
-// Not ru_maxrss of getrusage(2), which also counts what the process was before it became this program.
+// Not ru_maxrss of getrusage(2), which includes the process before exec.
 double peak_memory() {
   return read_kib("/proc/self/status", "VmHWM:");
 }
@@ -77,20 +79,21 @@ double peak_memory() {
 double available_memory() {
   const double free = read_kib("/proc/meminfo", "MemAvailable:"), swap = read_kib("/proc/meminfo", "SwapFree:");
   const double machine = free >= 0.0 ? free + (swap >= 0.0 ? swap : 0.0) : address_space;
-  return std::min({address_space, machine, left_in_groups(), left_below_limit()});
+  return std::min({address_space, machine, free_in_groups(), free_address_space()});
 }
 
 void require_memory(double bytes, const std::string& what, const std::string& remedy) {
-  constexpr double always_there = 1e6; // so little is not worth a look at the system
-  if (bytes <= always_there)
+  constexpr double always_allowed = 1e6; // bytes; not worth asking the system
+  if (bytes <= always_allowed)
     return;
-  const double left = available_memory();
-  if (!(bytes <= left))
-    throw UsageError(fmt::format("{} needs {} GB of memory, and {} GB can be had here; {}", what,
-                                 format_number(1e-9 * bytes, 3), format_number(1e-9 * left, 3), remedy));
+  const double available = available_memory();
+  if (!(bytes <= available))
+    throw UsageError(fmt::format("{} needs {} GB of memory, and {} GB are available; {}", what,
+                                 format_number(1e-9 * bytes, 3), format_number(1e-9 * available, 3), remedy));
 }
 
 std::size_t affordable_size(double count, double bytes_each, const std::string& what, const std::string& remedy) {
+  assert(bytes_each >= 0.0);
   const double counted = count >= 0.0 ? count : std::numeric_limits<double>::quiet_NaN();
   require_memory(std::max(1.0, bytes_each) * counted, what, remedy);
   return static_cast<std::size_t>(counted);

@@ -40,12 +40,12 @@ InstructionSet choose_instruction_set() {
   for (const InstructionSet set : widest_first) {
     if (wanted.empty() ? supports(set) : wanted == instruction_set_name(set)) {
       if (!supports(set))
-        throw UsageError("KEELER_SIMD=" + wanted + ": this processor has no such instructions; unset it");
+        throw UsageError("KEELER_SIMD=" + wanted + ": this processor does not support these instructions; unset it");
       return set;
     }
   }
   throw UsageError("KEELER_SIMD=" + wanted +
-                   " is not an instruction set known here; use portable, avx2 or avx512, or unset it");
+                   " is not a known instruction set; use portable, avx2 or avx512, or unset it");
 }
 
 } // namespace keeler

@@ -12,7 +12,7 @@
 
 namespace keeler {
 
-// First as many of the system's, whose failure can be caught; all at once, as OpenMP's are.
+// First starts as many system threads, all alive at once, because their failure can be caught; then OpenMP's.
 void start_threads() {
   std::latch all_there(1);
   std::vector<std::jthread> trials;
@@ -26,7 +26,7 @@ void start_threads() {
   } catch (const std::system_error& error) {
     end_trials();
     throw Error(ExitCode::run_time,
-                fmt::format("the system does not start {} threads ({}); ask for fewer by --threads or OMP_NUM_THREADS, "
+                fmt::format("the system cannot start {} threads ({}); request fewer by --threads or OMP_NUM_THREADS, "
                             "or raise the limit on memory or processes",
                             threads(), error.code().message()));
   }

@@ -24,8 +24,8 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 } // namespace
 
 std::string closest(const std::string& word, const std::vector<std::string>& candidates) {
-  constexpr std::size_t longest = 100; // no name is nearly so long
-  if (word.size() > longest)
+  constexpr std::size_t max_size = 100; // longer than any name
+  if (word.size() > max_size)
     return {};
   std::size_t best = std::max<std::size_t>(1, word.size() / 3) + 1;
   std::string found;

@@ -9,8 +9,8 @@ namespace keeler {
 
 void set_threads(int count) {
   if (count > max_threads)
-    throw UsageError(fmt::format("{} threads are asked for (by --threads or OMP_NUM_THREADS), and {} is the most; ask "
-                                 "for no more than there are processors ({})",
+    throw UsageError(fmt::format("{} threads are requested (by --threads or OMP_NUM_THREADS), and the maximum is {}; "
+                                 "request at most the number of processors ({})",
                                  count, max_threads, omp_get_num_procs()));
   omp_set_num_threads(std::max(1, count));
 }

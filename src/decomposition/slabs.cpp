@@ -142,7 +142,7 @@ void Slabs::make_borders(Holding holding, double offset, double step) {
   std::vector<double> across = places_across(particles, box_.size_x);
   balance(across);
   migrate(holding, across);
-  const std::vector<std::uint32_t> order = order_by_place(particles, box_, offset);
+  const std::vector<std::uint32_t> order = order_by_position(particles, box_, offset);
   reorder(particles.bodies, order);
   reorder(particles.ids, order);
   if (particles.rough)

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <charconv>
 #include <optional>
 
@@ -20,14 +21,14 @@ std::string_view trimmed(std::string_view text) {
 }
 
 std::optional<double> number_of(std::string_view word) {
-  if (word.starts_with('+')) // from_chars takes none
+  if (word.starts_with('+')) // from_chars accepts no plus sign
     word.remove_prefix(1);
   double number = 0.0;
   const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), number);
   return fault == std::errc{} && end == word.data() + word.size() ? std::optional(number) : std::nullopt;
 }
 
-// What parts the fields of a line; a blank stands for any number of blanks and tabs.
+// Returns the separator of a line; a blank means any number of blanks and tabs.
 char separator_of(std::string_view line) {
   for (const char separator : {',', ';'})
     if (line.find(separator) != line.npos)
@@ -35,8 +36,9 @@ char separator_of(std::string_view line) {
   return ' ';
 }
 
-// Hands over field after field of a line that holds at least one.
+// Calls visit(field) for each field of a line. Precondition: the line is not blank.
 template<class Visit> void for_each_field(std::string_view line, char separator, const Visit& visit) {
+  assert(!trimmed(line).empty());
   const std::string_view ends = separator == ' ' ? std::string_view(" \t") : std::string_view(&separator, 1);
   for (line = trimmed(line);;) {
     const std::size_t end = line.find_first_of(ends);
@@ -49,7 +51,7 @@ template<class Visit> void for_each_field(std::string_view line, char separator,
   }
 }
 
-// Of a line that holds a field at least; 0 where one has several.
+// Returns the number of fields of a line, or 0 if one of them has several words. Precondition: the line is not blank.
 std::size_t count_words(std::string_view line, char separator) {
   std::size_t count = 0;
   bool one_each = true;
@@ -100,7 +102,7 @@ private:
     return true;
   }
 
-  // The names, or numbers whose names stood in the last comment.
+  // Reads the names, or the first row of numbers if the names are in a comment above it.
   void read_first() {
     const char separator = separator_of(line_);
     bool is_number = false;
@@ -114,7 +116,7 @@ private:
     read_row();
   }
 
-  // Of the comments above the first row the last that has a word for each field of it; where none has, the last.
+  // Returns the last comment above the first row that has one word per field, or else the last comment.
   Comment names_above(char separator) const {
     const auto fits = [&](const Comment& comment) {
       return !comment.text.empty() && separator_of(comment.text) == separator &&
@@ -143,8 +145,8 @@ private:
       return;
     number_ = line;
     if (nameless + 1 == names.end())
-      fail(fmt::format("the last column has no name (the line ends with a '{0}'); remove that '{0}', and those at the "
-                       "ends of the rows",
+      fail(fmt::format("the last column has no name (the line ends with a '{0}'); remove it here and at the ends "
+                       "of the rows",
                        separator_));
     if (nameless == names.begin())
       fail("the first column has no name (pandas writes its index so); write the table with index=False, or remove "
@@ -152,7 +154,7 @@ private:
     fail(fmt::format("column {} has no name; name it or remove it", nameless - names.begin() + 1));
   }
 
-  // Behind the last column there is nothing but a separator.
+  // True if the line ends with a separator after the last column.
   bool ends_with_separator() const { return separator_ != ' ' && line_.back() == separator_; }
 
   void read_row() {
@@ -178,6 +180,7 @@ private:
       fail(fmt::format("the row has {} of {} values (line {} names the columns); correct or remove it", column, count,
                        columns_.header_line));
     columns_.lines.push_back(number_);
+    assert(columns_.values.front().size() == columns_.lines.size());
   }
 
   std::string_view rest_, line_;

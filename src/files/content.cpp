@@ -7,6 +7,7 @@
 #include <keeler/files/kept_streams.hpp>
 #include <keeler/files/new_file.hpp>
 
+#include <cassert>
 #include <cstring>
 
 #include <fcntl.h>
@@ -17,11 +18,11 @@
 namespace keeler {
 namespace {
 
-constexpr std::size_t never_too_large = 1000000; // bytes: so little is not worth a look at the memory
+constexpr std::size_t always_allowed_bytes = 1000000; // read without checking the free memory
 constexpr std::size_t max_of_device = std::size_t{1} << 26;
-constexpr std::size_t largest_piece = std::size_t{1} << 26;
+constexpr std::size_t max_piece = std::size_t{1} << 26;
 
-// A pipe of this process that is opened a second time would wait for another writer.
+// Opens a file. A descriptor of this process is duplicated: a pipe that is opened again would wait for another writer.
 int opened(const std::filesystem::path& file) {
   if (reads_once(file))
     if (const std::optional<int> named = descriptor_named(file))
@@ -53,22 +54,23 @@ Source::~Source() {
     ::close(number_);
 }
 
-// A part of the memory: what grows is copied as it does, and what it says takes memory too.
-std::size_t Source::most() const {
+// A fraction of the free memory: growing buffers are copied, and the parsed content takes memory too.
+std::size_t Source::max_size() const {
   if (!on_disk_ && !is_pipe_)
     return max_of_device;
   return static_cast<std::size_t>((on_disk_ ? 0.5 : 0.25) * available_memory());
 }
 
 bool Source::may_have(std::size_t bytes) {
-  if (bytes <= never_too_large)
+  if (bytes <= always_allowed_bytes)
     return true;
-  if (!most_)
-    most_ = most();
-  return bytes <= *most_;
+  if (!max_size_)
+    max_size_ = max_size();
+  return bytes <= *max_size_;
 }
 
 ssize_t Source::read(std::span<std::byte> into) {
+  assert(!into.empty());
   if (number_ < 0)
     return -1;
   if (on_disk_ && begun_)
@@ -77,7 +79,7 @@ ssize_t Source::read(std::span<std::byte> into) {
   for (;;) {
     if (!on_disk_)
       await(number_, POLLIN, file_);
-    const ssize_t got = ::read(number_, into.data(), std::min(into.size(), largest_piece));
+    const ssize_t got = ::read(number_, into.data(), std::min(into.size(), max_piece));
     if (got >= 0 || (errno != EINTR && errno != EAGAIN))
       return got;
   }
@@ -85,8 +87,8 @@ ssize_t Source::read(std::span<std::byte> into) {
 
 std::string why_unread() {
   if (errno == EFBIG)
-    return "it is too large, or has no end: it is read into memory, and not more than a part of what is free; name a "
-           "smaller file, or use a machine or a limit with more";
+    return "it is too large, or has no end: it is read into memory, up to a fraction of what is free; name a smaller "
+           "file, or use a machine or a limit with more";
   return std::strerror(errno);
 }
 

@@ -1,6 +1,5 @@
-// A file's content from its beginning to its end, whatever it is. A pipe or a device may have no size beforehand, no
-// writer yet and no end: all that is read has a bound, and a wait can be interrupted. All files that are read whole are
-// read here.
+// Reads the whole content of a file, pipe or device. A pipe or a device may have no known size, no writer yet and no
+// end, so the amount is limited and waiting can be interrupted. All files that are read whole are read here.
 #pragma once
 
 #include <algorithm>
@@ -19,46 +18,46 @@ namespace keeler {
 /// A file that is being read.
 class Source {
 public:
-  /// A pipe need not have a writer yet. Where it cannot be opened errno says why, here and in read().
+  /// Opens the file; a pipe need not have a writer yet. On failure read() returns -1, and errno has the reason.
   explicit Source(const std::filesystem::path& file);
   ~Source();
   Source(const Source&) = delete;
   Source& operator=(const Source&) = delete;
 
-  /// Of a file on a disk; else 0.
+  /// Returns the size of a regular file in bytes; 0 for others.
   std::size_t size() const { return size_; }
-  /// Whether so many bytes of it may be taken: by what it is, and by the memory that there is.
+  /// True if `bytes` of it may be read, given the kind of file and the free memory.
   bool may_have(std::size_t bytes);
-  /// As read(2), of what comes next. Throws Interrupted.
+  /// Reads the next bytes, as read(2). Throws Interrupted.
   ssize_t read(std::span<std::byte> into);
 
 private:
-  std::size_t most() const;
+  std::size_t max_size() const;
 
   const std::filesystem::path file_;
   int number_ = -1;
   bool on_disk_ = true, is_pipe_ = false, begun_ = false;
   std::size_t size_ = 0;
-  std::optional<std::size_t> most_;
+  std::optional<std::size_t> max_size_;
 };
 
-/// Why a file could not be read, from errno.
+/// Returns the reason from errno why a file could not be read.
 std::string why_unread();
 
-/// Bytes is a string or a vector of bytes. Nothing where the file cannot be read, or has more than `most` bytes or than
-/// may be taken of it (EFBIG); errno says why. Throws Interrupted.
+/// Returns the content of a file as Bytes, a string or a vector of bytes. On failure returns nothing and sets errno,
+/// EFBIG when there are more than `max_bytes` or than Source::may_have() permits. Throws Interrupted.
 template<class Bytes>
 std::optional<Bytes> content_of(const std::filesystem::path& path,
-                                std::size_t most = std::numeric_limits<std::size_t>::max()) {
+                                std::size_t max_bytes = std::numeric_limits<std::size_t>::max()) {
   Source source(path);
-  const auto fits = [&](std::size_t bytes) { return bytes <= most && source.may_have(bytes); };
+  const auto fits = [&](std::size_t bytes) { return bytes <= max_bytes && source.may_have(bytes); };
   Bytes content;
   std::size_t have = 0;
   if (fits(source.size()))
-    content.resize(std::max<std::size_t>(source.size() + 1, 4096)); // one more: to see the end
+    content.resize(std::max<std::size_t>(source.size() + 1, 4096)); // one more, to detect the end
   while (!content.empty()) {
     const ssize_t got = source.read(std::as_writable_bytes(std::span(content)).subspan(have));
-    if (got < 0) // also for a folder: it opens, and fails here
+    if (got < 0) // also for a folder, which can be opened but not read
       return {};
     if (got == 0) {
       content.resize(have);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -31,17 +32,17 @@ template<class Call> auto retried(const Call& call) {
   return result;
 }
 
-// Linux moves at most 2 GiB a call.
+// Linux transfers at most 2 GiB per call.
 constexpr std::size_t largest_transfer = std::size_t{1} << 30;
 
 } // namespace
 
-// A pipe in the place of a file is not waited for.
+// Opens without waiting if the file is a pipe.
 Descriptor::Descriptor(const std::filesystem::path& file, int flags) : file_(file) {
   number_ = retried([&] { return ::open(file.c_str(), flags | O_NONBLOCK | O_CLOEXEC, 0666); });
   if (number_ < 0 && errno == ELOOP && (flags & O_NOFOLLOW) != 0)
-    throw IoError(fmt::format("cannot open for writing '{}': it is a link, and output is not sent elsewhere by links; "
-                              "put the file itself there",
+    throw IoError(fmt::format("cannot open for writing '{}': it is a link, and output does not follow links; replace "
+                              "it by the file itself",
                               file.string()));
   if (number_ < 0)
     fail((flags & O_ACCMODE) == O_RDONLY ? "open" : "open for writing", file);
@@ -77,6 +78,7 @@ void Descriptor::write_all(std::span<const std::byte> content) {
 }
 
 void Descriptor::append_whole(std::span<const std::byte> content) {
+  assert((::fcntl(number_, F_GETFL) & O_APPEND) != 0);
   const std::size_t before = size();
   try {
     write_all(content);
@@ -86,24 +88,24 @@ void Descriptor::append_whole(std::span<const std::byte> content) {
   }
 }
 
-void Descriptor::write_at(std::size_t place, std::span<const std::byte> content) {
+void Descriptor::write_at(std::size_t offset, std::span<const std::byte> content) {
   while (!content.empty()) {
     const std::size_t length = std::min(content.size(), largest_transfer);
     const ssize_t written =
-        retried([&] { return ::pwrite(number_, content.data(), length, static_cast<off_t>(place)); });
+        retried([&] { return ::pwrite(number_, content.data(), length, static_cast<off_t>(offset)); });
     if (written < 0)
       fail("write", file_);
     content = content.subspan(static_cast<std::size_t>(written));
-    place += static_cast<std::size_t>(written);
+    offset += static_cast<std::size_t>(written);
   }
 }
 
-std::size_t Descriptor::read_at(std::size_t place, std::span<std::byte> into) const {
+std::size_t Descriptor::read_at(std::size_t offset, std::span<std::byte> into) const {
   std::size_t have = 0;
   while (have < into.size()) {
     const std::size_t length = std::min(into.size() - have, largest_transfer);
     const ssize_t got =
-        retried([&] { return ::pread(number_, into.data() + have, length, static_cast<off_t>(place + have)); });
+        retried([&] { return ::pread(number_, into.data() + have, length, static_cast<off_t>(offset + have)); });
     if (got < 0)
       fail("read", file_);
     if (got == 0)
@@ -137,12 +139,13 @@ void Descriptor::truncate(std::size_t size) {
 }
 
 void Descriptor::sync() {
-  // EINVAL and ENOTSUP: a file system that has nothing to force, as some network ones for directories
+  // EINVAL and ENOTSUP: file systems without sync, as some network ones for directories
   if (retried([&] { return ::fsync(number_); }) != 0 && errno != EINVAL && errno != ENOTSUP)
     fail("force to disk", file_);
 }
 
 void Descriptor::close() {
+  assert(number_ >= 0);
   // not retried: Linux has closed the descriptor even when it reports EINTR
   if (::close(std::exchange(number_, -1)) != 0 && errno != EINTR)
     fail("close", file_);

@@ -37,9 +37,9 @@ void write_text(const std::filesystem::path& file, std::string_view text) {
 }
 
 void require_writable_folder(const std::filesystem::path& folder, const std::filesystem::path& output) {
-  std::error_code unknown; // no folder that is known of
+  std::error_code unknown; // then it is not a folder
   if (!std::filesystem::is_directory(folder, unknown) || access(folder.c_str(), W_OK) != 0)
-    throw IoError(fmt::format("cannot write '{}': '{}' is no folder that can be written to; make it, or name another",
+    throw IoError(fmt::format("cannot write '{}': '{}' is not a writable folder; create it, or name another",
                               output.string(), folder.string()));
 }
 

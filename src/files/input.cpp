@@ -36,14 +36,14 @@ void refuse_utf16(std::string_view text, const std::string& what) {
     throw UsageError(fmt::format("{}is a text in UTF-16 (its byte order mark says so); save it as UTF-8", what));
 }
 
-std::string read_input(const std::filesystem::path& file, const std::string& place) {
+std::string read_input(const std::filesystem::path& file, const std::string& location) {
   constexpr std::size_t max_bytes = std::size_t{1} << 30;
   std::optional<std::string> text = content_of<std::string>(file, max_bytes);
-  const std::string what = file == place ? "" : file.string() + " ";
+  const std::string what = file == location ? "" : file.string() + " ";
   if (!text)
-    throw UsageError(fmt::format("{}: {}cannot be read ({}); check the path and its permissions", place, what,
+    throw UsageError(fmt::format("{}: {}cannot be read ({}); check the path and its permissions", location, what,
                                  std::strerror(errno)));
-  refuse_utf16(*text, fmt::format("{}: {}", place, what));
+  refuse_utf16(*text, fmt::format("{}: {}", location, what));
   text->erase(0, text->size() - without_byte_order_mark(*text).size());
   return *std::move(text);
 }

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cerrno>
 #include <map>
 #include <vector>
@@ -23,8 +24,8 @@ thread_local std::map<std::string, std::shared_ptr<Descriptor>> kept;
   throw IoError(fmt::format("cannot read '{}': {}", file.string(), why_unread()));
 }
 
-// All that comes, in a file that is in memory alone.
-std::shared_ptr<Descriptor> taken_from(const std::filesystem::path& file) {
+// Reads a stream to its end, into an anonymous file in memory.
+std::shared_ptr<Descriptor> read_to_end(const std::filesystem::path& file) {
   Source source(file);
   const auto copy = std::make_shared<Descriptor>(memfd_create("keeler", MFD_CLOEXEC), file);
   std::vector<std::byte> piece(std::size_t{1} << 16);
@@ -50,6 +51,7 @@ KeptStreams::KeptStreams() {
 }
 
 KeptStreams::~KeptStreams() {
+  assert(keepers > 0);
   if (--keepers == 0)
     kept.clear();
 }
@@ -59,10 +61,10 @@ std::shared_ptr<Descriptor> open_anywhere(const std::filesystem::path& file) {
     return found->second;
   if (!reads_once(file))
     return std::make_shared<Descriptor>(file, O_RDONLY);
-  std::shared_ptr<Descriptor> taken = taken_from(file);
+  std::shared_ptr<Descriptor> content = read_to_end(file);
   if (keepers > 0)
-    kept.emplace(file.string(), taken);
-  return taken;
+    kept.emplace(file.string(), content);
+  return content;
 }
 
 } // namespace keeler

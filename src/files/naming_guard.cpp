@@ -1,5 +1,6 @@
 #include <keeler/files/naming_guard.hpp>
 
+#include <cassert>
 #include <utility>
 
 namespace keeler {
@@ -10,13 +11,16 @@ thread_local const NamingGuard* innermost = nullptr;
 } // namespace
 
 NamingGuard::NamingGuard(std::function<void()> check)
-    : check_(std::move(check)), outer_(std::exchange(innermost, this)) {}
+    : check_(std::move(check)), outer_(std::exchange(innermost, this)) {
+  assert(check_);
+}
 
 NamingGuard::~NamingGuard() {
+  assert(innermost == this); // guards nest
   innermost = outer_;
 }
 
-void NamingGuard::ask() {
+void NamingGuard::run_check() {
   if (innermost)
     innermost->check_();
 }

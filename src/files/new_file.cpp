@@ -37,7 +37,7 @@ std::string random_digits() {
   return fmt::format("{:08x}{:08x}", device(), device());
 }
 
-// What is too long for a file system loses its end.
+// Returns the name of a file, truncated so that the temporary name fits the file system's limit.
 std::string beginning_of(const fs::path& file) {
   return file.filename().string().substr(0, longest_name - mark.size() - digits - ending.size());
 }
@@ -50,7 +50,7 @@ bool is_regular(int descriptor, struct stat& status) {
   return fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
 }
 
-// Its writer holds the lock as long as it lives. A file that is no writer's has one name; links to others have more.
+// Removes a temporary file unless a writer holds its lock. A file with several hard links is not a temporary one.
 void remove_if_left_over(const fs::path& file) {
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0)
@@ -62,9 +62,9 @@ void remove_if_left_over(const fs::path& file) {
   ::close(descriptor);
 }
 
-// Locks a file that was just made; false where it was taken for a left-over before it had its lock.
+// Locks a file that was just created. Returns false if another process removed it before, as a left-over.
 bool lock(int descriptor) {
-  flock(descriptor, LOCK_EX); // where there are no locks, left-overs cannot be told and stay
+  flock(descriptor, LOCK_EX); // on file systems without locks, left-overs are never removed
   struct stat status = {};
   return fstat(descriptor, &status) != 0 || status.st_nlink > 0;
 }
@@ -76,7 +76,7 @@ std::optional<unsigned> mode_of(const fs::path& file) {
   return status.st_mode & 0777u;
 }
 
-// The number in the last part of a path of descriptors of this process: "/proc/123/fd/1".
+// Returns the descriptor number in a path "/proc/123/fd/1" of this process.
 std::optional<int> descriptor_at(const fs::path& path) {
   std::error_code unknown;
   const std::string folder = fs::canonical(folder_of(path), unknown).string();
@@ -88,14 +88,14 @@ std::optional<int> descriptor_at(const fs::path& path) {
   return error == std::errc{} && end == name.data() + name.size() ? std::optional(number) : std::nullopt;
 }
 
-// A pipe without a reader opens only when it gets one.
+// Opens a stream; waits until a pipe has a reader.
 int open_stream(const fs::path& name) {
   std::error_code none;
   const bool waits = fs::is_fifo(name, none);
   for (;;) {
     const int number = ::open(name.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (number >= 0)
-      fcntl(number, F_SETFL, O_WRONLY); // terminals take a part at once, and more when they have room
+      fcntl(number, F_SETFL, O_WRONLY); // blocking writes: terminals accept a part at a time
     if (number >= 0 || (errno != EINTR && !(waits && errno == ENXIO)))
       return number;
     require_patience(name);
@@ -103,8 +103,8 @@ int open_stream(const fs::path& name) {
   }
 }
 
-// A descriptor that is named keeps its flags: others may have it too.
-std::shared_ptr<Descriptor> opened_stream(const fs::path& name) {
+// Opens a stream, or duplicates a descriptor of this process. Its flags are not changed: others may share it.
+std::shared_ptr<Descriptor> connect_stream(const fs::path& name) {
   const std::optional<int> named = descriptor_named(name);
   if (named == STDOUT_FILENO)
     std::fflush(stdout);
@@ -115,7 +115,7 @@ std::shared_ptr<Descriptor> opened_stream(const fs::path& name) {
 } // namespace
 
 std::optional<int> descriptor_named(const fs::path& name) {
-  constexpr int max_links = 40; // as the kernel has it
+  constexpr int max_links = 40; // as in the kernel
   fs::path path = name;
   for (int link = 0; link < max_links; ++link) {
     if (const std::optional<int> number = descriptor_at(path))
@@ -124,7 +124,7 @@ std::optional<int> descriptor_named(const fs::path& name) {
     const fs::path target = fs::read_symlink(path, none);
     if (none)
       return std::nullopt;
-    path = folder_of(path) / target; // the target alone where it begins at the root
+    path = folder_of(path) / target; // an absolute target replaces the path
   }
   return std::nullopt;
 }
@@ -137,18 +137,18 @@ bool is_stream(const fs::path& name) {
 
 void refuse_stream(const fs::path& name, const std::string& format) {
   if (is_stream(name))
-    throw UsageError(fmt::format("'{}' cannot take {} (it is no file on a disk, and the format goes back in what it "
-                                 "has written); name a file",
+    throw UsageError(fmt::format("'{}' cannot take {} (it is not a file on a disk, and the format needs random "
+                                 "access); name a file",
                                  name.string(), format));
 }
 
 NewFile::NewFile(fs::path file) : file_(std::move(file)) {
   if (is_stream(file_)) {
-    out_ = opened_stream(file_);
+    out_ = connect_stream(file_);
     return;
   }
-  const std::string own = beginning_of(file_);
-  remove_left_overs(folder_of(file_), [&](std::string_view name) { return name == own; });
+  const std::string final_name = beginning_of(file_);
+  remove_left_overs(folder_of(file_), [&](std::string_view name) { return name == final_name; });
   replaced_mode_ = mode_of(file_);
   const mode_t mode = replaced_mode_ ? 0600 : 0666;
   for (;;) {
@@ -187,7 +187,7 @@ void NewFile::keep() {
   if (replaced_mode_)
     out_->set_mode(*replaced_mode_);
   out_->sync();
-  NamingGuard::ask();
+  NamingGuard::run_check();
   std::error_code error;
   fs::rename(temporary_, file_, error);
   if (error)
@@ -206,11 +206,12 @@ std::optional<std::string_view> unfinished_name(std::string_view name) {
   return is_one ? std::optional(name.substr(0, name.size() - tail)) : std::nullopt;
 }
 
-void remove_left_overs(const fs::path& folder, const std::function<bool(std::string_view name)>& of) {
-  std::error_code unknown; // a folder that cannot be looked at keeps them
+void remove_left_overs(const fs::path& folder, const std::function<bool(std::string_view name)>& accept) {
+  assert(accept);
+  std::error_code unknown; // nothing is removed from a folder that cannot be listed
   for (fs::directory_iterator entry(folder, unknown), end; !unknown && entry != end; entry.increment(unknown)) {
     const std::string file = entry->path().filename().string();
-    if (const std::optional<std::string_view> name = unfinished_name(file); name && of(*name))
+    if (const std::optional<std::string_view> name = unfinished_name(file); name && accept(*name))
       remove_if_left_over(entry->path());
   }
 }

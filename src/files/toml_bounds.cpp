@@ -5,13 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace keeler {
 namespace {
 
-constexpr std::size_t max_bytes = std::size_t{64} << 20; // parsed, a text takes some 50 times its size
+constexpr std::size_t max_bytes = std::size_t{64} << 20; // parsed, a text takes about 50 times its size
 
-// No TOML goes on behind a control character: a file that is no text is called that.
+// Returns the text before the first control character, which TOML does not allow: the parser will report it.
 std::string_view text_before_control(std::string_view text) {
   const auto is_control = [](char c) {
     return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r';
@@ -19,8 +20,8 @@ std::string_view text_before_control(std::string_view text) {
   return text.substr(0, static_cast<std::size_t>(std::find_if(text.begin(), text.end(), is_control) - text.begin()));
 }
 
-// Counts the dots since anything that ends a name, and the brackets that are open. Names and values are not told apart:
-// no value has more than one dot.
+// Counts the dots since the last end of a name, and the open brackets. Names and values are not distinguished: no value
+// has more than one dot.
 class Nesting {
 public:
   explicit Nesting(std::string_view text) : text_(text) {}
@@ -58,9 +59,10 @@ private:
     return false;
   }
 
-  // Returns the position after the string that begins here.
+  // Returns the position after the string that begins at at_.
   std::size_t end_of_string() const {
     const char quote = text_[at_];
+    assert(quote == '"' || quote == '\'');
     const bool several_lines = text_.substr(at_).starts_with(std::string(3, quote));
     const std::string closing(several_lines ? 3 : 1, quote);
     std::size_t at = at_ + closing.size();
@@ -81,7 +83,7 @@ private:
     const auto begins_character = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; };
     return {static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')) + 1,
             static_cast<std::size_t>(std::count_if(line.begin(), line.end(), begins_character)) + 1,
-            fmt::format("{} (nothing that is read here has more than a few); shorten it",
+            fmt::format("{} (valid input has only a few); shorten it",
                         dots_ > 0
                             ? fmt::format("a name of more than {} parts", max_toml_depth)
                             : fmt::format("lists or tables inside each other, more than {} deep", max_toml_depth))};
@@ -96,7 +98,7 @@ private:
 std::optional<TomlExcess> toml_excess(std::string_view text) {
   if (text.size() > max_bytes)
     return TomlExcess{1, 1,
-                      fmt::format("the text has more than {} MB (a table of numbers goes into a file of its own); "
+                      fmt::format("the text has more than {} MB (tables of numbers belong in separate files); "
                                   "shorten it",
                                   max_bytes >> 20)};
   return Nesting(text_before_control(text)).excess();

@@ -20,7 +20,7 @@ void await(int descriptor, short events, const std::filesystem::path& file) {
   for (;;) {
     require_patience(file);
     const int ready = ::poll(&wanted, 1, patience_ms);
-    if (ready > 0 || (ready < 0 && errno != EINTR)) // what poll cannot tell of, the call that follows can
+    if (ready > 0 || (ready < 0 && errno != EINTR)) // the next call will report an error that poll cannot
       return;
   }
 }

@@ -1,16 +1,16 @@
-// Waiting for the other end of a pipe, or for a device: such a wait can be interrupted.
+// Interruptible waiting for the other end of a pipe, or for a device.
 #pragma once
 
 #include <filesystem>
 
 namespace keeler {
 
-inline constexpr int patience_ms = 50; // between two looks at whether the work is to be given up
+inline constexpr int patience_ms = 50; // between two checks for an interrupt
 
-/// Throws Interrupted, with the name of the file that is waited for, when the wait for it is over.
+/// Throws Interrupted, naming the file, if the wait for it has been ended on request.
 void require_patience(const std::filesystem::path& file);
 
-/// Waits until the file that has this descriptor is ready, `events` as of poll(2). Throws Interrupted.
+/// Waits until the descriptor of `file` is ready for `events`, as poll(2). Throws Interrupted.
 void await(int descriptor, short events, const std::filesystem::path& file);
 
 } // namespace keeler

@@ -11,9 +11,9 @@ namespace keeler {
 bool is_being_written(const std::filesystem::path& file) {
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0)
-    return false; // the reader of the file says why
+    return false; // reading the file will report why
   const bool locked = flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  close(descriptor); // gives the lock back
+  close(descriptor); // releases the lock
   return locked;
 }
 

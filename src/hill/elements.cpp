@@ -1,10 +1,12 @@
 #include <keeler/hill/elements.hpp>
 
+#include <cassert>
+
 namespace keeler {
 namespace {
 
-// Taylor series, the terms beyond the last one below half a unit in the last place for |a| <= pi/4 (long) and
-// |a| <= 0.01 (short). Which one serves depends on the angle alone, so equal angles give equal bits everywhere.
+// Taylor series, truncated where terms are below half an ulp for |a| <= pi/4 (long) and |a| <= 0.01 (short). The choice
+// depends only on the angle, so equal angles give equal bits.
 struct SineCosine {
   double sine, cosine;
 };
@@ -30,7 +32,7 @@ SineCosine long_series(double a) {
   return {a + a * q * s, 1.0 + q * c};
 }
 
-// Sine and cosine in extended precision (Taylor series of a halved angle, then doublings).
+// Computes sine and 1 − cosine in extended precision (Taylor series of a halved angle, then doublings).
 struct ExtendedSineCosine {
   long double sine, one_minus_cosine;
 };
@@ -88,6 +90,7 @@ void sine_cosine(double angle, double& sine, double& cosine) {
 }
 
 Rotation::Rotation(const Frequencies& frequencies, double time_after) : after(time_after) {
+  assert(frequencies.kappa > 0.0 && frequencies.nu > 0.0);
   sine_cosine(frequencies.kappa * after, sin_e, cos_e);
   if (frequencies.nu == frequencies.kappa) {
     sin_i = sin_e;
@@ -98,6 +101,7 @@ Rotation::Rotation(const Frequencies& frequencies, double time_after) : after(ti
 }
 
 Elements elements_from(const State& state, const Frequencies& f, const Rotation& r) {
+  assert(f.kappa > 0.0 && f.nu > 0.0);
   const double a = 2.0 / (f.kappa * f.kappa);
   const double x = state.position.x();
   const double guiding_x = a * (state.velocity.y() + 2.0 * x);
@@ -116,6 +120,7 @@ Elements elements_from(const State& state, const Frequencies& f, const Rotation&
 }
 
 FixedRotation::FixedRotation(double angle) {
+  assert(std::isfinite(angle));
   const ExtendedSineCosine exact = extended_sine_cosine(angle);
   sine = static_cast<double>(exact.sine);
   sine_low = static_cast<double>(exact.sine - sine);

@@ -1,21 +1,23 @@
 #include <keeler/hill/shearing_box.hpp>
 
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-// The box that a place lies in, given in box lengths. Places too far for the number of a box, or that are not numbers,
-// get one that does not bring them into the cell: who asks refuses them.
-std::int32_t nearest_box(double place) {
-  constexpr double farthest = 1 << 30;
-  return static_cast<std::int32_t>(std::fmax(-farthest, std::fmin(farthest, std::floor(place + 0.5))));
+// Returns the index of the box in which a coordinate, in box lengths, lies. It is limited to ±2³⁰, also for NaN; such
+// coordinates are not brought into the cell, and the caller rejects them.
+std::int32_t nearest_box(double coordinate) {
+  constexpr double max_index = 1 << 30;
+  return static_cast<std::int32_t>(std::fmax(-max_index, std::fmin(max_index, std::floor(coordinate + 0.5))));
 }
 
 } // namespace
 
 double ShearingBox::offset(std::int64_t half_steps, double half_step) const {
-  // count × displacement as an unevaluated sum of two doubles; fmod of each part is exact.
+  assert(size_x > 0.0 && size_y > 0.0 && std::isfinite(half_step));
+  // The product count × displacement is an unevaluated sum of two doubles; fmod of each part is exact.
   const double count = static_cast<double>(half_steps);
   const double per_half_step = shear * size_x * half_step;
   const double product = count * per_half_step;

@@ -20,7 +20,7 @@ namespace keeler {
 namespace {
 
 [[noreturn]] void fail(const ParticleTable& table, std::size_t k, const std::string& fault) {
-  throw UsageError(fmt::format("{}: the particle has {}; correct it or remove the row", table.place_of(k), fault));
+  throw UsageError(fmt::format("{}: the particle has {}; correct it or remove the row", table.location_of(k), fault));
 }
 
 void require_fitting(const ParticleTable& table, const TableScene& of) {
@@ -45,14 +45,14 @@ Patch patch_from_table(const ParticleTable& table, const TableScene& of) {
   patch.frequencies = scene.planet.frequencies;
   patch.orbital_frequency = scene.planet.orbital_frequency;
   patch.box = {scene.size_x, scene.size_y, scene.planet.frequencies.shear(), 0.0};
-  patch.positions = table.places;
+  patch.positions = table.positions;
   patch.radii = table.radii;
   patch.masses = table.masses;
   if (patch.masses.empty())
     for (const double radius : patch.radii)
       patch.masses.push_back(4.0 / 3.0 * pi * *of.density * radius * radius * radius);
   for (std::size_t k = 0; k < table.size(); ++k)
-    patch.velocities.push_back(table.velocities.empty() ? Vec3(0.0, -patch.box.shear * table.places[k].x(), 0.0)
+    patch.velocities.push_back(table.velocities.empty() ? Vec3(0.0, -patch.box.shear * table.positions[k].x(), 0.0)
                                                         : Vec3(table.velocities[k] / patch.orbital_frequency));
   for (const Vec3& spin : table.spins)
     patch.spins.emplace_back(spin / patch.orbital_frequency);

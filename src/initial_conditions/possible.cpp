@@ -58,7 +58,7 @@ std::string particle_fault(const Patch& patch, std::size_t k) {
                         speeds = {.high = 1000.0}; // m/s beyond the shear: a ring's orbits have 10 to 20 km/s
   const Vec3 &place = patch.positions[k], &velocity = patch.velocities[k];
   if (!place.allFinite() || !velocity.allFinite())
-    return "a place or a velocity that is not finite";
+    return "a position or velocity that is not finite";
   const Vec3 spin = patch.spins.empty() ? Vec3(Vec3::Zero()) : patch.spins[k];
   if (!spin.allFinite())
     return "a spin that is not finite";

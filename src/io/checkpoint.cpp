@@ -11,12 +11,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <optional>
 
 namespace keeler {
 namespace {
 
-// A field as it lies in a file.
+// A field in a file.
 struct StoredField {
   std::string name;
   hdf5::Layout layout;
@@ -44,6 +45,7 @@ const char* type_name(FieldType type) {
   return "uint32";
 }
 
+// Inverse of type_name().
 std::optional<FieldType> field_type_named(const std::string& name) {
   for (const FieldType type : field_types)
     if (name == type_name(type))
@@ -64,10 +66,10 @@ std::string describe(const hdf5::Layout& layout) {
   return layout.shape.empty() ? layout.type : fmt::format("{} [{}]", layout.type, fmt::join(layout.shape, " x "));
 }
 
-// Over the fields in order of their names, and the scene; provenance is left out.
+// Hashes the fields, in order of their names, and the scene; provenance is excluded.
 class ContentChecksum {
 public:
-  /// Then its rows, all of them before the next field.
+  /// Begins a field; add() all of its rows before the next one.
   void begin(const std::string& name, const hdf5::Layout& layout) {
     hash_.add_text(name);
     hash_.add_text(describe(layout));
@@ -97,7 +99,7 @@ StoredField open_field(const hdf5::Handle& group, const std::string& name) {
   return {name, std::move(layout), std::move(dataset)};
 }
 
-// By name.
+// Opens all fields, sorted by name.
 std::vector<StoredField> open_fields(const hdf5::Handle& root) {
   const hdf5::Handle group = hdf5::open_group(root, "fields");
   std::vector<StoredField> fields;
@@ -106,7 +108,9 @@ std::vector<StoredField> open_fields(const hdf5::Handle& root) {
   return fields;
 }
 
+// Reads rows [first, first + count).
 void read_field(const StoredField& field, std::size_t first, std::size_t count, void* into) {
+  assert(first + count <= field.rows());
   const hid_t type = hdf5::native_type(*field_type_named(field.layout.type));
   if (field.layout.shape.empty())
     hdf5::read_dataset(field.dataset, type, into);
@@ -114,13 +118,13 @@ void read_field(const StoredField& field, std::size_t first, std::size_t count, 
     hdf5::read_rows(field.dataset, type, first, count, into);
 }
 
-// All rows, a piece at a time.
+// Hashes all rows of a field, piece by piece.
 void add_rows(ContentChecksum& checksum, const StoredField& field) {
   const std::size_t rows = field.rows(), bytes = field.layout.count() * size_of(*field_type_named(field.layout.type));
   if (bytes == 0)
     return;
   const std::size_t row_bytes = bytes / rows;
-  const std::size_t at_a_time = std::clamp<std::size_t>(FieldRows::largest_piece / row_bytes, 1, rows);
+  const std::size_t at_a_time = std::clamp<std::size_t>(FieldRows::max_piece / row_bytes, 1, rows);
   std::vector<std::byte> piece(at_a_time * row_bytes);
   for (std::size_t first = 0; first < rows; first += at_a_time) {
     const std::size_t count = std::min(at_a_time, rows - first);
@@ -139,7 +143,8 @@ void require_checksum(const hdf5::Handle& root, const std::vector<StoredField>& 
     throw IoError("its fields do not match their checksum");
 }
 
-// The stored field that belongs to a field of the table.
+// Returns the stored field that corresponds to a field of the table. Throws IoError when there is none or its layout
+// differs.
 const StoredField& match(const std::vector<StoredField>& stored, const Field& field) {
   const auto found =
       std::find_if(stored.begin(), stored.end(), [&](const StoredField& other) { return other.name == field.name; });
@@ -147,18 +152,18 @@ const StoredField& match(const std::vector<StoredField>& stored, const Field& fi
     throw IoError(fmt::format("it has no field '{}'", field.name));
   hdf5::Layout expected = layout_of(field, field.rows());
   if (!field.scalar && !found->layout.shape.empty())
-    expected.shape[0] = found->layout.shape[0]; // the number of rows is the file's to say
+    expected.shape[0] = found->layout.shape[0]; // the file determines the number of rows
   if (describe(expected) != describe(found->layout))
     throw IoError(
         fmt::format("field '{}' is {} there and {} here", field.name, describe(found->layout), describe(expected)));
   return *found;
 }
 
-// A field that the table lacks would be forgotten, and the run would not continue as it was.
+// Throws IoError for a stored field that the table lacks: without it the run would not continue exactly.
 void check_nothing_forgotten(const std::vector<StoredField>& stored, const FieldTable& table) {
   for (const StoredField& field : stored)
     if (table.find(field.name) == nullptr)
-      throw IoError(fmt::format("it has a field '{}' that this run does not know", field.name));
+      throw IoError(fmt::format("it has a field '{}' that this run does not have", field.name));
 }
 
 void write_header(const hdf5::Handle& root, const CheckpointHeader& header) {
@@ -177,7 +182,7 @@ hdf5::Handle create_field(const hdf5::Handle& root, const Field& field, const hd
   return dataset;
 }
 
-// The first rank's file, for all.
+// Writes a checkpoint. All members are collective; only the root rank has the file.
 class NewCheckpoint {
 public:
   NewCheckpoint(const std::filesystem::path& file, const CheckpointHeader& header, const Communicator& ranks)
@@ -222,11 +227,13 @@ private:
   ContentChecksum checksum_;
 };
 
-std::vector<const Field*> by_name(const FieldTable& table) {
+std::vector<const Field*> sorted_by_name(const FieldTable& table) {
   std::vector<const Field*> fields;
   for (const Field& field : table.fields())
     fields.push_back(&field);
   std::sort(fields.begin(), fields.end(), [](const Field* a, const Field* b) { return a->name < b->name; });
+  assert(std::adjacent_find(fields.begin(), fields.end(),
+                            [](const Field* a, const Field* b) { return a->name == b->name; }) == fields.end());
   return fields;
 }
 
@@ -235,7 +242,7 @@ std::vector<const Field*> by_name(const FieldTable& table) {
 void write_checkpoint(const std::filesystem::path& file, const FieldTable& table, const CheckpointHeader& header,
                       const Communicator& ranks) {
   NewCheckpoint made(file, header, ranks);
-  for (const Field* field : by_name(table))
+  for (const Field* field : sorted_by_name(table))
     made.add(*field);
   made.finish();
 }
@@ -245,9 +252,9 @@ struct Checkpoint::Parts {
   Communicator ranks;
   CheckpointHeader header;
   std::optional<hdf5::Handle> root;
-  std::vector<StoredField> fields; // by name
+  std::vector<StoredField> fields; // sorted by name
 
-  // Where nobody has looked through it yet, it is looked through.
+  // Opens the file; without the seal of an already verified file, verifies it.
   void open(const std::optional<std::string>& seal) {
     root.emplace(seal ? open_sealed(file, *seal) : open_sealed(file));
     try {
@@ -272,11 +279,12 @@ struct Checkpoint::Parts {
     }
   }
 
-  // All rows, or this rank's part of them.
+  // Reads all rows of a field, or this rank's part of a divided one.
   void fill(const Field& field) const {
     const StoredField& source = match(fields, field);
     const std::size_t all = source.rows(), parts = field.divided ? ranks.size() : 1,
                       part = field.divided ? ranks.rank() : 0;
+    assert(part < parts);
     const std::size_t first = all * part / parts, end = all * (part + 1) / parts;
     field.resize(end - first);
     read_field(source, first, end - first, field.data());
@@ -289,7 +297,7 @@ Checkpoint::Checkpoint(const std::filesystem::path& file, const Communicator& ra
   parts_->ranks = ranks;
   std::string seal;
   ranks.on_root([&] {
-    const KeptStreams kept; // a pipe is looked at twice
+    const KeptStreams kept; // a pipe is read twice
     parts_->open(std::nullopt);
     seal = seal_in(file);
   });

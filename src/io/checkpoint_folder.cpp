@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <charconv>
 #include <optional>
 
@@ -15,7 +16,7 @@ namespace {
 
 constexpr std::string_view prefix = "checkpoint_", ending = ".h5";
 
-// The number in checkpoint_NNNNNN.h5.
+// Returns the number in checkpoint_NNNNNN.h5, if this is such a name.
 std::optional<std::int64_t> number_of(std::string_view name) {
   if (name.size() <= prefix.size() + ending.size() || !name.starts_with(prefix) || !name.ends_with(ending))
     return std::nullopt;
@@ -27,7 +28,7 @@ std::optional<std::int64_t> number_of(std::string_view name) {
   return number;
 }
 
-// The checkpoints of a folder, highest number first.
+// Lists the checkpoints in a folder, highest number first.
 std::vector<std::filesystem::path> list(const std::filesystem::path& folder) {
   std::vector<std::pair<std::int64_t, std::filesystem::path>> found;
   try {
@@ -54,6 +55,7 @@ void remove_file(const std::filesystem::path& file) {
 } // namespace
 
 std::filesystem::path checkpoint_path(const std::filesystem::path& folder, std::int64_t number) {
+  assert(number >= 0);
   return folder / fmt::format("{}{:06}{}", prefix, number, ending);
 }
 
@@ -65,7 +67,7 @@ NewestCheckpoint newest_valid_checkpoint(const std::filesystem::path& folder) {
   NewestCheckpoint newest;
   for (const std::filesystem::path& file : list_checkpoints(folder)) {
     try {
-      const Checkpoint whole(file);
+      const Checkpoint verified(file);
       newest.path = file;
       return newest;
     } catch (const IoError& error) {
@@ -82,6 +84,7 @@ NewestCheckpoint newest_valid_checkpoint(const std::filesystem::path& folder) {
 }
 
 void prune_checkpoints(const std::filesystem::path& newest, std::size_t keep) {
+  assert(keep >= 1);
   const std::vector<std::filesystem::path> files = list_checkpoints(newest.parent_path());
   const auto at = static_cast<std::size_t>(std::find(files.begin(), files.end(), newest) - files.begin());
   for (std::size_t k = at + keep; k < files.size(); ++k)

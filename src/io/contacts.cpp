@@ -13,19 +13,19 @@ namespace {
 
 constexpr char contacts_group[] = "Contacts";
 
-// Calls column(name, unit, about, member) for each: the one list of what a row holds. `member` returns a reference to
-// the number in a row.
+// Calls column(name, unit, about, member) for each column: the single list of what a row holds. `member` returns a
+// reference to the number in a row.
 template<class Column> void for_each_column(const Column& column) {
   column(
       "Step", "1", "steps done before the contact", [](auto& row) -> auto& { return row.step; });
   column(
       "Time", "orbits", "time since the run began", [](auto& row) -> auto& { return row.time_orbits; });
   column(
-      "X", "m", "where the spheres touch, radial", [](auto& row) -> auto& { return row.place.x(); });
+      "X", "m", "where the spheres touch, radial", [](auto& row) -> auto& { return row.position.x(); });
   column(
-      "Y", "m", "where the spheres touch, along the orbit", [](auto& row) -> auto& { return row.place.y(); });
+      "Y", "m", "where the spheres touch, along the orbit", [](auto& row) -> auto& { return row.position.y(); });
   column(
-      "Z", "m", "where the spheres touch, vertical", [](auto& row) -> auto& { return row.place.z(); });
+      "Z", "m", "where the spheres touch, vertical", [](auto& row) -> auto& { return row.position.z(); });
   column(
       "LowID", "1", "id of one particle", [](auto& row) -> auto& { return row.low_id; });
   column(
@@ -45,7 +45,7 @@ template<class Column> void for_each_column(const Column& column) {
       [](auto& row) -> auto& { return row.fast; });
 }
 
-// A flag is a byte in a file, an image number 32 bits.
+// Type of a number in the file: a bool is stored as one byte.
 template<class T> struct Stored { using type = T; };
 template<> struct Stored<bool> { using type = std::uint8_t; };
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <concepts>
 
 namespace keeler {
@@ -28,11 +29,13 @@ void pass(Parcel& parcel, T& description) {
 
 namespace {
 
+// Returns one value, or all in [ ]. Precondition: a scalar has one value.
 std::string joined(const std::vector<std::string>& values, bool scalar) {
+  assert(!scalar || values.size() == 1);
   return scalar ? values.front() : fmt::format("[{}]", fmt::join(values, ", "));
 }
 
-// The numbers that `read` gives, as text: floating point so that it reads back to the same bits.
+// Returns the numbers that `read` fills in as text, floating point in digits that read back bit for bit.
 template<class Read> std::string numbers_as_text(const hdf5::Layout& layout, const Read& read) {
   std::vector<std::string> texts;
   const auto append_all = [&](auto values) {
@@ -82,7 +85,7 @@ FieldDescription describe_field(const hdf5::Handle& group, const std::string& na
 void add_fields(FileDescription& description, const hdf5::Handle& image, const std::string& group_name) {
   const hdf5::Handle group = hdf5::open_group(image, group_name);
   for (const std::string& name : hdf5::names_in(group))
-    if (hdf5::is_dataset(group, name)) // not a group of another tool
+    if (hdf5::is_dataset(group, name)) // another tool may have added a group
       description.fields.push_back(describe_field(group, name));
 }
 
@@ -101,7 +104,7 @@ FileDescription describe_checkpoint(const hdf5::Handle& image) {
   return description;
 }
 
-// A file whose format and scene stand in groups of their own.
+// Describes a snapshot or contact file: format in /Code, scene in /Parameters, arrays in `table`.
 FileDescription describe_table(const hdf5::Handle& image, FileKind kind, const char* table,
                                std::initializer_list<const char*> groups) {
   FileDescription description;

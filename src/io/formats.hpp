@@ -1,5 +1,5 @@
 // Names and versions of Keeler's HDF5 files: text attribute "format", integer attribute "format_version" on the root
-// group of a checkpoint and on /Code of a snapshot and of a file of contacts.
+// group of a checkpoint and on /Code of a snapshot or contact file.
 #pragma once
 
 #include "hdf5.hpp"
@@ -9,13 +9,14 @@
 
 namespace keeler {
 
-/// The versions that can be read.
+/// Range of format versions that this program reads.
 struct FormatVersions {
   std::int64_t oldest = 0, newest = 0;
 };
 
-/// Throws IoError, which names the Keeler that reads the file, where `object`'s format version is none of those.
-/// `writer` has the provenance, `otherwise` says what else can be done with an older file.
+/// Throws IoError when the format version of `object` is outside the range. The message names the version of Keeler
+/// that reads the file, from the provenance in `writer`; `otherwise` tells what else can be done with an older file.
+/// Precondition: oldest <= newest.
 void require_version(const hdf5::Handle& object, const hdf5::Handle& writer, const FormatVersions& versions,
                      std::string_view otherwise);
 
@@ -24,7 +25,7 @@ inline constexpr std::int64_t checkpoint_version = 5;
 
 inline constexpr char snapshot_format[] = "keeler snapshot";
 inline constexpr std::int64_t snapshot_version = 1;
-inline constexpr char particles_group[] = "PartType1"; // as GADGET has it; all arrays of six have one entry a type
+inline constexpr char particles_group[] = "PartType1"; // as in GADGET; arrays of six have one entry per type
 inline constexpr char ring_box_units[] = "lengths m; Omega rad/s; time_orbits orbits; time_s s; ratios 1";
 inline constexpr char clumping_group[] = "Clumping"; // in snapshots of clumped states
 

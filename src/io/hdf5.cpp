@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <new>
 
 namespace keeler::hdf5 {
@@ -45,12 +46,12 @@ std::string type_name(hid_t type) {
   }
 }
 
-// Opens an object as call(list of properties) does, but follows no link into another file: what stands in a file that
-// somebody gave us decides over no other file of ours.
+// Opens an object by call(access property list) but refuses links into other files: an input file must not make the
+// program read other files.
 template<class Call> hid_t open_inside(hid_t kind, const std::string& what, const Call& call) {
   bool outside = false;
-  const auto refuse = [](const char*, const char*, const char*, const char*, unsigned*, hid_t, void* told) -> herr_t {
-    *static_cast<bool*>(told) = true;
+  const auto refuse = [](const char*, const char*, const char*, const char*, unsigned*, hid_t, void* flag) -> herr_t {
+    *static_cast<bool*>(flag) = true;
     return -1;
   };
   const Handle list(checked("prepare an access", [&] { return H5Pcreate(kind); }), H5Pclose);
@@ -64,21 +65,21 @@ template<class Call> hid_t open_inside(hid_t kind, const std::string& what, cons
   }
 }
 
-// The values of a dataset stand in its own file, and there are no more of them than that file can hold: gzip makes
-// bytes at most 1032 times fewer (zlib's technical details), and values that were never written fill the rest.
+// Throws IoError when the values of a dataset are stored in another file, or are more than this file can hold: gzip
+// compresses at most 1032-fold (zlib technical details), and unwritten values may add a fixed amount.
 void require_own_values(const Handle& dataset, const std::string& name) {
-  constexpr std::uint64_t most_packed = 1100, most_unwritten = std::uint64_t{1} << 26; // bytes
+  constexpr std::uint64_t max_ratio = 1100, max_unwritten = std::uint64_t{1} << 26; // bytes
   const Handle list(checked("read a layout", [&] { return H5Dget_create_plist(dataset.id()); }), H5Pclose);
   const bool elsewhere = checked("read a layout", [&] { return H5Pget_layout(list.id()); }) == H5D_VIRTUAL ||
                          checked("read a layout", [&] { return H5Pget_external_count(list.id()); }) > 0;
   if (elsewhere)
-    throw IoError(fmt::format("cannot open '{}': its values stand in another file, which is not read", name));
+    throw IoError(fmt::format("cannot open '{}': its values are stored in another file, which is not read", name));
   const Handle type(checked("read a type", [&] { return H5Dget_type(dataset.id()); }), H5Tclose);
   const Layout layout = layout_of_dataset(dataset);
-  const Quiet quiet; // nothing stored, where that cannot be told
+  const Quiet quiet; // the storage size is 0 when it cannot be determined
   const double bytes = static_cast<double>(layout.count()) * static_cast<double>(H5Tget_size(type.id()));
   const double stored = static_cast<double>(H5Dget_storage_size(dataset.id()));
-  if (bytes > most_packed * stored + most_unwritten)
+  if (bytes > max_ratio * stored + max_unwritten)
     throw IoError(fmt::format("cannot open '{}': it claims {:.3g} bytes and has {:.3g}", name, bytes, stored));
 }
 
@@ -100,22 +101,23 @@ Handle make_space(const Shape& shape) {
 
 namespace {
 
-// What an error means to a user; the library's own words are about its inside.
+// Translates an error for the user; the library's own messages describe its internals.
 const char* reason_of(hid_t error) {
   if (error == H5E_NOTFOUND)
     return "it is not there";
   if (error == H5E_NOSPACE || error == H5E_CANTALLOC)
     return "there is not enough memory";
   if (error == H5E_NOFILTER)
-    return "it is compressed in a way that is not known here";
+    return "it is compressed by an unknown method";
   if (error == H5E_UNSUPPORTED || error == H5E_BADTYPE || error == H5E_CANTCONVERT)
     return "it has a type that does not fit";
   return "its structures are damaged";
 }
 
-// Chunks of about a megabyte for rows of a few numbers.
+// Sets compression in chunks of about 1 MB for rows of a few numbers. Precondition: the shape has no zero extent.
 void set_compressed(const Handle& list, const Shape& shape) {
-  constexpr unsigned level = 1; // higher levels cost several times the time and gain a few per cent on such data
+  assert(!shape.empty() && shape[0] > 0);
+  constexpr unsigned level = 1; // higher levels take several times longer and save a few per cent on such data
   Shape chunk = shape;
   chunk[0] = std::min<hsize_t>(chunk[0], chunk_rows);
   const int rank = static_cast<int>(shape.size());
@@ -175,7 +177,7 @@ Handle open_image(std::span<const std::byte> image) {
   require_memory(growth);
   const Handle access(checked("prepare a file in memory", [] { return H5Pcreate(H5P_FILE_ACCESS); }), H5Pclose);
   checked("prepare a file in memory", [&] { return H5Pset_fapl_core(access.id(), growth, false); });
-  void* bytes = const_cast<std::byte*>(image.data()); // copied, not changed
+  void* bytes = const_cast<std::byte*>(image.data()); // HDF5 copies it and does not change it
   checked("open a file in memory", [&] { return H5Pset_file_image(access.id(), bytes, image.size()); });
   return {checked("open as HDF5", [&] { return H5Fopen(fresh_name().c_str(), H5F_ACC_RDONLY, access.id()); }),
           H5Fclose};
@@ -220,12 +222,13 @@ std::vector<std::string> names_in(const Handle& group) {
   return names;
 }
 
-void link_again(const Handle& from, const std::string& name, const Handle& to, const std::string& new_name) {
+void create_hard_link(const Handle& from, const std::string& name, const Handle& to, const std::string& new_name) {
   checked("link '" + new_name + "'",
           [&] { return H5Lcreate_hard(from.id(), name.c_str(), to.id(), new_name.c_str(), H5P_DEFAULT, H5P_DEFAULT); });
 }
 
 Handle create_dataset(const Handle& parent, const std::string& name, hid_t type, const Shape& shape, Packing packing) {
+  assert(packing == Packing::plain || !shape.empty());
   const Handle space = make_space(shape);
   const Handle list = creation_list(H5P_DATASET_CREATE);
   const bool empty = std::find(shape.begin(), shape.end(), hsize_t{0}) != shape.end();
@@ -250,13 +253,14 @@ Handle write_dataset(const Handle& parent, const std::string& name, hid_t type, 
 
 namespace {
 
-// Calls move(space of memory, space of the file) for `count` rows from the `first` one on.
+// Calls move(memory space, file space) for the rows [first, first + count).
 template<class Move>
 void move_rows(const std::string& what, const Handle& dataset, std::size_t first, std::size_t count, const Move& move) {
   if (count == 0)
     return;
   const Handle there(checked(what, [&] { return H5Dget_space(dataset.id()); }), H5Sclose);
   Shape shape = layout_of_dataset(dataset).shape, begin(shape.size());
+  assert(!shape.empty() && first + count <= shape[0]);
   begin[0] = first;
   shape[0] = count;
   const Handle here = make_space(shape);

@@ -1,4 +1,4 @@
-// Attributes, and texts in attributes and datasets.
+// Attributes, and texts in attributes or datasets.
 #include "hdf5.hpp"
 #include "hdf5_checked.hpp"
 
@@ -9,7 +9,8 @@
 namespace keeler::hdf5 {
 namespace {
 
-// Fixed length, padded with zeros, ASCII where it is: what ParaView's reader takes. HDF5 has no text of length 0.
+// Returns a type for a text: fixed length, padded with zeros, marked as ASCII when it is, as ParaView's reader needs.
+// HDF5 has no text of length 0.
 Handle text_type(std::string_view text) {
   const bool ascii = std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 128; });
   Handle type(checked("make a text", [] { return H5Tcopy(H5T_C_S1); }), H5Tclose);
@@ -19,16 +20,16 @@ Handle text_type(std::string_view text) {
   return type;
 }
 
-// Texts of length 0 are written as one zero byte, which every reader drops as padding.
+// Returns the bytes to write: an empty text is one zero byte, which readers drop as padding.
 std::string padded(std::string_view text) {
   return text.empty() ? std::string(1, '\0') : std::string(text);
 }
 
-// Reads one text: `read` as H5Dread or H5Aread do, into memory laid out as the given type.
+// Reads one text; `read` calls H5Dread or H5Aread with the memory type and buffer.
 template<class Read> std::string read_text(const Handle& type, const Handle& space, const Read& read) {
   const std::string what = "read a text";
   if (layout_of(type, space).type != "text" || layout_of(type, space).count() != 1)
-    throw IoError("cannot read a text: something else stands there");
+    throw IoError("cannot read a text: it has another type");
   if (checked(what, [&] { return H5Tis_variable_str(type.id()); }) > 0) { // as h5py writes them
     char* variable = nullptr;
     checked(what, [&] { return read(type.id(), &variable); });

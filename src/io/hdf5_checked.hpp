@@ -1,5 +1,5 @@
-// For hdf5*.cpp. One door to HDF5: its own printing is off during a call, and a failure becomes an IoError with
-// its reason in our words.
+// For hdf5*.cpp: the wrapper of each HDF5 call. The library's printing is off during the call, and a failure is
+// converted to an IoError.
 #pragma once
 
 #include "hdf5.hpp"
@@ -8,7 +8,7 @@
 
 namespace keeler::hdf5 {
 
-/// Switches HDF5's error printing off while it lives.
+/// Switches HDF5's error printing off during its lifetime.
 class Quiet {
 public:
   Quiet() {
@@ -24,10 +24,10 @@ private:
   void* data_ = nullptr;
 };
 
-/// Throws IoError "cannot WHAT: reason of the last failure".
+/// Throws IoError "cannot WHAT: reason of the last failure". Precondition: an HDF5 call failed.
 [[noreturn]] void fail(const std::string& what);
 
-/// Calls and returns the result; a negative one is a failure. `what` completes "cannot ...".
+/// Returns call(), and throws by fail() when the result is negative. `what` completes "cannot ...".
 template<class Call> auto checked(const std::string& what, const Call& call) {
   const Quiet quiet;
   const auto result = call();
@@ -36,18 +36,18 @@ template<class Call> auto checked(const std::string& what, const Call& call) {
   return result;
 }
 
-/// HDF5 takes two files of one name for the same file: a name that no other file has.
+/// Returns a name that no other open file has: HDF5 treats two files of equal name as one.
 std::string fresh_name();
 
-/// HDF5 crashes in places where an allocation fails. So what it is about to take, and some for itself, is tried before:
-/// throws std::bad_alloc.
+/// Throws std::bad_alloc unless `bytes` and a reserve for HDF5 itself can be allocated: some HDF5 versions crash when
+/// an allocation fails.
 void require_memory(std::size_t bytes = 0);
 
-/// What objects of a kind are made with. No time stamps: equal content gives equal bytes. Attributes keep their order,
-/// which makes HDF5 take object headers of version 2 with room for attributes beyond 64 KiB.
+/// Returns the creation properties of a class of objects. Without time stamps, equal content gives equal bytes.
+/// Tracking the order of attributes selects version 2 object headers, which hold attributes above 64 KiB.
 Handle creation_list(hid_t kind);
 
-/// Shared by datasets and attributes.
+/// Used by datasets and attributes.
 Layout layout_of(const Handle& type, const Handle& space);
 Handle make_space(const Shape& shape);
 

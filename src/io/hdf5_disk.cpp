@@ -5,12 +5,13 @@
 #include <keeler/core/error.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <new>
 
 namespace keeler::hdf5 {
 namespace {
 
-// An open file as the library holds it.
+// The library's handle of an open file.
 struct OpenFile : H5FD_t {
   std::shared_ptr<Disk> disk;
   haddr_t allocated = 0;
@@ -25,7 +26,7 @@ const OpenFile& of(const H5FD_t* file) {
 
 H5FD_t* open(const char*, unsigned, hid_t access, haddr_t) {
   const auto* const disk = static_cast<const std::shared_ptr<Disk>* const*>(H5Pget_driver_info(access));
-  if (!disk) // the library follows a link into another file, which has no such list
+  if (!disk) // a link into another file, which has no such property
     return nullptr;
   auto* const file = new (std::nothrow) OpenFile();
   if (file)
@@ -38,7 +39,7 @@ herr_t close(H5FD_t* file) {
   return 0;
 }
 
-// As its own driver of files in memory has them, so that the layout is the same.
+// Features of HDF5's core driver, so that the file layout equals that of files in memory.
 herr_t query(const H5FD_t*, unsigned long* features) {
   *features = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
               H5FD_FEAT_AGGREGATE_SMALLDATA;
@@ -58,12 +59,12 @@ haddr_t end(const H5FD_t* file, H5FD_mem_t) {
   return of(file).disk->size();
 }
 
-herr_t read(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t place, std::size_t size, void* into) {
-  return of(file).disk->read(place, {static_cast<std::byte*>(into), size}) ? 0 : -1;
+herr_t read(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t offset, std::size_t size, void* into) {
+  return of(file).disk->read(offset, {static_cast<std::byte*>(into), size}) ? 0 : -1;
 }
 
-herr_t write(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t place, std::size_t size, const void* from) {
-  of(file).disk->write(place, {static_cast<const std::byte*>(from), size});
+herr_t write(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t offset, std::size_t size, const void* from) {
+  of(file).disk->write(offset, {static_cast<const std::byte*>(from), size});
   return 0;
 }
 
@@ -112,21 +113,21 @@ void Disk::require_sound() const {
     std::rethrow_exception(failure_);
 }
 
-void Disk::write(std::uint64_t place, std::span<const std::byte> bytes) {
+void Disk::write(std::uint64_t offset, std::span<const std::byte> bytes) {
   if (failure_)
     return;
   try {
-    file_->write_at(place, bytes);
-    size_ = std::max(size_, place + bytes.size());
+    file_->write_at(offset, bytes);
+    size_ = std::max(size_, offset + bytes.size());
   } catch (...) {
     failure_ = std::current_exception();
   }
 }
 
-bool Disk::read(std::uint64_t place, std::span<std::byte> into) const {
-  const std::size_t there = place < size_ ? std::min<std::uint64_t>(into.size(), size_ - place) : 0;
+bool Disk::read(std::uint64_t offset, std::span<std::byte> into) const {
+  const std::size_t available = offset < size_ ? std::min<std::uint64_t>(into.size(), size_ - offset) : 0;
   try {
-    const std::size_t have = file_->read_at(place, into.first(there));
+    const std::size_t have = file_->read_at(offset, into.first(available));
     std::fill(into.begin() + static_cast<std::ptrdiff_t>(have), into.end(), std::byte{0});
     return true;
   } catch (const Error&) {
@@ -146,6 +147,7 @@ void Disk::resize(std::uint64_t size) {
 }
 
 Handle create_on(const std::shared_ptr<Disk>& disk) {
+  assert(disk && disk->size() == 0);
   const Handle access = access_to(&disk), creation = creation_list(H5P_FILE_CREATE);
   return {checked("create a file",
                   [&] { return H5Fcreate(fresh_name().c_str(), H5F_ACC_TRUNC, creation.id(), access.id()); }),

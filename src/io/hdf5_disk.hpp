@@ -1,11 +1,12 @@
-// HDF5 files on disk, by our own system calls. HDF5 1.10 reports no error from H5Fclose on a full disk. So its driver
-// here hands what it writes to pwrite, and what fails is kept until somebody asks; the library never hears of it.
+// An HDF5 virtual file driver on our own system calls. HDF5 1.10 does not report errors of H5Fclose on a full disk, so
+// this driver records the first failed write, hides it from the library, and reports it in require_sound().
 #pragma once
 
 #include "hdf5.hpp"
 
 #include <keeler/files/descriptor.hpp>
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -14,21 +15,21 @@
 
 namespace keeler::hdf5 {
 
-/// The file under an HDF5 file. It lives as long as the library holds it.
+/// The storage of an HDF5 file. The driver shares its ownership while the file is open.
 class Disk {
 public:
-  /// `size`: how many bytes of the file are HDF5's, from its beginning.
-  Disk(std::shared_ptr<Descriptor> file, std::uint64_t size) : file_(std::move(file)), size_(size) {}
+  /// HDF5 uses the first `size` bytes of the file. Precondition: file is not null.
+  Disk(std::shared_ptr<Descriptor> file, std::uint64_t size) : file_(std::move(file)), size_(size) { assert(file_); }
 
   Descriptor& file() { return *file_; }
   std::uint64_t size() const { return size_; }
-  /// Throws what has failed first, if anything has: from then on nothing was written.
+  /// Rethrows the first failure, if any. Nothing was written after it.
   void require_sound() const;
 
-  // for the driver; these throw nothing
-  void write(std::uint64_t place, std::span<const std::byte> bytes);
-  /// Zeros stand behind the end. Whether it could be read.
-  bool read(std::uint64_t place, std::span<std::byte> into) const;
+  // Called by the driver; these do not throw.
+  void write(std::uint64_t offset, std::span<const std::byte> bytes);
+  /// Fills `into`, with zeros beyond the end of the file. Returns false on failure.
+  bool read(std::uint64_t offset, std::span<std::byte> into) const;
   void resize(std::uint64_t size);
 
 private:
@@ -37,12 +38,12 @@ private:
   std::exception_ptr failure_;
 };
 
-/// A new, empty HDF5 file. It is whole when it was flushed and closed, require_sound() has passed, and the library
-/// holds the disk no more.
+/// Creates an empty HDF5 file. It is complete when it was flushed and closed, require_sound() passed, and the library
+/// has released the disk.
 Handle create_on(const std::shared_ptr<Disk>& disk);
-/// Writes all of a file that the library still has in memory.
+/// Writes everything of a file that the library still has in memory.
 void flush(const Handle& file);
-/// Opens one for reading.
+/// Opens an HDF5 file for reading.
 Handle open_on(const std::shared_ptr<Disk>& disk);
 
 } // namespace keeler::hdf5

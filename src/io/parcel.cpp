@@ -4,6 +4,7 @@
 #include <keeler/core/interrupt.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cerrno>
 #include <cstring>
 
@@ -13,7 +14,7 @@
 namespace keeler {
 namespace {
 
-// Throws what a failed system call means; a signal's interruption means nothing.
+// Throws IoError after a failed system call, unless a signal interrupted it.
 void require_only_interrupted() {
   if (errno != EINTR)
     throw IoError(std::string("a pipe failed: ") + std::strerror(errno));
@@ -40,9 +41,9 @@ void Sender::flush() {
 
 void Sender::put(const void* data, std::size_t size) {
   const auto* bytes = static_cast<const std::byte*>(data);
-  if (buffer_.size() + size > room)
+  if (buffer_.size() + size > capacity)
     flush();
-  if (size > room)
+  if (size > capacity)
     write_all(descriptor_, bytes, size);
   else
     buffer_.insert(buffer_.end(), bytes, bytes + size);
@@ -51,7 +52,7 @@ void Sender::put(const void* data, std::size_t size) {
 void Receiver::take(void* data, std::size_t size) {
   using namespace std::chrono;
   if (size > left_)
-    throw IoError("more comes of it than its size allows");
+    throw IoError("it yields more data than its size allows");
   left_ -= size;
   for (auto* at = static_cast<std::byte*>(data); size > 0;) {
     throw_if_interrupted();
@@ -77,10 +78,11 @@ void Receiver::take(void* data, std::size_t size) {
 }
 
 std::size_t Receiver::take_count(std::size_t size) {
+  assert(size > 0);
   std::uint64_t count = 0;
   receive(count);
   if (count > left_ / size)
-    throw IoError("more comes of it than its size allows");
+    throw IoError("it yields more data than its size allows");
   return count;
 }
 

@@ -1,7 +1,7 @@
-// Values as plain bytes, from one process to another. A type of several parts has a function
+// Serialises values as plain bytes from one process to another. A class type defines
 //   template<class Parcel, class T> void pass(Parcel& parcel, T& value) { parcel(value.one, value.other); }
-// beside it, which serves both ways. The receiver trusts nobody: what does not fit is an error, and memory is taken
-// only for as many bytes as may come.
+// which serves both directions. The receiver does not trust the sender: malformed data is an error, and memory is
+// allocated only up to the permitted number of bytes.
 #pragma once
 
 #include <keeler/core/vector.hpp>
@@ -17,21 +17,21 @@
 
 namespace keeler {
 
-/// Whose bytes are its value, and any bytes are a value of it.
+/// Types that can be copied as bytes and for which any bytes are a valid value.
 template<class T>
 concept PlainBytes = (std::is_arithmetic_v<T> && !std::same_as<T, bool>) || std::same_as<T, Vec3>;
 
-/// Writes to a pipe. A reader that is gone ends the process (SIGPIPE).
+/// Writes to a pipe, buffered. If the reader is gone, the process ends by SIGPIPE.
 class Sender {
 public:
-  explicit Sender(int descriptor) : descriptor_(descriptor) { buffer_.reserve(room); }
+  explicit Sender(int descriptor) : descriptor_(descriptor) { buffer_.reserve(capacity); }
 
   template<class... Part> void operator()(const Part&... part) { (send(part), ...); }
-  /// What was passed is in the pipe only after this.
+  /// Writes the buffer to the pipe. Call it after the last value: the destructor does not.
   void flush();
 
 private:
-  static constexpr std::size_t room = std::size_t{1} << 16;
+  static constexpr std::size_t capacity = std::size_t{1} << 16;
 
   void put(const void* data, std::size_t size);
 
@@ -61,26 +61,27 @@ private:
   std::vector<std::byte> buffer_;
 };
 
-/// Why a sender was given up.
+/// Reason of a timeout.
 inline constexpr char endless[] = "reading it does not come to an end, so it is damaged; use another copy";
 
-/// The other end did not send all that it began.
+/// Thrown when the pipe closes before the parcel is complete.
 struct ParcelEnds : std::exception {
   const char* what() const noexcept override { return "the parcel ends too soon"; }
 };
 
+/// Reads from a pipe what a Sender wrote.
 class Receiver {
 public:
-  /// Of at most `most` bytes, which come before the deadline.
-  Receiver(int descriptor, std::size_t most, std::chrono::steady_clock::time_point deadline)
-      : descriptor_(descriptor), left_(most), deadline_(deadline) {}
+  /// Accepts at most `max_bytes`, until the deadline.
+  Receiver(int descriptor, std::size_t max_bytes, std::chrono::steady_clock::time_point deadline)
+      : descriptor_(descriptor), left_(max_bytes), deadline_(deadline) {}
 
   template<class... Part> void operator()(Part&... part) { (receive(part), ...); }
 
 private:
-  /// Throws ParcelEnds; IoError when it is too late or too much; Interrupted.
+  /// Reads `size` bytes. Throws ParcelEnds; IoError at the deadline or beyond max_bytes; Interrupted.
   void take(void* data, std::size_t size);
-  /// Of things that have at least `size` bytes each.
+  /// Reads the length of a list of elements of at least `size` bytes each. Precondition: size > 0.
   std::size_t take_count(std::size_t size);
 
   template<PlainBytes T> void receive(T& value) { take(&value, sizeof value); }

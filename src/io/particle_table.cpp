@@ -1,6 +1,6 @@
 #include <keeler/io/particle_table.hpp>
 
-#include "apart.hpp"
+#include "child_process.hpp"
 #include "hdf5.hpp"
 #include "stated_units.hpp"
 
@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <concepts>
 #include <iterator>
 
@@ -23,14 +24,14 @@ namespace keeler {
 template<class Parcel, class T>
 requires std::same_as<std::remove_const_t<T>, ParticleTable>
 void pass(Parcel& parcel, T& table) {
-  parcel(table.file, table.places, table.velocities, table.radii, table.masses, table.lines, table.spins);
+  parcel(table.file, table.positions, table.velocities, table.radii, table.masses, table.lines, table.spins);
 }
 
 namespace {
 
 struct Column {
   const char* name;
-  const char* unit; ///< behind the name where it is given
+  const char* unit; ///< optional suffix of the name
 
   std::string with_unit() const { return fmt::format("{}_{}", name, unit); }
 };
@@ -49,7 +50,7 @@ constexpr std::array<Column, 11> known_columns = {{{"x", "m"},
 constexpr std::size_t first_velocity = 3, radius_column = 6, mass = 7, first_spin = 8;
 constexpr const char* id_column = "id";
 
-// Of a column that may be an array of HDF5; none for an id.
+// Returns the unit of a column, "m/s" for vx; empty for an id.
 std::string unit_of(const std::string& name) {
   const auto is_named = [&](const Column& column) { return name == column.name || name == column.with_unit(); };
   const auto column = std::find_if(known_columns.begin(), known_columns.end(), is_named);
@@ -60,14 +61,15 @@ std::string unit_of(const std::string& name) {
   return unit;
 }
 
-// By column of `known_columns`; empty where the table does not have it.
+// Indexed as known_columns; empty when the table lacks the column.
 using KnownColumns = std::array<std::vector<double>, known_columns.size()>;
 
-// `place` is where the names stand.
-KnownColumns sort_out(const std::vector<std::string>& names, std::vector<std::vector<double>> values,
-                      const std::string& place) {
+// Assigns columns by name. Throws UsageError for unknown, duplicate or missing ones; `location` is that of the names.
+KnownColumns assign_columns(const std::vector<std::string>& names, std::vector<std::vector<double>> values,
+                            const std::string& location) {
+  assert(names.size() == values.size());
   const auto fail = [&](const std::string& message) {
-    throw UsageError(fmt::format("{}: {} (the columns are x y z vx vy vz r, m, and sx sy sz)", place, message));
+    throw UsageError(fmt::format("{}: {} (the columns are x y z vx vy vz r, m, and sx sy sz)", location, message));
   };
   std::array<bool, known_columns.size()> has{};
   KnownColumns columns;
@@ -87,7 +89,7 @@ KnownColumns sort_out(const std::vector<std::string>& names, std::vector<std::ve
     columns[column] = std::move(values[k]);
   }
   const auto any = [&](std::size_t first) { return has[first] || has[first + 1] || has[first + 2]; };
-  const auto needed = [&](std::size_t column) { // places, the radius, and whole vectors
+  const auto needed = [&](std::size_t column) { // the position, the radius, and complete vectors
     return column < first_velocity || column == radius_column || (column < radius_column && any(first_velocity)) ||
            (column >= first_spin && any(first_spin));
   };
@@ -98,6 +100,7 @@ KnownColumns sort_out(const std::vector<std::string>& names, std::vector<std::ve
 }
 
 std::vector<Vec3> as_vectors(const KnownColumns& columns, std::size_t first) {
+  assert(columns[first + 1].size() == columns[first].size() && columns[first + 2].size() == columns[first].size());
   std::vector<Vec3> vectors(columns[first].size());
   for (std::size_t k = 0; k < vectors.size(); ++k)
     vectors[k] = Vec3(columns[first][k], columns[first + 1][k], columns[first + 2][k]);
@@ -124,7 +127,7 @@ ParticleTable read_text_table(std::span<const std::byte> bytes, const std::strin
                                  "\"x,y,z,vx,vy,vz,r,m\"",
                                  file));
   const std::string header = fmt::format("{}:{}", file, columns.header_line);
-  return table_of(file, sort_out(columns.names, std::move(columns.values), header), std::move(columns.lines));
+  return table_of(file, assign_columns(columns.names, std::move(columns.values), header), std::move(columns.lines));
 }
 
 void require_no_snapshot(const std::vector<std::string>& names, const std::string& file) {
@@ -134,45 +137,45 @@ void require_no_snapshot(const std::vector<std::string>& names, const std::strin
     return;
   if (has("Code") && has("RingBox"))
     throw UsageError(fmt::format("{}: it is a snapshot, not a table; start from it by start.from or --from", file));
-  throw UsageError(fmt::format("{}: it is a snapshot of another program, not a table (no /RingBox tells of its patch); "
-                               "write x, y, z, vx, vy, vz, r and m of its particles in SI units as arrays in the root "
-                               "of an HDF5 file, or as CSV",
-                               file));
+  throw UsageError(
+      fmt::format("{}: it is a snapshot of another program, not a table (it has no /RingBox that describes the patch); "
+                  "write x, y, z, vx, vy, vz, r and m of its particles in SI units as arrays in the root "
+                  "of an HDF5 file, or as CSV",
+                  file));
 }
 
 ParticleTable read_hdf5_table(std::span<const std::byte> bytes, const std::string& file) {
   const hdf5::Handle image = hdf5::open_image(bytes);
   const std::vector<std::string> names = hdf5::names_in(image);
   require_no_snapshot(names, file);
-  sort_out(names, std::vector<std::vector<double>>(names.size()), file); // before anything is taken to be an array
+  assign_columns(names, std::vector<std::vector<double>>(names.size()), file); // checks names before reading arrays
   require_stated_units_of_groups(image, "the table");
   std::vector<std::vector<double>> values;
   for (const std::string& name : names) {
     const hdf5::Handle dataset = hdf5::open_dataset(image, name);
     const hdf5::Layout layout = hdf5::layout_of_dataset(dataset);
-    if (!layout.is_of_numbers() || layout.shape.size() != 1)
-      throw UsageError(
-          fmt::format("{}: {} is no list of numbers (an array of one dimension); write it as such", file, name));
+    if (!layout.is_numeric() || layout.shape.size() != 1)
+      throw UsageError(fmt::format("{}: {} is not a one-dimensional array of numbers; write it as one", file, name));
     const std::string unit = unit_of(name);
     if (!unit.empty())
       require_stated_unit(dataset, name, unit);
     if (!values.empty() && values.front().size() != layout.count())
-      throw UsageError(fmt::format("{}: {} has {} values, {} has {} (a value a particle); make them equally long", file,
+      throw UsageError(fmt::format("{}: {} has {} values, {} has {} (one per particle); make them equally long", file,
                                    name, layout.count(), names.front(), values.front().size()));
     values.emplace_back(layout.count());
     hdf5::read_dataset(dataset, hdf5::native_type<double>(), values.back().data());
     if (!unit.empty())
       require_none_missing(dataset, name, values.back());
   }
-  return table_of(file, sort_out(names, std::move(values), file), {});
+  return table_of(file, assign_columns(names, std::move(values), file), {});
 }
 
-// Of what a child process sent.
+// Checks what a child process sent.
 void require_consistent(const ParticleTable& table) {
   const std::size_t count = table.size();
   const auto fits = [&](std::size_t size, bool may_miss) { return size == count || (may_miss && size == 0); };
-  if (!fits(table.places.size(), false) || !fits(table.velocities.size(), true) || !fits(table.masses.size(), true) ||
-      !fits(table.lines.size(), true) || !fits(table.spins.size(), true))
+  if (!fits(table.positions.size(), false) || !fits(table.velocities.size(), true) ||
+      !fits(table.masses.size(), true) || !fits(table.lines.size(), true) || !fits(table.spins.size(), true))
     throw IoError(fmt::format("cannot read '{}': its columns have different lengths", table.file));
 }
 
@@ -182,7 +185,8 @@ void append_vector(fmt::memory_buffer& row, const Vec3& v) {
 
 } // namespace
 
-std::string ParticleTable::place_of(std::size_t particle) const {
+std::string ParticleTable::location_of(std::size_t particle) const {
+  assert(lines.empty() || particle < lines.size());
   return lines.empty() ? fmt::format("{}, row {}", file, particle) : fmt::format("{}:{}", file, lines[particle]);
 }
 
@@ -195,7 +199,7 @@ ParticleTable read_particle_table(const std::filesystem::path& file) {
   const std::string what = fmt::format("read '{}' as HDF5", file.string());
   if (is_being_written(file))
     throw IoError(fmt::format("cannot {}: {}", what, being_written));
-  ParticleTable table = read_apart<ParticleTable>(what, limits_for(bytes.size()), [&] {
+  ParticleTable table = read_in_child<ParticleTable>(what, limits_for(bytes.size()), [&] {
     try {
       return read_hdf5_table(bytes, file.string());
     } catch (const IoError& error) {
@@ -207,7 +211,8 @@ ParticleTable read_particle_table(const std::filesystem::path& file) {
 }
 
 void write_particle_table(const std::filesystem::path& file, const Patch& patch) {
-  constexpr std::size_t piece = std::size_t{1} << 22;
+  constexpr std::size_t piece = std::size_t{1} << 22; // bytes
+  assert(patch.orbital_frequency > 0.0);
   NewFile out(file);
   fmt::memory_buffer text;
   const auto write_text_so_far = [&] {

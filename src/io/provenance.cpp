@@ -32,7 +32,7 @@ std::string host() {
   return fmt::format("{} ({} {}, {})", name.nodename, name.sysname, name.release, name.machine);
 }
 
-// One line that a shell would take again: what is not plain is quoted.
+// Joins the arguments to one line, quoted so that a shell can run it.
 std::string command_line(const std::vector<std::string>& arguments) {
   std::string line;
   for (const std::string& argument : arguments) {

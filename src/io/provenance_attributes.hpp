@@ -1,4 +1,4 @@
-// For checkpoint.cpp, snapshot.cpp: provenance as text attributes of an HDF5 object.
+// Provenance as text attributes of an HDF5 object.
 #pragma once
 
 #include "hdf5.hpp"
@@ -9,7 +9,7 @@ namespace keeler {
 
 void write_provenance(const hdf5::Handle& object, const Provenance& provenance);
 
-/// All text attributes of the object.
+/// Returns all text attributes of the object.
 Provenance read_provenance(const hdf5::Handle& object);
 
 } // namespace keeler

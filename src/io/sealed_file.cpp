@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <string>
 
 namespace keeler {
@@ -38,7 +39,7 @@ void require_match(const std::filesystem::path& file, const std::string& seal, c
     damaged(file, "its content does not match its checksum");
 }
 
-// Where a seal would be.
+// Returns the last bytes, where a seal would be; zeros for a shorter file.
 std::string end_of(const Descriptor& descriptor) {
   const std::size_t size = descriptor.size();
   std::string end(seal_size, '\0');
@@ -54,23 +55,23 @@ std::string seal_at_end(const std::filesystem::path& file, const Descriptor& des
   return seal;
 }
 
-// Of its first bytes, read piece by piece.
+// Hashes the first `size` bytes of a file, piece by piece.
 Hash hash_of(const std::filesystem::path& name, const Descriptor& file, std::uint64_t size) {
   std::vector<std::byte> piece(std::min<std::uint64_t>(size, std::uint64_t{1} << 20));
   Hash hash;
-  for (std::uint64_t place = 0; place < size;) {
+  for (std::uint64_t offset = 0; offset < size;) {
     const std::span<std::byte> wanted =
-        std::span(piece).first(static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), size - place)));
-    const std::size_t have = file.read_at(place, wanted);
+        std::span(piece).first(static_cast<std::size_t>(std::min<std::uint64_t>(piece.size(), size - offset)));
+    const std::size_t have = file.read_at(offset, wanted);
     if (have == 0)
-      damaged(name, "it was cut while it was read");
+      damaged(name, "it was truncated while it was read");
     hash.add_bytes(wanted.first(have));
-    place += have;
+    offset += have;
   }
   return hash;
 }
 
-// A pipe or a device may have been read already, and be kept.
+// Reads all bytes. A pipe or a device may have been read already; then its kept content is returned.
 std::vector<std::byte> bytes_of(const std::filesystem::path& file) {
   if (!reads_once(file))
     return read_file(file);
@@ -100,10 +101,11 @@ SealedFile::SealedFile(const std::filesystem::path& file)
 }
 
 void SealedFile::write(const std::function<void(const hdf5::Handle& root)>& work) {
+  assert(root_); // finish() was not called
   try {
     work(*root_);
   } catch (const IoError&) {
-    disk_->require_sound(); // the better reason
+    disk_->require_sound(); // has the more precise reason
     throw;
   }
   disk_->require_sound();
@@ -116,6 +118,7 @@ void SealedFile::finish() {
   if (disk_.use_count() > 1)
     throw IoError(fmt::format("cannot write '{}': HDF5 did not close it", name_.string()));
   const std::string seal = seal_of(disk_->size(), hash_of(name_, disk_->file(), disk_->size()));
+  assert(seal.size() == seal_size);
   disk_->file().write_at(disk_->size(), std::as_bytes(std::span(seal)));
   unfinished_.keep();
 }
@@ -134,7 +137,7 @@ bool has_seal(const std::filesystem::path& file) {
   } catch (const IoError&) {
     if (reads_once(file))
       throw;
-    return false; // the reader of the file says why
+    return false; // reading the file will report why
   }
 }
 
@@ -152,7 +155,7 @@ FileContent load_content(const std::filesystem::path& file) {
   FileContent content{bytes_of(file), false};
   const std::size_t size = content.bytes.size();
   if (size < seal_size || !as_text(std::span(content.bytes).last(seal_size)).starts_with(mark)) {
-    require_not_written(file); // it may be half of something
+    require_not_written(file); // it may be incomplete
     return content;
   }
   const std::string seal(as_text(std::span(content.bytes).last(seal_size)));
@@ -165,9 +168,9 @@ FileContent load_content(const std::filesystem::path& file) {
 hdf5::Handle open_unsealed(const std::filesystem::path& file, const std::vector<std::byte>& content) {
   try {
     hdf5::Handle image = hdf5::open_image(content);
-    // Tools that change a file in place end it where its content ends; anything more is a seal that lost its mark.
+    // Tools that change a file in place end it at its content; more bytes are a seal whose mark was damaged.
     if (hdf5::used_size(image) != content.size())
-      damaged(file, "its end is not what was written");
+      damaged(file, "its end was changed");
     return image;
   } catch (const IoError& error) {
     if (!as_text(content).starts_with("\x89HDF\r\n\x1a\n"))

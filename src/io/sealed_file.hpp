@@ -1,9 +1,9 @@
-// HDF5 files that know whether they are whole: behind the HDF5 content stands a seal of 64 bytes with its length and
-// its checksum. HDF5 readers ignore what follows the content; Keeler verifies the seal before HDF5 sees a byte, because
-// the library cannot be trusted to survive damaged structures. Where there is no seal, a child process reads.
+// HDF5 files with a seal: 64 bytes after the HDF5 content, with its length and checksum. HDF5 readers ignore what
+// follows the content. Keeler verifies the seal before HDF5 reads a byte, because the library may crash on damaged
+// structures. A file without a seal is read in a child process.
 #pragma once
 
-#include "apart.hpp"
+#include "child_process.hpp"
 #include "hdf5_disk.hpp"
 
 #include <keeler/files/files.hpp>
@@ -21,18 +21,19 @@
 
 namespace keeler {
 
-/// What stands behind a content.
+/// Returns the seal to append to `content`.
 std::string seal_of(std::span<const std::byte> content);
 
-/// A sealed file in the making. It is never in memory as a whole. As of write_file(): it takes its name when it is
-/// finished, and goes when it is not.
+/// Writes a sealed file without holding all of it in memory. The file appears under its name in finish(); without
+/// finish() it is removed (see write_file()).
 class SealedFile {
 public:
-  /// Throws IoError, as all calls do; DiskFullError where room is missing.
+  /// All members throw IoError; DiskFullError when the disk is full.
   explicit SealedFile(const std::filesystem::path& file);
 
-  /// The file, for `work` that writes into it.
+  /// Calls work(root), which writes to the file. Precondition: finish() was not called.
   void write(const std::function<void(const hdf5::Handle& root)>& work);
+  /// Appends the seal and gives the file its name. Precondition: no handle of an object in it is open.
   void finish();
 
 private:
@@ -42,39 +43,39 @@ private:
   std::optional<hdf5::Handle> root_;
 };
 
-/// Opens a sealed file for reading where it is, when it is whole. Throws IoError naming the file and what is wrong with
-/// it.
+/// Verifies a sealed file and opens it for reading, not copied to memory. Throws IoError naming the file and the fault.
 hdf5::Handle open_sealed(const std::filesystem::path& file);
 
-/// Whether it can be opened and there is a seal at its end, right or wrong. Throws IoError of a pipe or a device that
+/// True if the file can be opened and has a seal at its end, valid or not. Throws IoError for a pipe or a device that
 /// cannot be read.
 bool has_seal(const std::filesystem::path& file);
-/// The seal at the end of a file. Throws IoError where there is none.
+/// Returns the seal at the end of a file, not verified. Throws IoError when there is none.
 std::string seal_in(const std::filesystem::path& file);
-/// The same file, of which somebody else has found that it is whole and has this seal.
+/// Opens a file that another rank has verified. Throws IoError when its seal is not `seal`.
 hdf5::Handle open_sealed(const std::filesystem::path& file, const std::string& seal);
 
-/// A file that may have lost its seal: tools that change HDF5 files in place drop it.
+/// Content of a file that may have lost its seal: tools that change HDF5 files in place drop it.
 struct FileContent {
   std::vector<std::byte> bytes; ///< without the seal
-  bool sealed = false;          ///< a seal vouches for them
+  bool sealed = false;          ///< they were verified by a seal
 };
 
-/// Throws IoError naming the file, also where a seal does not match.
+/// Reads a file into memory. Throws IoError naming the file, also when its seal does not match.
 FileContent load_content(const std::filesystem::path& file);
 
-/// Opens a content without a seal: only where the library may break (apart.hpp). Throws IoError naming the file.
+/// Opens content without a seal. The library may crash: call it in a child process only (child_process.hpp). Throws
+/// IoError naming the file.
 hdf5::Handle open_unsealed(const std::filesystem::path& file, const std::vector<std::byte>& content);
 
-/// What `read` makes of the HDF5 content of a file: here where a seal vouches for it, else in a child process, whence
-/// Result comes as a parcel. Throws IoError naming the file, and what `read` throws.
+/// Returns read(root of the file). Runs in this process if the file has a valid seal, else in a child process, which
+/// sends Result as a parcel. Throws IoError naming the file, and what `read` throws.
 template<class Result, class Read> Result read_content(const std::filesystem::path& file, const Read& read) {
-  const KeptStreams kept; // it is looked at more than once
+  const KeptStreams kept; // it is read more than once
   if (has_seal(file))
     return read(open_sealed(file));
   const FileContent content = load_content(file);
-  return read_apart<Result>("read '" + file.string() + "' as HDF5", limits_for(content.bytes.size()),
-                            [&] { return read(open_unsealed(file, content.bytes)); });
+  return read_in_child<Result>("read '" + file.string() + "' as HDF5", limits_for(content.bytes.size()),
+                               [&] { return read(open_unsealed(file, content.bytes)); });
 }
 
 } // namespace keeler

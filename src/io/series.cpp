@@ -18,14 +18,14 @@ std::string header_line(const std::vector<std::string>& columns) {
   return fmt::format("step,{}\n", fmt::join(columns, ","));
 }
 
-// Goes through the rows of a series that is to be continued.
+// Checks the rows of a series that is to be continued.
 class RowReader {
 public:
   RowReader(const std::filesystem::path& file, std::string_view text, std::size_t columns,
             std::optional<std::int64_t> every)
       : file_(file), text_(text), columns_(columns), every_(every) {}
 
-  /// The part of the text that ends with the last whole row of a step up to last_step.
+  /// Returns the text up to the last complete row of a step <= last_step. Precondition: it begins with a header line.
   std::string_view rows_up_to(std::int64_t last_step) {
     std::size_t kept = text_.find('\n') + 1;
     for (std::size_t begin = kept, end; (end = text_.find('\n', begin)) != text_.npos; begin = kept = end + 1) {
@@ -51,13 +51,13 @@ private:
     if (static_cast<std::size_t>(std::count(row.begin(), row.end(), ',')) != columns_)
       fail(row, "has another number of values");
     if (step < last_ || (every_ && step % *every_ != 0))
-      fail(row, "is not of its place");
+      fail(row, "is out of order");
     return step;
   }
 
   void take(std::int64_t step) {
     last_ = step;
-    if (!every_ || step == next_ - *every_) // of the same step as the one before: a row a moonlet
+    if (!every_ || step == next_ - *every_) // the step of the row before: one row per moonlet
       return;
     if (step > next_)
       gaps_.push_back({next_, step - 1});
@@ -88,7 +88,7 @@ std::vector<std::string_view> fields_of(std::string_view row) {
   return fields;
 }
 
-// What has just been written; once more, when the file has been removed since.
+// Opens a file with `rows` that was just written; writes them again if it was removed since.
 Descriptor open_with(const std::filesystem::path& file, std::string_view rows) {
   Descriptor opened(file, O_RDWR | O_APPEND | O_CREAT | O_NOFOLLOW);
   if (opened.size() == 0)
@@ -112,7 +112,8 @@ const std::vector<double>& SeriesTable::of(const std::string& name) const {
 
 namespace {
 
-// Rates are taken between rows; only impact_speeds.csv has none of these.
+// Throws IoError unless time_orbits is finite and does not decrease: rates are computed between rows. Only
+// impact_speeds.csv has no such column.
 void require_rising_times(const SeriesTable& table, const std::filesystem::path& file) {
   const std::vector<double>* const times = table.find("time_orbits");
   double last = 0.0;
@@ -197,6 +198,7 @@ Series Series::resume(const std::filesystem::path& file, const std::vector<std::
 
 void Series::append(std::int64_t step, std::span<const double> values) {
   assert(values.size() == columns_);
+  assert(step >= 0);
   const std::string row = fmt::format("{},{}\n", step, fmt::join(values, ","));
   require_rows();
   file_.append_whole(std::as_bytes(std::span(row)));
@@ -208,14 +210,14 @@ void Series::sync() {
   file_.sync();
 }
 
-// What is open keeps its rows when its name is taken from it, but nobody would find them.
+// Restores a file that was removed or renamed: the open descriptor still has its rows.
 void Series::require_rows() {
   std::error_code gone;
   if (std::filesystem::file_size(path_, gone) == size_ && !gone)
     return;
   if (const std::size_t size = file_.size(); size != size_)
     throw IoError(fmt::format("'{}' was changed by another program while the run wrote to it ({} bytes instead of {}), "
-                              "so rows may be lost; put the rows back that are missing, then resume the run",
+                              "so rows may be lost; restore the missing rows, then resume the run",
                               path_.string(), size, size_));
   const std::string rows = file_.read_all();
   write_text(path_, rows);

@@ -1,4 +1,4 @@
-// How a snapshot is read.
+// Reads snapshots.
 #include <keeler/io/snapshot.hpp>
 
 #include "formats.hpp"
@@ -33,7 +33,7 @@ namespace {
 
 constexpr char not_sorted[] = "its ParticleIDs do not increase; sort the particles by them, each once";
 
-// What /RingBox holds beside the numbers of the patch's frame, which have ranges of their own.
+// Checks the entries of /RingBox that are not read into the patch. The numbers of a patch are checked elsewhere.
 void require_finite_times_and_bounds(const hdf5::Handle& group) {
   for (const char* name : {"time_s", "bounds_low", "bounds_high"})
     if (hdf5::has_attribute(group, name))
@@ -63,7 +63,7 @@ void require_format(const hdf5::Handle& code) {
   require_version(code, code, {snapshot_version, snapshot_version}, "");
 }
 
-// A file of GADGET's own has arrays of particles, and nothing that tells of a ring.
+// Throws IoError when groups are missing: files of GADGET have arrays of particles but no description of a ring.
 void require_groups(const hdf5::Handle& image) {
   const std::vector<std::string> names = hdf5::names_in(image);
   std::vector<std::string> missing;
@@ -86,19 +86,19 @@ void read_clumping(const hdf5::Handle& image, SnapshotMeta& meta) {
     return;
   const hdf5::Handle group = hdf5::open_group(image, clumping_group);
   for (const std::string& name : hdf5::attribute_names(group))
-    if (hdf5::layout_of_attribute(group, name).type == "float64") // not what another tool has noted there
+    if (hdf5::layout_of_attribute(group, name).type == "float64") // another tool may have added others
       meta.clumping[name] = hdf5::read_attribute_values<double>(group, name);
 }
 
-// Part `number` of so many equal ones of all rows.
+// Part `index` of `parts` nearly equal parts of all rows.
 struct Part {
-  std::size_t number = 0, of = 1;
+  std::size_t index = 0, parts = 1;
 
-  std::size_t begin(std::size_t rows) const { return rows * number / of; }
-  std::size_t end(std::size_t rows) const { return rows * (number + 1) / of; }
+  std::size_t begin(std::size_t rows) const { return rows * index / parts; }
+  std::size_t end(std::size_t rows) const { return rows * (index + 1) / parts; }
 };
 
-// A part of an array of rows whose shape must be `shape`.
+// Reads a part of the rows of an array. Throws IoError unless its shape is `shape`.
 template<class T, class Row>
 std::vector<Row> read_array(const hdf5::Handle& group, const std::string& name, const std::string& unit,
                             const hdf5::Shape& shape, const Part& part) {
@@ -121,8 +121,7 @@ void read_particles(const hdf5::Handle& image, const Part& part, Patch& patch) {
   const hdf5::Handle group = hdf5::open_group(image, particles_group);
   for (const char* name : {"Coordinates", "Velocities", "Masses", "ParticleIDs", "Radius"})
     if (!hdf5::exists(group, name))
-      throw IoError(
-          fmt::format("it lacks /{}/{} (docs/formats.md has what stands there); add it", particles_group, name));
+      throw IoError(fmt::format("it lacks /{}/{} (docs/formats.md describes it); add it", particles_group, name));
   const hdf5::Handle ids = hdf5::open_dataset(group, "ParticleIDs");
   const hsize_t count = hdf5::layout_of_dataset(ids).count();
   require_stated_units_of_groups(image, "the file");
@@ -155,7 +154,7 @@ Snapshot snapshot_in(const hdf5::Handle& image, const Part& part = {}) {
   return snapshot;
 }
 
-// Also of what a child process sent.
+// Checks what was read, also by a child process.
 void require_consistent(const Patch& patch) {
   for (const std::size_t size : {patch.velocities.size(), patch.masses.size(), patch.ids.size(), patch.radii.size(),
                                  patch.spins.empty() ? patch.size() : patch.spins.size()})
@@ -168,6 +167,7 @@ void require_consistent(const Patch& patch) {
     throw IoError("its Omega is not a positive number");
 }
 
+// Returns make(), and adds the name of the file to its IoErrors.
 template<class Make> auto naming(const std::filesystem::path& file, const Make& make) {
   try {
     return make();
@@ -183,7 +183,7 @@ Snapshot read_whole(const std::filesystem::path& file) {
   return snapshot;
 }
 
-// Collective: whether the ids increase from each rank's part to the next one's.
+// True if the ids increase from each rank's part to the next. Collective.
 bool increase_over_ranks(const std::vector<std::uint64_t>& ids, const Communicator& ranks) {
   std::vector<std::uint64_t> sizes(ranks.size()), firsts(ranks.size()), lasts(ranks.size());
   if (!ids.empty()) {
@@ -203,7 +203,7 @@ bool increase_over_ranks(const std::vector<std::uint64_t>& ids, const Communicat
   return true;
 }
 
-// The first rank looks whether the file is whole; then each reads its part.
+// The root rank verifies the file; then each rank reads its part.
 Snapshot read_part(const std::filesystem::path& file, const Communicator& ranks) {
   Snapshot snapshot;
   std::string seal;
@@ -236,7 +236,7 @@ Snapshot read_part(const std::filesystem::path& file, const Communicator& ranks)
 Snapshot read_snapshot(const std::filesystem::path& file, const Communicator& ranks) {
   if (!ranks.distributed())
     return read_whole(file);
-  const KeptStreams kept; // a pipe is looked at more than once
+  const KeptStreams kept; // a pipe is read more than once
   bool sealed = false;
   ranks.on_root([&] { sealed = has_seal(file); });
   if (ranks.broadcast(sealed))
@@ -249,7 +249,7 @@ Snapshot read_snapshot(const std::filesystem::path& file, const Communicator& ra
 std::string snapshot_seal(const std::filesystem::path& file) {
   if (!has_seal(file))
     return {};
-  const std::string seal = seal_in(file); // a line
+  const std::string seal = seal_in(file); // ends with blanks and a line break
   return seal.substr(0, seal.find_last_not_of(" \n") + 1);
 }
 

@@ -1,4 +1,4 @@
-// How a snapshot is written.
+// Writes snapshots.
 #include <keeler/io/snapshot.hpp>
 
 #include "formats.hpp"
@@ -23,7 +23,7 @@ void write_header(const hdf5::Handle& root, const Patch& frame, std::size_t part
   hdf5::write_attribute(header, "NumPart_ThisFile", counts);
   hdf5::write_attribute(header, "NumPart_Total", counts);
   hdf5::write_attribute(header, "NumPart_Total_HighWord", std::vector<std::uint32_t>(6, 0));
-  hdf5::write_attribute(header, "MassTable", std::vector<double>(6, 0.0)); // masses are listed one by one
+  hdf5::write_attribute(header, "MassTable", std::vector<double>(6, 0.0)); // 0: masses are in /PartType1/Masses
   hdf5::write_attribute(header, "NumFilesPerSnapshot", std::int32_t{1});
   hdf5::write_attribute(header, "Time", frame.time_orbits * two_pi / frame.orbital_frequency);
   hdf5::write_attribute(header, "BoxSize", std::max(frame.box.size_x, frame.box.size_y)); // yt takes a scalar only
@@ -32,7 +32,7 @@ void write_header(const hdf5::Handle& root, const Patch& frame, std::size_t part
   hdf5::write_attribute(header, "UnitVelocity_in_cm_per_s", 100.0);
 }
 
-// The arrays of the particles, and what of a patch goes into them, in SI.
+// The arrays of /PartType1, in SI.
 class ParticleArrays {
 public:
   ParticleArrays(const hdf5::Handle& root, std::size_t count, bool rough) {
@@ -49,8 +49,9 @@ public:
              "angular velocity against the stars, along x, y and z");
   }
 
-  // Those of the patch from the first one on, as the file's from `row` on.
+  // Writes particles [first, first + count) of the patch to the rows from `row` on.
   void write(std::size_t row, const Patch& patch, std::size_t first, std::size_t count) const {
+    assert(first + count <= patch.size() && (arrays_.size() > 5) == !patch.spins.empty());
     const auto in_si = [&](const std::vector<Vec3>& rates) {
       std::vector<Vec3> some(count);
       for (std::size_t k = 0; k < count; ++k)
@@ -86,7 +87,7 @@ private:
   std::vector<Array> arrays_;
 };
 
-// Number k of `count` is number(k).
+// Writes the array number(0), …, number(count − 1).
 template<class T, class Number>
 void write_numbers(const hdf5::Handle& group, const std::string& name, std::size_t count, const Number& number) {
   const hid_t type = hdf5::native_type<T>();
@@ -100,29 +101,29 @@ void write_numbers(const hdf5::Handle& group, const std::string& name, std::size
   }
 }
 
-// One vertex cell a particle, as ParaView's VTKHDF reader wants it; points and their data are the arrays of
-// /PartType1 under a second name.
+// Writes one vertex cell per particle for ParaView's VTKHDF reader; points and their data are hard links to the arrays
+// of /PartType1.
 void write_vtk_view(const hdf5::Handle& root, std::size_t count) {
   constexpr std::uint8_t vertex = 1; // VTK_VERTEX
-  const auto itself = [](std::size_t k) { return static_cast<std::int64_t>(k); };
+  const auto identity = [](std::size_t k) { return static_cast<std::int64_t>(k); };
   const hdf5::Handle group = hdf5::create_group(root, "VTKHDF");
   hdf5::write_attribute(group, "Version", std::vector<std::int64_t>{1, 0});
   hdf5::write_attribute(group, "Type", std::string_view("UnstructuredGrid"));
   for (const char* name : {"NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"})
-    hdf5::write_dataset(group, name, std::vector<std::int64_t>{itself(count)});
-  write_numbers<std::int64_t>(group, "Offsets", count + 1, itself);
-  write_numbers<std::int64_t>(group, "Connectivity", count, itself);
+    hdf5::write_dataset(group, name, std::vector<std::int64_t>{identity(count)});
+  write_numbers<std::int64_t>(group, "Offsets", count + 1, identity);
+  write_numbers<std::int64_t>(group, "Connectivity", count, identity);
   write_numbers<std::uint8_t>(group, "Types", count, [](std::size_t) { return vertex; });
 
   const hdf5::Handle particles = hdf5::open_group(root, particles_group);
-  hdf5::link_again(particles, "Coordinates", group, "Points");
+  hdf5::create_hard_link(particles, "Coordinates", group, "Points");
   const hdf5::Handle point_data = hdf5::create_group(group, "PointData");
   for (const char* name : {"Velocities", "Masses", "ParticleIDs", "Radius", "Spins"})
     if (hdf5::exists(particles, name))
-      hdf5::link_again(particles, name, point_data, name);
+      hdf5::create_hard_link(particles, name, point_data, name);
 }
 
-// All of a patch but its particles.
+// Returns a patch without its particles.
 Patch frame_of(const Patch& patch) {
   Patch frame;
   frame.box = patch.box;
@@ -133,13 +134,13 @@ Patch frame_of(const Patch& patch) {
   return frame;
 }
 
-// The smallest box that holds the cell and every particle: eccentric ones stand outside the cell.
+// The bounding box of the cell and of all spheres, some of which may lie outside the cell by their eccentricity.
 struct Bounds {
   explicit Bounds(const ShearingBox& box) : low(-0.5 * box.size_x, -0.5 * box.size_y, 0.0), high(-low) {}
 
-  void add(const Vec3& place, double radius) {
-    low = low.cwiseMin(place - Vec3::Constant(radius));
-    high = high.cwiseMax(place + Vec3::Constant(radius));
+  void add(const Vec3& position, double radius) {
+    low = low.cwiseMin(position - Vec3::Constant(radius));
+    high = high.cwiseMax(position + Vec3::Constant(radius));
   }
 
   Vec3 low, high;

@@ -18,8 +18,8 @@ class Header {
 public:
   explicit Header(const hdf5::Handle& root) : group_(hdf5::open_group(root, "Header")) {}
 
-  /// The attribute's one number is `expected`, or it is missing. What is expected is a number, or else refused by
-  /// require_possible_frame().
+  /// Throws unless the attribute is `expected` within 1e-6, or missing. An expected value that is not finite is
+  /// rejected later, by require_possible_frame().
   void require(const char* name, double expected, const char* why) const {
     if (!hdf5::has_attribute(group_, name) || !std::isfinite(expected))
       return;
@@ -28,8 +28,7 @@ public:
       throw IoError(fmt::format("its /Header has {} {:g}, not {:g} ({})", name, value, expected, why));
   }
 
-  /// Of an attribute with an entry for each of GADGET's types of particles only that of type 1 is not 0: it is
-  /// `expected`.
+  /// Throws unless an attribute with one entry per GADGET particle type has `expected` for type 1 and 0 for the others.
   void require_type_1(const char* name, double expected, const char* why) const {
     if (!hdf5::has_attribute(group_, name) || !std::isfinite(expected))
       return;
@@ -54,7 +53,7 @@ void require_header_fits(const hdf5::Handle& root, const Patch& patch, std::size
   const Header header(root);
   header.require("NumFilesPerSnapshot", 1.0, "a start is one whole file; join the files into one");
   const double of_all = static_cast<double>(count), high = std::floor(of_all / high_word);
-  constexpr char counts[] = "as many as the arrays of /PartType1 have; join or correct the file";
+  constexpr char counts[] = "the length of the arrays in /PartType1; join or correct the file";
   header.require_type_1("NumPart_ThisFile", of_all, counts);
   header.require_type_1("NumPart_Total", of_all - high * high_word, counts);
   header.require_type_1("NumPart_Total_HighWord", high, counts);

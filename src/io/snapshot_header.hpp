@@ -1,4 +1,4 @@
-// What GADGET's /Header of a snapshot says beside the arrays and /RingBox: it must not say something else.
+// Checks GADGET's /Header of a snapshot, which repeats what the arrays and /RingBox state, for contradictions.
 #pragma once
 
 #include "hdf5.hpp"
@@ -9,8 +9,8 @@
 
 namespace keeler {
 
-/// Throws IoError that names the attribute where /Header states a part of a snapshot in several files, another number
-/// of particles than `count`, masses of its own, or another box or time than `patch`. What is missing states nothing.
+/// Throws IoError naming the attribute when /Header states that the file is one of several, a number of particles other
+/// than `count`, a mass per type, or a box or time other than in `patch`. Missing attributes are accepted.
 void require_header_fits(const hdf5::Handle& root, const Patch& patch, std::size_t count);
 
 } // namespace keeler

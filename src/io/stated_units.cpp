@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
@@ -29,7 +30,7 @@ std::string without_blanks(const std::string& text) {
   return letters;
 }
 
-// Also as yt, astropy and pint write it, in lower case and without blanks; and what it is in CGS.
+// A unit, its spellings by yt, astropy and pint (lower case, without blanks), and its value in CGS.
 struct KnownUnit {
   const char* name;
   std::vector<std::string> spellings;
@@ -44,22 +45,25 @@ const KnownUnit& find_unit(const std::string& name) {
        {"s", {"s", "sec", "second", "seconds"}, 1.0},
        {"rad/s", {"rad/s", "rads^-1", "rads-1", "rad*s**-1", "1/s", "s^-1", "s-1", "radian/second"}, 1.0},
        {"1", {"1", "none", "dimensionless"}, 1.0},
-       // Of many numbers no factor to CGS is that of all.
+       // A group of different quantities has no single factor to CGS.
        {"SI", {"si", "mks", "m", "kg", "s", "1", without_blanks(ring_box_units)}, no_number}}};
-  return *std::find_if(units.begin(), units.end(), [&](const KnownUnit& unit) { return name == unit.name; });
+  const auto* const found =
+      std::find_if(units.begin(), units.end(), [&](const KnownUnit& unit) { return name == unit.name; });
+  assert(found != units.end());
+  return *found;
 }
 
-// What an attribute of that name states: a unit in words, the unit in CGS, or a number that SI makes `wanted`.
+// Meaning of an attribute: a unit as text, a factor to CGS, or a number that is `wanted` for SI.
 enum class States { unit, factor_to_cgs, number };
 
 struct Statement {
   std::string_view name; // its letters and digits in lower case
   States what;
-  const char* unit = nullptr; // none: that of the object
+  const char* unit = nullptr; // null: the unit of the object
   double wanted = 1.0;
 };
 
-// Of GADGET and its kin, SWIFT, yt, openPMD and netCDF.
+// Attributes of GADGET and related codes, SWIFT, yt, openPMD and netCDF.
 constexpr std::array<Statement, 37> statements = {
     {{"unit", States::unit},
      {"units", States::unit},
@@ -99,7 +103,7 @@ constexpr std::array<Statement, 37> statements = {
      {"scalefactor", States::number},
      {"addoffset", States::number, nullptr, 0.0}}};
 
-// Groups in lower case. What a program computed in, below others, is not what it wrote in.
+// Groups that state the units of the file, in lower case. Other groups may state internal units of a program.
 constexpr std::array<std::string_view, 5> groups_with_units = {"header", "parameters", "units", "ringbox", "parttype1"};
 
 std::string letters_and_digits(const std::string& text) {
@@ -110,7 +114,7 @@ std::string letters_and_digits(const std::string& text) {
   return plain;
 }
 
-// One text, or numbers; neither where the attribute is empty.
+// The value of an attribute: one text, or numbers; neither if it is empty.
 struct Value {
   std::optional<std::string> text;
   std::vector<double> numbers;
@@ -128,13 +132,13 @@ Value value_of(const hdf5::Handle& object, const std::string& name, const std::s
     return {};
   if (layout.type == "text" && layout.count() == 1)
     return {hdf5::read_text_attribute(object, attribute), {}};
-  if (layout.is_of_numbers())
+  if (layout.is_numeric())
     return {{}, hdf5::read_attribute_values<double>(object, attribute)};
   throw IoError(
       fmt::format("the attribute {} of {} is neither a text nor numbers; correct or remove it", attribute, name));
 }
 
-// As SWIFT writes its parameters.
+// Parses a number in a text: SWIFT writes its parameters as text.
 std::optional<double> number_in(const std::string& text) {
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
@@ -199,21 +203,21 @@ void require_none_missing(const hdf5::Handle& dataset, const std::string& name, 
       continue;
     for (const double none : value_of(dataset, name, attribute).numbers)
       if (const auto count = std::count(values.begin(), values.end(), none); count > 0)
-        throw IoError(fmt::format("{} has {} of the value {:g}, which its attribute {} says to be none; leave such "
-                                  "particles out of all arrays, or fill in their values",
+        throw IoError(fmt::format("{} has {} of the value {:g}, which its attribute {} defines as missing; remove "
+                                  "such particles from all arrays, or fill in their values",
                                   name, count, none, attribute));
   }
 }
 
 void require_whole_ids(const hdf5::Handle& dataset, const std::string& name) {
-  constexpr double most_exact = 9007199254740992.0; // 2⁵³
+  constexpr double max_exact = 9007199254740992.0; // 2⁵³
   const hdf5::Layout layout = hdf5::layout_of_dataset(dataset);
   if (layout.type.starts_with("uint"))
     return;
   std::vector<double> ids(layout.count());
   hdf5::read_dataset(dataset, hdf5::native_type<double>(), ids.data());
   const auto is_whole = [&](double id) {
-    return id >= 0.0 && id == std::floor(id) && (id < most_exact || layout.type.starts_with("int"));
+    return id >= 0.0 && id == std::floor(id) && (id < max_exact || layout.type.starts_with("int"));
   };
   if (const auto odd = std::find_if_not(ids.begin(), ids.end(), is_whole); odd != ids.end())
     throw IoError(fmt::format("{} has {:g} in row {}, and an id is a whole number from 0 on; write them as integers",

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <cassert>
 #include <cstdint>
 #include <numeric>
 #include <span>
@@ -13,13 +14,13 @@
 namespace keeler {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "files say that they are");
-static_assert(sizeof(Vec3) == 3 * sizeof(double), "arrays of vectors are written as they are in memory");
+static_assert(std::endian::native == std::endian::little, "the files declare LittleEndian");
+static_assert(sizeof(Vec3) == 3 * sizeof(double), "arrays of vectors are written as (N, 3) doubles");
 
-// The arrays of a file: first their descriptions, then their bytes, each behind its length.
+// The arrays of a file: the XML elements that describe them, and the appended data, each array after its length.
 class AppendedArrays {
 public:
-  // The element that describes it; it must live until the arrays are written.
+  // Adds an array and returns its XML element. Precondition: `rows` outlives write().
   template<class Row>
   std::string add(const char* type, const char* name, int components, const char* unit, const std::vector<Row>& rows) {
     const std::uint64_t offset = size_;
@@ -62,7 +63,8 @@ void write_text(NewFile& out, std::string_view text) {
 void write_vtp(const std::filesystem::path& file, const Patch& patch) {
   const std::vector<Vec3> velocities = in_si(patch.velocities, patch.orbital_frequency);
   const std::vector<Vec3> spins = in_si(patch.spins, patch.orbital_frequency);
-  std::vector<std::int64_t> numbers(patch.size() + 1); // of the points, which are the ends of their cells too
+  assert(patch.orbital_frequency > 0.0);
+  std::vector<std::int64_t> numbers(patch.size() + 1); // indices of points; shifted by one, ends of the cells
   std::iota(numbers.begin(), numbers.end(), std::int64_t{0});
   const std::vector<std::int64_t> points(numbers.begin(), numbers.end() - 1), ends(numbers.begin() + 1, numbers.end());
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
@@ -13,6 +14,7 @@ namespace keeler {
 Patch make_patch(const Particles& particles, const ShearingBox& box, double offset, const Frequencies& frequencies,
                  double after) {
   const std::size_t count = particles.size();
+  assert(particles.ids.size() == count && (!particles.rough || particles.spins.size() == count));
   const std::vector<std::uint32_t> order = order_by_id(particles.ids);
   Patch patch;
   patch.box = box;
@@ -42,13 +44,14 @@ Patch make_patch(const Particles& particles, const ShearingBox& box, double offs
 }
 
 void require_sound(const Patch& patch) {
+  assert(patch.spins.empty() || patch.spins.size() == patch.size());
   const auto positive = [](double value) { return value > 0.0 && std::isfinite(value); };
   for (std::size_t k = 0; k < patch.size(); ++k) {
     const auto refuse = [&](const char* what) {
       throw InvariantError(fmt::format("particle {} has {}; take another state", patch.ids[k], what));
     };
     if (!patch.positions[k].allFinite() || !patch.velocities[k].allFinite())
-      refuse("a place or a velocity that is not finite");
+      refuse("a position or velocity that is not finite");
     if (!positive(patch.radii[k]))
       refuse("a radius that is not positive");
     if (!positive(patch.masses[k]))
@@ -60,6 +63,8 @@ void require_sound(const Patch& patch) {
 
 Particles particles_from(const Patch& patch, double ahead) {
   Particles particles;
+  assert(patch.velocities.size() == patch.size() && patch.ids.size() == patch.size());
+  assert(patch.radii.size() == patch.size() && patch.masses.size() == patch.size());
   particles.ids = patch.ids;
   particles.bodies.resize(patch.size());
   const Rotation rotation(patch.frequencies, -ahead);

@@ -13,12 +13,12 @@
 namespace keeler {
 namespace {
 
-// ∫ r^p dr between a and b.
+// Returns ∫ r^p dr from a to b.
 double power_integral(double p, double a, double b) {
   return std::fabs(p + 1.0) < 1e-12 ? std::log(b / a) : (std::pow(b, p + 1.0) - std::pow(a, p + 1.0)) / (p + 1.0);
 }
 
-// The radius below which a fraction u of a power law lies.
+// Returns the quantile u of a power law.
 double power_quantile(double exponent, double min, double max, double u) {
   const double p = 1.0 - exponent;
   if (std::fabs(p) < 1e-12)
@@ -43,7 +43,7 @@ SizeLaw make_listed(const Parameters& p) {
   return listed_sizes(std::move(radii));
 }
 
-constexpr KeyRange radius_range = {.low = 1e-6, .high = 1e6}; // wide: only slips of units lie outside
+constexpr KeyRange radius_range = {.low = 1e-6, .high = 1e6}; // wide: only mistakes of units are outside
 
 constexpr KeyRange density_range = {.low = 1e-2, .high = 3e4}; // up to the densest metals
 
@@ -86,16 +86,19 @@ Key length_key(const char* name, const char* example, const char* meaning) {
 } // namespace
 
 SizeLaw equal_sizes(double radius) {
+  assert(radius > 0.0);
   return {radius, radius, 0, [=](int k) { return std::pow(radius, k); }, [=](double, std::size_t) { return radius; }};
 }
 
 SizeLaw power_sizes(double exponent, double min, double max) {
+  assert(min > 0.0 && min < max);
   return {min, max, 0,
           [=](int k) { return power_integral(k - exponent, min, max) / power_integral(-exponent, min, max); },
           [=](double u, std::size_t) { return power_quantile(exponent, min, max, u); }};
 }
 
 SizeLaw listed_sizes(std::vector<double> radii) {
+  assert(!radii.empty());
   const auto [smallest, largest] = std::minmax_element(radii.begin(), radii.end());
   SizeLaw law{*smallest, *largest, radii.size(), {}, {}};
   law.mean_power = [radii](int k) {
@@ -109,11 +112,13 @@ SizeLaw listed_sizes(std::vector<double> radii) {
 }
 
 SizeLaw tabulated_sizes(NumberRows table) {
+  assert(!table.empty());
   double total = 0.0, smallest = table.front()[0], largest = smallest;
   for (std::vector<double>& row : table) {
     smallest = std::min(smallest, row[0]);
     largest = std::max(largest, row[0]);
-    row[1] = total += row[1]; // up to and with this row
+    assert(row.size() == 2 && row[1] > 0.0);
+    row[1] = total += row[1]; // cumulative
   }
   SizeLaw law{smallest, largest, table.size(), {}, {}};
   law.mean_power = [table, total](int k) {
@@ -136,22 +141,23 @@ SizeLaw populations(const NumberRows& table) {
   NumberRows sizes, densities;
   double volume = 0.0, mass = 0.0;
   for (const std::vector<double>& row : table) {
+    assert(row.size() == 3);
     sizes.push_back({row[0], row[1]});
     densities.push_back({row[2], row[1]});
     volume += row[1] * std::pow(row[0], 3);
     mass += row[1] * std::pow(row[0], 3) * row[2];
   }
   SizeLaw law = tabulated_sizes(std::move(sizes));
-  law.density = tabulated_sizes(std::move(densities)).radius; // the same row at the same quantile
+  law.density = tabulated_sizes(std::move(densities)).radius; // equal quantiles select equal rows
   law.mean_density = mass / volume;
   return law;
 }
 
 namespace {
 
-// Where k stands in a shuffled order of `count`, found for each k by itself: a Feistel network over as many bits as
-// count has, whose halves take turns, walked on from numbers that are too large (Black & Rogaway 2002). Eight rounds,
-// since the halves of a small count have few bits.
+// Returns the position of k in a random permutation of [0, count), computed independently for each k: a Feistel network
+// over the bits of count, applied repeatedly while the result is too large (cycle walking, Black & Rogaway 2002). It
+// has eight rounds because the halves of a small count have few bits.
 std::size_t shuffled(std::size_t k, std::size_t count, std::uint64_t seed) {
   assert(k < count);
   const auto bits = static_cast<unsigned>(std::bit_width(count - 1));
@@ -184,6 +190,7 @@ double DrawnSizes::radius(std::size_t particle) const {
 }
 
 double DrawnSizes::density(std::size_t particle) const {
+  assert(has_densities());
   return value(law_.density, particle);
 }
 

@@ -64,7 +64,7 @@ PythonSnapshot tile(const PythonSnapshot& snapshot, std::size_t nx, std::size_t 
   return made([&] {
     const Scene scene = parse_scene(snapshot.scene, name, {"start.keep=1.0"}, name);
     const Patch patch = patch_from_snapshot(snapshot.patch, name, scene);
-    require_apart(patch, "'" + name + "'");
+    require_no_overlap(patch, "'" + name + "'");
     return PythonSnapshot{tiled_patch(patch, nx, ny), scene.resolved, true};
   });
 }
@@ -77,7 +77,7 @@ PythonSnapshot from_arrays(const std::string& text, const std::string& name, con
   const auto count = positions.ndim() > 0 ? static_cast<std::size_t>(positions.shape(0)) : 0;
   if (count == 0)
     throw UsageError("positions has no rows; give one of x, y, z a particle");
-  table.places = vectors_from(positions, count, "positions");
+  table.positions = vectors_from(positions, count, "positions");
   table.radii = numbers_from(radii, count, "radii");
   if (velocities)
     table.velocities = vectors_from(*velocities, count, "velocities");
@@ -90,7 +90,7 @@ PythonSnapshot from_arrays(const std::string& text, const std::string& name, con
     Patch patch = patch_from_table(table, of);
     if (relaxed)
       relax(patch);
-    require_apart(patch, table.file);
+    require_no_overlap(patch, table.file);
     const Scene scene = decided_by(parse_scene(of.scene.resolved, name, {}, table.file), scale_of(patch));
     return PythonSnapshot{std::move(patch), scene.resolved, true};
   });

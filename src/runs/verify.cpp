@@ -56,7 +56,7 @@ void require_fit(const Patch& patch, const Scene& scene, const std::string& file
   if (patch.spins.empty() == scene.collisions.friction.has_value())
     throw IoError(fmt::format("'{}' and the scene in it do not agree whether particles have spins", file));
   if (misses_nothing(scene))
-    require_apart(patch, "'" + file + "'");
+    require_no_overlap(patch, "'" + file + "'");
 }
 
 // A checkpoint's elements at the boundary where it was written.
@@ -99,7 +99,7 @@ Found check_contacts(const std::string& file) {
   const ContactFile contacts = read_contacts(file);
   std::int64_t last = 0;
   for (const ContactRow& row : contacts.rows) {
-    const bool finite = std::isfinite(row.time_orbits) && row.place.allFinite() && std::isfinite(row.normal_speed) &&
+    const bool finite = std::isfinite(row.time_orbits) && row.position.allFinite() && std::isfinite(row.normal_speed) &&
                         std::isfinite(row.tangential_speed);
     if (!finite || row.step < last || row.low_id >= row.high_id)
       throw IoError(fmt::format("row {} of '{}' is no contact, or not of its place",

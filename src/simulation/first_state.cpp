@@ -26,7 +26,7 @@ void require_fit(const Scene& scene, const Patch& start, const std::string& name
     require_memory_for(scene, start.size());
     require_sound(start);
     if (!ranks.distributed())
-      require_apart(start, name);
+      require_no_overlap(start, name);
   });
   const double largest = ranks.largest(start.size() ? *std::max_element(start.radii.begin(), start.radii.end()) : 0.0);
   ranks.on_root([&] { require_room(start.box, largest, name); });

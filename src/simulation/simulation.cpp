@@ -52,7 +52,7 @@ Simulation::Simulation(const Scene& scene, const Patch& start, const Communicato
   if constexpr (Communicator::possible)
     if (ranks_.distributed()) {
       const Overlap largest = largest_overlap_distributed();
-      ranks_.together([&] { require_apart(largest, start_name(scene_)); });
+      ranks_.together([&] { require_no_overlap(largest, start_name(scene_)); });
     }
   for (std::size_t f = 0; f < forces_.size(); ++f)
     accelerate(f);
@@ -172,7 +172,7 @@ void Simulation::sort_when_due() {
   const Stopwatch watch(split_.drift);
   drift_.release();
   undisturbed_ = false;
-  const std::vector<std::uint32_t> order = order_by_place(state_.particles, state_.box, state_.epoch_offset());
+  const std::vector<std::uint32_t> order = order_by_position(state_.particles, state_.box, state_.epoch_offset());
   reorder(state_.particles.bodies, order);
   reorder(state_.particles.ids, order);
   if (state_.particles.rough)
@@ -269,7 +269,7 @@ void Simulation::replace(Particles particles) {
   assert(!ranks_.distributed() && state_.step % scene_.kick_interval() == 0 && particles.ids == state_.particles.ids);
   const Patch after = patch_of(particles);
   require_sound(after);
-  require_apart(after, "the changed state");
+  require_no_overlap(after, "the changed state");
   const ParticleMeans before = means();
   std::swap(state_.particles, particles);
   wrap_changed(particles);

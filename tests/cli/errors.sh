@@ -121,7 +121,7 @@ wait $busy 2>/dev/null
 
 touch "$work/file"
 refuses "a file as folder" "is a file" run "$work/scene.toml" -o "$work/file"
-refuses_with 4 "a file as parent" "is no folder that can be written to" run "$work/scene.toml" -o "$work/file/run"
+refuses_with 4 "a file as parent" "is not a writable folder" run "$work/scene.toml" -o "$work/file/run"
 refuses_with 4 "a state below a file" "file/state.hdf" generate "$work/scene.toml" -o "$work/file/state.hdf"
 refuses "a state that exists" "--force" generate "$work/scene.toml" -o "$work/file"
 [ -s "$work/file" ] && fail "a refused state was written"

@@ -146,7 +146,7 @@ done
 code=0
 limited 400000 run "$work/scene.toml" -o "$work/tight" --force -q --threads 100 || code=$?
 [ $code -eq 1 ] || fail "no memory for threads: exit $code: $(cat "$work/err")"
-one_line "no memory for threads" "the system does not start 100 threads"
+one_line "no memory for threads" "the system cannot start 100 threads"
 
 # A start that is being made is given up at the first signal.
 "$keeler" generate "$work/scene.toml" -o "$work/large.hdf" --set 'box.size=[4000,4000]' --set particles.count=2500000 \

@@ -340,7 +340,7 @@ class ForeignFiles(unittest.TestCase):
         def storage(part, count):
             part.create_dataset("Radius", (count,), "f8", external=[(str(other), 0, 8 * count)])
 
-        for make, words in ((virtual, "its values stand in another file"), (storage, "its values stand in another file"),
+        for make, words in ((virtual, "its values are stored in another file"), (storage, "its values are stored in another file"),
                             (link, "a link into another file")):
             with self.subTest(make.__name__):
                 self.replace("Radius", make)

@@ -1,6 +1,6 @@
-// The search structure: points binned into cells of the sheared-periodic box, in x and y (rings are thin).
-// Invariants: every point lies in exactly one cell; a query visits every image of every point inside its window at
-// least once and each image at most once, also across edges and when the window is wider than the box.
+// A cell grid for range queries: points are binned in x and y (rings are thin) into cells of the sheared-periodic box.
+// Invariants: every point is in exactly one cell; a query visits every image of every point inside its window exactly
+// once, also across edges and when the window is wider than the box.
 #pragma once
 
 #include <keeler/cells/sheared_cells.hpp>
@@ -14,17 +14,18 @@ namespace keeler {
 
 class PeriodicGrid {
 public:
-  /// Bins points at an instant when the box's shear offset is `offset`. Cells are squares of about `cell_size` (m),
-  /// made larger when there would be more than two a point.
+  /// Bins points at the instant of the shear offset `offset`. Cells are squares of about `cell_size` (m), enlarged if
+  /// there were more than two per point. Precondition: box.area() > 0.
   void build(std::span<const Vec3> points, const ShearingBox& box, double offset, double cell_size);
 
   /// Calls visit(j, image) for every image of every point j with |x_j' − x| <= reach_x and |y_j' − y| <= reach_y, where
-  /// (x_j', y_j') = point j + box.displacement(image, offset). The point itself is visited like any other.
+  /// (x_j', y_j') = point j + box.displacement(image, offset). The query point itself is included if it is in the grid.
   template<class Visit> void visit_near(const Vec3& point, double reach_x, double reach_y, const Visit& visit) const {
     visit_cells<true>(point, reach_x, reach_y, visit);
   }
 
-  /// The same for everything in the cells that this window touches: what a grid alone can say.
+  /// Calls visit(j, image) for all points in the cells that the window intersects: a superset of visit_near(),
+  /// untested.
   template<class Visit>
   void visit_touched_cells(const Vec3& point, double reach_x, double reach_y, const Visit& visit) const {
     visit_cells<false>(point, reach_x, reach_y, visit);
@@ -35,13 +36,13 @@ private:
   void visit_cells(const Vec3& point, double reach_x, double reach_y, const Visit& visit) const;
 
   struct Entry {
-    double x, y; // inside the cell
+    double x, y; // of the image in the cell of the box
     std::uint32_t point;
-    Image home; // the image of the point that lies inside the cell
+    Image home; // that image
   };
 
   ShearedCells cells_;
-  std::vector<std::uint32_t> first_; // first entry of each cell
+  std::vector<std::uint32_t> first_; // first entry of each cell, and the number of entries
   std::vector<Entry> entries_;
 };
 

@@ -1,4 +1,4 @@
-// How deep particles stand inside each other: the check that every run ends with and every loader makes.
+// Overlaps of particles: the check at the end of every run and when a state is loaded.
 #pragma once
 
 #include <keeler/particles/patch.hpp>
@@ -11,29 +11,29 @@ namespace keeler {
 
 /// The pair that overlaps most.
 struct Overlap {
-  double depth = 0.0; ///< (r_i + r_j − distance) / (r_i + r_j); 0 when nothing overlaps
+  double depth = 0.0; ///< (r_i + r_j − distance) / (r_i + r_j); 0 if nothing overlaps
   std::uint64_t id_i = 0, id_j = 0;
 };
 
-/// Which of two counts as the larger: of equal depths the one with the lower ids.
+/// True if a is deeper than b; at equal depth, if a has the lower ids.
 bool deeper(const Overlap& a, const Overlap& b);
 
-/// Over all pairs and images of a patch.
+/// Returns the deepest overlap over all pairs and images of a patch.
 Overlap largest_overlap(const Patch& patch);
 
-/// How many pairs overlap by more than `depth`.
+/// Returns the number of pairs that overlap by more than `depth`.
 std::size_t count_overlaps(const Patch& patch, double depth);
 
-/// An overlap from which no run starts, of a radius sum: contacts by the inexact finders are below it.
+/// Largest overlap, relative to the radius sum, from which a run can start; the inexact finders stay below it.
 inline constexpr double allowed_overlap = 1e-8;
 
-/// Throws InvariantError where so many particles of `state` lie in one place that whatever looks at pairs would not
-/// end: N in one place have N² pairs. Takes the time of a sort.
+/// Throws InvariantError if so many particles of `state` are piled up that a search for pairs would not end: N
+/// particles at one position have N² pairs. Costs a sort.
 void require_no_heap(const Patch& patch, const std::string& state);
 
-/// Throws InvariantError where particles are in heaps, or overlap by more than that, naming the worst pair of `state`
-/// ("the initial state").
-void require_apart(const Patch& patch, const std::string& state);
-void require_apart(const Overlap& largest, const std::string& state);
+/// Throws InvariantError if particles are piled up, or overlap by more than allowed_overlap, naming the worst pair of
+/// `state` ("the initial state").
+void require_no_overlap(const Patch& patch, const std::string& state);
+void require_no_overlap(const Overlap& largest, const std::string& state);
 
 } // namespace keeler

@@ -1,51 +1,53 @@
-// The one counting sort: items by the cell that each lies in, and by their numbers within a cell.
+// Parallel stable counting sort of items by cell.
 #pragma once
 
 #include <keeler/core/threads.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <numeric>
 #include <span>
 
 namespace keeler {
 
-/// Calls put(k, place) once for every item k, in no promised order: the items of cell c get the places from starts[c]
-/// up to starts[c + 1], in the order of k. `starts` gets cells + 1 entries. put must write only what belongs to k or
-/// place.
+/// Calls put(k, position) once for every item k, in unspecified order: the items of cell c get the positions
+/// [starts[c], starts[c + 1]), in the order of k. `starts` is resized to cells + 1. put must write only data of k or
+/// position. Precondition: cell_of[k] < cells, and cells and items are below 2³².
 ///
-/// Each thread counts and places the items of some of the cells: its part. It reads all items for that, but skips
-/// blocks of them that have no cell of its part: few remain when the items stand nearly in order already. Fewer items
-/// than a block are one thread's.
+/// Each thread counts and moves the items of a part of the cells. It scans all items for that, but skips blocks without
+/// a cell of its part: few remain when the items are nearly sorted already. A single block is handled by one thread.
 template<class Put>
 void counting_sort(std::span<const std::uint32_t> cell_of, std::size_t cells, std::vector<std::uint32_t>& starts,
                    const Put& put) {
   constexpr std::size_t block = 1024;
+  assert(cells <= (std::uint64_t{1} << 32) && cell_of.size() < (std::uint64_t{1} << 32));
   const std::size_t count = cell_of.size(), blocks = (count + block - 1) / block;
   const std::size_t parts = std::clamp<std::size_t>(blocks, 1, static_cast<std::size_t>(threads()));
   struct Bounds {
-    std::uint32_t least, most;
+    std::uint32_t min, max;
   };
   std::vector<Bounds> bounds(blocks);
   parallel_for(
       bounds.size(),
       [&](std::size_t b) {
         const auto items = cell_of.subspan(b * block, std::min(block, count - b * block));
-        const auto [least, most] = std::minmax_element(items.begin(), items.end());
-        bounds[b] = {*least, *most};
+        const auto [min, max] = std::minmax_element(items.begin(), items.end());
+        assert(*max < cells);
+        bounds[b] = {*min, *max};
       },
       16);
   const auto first_cell = [&](std::size_t part) { return cells * part / parts; };
   const auto for_items_of = [&](std::size_t part, const auto& body) {
     const std::size_t begin = first_cell(part), end = first_cell(part + 1);
     for (std::size_t b = 0; b < bounds.size(); ++b)
-      if (bounds[b].least < end && bounds[b].most >= begin)
+      if (bounds[b].min < end && bounds[b].max >= begin)
         for (std::size_t k = b * block; k < std::min(count, (b + 1) * block); ++k)
           if (cell_of[k] - begin < end - begin)
             body(k);
   };
 
-  // while it runs, starts[c + 1] is where the next item of cell c goes, counted from the part's first
+  // during the sort, starts[c + 1] is the position of the next item of cell c, relative to the part's first
   starts.resize(cells + 1);
   starts[0] = 0;
   std::vector<std::uint32_t> before(parts + 1, 0); // items in the parts before

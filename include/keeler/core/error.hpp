@@ -1,5 +1,5 @@
-// Errors that a user can meet, each with the exit code of the program that it ends.
-// Bad input throws; a programmer's mistake is an assert, checked in debug builds only.
+// Errors reported to users, each with an exit code of the program.
+// Invalid input throws; a programming error is an assert, checked in debug builds only.
 #pragma once
 
 #include <stdexcept>
@@ -9,15 +9,15 @@ namespace keeler {
 
 /// Exit codes of the program.
 enum class ExitCode : int {
-  done = 0,         ///< all that was asked is done
+  done = 0,         ///< everything requested is done
   run_time = 1,     ///< anything not covered below
   usage = 2,        ///< command line or scene
-  invariant = 3,    ///< a physical invariant broke
+  invariant = 3,    ///< a physical invariant was violated
   input_output = 4, ///< reading or writing failed
   stopped = 75,     ///< stopped early, a valid checkpoint is on disk
 };
 
-/// One line for the user: what is wrong, why it is, what to do. What terminals cannot take of it becomes '?'.
+/// A message of one line: what is wrong, why, what to do. Unprintable characters become '?'.
 class Error : public std::runtime_error {
 public:
   Error(ExitCode code, const std::string& message);
@@ -27,12 +27,12 @@ private:
   ExitCode code_;
 };
 
-/// The command line or the scene asks for something that is not there or not possible.
+/// The command line or the scene requests something that does not exist or is impossible.
 struct UsageError : Error {
   explicit UsageError(const std::string& message) : Error(ExitCode::usage, message) {}
 };
 
-/// A state that physics does not allow: particles inside each other, an element that is not a number.
+/// An unphysical state: overlapping particles, an element that is not finite.
 struct InvariantError : Error {
   explicit InvariantError(const std::string& message) : Error(ExitCode::invariant, message) {}
 };
@@ -42,7 +42,7 @@ struct IoError : Error {
   explicit IoError(const std::string& message) : Error(ExitCode::input_output, message) {}
 };
 
-/// The disk, a quota or a limit on file size leaves no room.
+/// The disk is full, or a quota or file-size limit is reached.
 struct DiskFullError : IoError {
   explicit DiskFullError(const std::string& message) : IoError(message) {}
 };

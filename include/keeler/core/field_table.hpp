@@ -1,6 +1,6 @@
-// The field table: every piece of data that is stored passes through one. A subject lists its whole state as fields
-// (name, type, where it lies, unit, meaning); readers and writers know nothing but the table. A new piece of state is
-// one more line in its owner's list, and neither a checkpoint nor a restart can forget it.
+// The field table: the single list of the state to store. Each component declares its whole state as fields (name,
+// type, location, unit, meaning), and readers and writers use only the table. New state needs one more line in its
+// owner's list, and then neither a checkpoint nor a restart can omit it.
 #pragma once
 
 #include <cstddef>
@@ -40,19 +40,19 @@ struct Field {
   FieldType type = FieldType::float64;
   std::size_t components = 1;
   bool scalar = false;
-  bool divided = false;                    ///< of ranks that share a run each has a part of the rows
+  bool divided = false;                    ///< the rows are distributed over the ranks
   std::string unit;                        ///< "m", "kg", "rad", "1", ...
-  std::string about;                       ///< one line
-  std::function<std::size_t()> rows;       ///< rows at present
-  std::function<void(std::size_t)> resize; ///< makes room for that many rows before a read; a no-op for scalars
+  std::string about;                       ///< meaning, one line
+  std::function<std::size_t()> rows;       ///< current number of rows
+  std::function<void(std::size_t)> resize; ///< sets the number of rows before a read; no effect on scalars
   std::function<void*()> data;             ///< the first number; valid until the next resize
   std::size_t bytes() const { return rows() * components * size_of(type); }
 };
 
-/// A list of fields bound to live data; the data must outlive the table.
+/// A list of fields that refer to live data. Precondition: the data outlives the table.
 class FieldTable {
 public:
-  /// A scalar.
+  /// Adds a scalar. Precondition: no field has this name, here and below.
   template<class T> void scalar(std::string name, T& value, std::string unit, std::string about) {
     Field field = make<T>(std::move(name), 1, std::move(unit), std::move(about));
     field.scalar = true;
@@ -62,7 +62,7 @@ public:
     fields_.push_back(std::move(field));
   }
 
-  /// A vector whose elements each hold `sizeof(Row) / sizeof(T)` numbers of type T and nothing else.
+  /// Adds a vector. Precondition: each element consists of sizeof(Row) / sizeof(T) numbers of type T.
   template<class T, class Row>
   void rows(std::string name, std::vector<Row>& data, std::string unit, std::string about) {
     static_assert(std::is_standard_layout_v<Row> && sizeof(Row) % sizeof(T) == 0);
@@ -73,7 +73,7 @@ public:
     fields_.push_back(std::move(field));
   }
 
-  /// The same, with a row for each particle of this rank.
+  /// Adds a vector with one row per particle of this rank.
   template<class T, class Row>
   void particle_rows(std::string name, std::vector<Row>& data, std::string unit, std::string about) {
     rows<T>(std::move(name), data, std::move(unit), std::move(about));
@@ -82,7 +82,7 @@ public:
 
   const std::vector<Field>& fields() const { return fields_; }
 
-  /// The field of that name, or null.
+  /// Returns the field with this name, or null.
   const Field* find(const std::string& name) const {
     for (const Field& field : fields_)
       if (field.name == name)

@@ -1,8 +1,8 @@
-// Giving up work that takes too long: a start that is not wanted any more, a step that does not end.
+// Cancellation of long work, such as the generation of a state or a step that takes too long.
 //
-// Whoever calls such work names a flag for the time of the call. Another thread or a signal handler sets it; parallel
-// loops (threads.hpp), and the loops that look at it by themselves, then throw Interrupted. What the work was to change
-// is left half done and must not be used.
+// The caller of such work sets a flag for the duration of the call (Interruptible). When another thread or a signal
+// handler raises the flag, parallel loops (threads.hpp), and other loops that check it, throw Interrupted. Data that
+// the work was changing is then incomplete and must not be used.
 #pragma once
 
 #include <keeler/core/error.hpp>
@@ -16,7 +16,8 @@ struct Interrupted : Error {
   explicit Interrupted(const std::string& message) : Error(ExitCode::run_time, message) {}
 };
 
-/// Work of this thread, and of the parallel loops in it, can be interrupted by the flag as long as this lives.
+/// During its lifetime, the flag interrupts work of this thread and of parallel loops in it. Precondition: the flag
+/// outlives this object; objects nest.
 class Interruptible {
 public:
   explicit Interruptible(const std::atomic<bool>& flag) : before_(current_) { current_ = &flag; }
@@ -24,11 +25,11 @@ public:
   Interruptible(const Interruptible&) = delete;
   Interruptible& operator=(const Interruptible&) = delete;
 
-  /// The flag of this thread's work.
+  /// Returns the flag of this thread's work.
   static const std::atomic<bool>& flag() { return *current_; }
 
-  /// From now on this flag ends what waits for others, such as the writer of a pipe: in all threads, and whatever work
-  /// there is, since a wait may have no end and leaves nothing half done.
+  /// Sets the flag that ends waiting for other processes, such as the writer of a pipe, in all threads: such a wait may
+  /// never end, and interrupting it leaves no incomplete data. Precondition: the flag outlives all waits.
   static void waits_end_by(const std::atomic<bool>& flag) { of_waits_ = &flag; }
   static bool waits_are_over() { return of_waits_.load()->load(std::memory_order_relaxed); }
 
@@ -40,12 +41,12 @@ private:
   const std::atomic<bool>* before_;
 };
 
-/// Whether the work at hand is to be given up. Costs a few instructions.
+/// True if the current work is to be abandoned. Costs a few instructions.
 inline bool interrupted() {
   return Interruptible::flag().load(std::memory_order_relaxed);
 }
 
-/// Throws Interrupted when the work at hand is to be given up.
+/// Throws Interrupted if the current work is to be abandoned.
 inline void throw_if_interrupted() {
   if (interrupted())
     throw Interrupted();

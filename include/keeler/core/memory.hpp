@@ -1,4 +1,4 @@
-// How much memory this process takes and may take, and the check that numbers of a user pass before they become sizes.
+// Memory use and limits of this process, and the check of user-supplied numbers before they are used as sizes.
 #pragma once
 
 #include <cstddef>
@@ -6,19 +6,20 @@
 
 namespace keeler {
 
-/// The most that it has had resident so far, bytes; NaN where the system does not say.
+/// Returns the peak resident memory of this process, bytes; NaN if unknown.
 double peak_memory();
 
-/// The memory that it may still take, bytes: the least of what the machine has left, of what its control groups leave,
-/// and of what is left below its limit on address space (ulimit -v). At most 2⁴⁷, the address space of a process.
+/// Returns the memory that this process can still allocate, bytes: the minimum of the free memory of the machine, of
+/// its control groups, and of its address space limit (ulimit -v). At most 2⁴⁷, the address space of a process.
 double available_memory();
 
-/// Throws UsageError when so many bytes are not a number or more than available_memory(): "WHAT needs 2.1e+09 GB of
-/// memory, and 12.3 GB can be had here; REMEDY".
+/// Throws UsageError if `bytes` is NaN or above available_memory(): "WHAT needs 2.1e9 GB of memory, and 12.3 GB are
+/// available; REMEDY".
 void require_memory(double bytes, const std::string& what, const std::string& remedy);
 
-/// Returns a count that was computed from numbers of a user as a size: a whole number of at least 0, rounded down, so
-/// many of which there is memory for, `bytes_each`. Throws as require_memory(); `what` names all of them.
+/// Converts a count, computed from user input, to a size: rounds down, and throws as require_memory() if it is
+/// negative, NaN, or memory is missing for that many items of `bytes_each`. `what` names the items. Precondition:
+/// bytes_each >= 0.
 std::size_t affordable_size(double count, double bytes_each, const std::string& what, const std::string& remedy);
 
 } // namespace keeler

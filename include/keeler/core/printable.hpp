@@ -1,4 +1,4 @@
-// Text for terminals.
+// Makes text safe for terminals.
 #pragma once
 
 #include <string>
@@ -6,11 +6,11 @@
 
 namespace keeler {
 
-/// Returns a text of lines that terminals can take, whatever names, titles and attributes of others are in it: control
-/// characters but line breaks and tabs, and what is no UTF-8, become '?'.
+/// Returns a text that is safe for terminals, even if it quotes foreign text: control characters except line breaks and
+/// tabs, and invalid UTF-8, become '?'.
 std::string printable_text(std::string_view text);
 
-/// Whether a text is UTF-8, control characters included, as TOML and JSON must be (RFC 3629).
+/// True if a text is valid UTF-8 (RFC 3629), as TOML and JSON must be; control characters are accepted.
 bool is_utf8(std::string_view text);
 
 } // namespace keeler

@@ -1,4 +1,4 @@
-// How far a long measurement is.
+// Progress of a long measurement.
 #pragma once
 
 #include <string>
@@ -6,9 +6,9 @@
 namespace keeler {
 
 struct Progress {
-  double share = 0.0; ///< of the work done, 0 … 1
+  double fraction = 0.0; ///< of the work done, 0 … 1
   double elapsed_s = 0.0, remaining_s = 0.0;
-  std::string what; ///< is being done
+  std::string what; ///< current phase
 };
 
 } // namespace keeler

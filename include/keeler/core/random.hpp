@@ -1,5 +1,5 @@
-// Counter-based random numbers: a stream is named by (seed, purpose, id) and holds no shared state, so the numbers are
-// the same for any number of threads and nothing has to be saved for a restart.
+// Counter-based random numbers: a stream is identified by (seed, purpose, id) and has no shared state, so the numbers
+// do not depend on the number of threads, and a restart needs no saved state.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace keeler {
 
-/// What a stream is for; streams of different purposes are independent. Never renumber: that changes every state.
+/// Purpose of a stream; streams of different purposes are independent. Never renumber: all states would change.
 enum class RandomPurpose : std::uint32_t {
   position = 1,
   velocity = 2,
@@ -21,15 +21,15 @@ enum class RandomPurpose : std::uint32_t {
   shuffle = 10
 };
 
-/// Philox4x64-10 (Salmon et al. 2011) keyed by seed and purpose, counting draws of one id.
+/// Philox4x64-10 (Salmon et al. 2011) with seed and purpose as key, and the id and a draw counter as counter.
 class RandomStream {
 public:
   RandomStream(std::uint64_t seed, RandomPurpose purpose, std::uint64_t id);
 
-  /// Uniform in (0, 1), 53 bits, never 0 or 1.
+  /// Draws a uniform number in (0, 1), never 0 or 1.
   double uniform();
 
-  /// Normal with mean 0 and variance 1 (Box and Muller 1958).
+  /// Draws a normal number of mean 0 and variance 1 (Box and Muller 1958).
   double normal();
 
 private:

@@ -1,5 +1,5 @@
-// Instruction sets that the kernels are compiled for, and the choice among them when the program starts.
-// The choice never changes a bit of a result.
+// Instruction sets for which the kernels are compiled, and the choice among them when the program starts.
+// The choice does not change any bit of a result.
 #pragma once
 
 namespace keeler {
@@ -8,11 +8,11 @@ enum class InstructionSet { portable, avx2, avx512 };
 
 const char* instruction_set_name(InstructionSet set);
 
-/// Whether this build holds kernels for the set and this processor can run them.
+/// True if this build has kernels for the set and this processor can run them.
 bool supports(InstructionSet set);
 
-/// The widest supported set, or the one that the environment variable KEELER_SIMD names (portable, avx2 or avx512).
-/// Throws UsageError when it names an unknown or unsupported one.
+/// Returns the widest supported set, or the one in the environment variable KEELER_SIMD (portable, avx2 or avx512).
+/// Throws UsageError if that is unknown or not supported.
 InstructionSet choose_instruction_set();
 
 } // namespace keeler

@@ -1,10 +1,9 @@
-// The start of the threads, apart from their use (threads.hpp).
+// Starts the threads; threads.hpp uses them.
 #pragma once
 
 namespace keeler {
 
-/// Starts threads() threads now. Throws Error (run_time) where the system refuses: OpenMP would end the program then,
-/// in words of its own.
+/// Starts threads() threads. Throws Error (run_time) if the system refuses: OpenMP would then abort the program.
 void start_threads();
 
 } // namespace keeler

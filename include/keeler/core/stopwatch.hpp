@@ -1,4 +1,4 @@
-// Wall time spent in a scope, and the processor time of this process.
+// Wall time of a scope, and processor time of this process.
 #pragma once
 
 #include <chrono>
@@ -6,7 +6,7 @@
 
 namespace keeler {
 
-/// Adds the seconds between its construction and its end to a total.
+/// Adds the seconds from its construction to its destruction to a total. Precondition: the total outlives it.
 class Stopwatch {
 public:
   explicit Stopwatch(double& total) : total_(total) {}
@@ -14,6 +14,7 @@ public:
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;
 
+  /// Returns the seconds since construction.
   double elapsed() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
 private:
@@ -21,7 +22,7 @@ private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Processor seconds that all threads of this process have used.
+/// Returns the processor time of all threads of this process, s.
 inline double cpu_seconds() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);

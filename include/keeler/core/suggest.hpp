@@ -1,4 +1,4 @@
-// "Did you mean": the known name that a misspelt one is closest to.
+// "Did you mean": the known name closest to a misspelt one.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace keeler {
 
-/// The closest candidate, or "" when none is within a third of the length of the word (at least one edit). An edit
-/// inserts, deletes or changes a letter, or swaps two neighbours (optimal string alignment).
+/// Returns the closest candidate, or "" if none is within a third of the word's length in edits (at least one). An edit
+/// inserts, deletes or changes a letter, or swaps two adjacent letters (optimal string alignment distance).
 std::string closest(const std::string& word, const std::vector<std::string>& candidates);
 
 } // namespace keeler

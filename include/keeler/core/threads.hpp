@@ -1,5 +1,5 @@
-// Threads. Every result is the same, bit for bit, for any number of them: loops give each index to exactly one thread,
-// and sums are made in an order that depends on the length alone.
+// Parallel loops and sums. Results are bitwise independent of the number of threads: each index is processed by exactly
+// one thread, and the order of additions depends only on the length.
 #pragma once
 
 #include <keeler/core/interrupt.hpp>
@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <exception>
@@ -15,24 +16,25 @@
 
 namespace keeler {
 
-/// More threads than any one machine has processors for: they only take memory, until there is none.
+/// Upper limit; more threads than any machine has processors would only use memory.
 inline constexpr int max_threads = 1024;
 
-/// How many threads loops use from now on (at least 1). The default is what OpenMP offers. Throws UsageError when there
-/// are more than most_threads.
+/// Sets the number of threads of the following loops (at least 1). The default is OpenMP's. Throws UsageError if count
+/// is above max_threads.
 void set_threads(int count);
+/// Returns the number of threads of loops.
 int threads();
 
-/// The first exception that one of several threads met, for the thread that waits for them.
+/// Stores the first exception of several threads, for the thread that waits for them.
 class FirstException {
 public:
-  /// Keeps the exception that is being handled, unless there is one already.
+  /// Stores the exception that is being handled, unless there is one already. Precondition: called in a catch clause.
   void keep() noexcept {
     if (!any_.exchange(true, std::memory_order_relaxed))
       first_ = std::current_exception();
   }
   bool any() const { return any_.load(std::memory_order_relaxed); }
-  /// Throws it, if there is one. Precondition: the other threads have ended.
+  /// Rethrows the exception, if there is one. Precondition: the other threads have ended.
   void rethrow() const {
     if (first_)
       std::rethrow_exception(first_);
@@ -43,14 +45,15 @@ private:
   std::exception_ptr first_;
 };
 
-/// Calls body(k) once for each k in [0, count), in no promised order; body must write only what belongs to k.
-/// What fits in one chunk runs on the calling thread. Throws Interrupted after the chunks at hand when the work is to
-/// be given up (interrupt.hpp). An exception of body, no memory for instance, ends the loop in the same way and is
-/// thrown on the calling thread.
+/// Calls body(k) once for each k in [0, count), in unspecified order; body must write only data of k. A single chunk
+/// runs on the calling thread. Throws Interrupted, after the current chunks, if the work is to be abandoned
+/// (interrupt.hpp). An exception of body, such as a failed allocation, ends the loop likewise and is rethrown on the
+/// calling thread. Precondition: chunk > 0.
 ///
-/// Each thread begins with a range of its own, the same one in every loop of that length, so that it meets its memory
-/// again; then it helps the others, a chunk at a time.
+/// Each thread begins with a fixed range that depends only on count, for locality between loops; then it steals chunks
+/// from the ranges of other threads.
 template<class Body> void parallel_for(std::size_t count, const Body& body, std::size_t chunk = 256) {
+  assert(chunk > 0);
   struct alignas(64) Range {
     std::atomic<std::size_t> next = 0;
     std::size_t end = 0;
@@ -91,8 +94,8 @@ template<class Body> void parallel_for(std::size_t count, const Body& body, std:
   throw_if_interrupted();
 }
 
-/// What add(total, k) makes of Total{} over k in [0, count): blocks of fixed length, their totals added in order with
-/// +=, so the bits do not depend on the threads. Total may hold several sums, made in one pass.
+/// Returns Total{} after add(total, k) for all k in [0, count). Blocks of fixed length have separate totals, which are
+/// added in order with +=, so the bits do not depend on the threads. Total may contain several sums.
 template<class Total, class Add> Total ordered_total(std::size_t count, const Add& add) {
   constexpr std::size_t block = 1024;
   std::vector<Total> totals((count + block - 1) / block);
@@ -111,12 +114,12 @@ template<class Total, class Add> Total ordered_total(std::size_t count, const Ad
   return total;
 }
 
-/// Sum of term(k) over [0, count), made in the same way.
+/// Returns the sum of term(k) over [0, count), by ordered_total().
 template<class Term> double ordered_sum(std::size_t count, const Term& term) {
   return ordered_total<double>(count, [&](double& total, std::size_t k) { total += term(k); });
 }
 
-/// The largest term(k) over [0, count) and 0; not a number when any of them is not.
+/// Returns the maximum of 0 and of term(k) over [0, count); NaN if any term is NaN.
 template<class Term> double largest_of(std::size_t count, const Term& term) {
   struct Largest {
     double value = 0.0;

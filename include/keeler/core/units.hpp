@@ -1,5 +1,5 @@
-// Constants and the units inside the code: lengths in metres, masses in kg, time in radians of orbit (Omega = 1).
-// Scene files and outputs are SI and orbits; the conversion happens once, at the edge.
+// Constants and internal units: lengths in metres, masses in kg, time in radians of orbit (Omega = 1).
+// Scene files and outputs are in SI and orbits; they are converted once, on input and output.
 #pragma once
 
 #include <numbers>
@@ -12,7 +12,7 @@ inline constexpr double two_pi = 2.0 * std::numbers::pi; ///< one orbit, in inte
 /// Newton's constant, m^3 kg^-1 s^-2 (CODATA 2018).
 inline constexpr double newton_g_si = 6.67430e-11;
 
-/// Newton's constant in internal units, m^3 kg^-1 rad^-2, for an orbital frequency in rad/s.
+/// Returns Newton's constant in internal units, m^3 kg^-1 rad^-2. Precondition: orbital_frequency (rad/s) is not 0.
 constexpr double newton_g(double orbital_frequency) {
   return newton_g_si / (orbital_frequency * orbital_frequency);
 }

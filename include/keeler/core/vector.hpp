@@ -1,4 +1,4 @@
-// Small vectors. Arrays of particles are never stored in Eigen types: see particles/store.hpp.
+// Vectors of three doubles. The particle store uses plain doubles: see particles/store.hpp.
 #pragma once
 
 #include <Eigen/Core>

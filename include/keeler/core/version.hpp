@@ -1,21 +1,21 @@
-// What this build of Keeler is: provenance for files, and what `keeler --version` prints.
+// Version and build of this program, for the provenance of files and for `keeler --version`.
 #pragma once
 
 #include <string>
 
 namespace keeler {
 
-/// Program version, "major.minor.patch".
+/// Returns the version, "major.minor.patch".
 std::string program_version();
 
-/// Git commit that the sources stood at when they were built, with "-dirty" after it when tracked files had changed;
-/// "unknown" outside a repository.
+/// Returns the git commit of the sources, with the suffix "-dirty" if tracked files had changed; "unknown" outside a
+/// repository.
 std::string source_commit();
 
-/// Compiler and its version.
+/// Returns the compiler and its version.
 std::string build_compiler();
 
-/// Compiler flags shared by all of Keeler.
+/// Returns the compiler flags that all of Keeler uses.
 std::string build_flags();
 
 } // namespace keeler

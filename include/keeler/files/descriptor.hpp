@@ -1,4 +1,4 @@
-// An open file of the operating system, with calls that retry what a signal interrupted and notice every failure.
+// An open file of the operating system; calls are retried after signals and every failure is checked.
 #pragma once
 
 #include <cstddef>
@@ -8,13 +8,14 @@
 
 namespace keeler {
 
-/// Owns a file descriptor. Every member throws IoError "cannot VERB 'FILE': reason"; DiskFullError where room is
-/// missing.
+/// Owns a file descriptor. Every member throws IoError "cannot VERB 'FILE': reason"; DiskFullError when the disk is
+/// full.
 class Descriptor {
 public:
   /// `flags` as for open(2).
   Descriptor(const std::filesystem::path& file, int flags);
-  /// Takes one that open(2) or its like has just returned; below 0 it has failed. Messages name the file.
+  /// Owns `number`, which open(2) or a similar call has just returned; throws by errno if it is below 0. Messages name
+  /// the file.
   Descriptor(int number, const std::filesystem::path& file);
   ~Descriptor();
   Descriptor(Descriptor&& other) noexcept;
@@ -22,25 +23,25 @@ public:
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
 
-  /// Writes all of it at the descriptor's position; what a failure leaves half written stays.
+  /// Writes all of `content` at the file position. A failure may leave a part of it in the file.
   void write_all(std::span<const std::byte> content);
-  /// Adds it to a file opened with O_APPEND; after a failure the file ends where it did before.
+  /// Appends `content`; after a failure the file has its former size. Precondition: opened with O_APPEND.
   void append_whole(std::span<const std::byte> content);
-  /// Writes all of it from that byte on, wherever the position is.
-  void write_at(std::size_t place, std::span<const std::byte> content);
-  /// Fills `into` from that byte on; returns how much of it there is before the file ends.
-  std::size_t read_at(std::size_t place, std::span<std::byte> into) const;
-  /// All of a file that is open for reading too, whatever has become of its name.
+  /// Writes all of `content` at `offset` (bytes), independently of the file position.
+  void write_at(std::size_t offset, std::span<const std::byte> content);
+  /// Reads from `offset` (bytes) on; returns the number of bytes read, fewer than `into` has at the end of the file.
+  std::size_t read_at(std::size_t offset, std::span<std::byte> into) const;
+  /// Returns the whole content, even if the file was renamed or removed. Precondition: open for reading.
   std::string read_all() const;
   std::size_t size() const;
   int number() const { return number_; }
-  /// Sets the permissions, as of chmod(2).
+  /// Sets the permissions, as chmod(2).
   void set_mode(unsigned mode);
-  /// Cuts it there, or fills it with zeros up to there.
+  /// Sets the size: removes bytes at the end, or adds zeros.
   void truncate(std::size_t size);
   /// Forces the content to disk.
   void sync();
-  /// Closes now, so that a failure to do so is noticed.
+  /// Closes the file and reports a failure, which the destructor ignores. Precondition: open.
   void close();
 
 private:

@@ -1,4 +1,4 @@
-// Whole files, read, and written as new_file.hpp says: a name always means a complete file.
+// Reads and writes whole files. Writing is atomic (new_file.hpp): a name always refers to a complete file.
 #pragma once
 
 #include <cstddef>
@@ -10,25 +10,26 @@
 
 namespace keeler {
 
-/// The folder that a file is in, or is to be in: "." of a name alone.
+/// Returns the folder of a file; "." for a bare name.
 std::filesystem::path folder_of(const std::filesystem::path& file);
 
-/// Writes a file; after a failure what was there before is there, and nothing else. Throws IoError.
-/// A process that sets a file-size limit must ignore SIGXFSZ, else that signal ends it before the error is seen.
+/// Writes a file; after a failure the former file is unchanged and no other is left. Throws IoError.
+/// Precondition: a process with a file-size limit ignores SIGXFSZ, which would end it before the error is reported.
 void write_file(const std::filesystem::path& file, std::span<const std::byte> content);
 
-/// The same for text.
+/// Writes a text as write_file() does.
 void write_text(const std::filesystem::path& file, std::string_view text);
 
-/// Before work whose result goes to `output`: throws IoError unless this is a folder that can be written to.
+/// Throws IoError, naming `output`, unless `folder` is a writable folder. Call it before long work that writes
+/// `output`.
 void require_writable_folder(const std::filesystem::path& folder, const std::filesystem::path& output);
 
-/// All bytes of a file. Throws IoError, also where there is not memory enough for them; Interrupted while it waits for
-/// a pipe or a device.
+/// Returns all bytes of a file. Throws IoError, also when they do not fit into memory; Interrupted while it waits for a
+/// pipe or a device.
 std::vector<std::byte> read_file(const std::filesystem::path& file);
 std::string read_text(const std::filesystem::path& file);
 
-/// The same of a text of lines, as it was before a tool of Windows put a byte order mark and carriage returns into it.
+/// Reads a text without the byte order mark and carriage returns that Windows tools add.
 std::string read_lines(const std::filesystem::path& file);
 
 } // namespace keeler

@@ -1,4 +1,4 @@
-// Pipes and devices that are read as files are: anywhere in them, and more than once.
+// Random access, and repeated reading, of pipes and devices.
 #pragma once
 
 #include <keeler/files/descriptor.hpp>
@@ -8,8 +8,8 @@
 
 namespace keeler {
 
-/// While one lives, what this thread has read of a pipe or a device is kept, and is what open_anywhere() of the same
-/// name gives again: what has been read of such a file is gone.
+/// During its lifetime, this thread keeps the content that it reads from a pipe or a device, and open_anywhere() of an
+/// equal name returns it again: such a file can be read only once.
 class KeptStreams {
 public:
   KeptStreams();
@@ -18,10 +18,10 @@ public:
   KeptStreams& operator=(const KeptStreams&) = delete;
 };
 
-/// Whether this is a pipe or a device: what is read of it is gone.
+/// True for a pipe or a device, which can be read only once.
 bool reads_once(const std::filesystem::path& file);
 
-/// Opens a file for reading anywhere in it. A pipe or a device is read to its end first, into memory. Throws IoError,
+/// Opens a file for random access. A pipe or a device is first read to its end, into memory. Throws IoError,
 /// Interrupted.
 std::shared_ptr<Descriptor> open_anywhere(const std::filesystem::path& file);
 

@@ -1,21 +1,22 @@
-// Who decides at the last moment whether a new file may take its name.
+// A last check before a new file takes its name.
 #pragma once
 
 #include <functional>
 
 namespace keeler {
 
-/// While it lives, each new file of this thread (new_file.hpp) asks `check` when it is written and has not taken its
-/// name yet. What that throws leaves no file: a folder that was replaced by another meanwhile gets none.
+/// During its lifetime, each NewFile of this thread calls `check` after it is written and before it takes its name. If
+/// `check` throws, no file is left: for instance when the folder was replaced by another meanwhile. Guards nest.
 class NamingGuard {
 public:
+  /// Precondition: check is not empty.
   explicit NamingGuard(std::function<void()> check);
   ~NamingGuard();
   NamingGuard(const NamingGuard&) = delete;
   NamingGuard& operator=(const NamingGuard&) = delete;
 
-  /// Asks the innermost guard of this thread, if there is one.
-  static void ask();
+  /// Calls the check of this thread's innermost guard, if there is one.
+  static void run_check();
 
 private:
   std::function<void()> check_;

@@ -1,6 +1,6 @@
-// Output in the making. A file is written under a name of its own beside the one that it is to get, forced to disk, and
-// only then takes that name: a full disk, a crash or a second writer leaves what was there before, or a whole file.
-// What is no regular file (a device, a pipe, a descriptor as /dev/stdout) has no name to take: it is written to.
+// Atomic output. A file is written under a temporary name in its folder, forced to disk, and then renamed: a full disk,
+// a crash or a second writer leaves either the former file or a complete one. Streams (a device, a pipe, a descriptor
+// such as /dev/stdout) cannot be replaced: they are written to directly.
 #pragma once
 
 #include <keeler/files/descriptor.hpp>
@@ -16,47 +16,48 @@
 
 namespace keeler {
 
-/// The descriptor of this process that a name means, through any links: 1 of /dev/stdout, 3 of /dev/fd/3.
+/// Returns the descriptor of this process to which a name refers, through any links: 1 for /dev/stdout, 3 for
+/// /dev/fd/3.
 std::optional<int> descriptor_named(const std::filesystem::path& name);
 
-/// Whether output under this name is written to what is there, and does not replace it.
+/// True if the name refers to a stream.
 bool is_stream(const std::filesystem::path& name);
 
-/// Refuses a stream for a `format` that goes back in what it has written. Throws UsageError.
+/// Throws UsageError for a stream; `format` is a format that needs random access.
 void refuse_stream(const std::filesystem::path& name, const std::string& format);
 
-/// A file is NAME.keeler-XXXXXXXXXXXXXXXX.tmp, of random digits, until it is kept, and goes when it is not. It has the
-/// permissions of the file that it replaces. While it is written it is locked: what killed writers of the same name
-/// left is known by that, and removed first. Links are not followed: a link NAME is replaced, unless it leads to a
-/// stream.
+/// An output file. Its temporary name is NAME.keeler-XXXXXXXXXXXXXXXX.tmp, with random digits; without keep() it is
+/// removed. It gets the permissions of the file that it replaces. It is locked while it is written, so temporary files
+/// that killed writers left are unlocked; the constructor removes them. Links are not followed: a link NAME is
+/// replaced, unless it leads to a stream.
 class NewFile {
 public:
-  /// Waits for the reader of a named pipe; so does write(). Throws IoError, Interrupted.
+  /// Waits for the reader of a named pipe, as write() does. Throws IoError, Interrupted.
   explicit NewFile(std::filesystem::path file);
   ~NewFile();
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
 
-  /// Adds it at the end. Throws IoError, Interrupted.
+  /// Appends `content`. Throws IoError, Interrupted. Precondition: keep() was not called.
   void write(std::span<const std::byte> content);
 
-  /// For formats that go back in what they have written. Precondition: no stream.
+  /// Returns the descriptor, for formats that need random access. Precondition: not a stream.
   const std::shared_ptr<Descriptor>& descriptor() const { return out_; }
 
-  /// Forces it to disk and gives it its name. Throws IoError.
+  /// Forces the file to disk and renames it. Throws IoError. Precondition: called once.
   void keep();
 
 private:
-  std::filesystem::path file_, temporary_; // temporary_ is empty: a stream, or kept
+  std::filesystem::path file_, temporary_; // temporary_ is empty for a stream, and after keep()
   std::shared_ptr<Descriptor> out_;
-  std::optional<unsigned> replaced_mode_; // permissions of the file that goes
+  std::optional<unsigned> replaced_mode_; // permissions of the replaced file
 };
 
-/// The name that a file was to get, of the name of one in the making.
+/// Returns the final name that belongs to a temporary name; none if it is not a temporary name.
 std::optional<std::string_view> unfinished_name(std::string_view name);
 
-/// Removes files in the making that belong to this user and that no process writes any more, where `of` accepts the
-/// name that they were to get.
-void remove_left_overs(const std::filesystem::path& folder, const std::function<bool(std::string_view name)>& of);
+/// Removes temporary files of this user that no process is writing any more, if `accept` returns true for their final
+/// name. Precondition: accept is not empty.
+void remove_left_overs(const std::filesystem::path& folder, const std::function<bool(std::string_view name)>& accept);
 
 } // namespace keeler

@@ -2,8 +2,8 @@
 //
 //   x = X − e cos φ     y = Y + (2/κ) e sin φ     z = i sin ζ      dφ/dt = κ, dζ/dt = ν, dY/dt = −S X
 //
-// The eccentricity and the inclination are kept as vectors at an epoch shared by all particles: nothing is singular at
-// e = 0 or i = 0, a velocity change is linear in the elements, and one rotation a time serves every particle.
+// Eccentricity and inclination are stored as vectors at an epoch common to all particles: nothing is singular at e = 0
+// or i = 0, a velocity change is linear in the elements, and one rotation per instant serves all particles.
 #pragma once
 
 #include <keeler/core/vector.hpp>
@@ -17,7 +17,7 @@ struct Frequencies {
   double kappa = 1.0;
   double nu = 1.0;
 
-  /// Shear rate S = (4 − κ²)/2: guiding centres drift at −S X.
+  /// Returns the shear rate S = (4 − κ²)/2: guiding centres drift at −S X.
   double shear() const { return 0.5 * (4.0 - kappa * kappa); }
 };
 
@@ -34,13 +34,14 @@ struct Elements {
   double inclination() const { return std::sqrt(i_sin * i_sin + i_cos * i_cos); }
 };
 
-/// Elements of b minus those of a at one epoch: the relative motion of two particles is again an epicycle.
+/// Returns the relative elements of b and a: the relative motion of two particles is again an epicycle. Precondition:
+/// both are at the common epoch.
 inline Elements operator-(const Elements& b, const Elements& a) {
   return {b.guiding_x - a.guiding_x, b.guiding_y - a.guiding_y, b.e_cos - a.e_cos,
           b.e_sin - a.e_sin,         b.i_sin - a.i_sin,         b.i_cos - a.i_cos};
 }
 
-/// The rotation of all epicycles from the epoch to a time `after` it: computed once, used for every particle.
+/// The rotation of all epicycles from the epoch to a time `after` it: computed once and used for all particles.
 struct Rotation {
   double after = 0.0; ///< time since the epoch, rad
   double cos_e = 1.0, sin_e = 0.0;
@@ -56,12 +57,12 @@ struct State {
   Vec3 velocity = Vec3::Zero();
 };
 
-/// Sine and cosine from our own polynomials (arguments up to about 1e5). Only sums, products and roundings of doubles,
-/// so the same bits wherever they are compiled without contraction; the C library picks its code by processor. Error
-/// below 1.5 units in the last place of 1.
+/// Computes sine and cosine by polynomials (arguments up to about 1e5; error below 1.5 ulp of 1). They use only
+/// additions, products and roundings of doubles, so the bits are equal on all machines if compiled without contraction.
+/// The C library selects its code by processor.
 void sine_cosine(double angle, double& sine, double& cosine);
 
-/// Position and velocity at the rotation's time.
+/// Returns position and velocity at the time of the rotation.
 inline State state_at(const Elements& el, const Frequencies& f, const Rotation& r) {
   const double ec = el.e_cos * r.cos_e - el.e_sin * r.sin_e;
   const double es = el.e_sin * r.cos_e + el.e_cos * r.sin_e;
@@ -74,10 +75,11 @@ inline State state_at(const Elements& el, const Frequencies& f, const Rotation& 
   return s;
 }
 
-/// The elements, at the epoch, of a particle that has this position and velocity at the rotation's time.
+/// Inverse of state_at(): returns the elements at the epoch from the state at the time of the rotation.
 Elements elements_from(const State& state, const Frequencies& f, const Rotation& r);
 
-/// Adds a velocity change made at the rotation's time: linear in the elements, no trigonometry beyond the rotation.
+/// Applies a velocity change at the time of the rotation. It is linear in the elements and needs no further
+/// trigonometry.
 inline void kick(Elements& el, const Vec3& dv, const Frequencies& f, const Rotation& r) {
   const double a = 2.0 / (f.kappa * f.kappa);
   const double d_x = a * dv.y(); // ΔX = Δ(e cos φ)
@@ -91,26 +93,26 @@ inline void kick(Elements& el, const Vec3& dv, const Frequencies& f, const Rotat
   el.i_cos += d_ic * r.cos_i;
 }
 
-/// Velocity along y beyond the shear at the particle's own place, ẏ + S x = ½κ² e cos φ, at the rotation's time.
+/// Returns the velocity along y relative to the local shear, ẏ + S x = ½κ² e cos φ, at the time of the rotation.
 inline double azimuthal_velocity(const Elements& el, const Frequencies& f, const Rotation& r) {
   return 0.5 * f.kappa * f.kappa * (el.e_cos * r.cos_e - el.e_sin * r.sin_e);
 }
 
-/// Velocity beyond the shear at the particle's own place, at the rotation's time: the same for all images.
+/// Returns the velocity relative to the local shear at the time of the rotation. It is equal for all images.
 inline Vec3 peculiar_velocity(const Elements& el, const Frequencies& f, const Rotation& r) {
   return {f.kappa * (el.e_sin * r.cos_e + el.e_cos * r.sin_e), azimuthal_velocity(el, f, r),
           f.nu * (el.i_cos * r.cos_i - el.i_sin * r.sin_i)};
 }
 
-/// Energy per mass of a particle's own epicycle, ½κ²e² + ½ν²i², in m² rad⁻²: the same for all images. It is
-/// ½c² + ½ν²z² + (S/κ²) c_y², c the velocity beyond the shear.
+/// Returns the energy per mass of the epicycle, ½κ²e² + ½ν²i² (m² rad⁻²), equal for all images. With the velocity c
+/// relative to the local shear it is ½c² + ½ν²z² + (S/κ²) c_y².
 inline double epicyclic_energy(const Elements& el, const Frequencies& f) {
   return 0.5 * f.kappa * f.kappa * (el.e_cos * el.e_cos + el.e_sin * el.e_sin) +
          0.5 * f.nu * f.nu * (el.i_sin * el.i_sin + el.i_cos * el.i_cos);
 }
 
-/// A rotation applied over and over. Written as a small change, with the low-order part of the sine added where it
-/// still counts, so that 10^7 turns leave a random walk of roundings and no drift of phase or length.
+/// A rotation that is applied repeatedly. It adds small increments, with the low-order part of the sine, so that 10^7
+/// turns accumulate a random walk of roundings but no drift of phase or length.
 struct FixedRotation {
   double sine, sine_low, one_minus_cosine;
 
@@ -124,7 +126,7 @@ struct FixedRotation {
   }
 };
 
-/// Moves elements to an epoch one fixed interval (rad) later.
+/// Advances elements to an epoch one fixed interval (rad) later.
 class Rebase {
 public:
   Rebase(const Frequencies& f, double interval);

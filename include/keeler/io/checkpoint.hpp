@@ -1,5 +1,5 @@
-// Checkpoints: all that a run needs to continue exactly, taken from a field table and given back to one. The layout is
-// in docs/formats.md. A checkpoint that reads without an error is what was written, bit for bit.
+// Checkpoints: all that a run needs to continue exactly, written from a field table and read back into one. The layout
+// is in docs/formats.md. A checkpoint that reads without an error is what was written, bit for bit.
 #pragma once
 
 #include <keeler/comm/communicator.hpp>
@@ -12,32 +12,32 @@
 
 namespace keeler {
 
-/// What stands in a checkpoint beside the fields.
+/// Content of a checkpoint beside the fields.
 struct CheckpointHeader {
   std::string scene; ///< the resolved scene, as TOML
   Provenance provenance;
 };
 
-/// Writes every field of the table; names are unique and have no '/'. Complete or not at all: see write_file().
-/// Collective: the first rank writes. Of divided fields the file has the rows of all ranks, in the order of the ranks,
-/// which come to the first one a piece at a time; of others it has those of the first. Throws IoError.
+/// Writes every field of the table, completely or not at all (see write_file()). Collective: the root rank writes.
+/// Divided fields are stored with the rows of all ranks, in rank order; the root receives them piece by piece. Other
+/// fields are stored as the root has them. Throws IoError. Precondition: names are unique and have no '/'.
 void write_checkpoint(const std::filesystem::path& file, const FieldTable& table, const CheckpointHeader& header,
                       const Communicator& ranks = {});
 
-/// A checkpoint that is whole, open for reading where it is.
+/// A verified checkpoint, open for reading.
 class Checkpoint {
 public:
-  /// Looks through the whole file, a piece at a time. Collective: the first rank does, the others trust its seal.
-  /// Throws IoError when it is damaged, of another kind or a newer version.
+  /// Opens the file and verifies all of it, piece by piece. Collective: the root rank verifies, the others only compare
+  /// the seal. Throws IoError when the file is damaged, of another kind or of a newer version.
   explicit Checkpoint(const std::filesystem::path& file, const Communicator& ranks = {});
   ~Checkpoint();
 
-  /// The scene says which table to make.
+  /// The scene in it determines the table to pass to read().
   const CheckpointHeader& header() const;
 
-  /// Fills every field of the table; of divided ones each rank gets a part of the rows, the first rank the first ones.
-  /// Collective. Throws IoError, and leaves the table's data alone, when the fields are not those of the table in name,
-  /// type and shape.
+  /// Fills every field of the table; the rows of divided fields are distributed over the ranks in order. Collective.
+  /// Throws IoError, and does not change the table's data, unless the fields equal those of the table in name, type and
+  /// shape.
   void read(const FieldTable& table) const;
 
 private:

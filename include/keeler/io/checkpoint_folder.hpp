@@ -1,4 +1,4 @@
-// The checkpoints of a run's folder: checkpoint_NNNNNN.h5, the highest number is the newest.
+// The checkpoints in the folder of a run: checkpoint_NNNNNN.h5, the highest number is the newest.
 #pragma once
 
 #include <cstdint>
@@ -8,24 +8,25 @@
 
 namespace keeler {
 
+/// Returns FOLDER/checkpoint_NNNNNN.h5. Precondition: number >= 0.
 std::filesystem::path checkpoint_path(const std::filesystem::path& folder, std::int64_t number);
 
-/// The checkpoints of a folder, newest first. Throws IoError when the folder cannot be listed.
+/// Lists the checkpoints in a folder, newest first. Throws IoError when the folder cannot be listed.
 std::vector<std::filesystem::path> list_checkpoints(const std::filesystem::path& folder);
 
 struct NewestCheckpoint {
   std::filesystem::path path;
-  std::vector<std::string> warnings; ///< why each newer one was passed over, newest first
+  std::vector<std::string> warnings; ///< why each newer checkpoint was rejected, newest first
 };
 
-/// The newest checkpoint that is whole. Throws IoError when there is none.
+/// Finds the newest checkpoint that is not damaged. Throws IoError when there is none.
 NewestCheckpoint newest_valid_checkpoint(const std::filesystem::path& folder);
 
-/// Removes the checkpoints before this one but the `keep` - 1 newest of them, and what interrupted writes of
-/// checkpoints left.
+/// Keeps `newest` and the `keep` - 1 checkpoints before it, and removes all older ones, and the temporary files that
+/// interrupted writes left. Precondition: keep >= 1.
 void prune_checkpoints(const std::filesystem::path& newest, std::size_t keep = 2);
 
-/// Removes the checkpoints after this one, which a run has passed over: they are of a future that it makes anew.
+/// Removes the checkpoints after this one, which the resumed run rejected and will compute again.
 void remove_later_checkpoints(const std::filesystem::path& newest);
 
 } // namespace keeler

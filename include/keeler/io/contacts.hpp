@@ -1,5 +1,5 @@
-// Contacts as data: a row a contact, in SI, in files of HDF5 that each hold the next rows of one long table. The layout
-// is in docs/formats.md. A file is written whole or not at all.
+// Contacts as data: one row per contact, in SI, in HDF5 files that each hold the next rows of one long table. The
+// layout is in docs/formats.md. A file is written completely or not at all.
 #pragma once
 
 #include <keeler/core/vector.hpp>
@@ -18,19 +18,19 @@ namespace keeler {
 struct ContactRow {
   std::int64_t step = 0; ///< steps done before it
   double time_orbits = 0.0;
-  Vec3 place = Vec3::Zero(); ///< where the spheres touch, m
+  Vec3 position = Vec3::Zero(); ///< of the contact point, m
   std::uint64_t low_id = 0, high_id = 0;
   Image image;                   ///< of the particle with the higher id
-  double normal_speed = 0.0;     ///< of the approach, m/s
-  double tangential_speed = 0.0; ///< of the relative motion before the contact, m/s
+  double normal_speed = 0.0;     ///< approach speed along the line of centres, m/s
+  double tangential_speed = 0.0; ///< relative speed across it before the contact, m/s
   bool fast = false;             ///< faster than v_cut
 
   friend bool operator==(const ContactRow&, const ContactRow&) = default;
 };
 
-/// What stands in a file beside its rows.
+/// Content of a file beside its rows.
 struct ContactMeta {
-  std::int64_t first_row = 0;     ///< number of its first row in the whole table
+  std::int64_t first_row = 0;     ///< index of its first row in the whole table
   double orbital_frequency = 0.0; ///< rad/s
   std::string scene;              ///< the resolved scene, as TOML
   Provenance provenance;
@@ -41,10 +41,10 @@ struct ContactFile {
   std::vector<ContactRow> rows;
 };
 
-/// Throws IoError.
+/// Writes one file. Throws IoError.
 void write_contacts(const std::filesystem::path& file, std::span<const ContactRow> rows, const ContactMeta& meta);
 
-/// Throws IoError, also when the file is damaged or something else.
+/// Reads one file. Throws IoError, also when the file is damaged or of another kind.
 ContactFile read_contacts(const std::filesystem::path& file);
 
 } // namespace keeler

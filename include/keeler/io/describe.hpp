@@ -1,4 +1,4 @@
-// What is in a file, without knowing more of it than its format: for `keeler info`.
+// The content of a file described from its format alone: for `keeler info`.
 #pragma once
 
 #include <cstdint>
@@ -23,15 +23,15 @@ struct FieldDescription {
 struct FileDescription {
   FileKind kind = FileKind::snapshot;
   std::int64_t format_version = 0;
-  std::vector<FieldDescription> fields;          ///< by name
-  std::map<std::string, std::string> attributes; ///< "group/name" → value; the numbers of an array stand in [ ]
+  std::vector<FieldDescription> fields;          ///< sorted by name
+  std::map<std::string, std::string> attributes; ///< "group/name" → value; arrays in [ ]
   std::string scene;                             ///< the resolved scene, as TOML
 };
 
-/// Describes a snapshot, a checkpoint or a file of contacts. Throws IoError for damage and for any other kind of file.
+/// Describes a snapshot, a checkpoint or a contact file. Throws IoError for damage and for any other kind of file.
 FileDescription describe_file(const std::filesystem::path& file);
 
-/// Whether a seal vouches for the bytes of a file. Throws IoError where it does not match, or the file cannot be read.
+/// True if the file has a seal. Throws IoError when the seal does not match, or the file cannot be read.
 bool is_sealed(const std::filesystem::path& file);
 
 } // namespace keeler

@@ -1,5 +1,5 @@
-// A 128-bit fingerprint of data (XXH3): for checksums and for state_hash. It guards against accidents, not against
-// forgery. Its value depends on the bytes alone and is the same on every little-endian machine.
+// A 128-bit hash of data (XXH3) for checksums and state_hash. It detects accidents, not forgery. Its value depends on
+// the bytes alone and is equal on all little-endian machines.
 #pragma once
 
 #include <cstddef>
@@ -17,16 +17,16 @@ public:
 
   void add_bytes(std::span<const std::byte> bytes);
 
-  /// A number, or a struct of numbers without padding.
+  /// Adds a number, or a struct of numbers without padding.
   template<class T> void add(const T& value) {
     static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>);
     add_bytes(std::as_bytes(std::span(&value, 1)));
   }
 
-  /// A text, with its length, so that ("ab", "c") and ("a", "bc") differ.
+  /// Adds a text and its length, so that ("ab", "c") and ("a", "bc") differ.
   void add_text(std::string_view text);
 
-  /// 32 hexadecimal digits for all that was added so far; more may be added afterwards.
+  /// Returns 32 hexadecimal digits for all that was added so far; more may be added afterwards.
   std::string hex() const;
 
 private:

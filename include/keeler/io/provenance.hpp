@@ -1,5 +1,5 @@
-// Where a file comes from: which program, on what, started how. Stored beside the data and never part of a checksum or
-// a state hash: two runs that differ in it alone are the same run.
+// Provenance of a file: program, machine and command line. It is stored beside the data and is never part of a checksum
+// or a state hash: two runs that differ only in provenance are equal.
 #pragma once
 
 #include <map>
@@ -11,10 +11,10 @@ namespace keeler {
 /// name → value: version, commit, compiler, flags, libraries, host, threads, arguments, started (UTC).
 using Provenance = std::map<std::string, std::string>;
 
-/// What holds for this process; `arguments` is its command line. `started` is the time of this call.
+/// Collects the provenance of this process; `arguments` is its command line. `started` is the time of this call.
 Provenance collect_provenance(const std::vector<std::string>& arguments);
 
-/// This second: "2026-01-31T23:59:59Z".
+/// Returns the current time, "2026-01-31T23:59:59Z".
 std::string utc_now();
 
 } // namespace keeler

@@ -1,5 +1,5 @@
-// Particles for ParaView: a PolyData file of VTK (.vtp), its numbers as they are in memory (XML's "raw appended data"),
-// and a collection (.pvd) that lists such files by time.
+// Particles for ParaView: a VTK PolyData file (.vtp) with raw appended binary data, and a collection (.pvd) that lists
+// such files by time.
 #pragma once
 
 #include <keeler/particles/patch.hpp>
@@ -10,17 +10,17 @@
 
 namespace keeler {
 
-/// A vertex a particle, in the order of the ids, with the arrays of a snapshot in SI: Velocities, Masses, ParticleIDs,
-/// Radius and, of rough particles, Spins. The time in orbits is VTK's TimeValue. Complete or not at all. Throws
+/// Writes one vertex per particle, in the order of ids, with the arrays of a snapshot in SI: Velocities, Masses,
+/// ParticleIDs, Radius and, for rough particles, Spins. TimeValue is the time in orbits. Complete or not at all. Throws
 /// IoError.
 void write_vtp(const std::filesystem::path& file, const Patch& patch);
 
 struct VtpInstant {
   double time_orbits = 0.0;
-  std::string file; ///< its path from the collection's folder
+  std::string file; ///< path relative to the collection's folder
 };
 
-/// Complete or not at all. Throws IoError.
+/// Writes the collection. Complete or not at all. Throws IoError.
 void write_pvd(const std::filesystem::path& file, const std::vector<VtpInstant>& instants);
 
 } // namespace keeler

@@ -1,5 +1,4 @@
-// The particles of a run in the order of their ids, a piece at a time: for whatever needs that order and not all of
-// them at once, as files do.
+// Visits the particles of a distributed run in order of their ids, piece by piece, as files need them.
 #pragma once
 
 #include <keeler/comm/communicator.hpp>
@@ -10,9 +9,10 @@
 
 namespace keeler {
 
-/// Collective: on the first rank piece(particles) for the particles of all ranks in turn, `rows` at a time, fewer the
-/// last time. What it throws all ranks throw. No rank has more than its own particles and one piece.
-void visit_by_id(const Particles& own, const Communicator& ranks, std::size_t rows,
+/// Calls piece(particles) on the root rank for the particles of all ranks, `rows` at a time (fewer in the last piece).
+/// Its exceptions are thrown on all ranks. No rank holds more than its local particles and one piece. Collective.
+/// Precondition: rows > 0; ids are unique over all ranks.
+void visit_by_id(const Particles& local, const Communicator& ranks, std::size_t rows,
                  const std::function<void(const Particles&)>& piece);
 
 } // namespace keeler

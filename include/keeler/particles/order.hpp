@@ -1,4 +1,4 @@
-// The order of particles by their ids: for whatever depends on an order.
+// The order of particles by id, for results that depend on an order.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace keeler {
 
-/// Which particle has the least id, which the next …
+/// Returns the indices of the particles in increasing order of id. Precondition: ids are unique.
 std::vector<std::uint32_t> order_by_id(std::span<const std::uint64_t> ids);
 
 } // namespace keeler

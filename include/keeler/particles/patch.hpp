@@ -1,5 +1,5 @@
-// A patch of ring at one instant, in Cartesian form: what snapshots hold, what diagnostics measure and pictures show.
-// Internal units (m, kg, rad); output works on such a copy and never touches the state of a run.
+// A patch of ring at one instant, in Cartesian form, for snapshots, diagnostics and pictures. Internal units (m, kg,
+// rad). Output uses such a copy and never changes the state of a run.
 #pragma once
 
 #include <keeler/hill/shearing_box.hpp>
@@ -10,33 +10,33 @@
 
 namespace keeler {
 
-/// All arrays have one entry a particle, in the order of the ids.
+/// All arrays have one entry per particle, in increasing order of id.
 struct Patch {
   std::vector<Vec3> positions;  ///< m, Hill's frame; guiding centres inside the cell
-  std::vector<Vec3> velocities; ///< m rad^-1, Hill's frame, the shear included
+  std::vector<Vec3> velocities; ///< m rad^-1, Hill's frame, shear included
   std::vector<double> radii;    ///< m
   std::vector<double> masses;   ///< kg
   std::vector<std::uint64_t> ids;
-  std::vector<Vec3> spins; ///< rad^-1, against the stars, in Hill's frame; empty: smooth particles
+  std::vector<Vec3> spins; ///< rad^-1, inertial angular velocity, components in Hill's frame; empty: smooth particles
 
   ShearingBox box;
   double offset = 0.0;            ///< shear offset of the box at this instant, m
   Frequencies frequencies;        ///< κ/Ω, ν/Ω
-  double orbital_frequency = 0.0; ///< Ω, rad/s: turns velocities into SI
+  double orbital_frequency = 0.0; ///< Ω, rad/s, for conversion to SI
   double time_orbits = 0.0;
 
   std::size_t size() const { return positions.size(); }
 };
 
-/// Throws InvariantError naming the first particle whose place or velocity is not finite, or whose radius or mass is
-/// not positive and finite.
+/// Throws InvariantError, naming the first such particle, if a position, velocity or spin is not finite, or a radius or
+/// mass is not positive and finite.
 void require_sound(const Patch& patch);
 
-/// The patch at `after` (rad) from the epoch of the particles; `offset` is the box's shear offset at that instant.
+/// Returns the patch at `after` (rad) from the epoch of the particles; `offset` is the shear offset at that instant.
 Patch make_patch(const Particles& particles, const ShearingBox& box, double offset, const Frequencies& frequencies,
                  double after);
 
-/// The particles of a patch, with elements at an epoch `ahead` (rad) after the patch's instant.
+/// Inverse of make_patch(): returns particles with elements at an epoch `ahead` (rad) after the instant of the patch.
 Particles particles_from(const Patch& patch, double ahead);
 
 } // namespace keeler

@@ -9,43 +9,44 @@
 
 namespace keeler {
 
-/// A distribution of radii (m).
+/// A size distribution, radii in m.
 struct SizeLaw {
   double smallest = 0.0, largest = 0.0;
-  std::size_t listed = 0;                  ///< radii in a list or a table; 0 for a continuous law
+  std::size_t listed = 0;                  ///< number of radii in a list or a table; 0 for a continuous law
   std::function<double(int k)> mean_power; ///< ⟨r^k⟩
-  /// The k-th radius, at the quantile u in (0, 1).
+  /// Returns the k-th radius, at the quantile u in (0, 1).
   std::function<double(double u, std::size_t k)> radius;
-  /// Density of its material, kg/m³; empty where sizes say nothing about it.
+  /// Returns its density, kg/m³; empty if the law does not define densities.
   std::function<double(double u, std::size_t k)> density{};
-  double mean_density = 0.0; ///< by volume, where they do
+  double mean_density = 0.0; ///< volume-weighted, kg/m³, if it does
 };
 
+/// All particles have one radius. Precondition: radius > 0.
 SizeLaw equal_sizes(double radius);
 
-/// n(r) dr ∝ r^−q between two radii, min < max.
+/// Power law n(r) dr ∝ r^−q. Precondition: 0 < min < max.
 SizeLaw power_sizes(double exponent, double min, double max);
 
-/// The radii of a list in turn: k stands for the (k mod length)-th one.
+/// Uses the radii of a list in turn: particle k has the (k mod length)-th one. Precondition: the list is not empty.
 SizeLaw listed_sizes(std::vector<double> radii);
 
-/// A table of radii, each with the number of particles that have it, above 0, in proportion: of as many particles as
-/// the table has in all, and of nearly as many, each row has its number. At least one row.
+/// Uses a table of rows (radius, number > 0), in proportion to the numbers. For as many particles as their sum, or
+/// nearly as many, the counts are exact. Precondition: at least one row.
 SizeLaw tabulated_sizes(NumberRows table);
 
-/// A table of radii, each with a number as above and with the density (kg/m³) of its particles.
+/// Uses a table of rows (radius, number, density in kg/m³), with numbers as in tabulated_sizes().
 SizeLaw populations(const NumberRows& table);
 
-/// The sizes of particles 0 … count−1: the quantiles of the law at jittered even spacing, in a shuffled order, so that
-/// even a small sample has the law's moments. Each particle's is found by itself, whatever the others'. Same seed, same
-/// sizes.
+/// The sizes of particles 0 … count−1: stratified quantiles of the law in shuffled order, so that even a small sample
+/// has the moments of the law. Each size is computed independently of the others, and depends only on law, count and
+/// seed.
 class DrawnSizes {
 public:
   DrawnSizes(const SizeLaw& law, std::size_t count, std::uint64_t seed) : law_(law), count_(count), seed_(seed) {}
 
-  double radius(std::size_t particle) const; ///< m; of one below count
+  double radius(std::size_t particle) const; ///< m. Precondition: particle < count
   bool has_densities() const { return static_cast<bool>(law_.density); }
-  double density(std::size_t particle) const; ///< kg/m³; only where the law has densities
+  double density(std::size_t particle) const; ///< kg/m³. Precondition: has_densities()
 
 private:
   double value(const std::function<double(double u, std::size_t k)>& quantile, std::size_t particle) const;
@@ -55,18 +56,18 @@ private:
   std::uint64_t seed_;
 };
 
-/// The radii of all of them, m.
+/// Returns the radii of all particles, m.
 std::vector<double> draw_radii(const SizeLaw& law, std::size_t count, std::uint64_t seed);
 
-/// A law that a scene can choose: its name, its keys, and how it is made from their values. `make` throws UsageError
-/// when the values do not fit together.
+/// A size law that a scene can choose: its name, its keys, and its factory. `make` throws UsageError if the values are
+/// inconsistent.
 struct SizeEntry {
   const char* name;
   std::vector<Key> keys;
   SizeLaw (*make)(const Parameters& parameters);
 };
 
-/// All laws. A new one is one more entry here.
+/// Returns all size laws. A new law needs one more entry here.
 const std::vector<SizeEntry>& size_laws();
 
 } // namespace keeler

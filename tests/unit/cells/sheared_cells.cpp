@@ -12,7 +12,7 @@ namespace sheared_cells_test {
 
 using namespace keeler;
 
-TEST_CASE("a walk meets every point of a window whose height changes from column to column, and no cell twice") {
+TEST_CASE("a traversal visits every point of a window of varying height, and no cell twice") {
   RandomStream random(1, RandomPurpose::position, 0);
   for (int round = 0; round < 60; ++round) {
     const ShearingBox box{5.0 + 30.0 * random.uniform(), 5.0 + 30.0 * random.uniform(), 1.5, 0.0};

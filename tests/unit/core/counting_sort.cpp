@@ -26,7 +26,7 @@ Sorted sorted(const std::vector<std::uint32_t>& cell_of, std::size_t cells) {
   return result;
 }
 
-// The slow and obvious way.
+// The plain algorithm as reference.
 Sorted twin(const std::vector<std::uint32_t>& cell_of, std::size_t cells) {
   Sorted result;
   result.order.resize(cell_of.size());

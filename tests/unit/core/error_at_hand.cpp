@@ -24,13 +24,13 @@ template<class Exception> Error met(const Exception& exception) {
 
 } // namespace
 
-TEST_CASE("errors of Keeler pass the border as they are") {
+TEST_CASE("errors of Keeler are returned unchanged") {
   CHECK(std::string(met(IoError("cannot write")).what()) == "cannot write");
   CHECK(std::string(IoError(std::string("in 'a\0b\x1b'", 9)).what()) == "in 'a?b?'"); // not cut by a NUL
   CHECK(met(InvariantError("overlap")).code() == ExitCode::invariant);
 }
 
-TEST_CASE("what libraries throw is said in words of Keeler") {
+TEST_CASE("exceptions of libraries get messages of Keeler") {
   const auto reason = std::make_error_code(std::errc::no_such_file_or_directory);
   const Error named = met(std::filesystem::filesystem_error("status", "a/b", reason));
   CHECK(named.code() == ExitCode::input_output);

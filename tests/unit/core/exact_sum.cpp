@@ -1,5 +1,5 @@
-// The superaccumulator against expansions of doubles that do not overlap (Shewchuk 1997, Discrete Comput. Geom. 18,
-// 305), which are exact for another reason: the rounding error of an addition is a double.
+// Compares the superaccumulator with non-overlapping expansions of doubles (Shewchuk 1997, Discrete Comput. Geom. 18,
+// 305), an independent exact method: the rounding error of an addition is a double.
 #include <keeler/core/exact_sum.hpp>
 
 #include <doctest/doctest.h>
@@ -19,7 +19,7 @@ using namespace keeler;
 
 namespace {
 
-// Non-overlapping doubles with the same sum, the smallest first.
+// Returns non-overlapping doubles with the sum of the terms, the smallest first.
 std::vector<double> expansion(const std::vector<double>& terms) {
   std::vector<double> parts;
   for (double term : terms) {
@@ -38,7 +38,7 @@ std::vector<double> expansion(const std::vector<double>& terms) {
   return parts;
 }
 
-// Whether the sum of the terms lies at most as far from `value` as from the doubles beside it.
+// True if no neighbouring double is closer to the sum of the terms than `value`.
 bool is_nearest(const std::vector<double>& terms, double value) {
   const auto difference_from = [&](double to) {
     std::vector<double> all = terms;
@@ -68,7 +68,7 @@ double sum_of(const std::vector<double>& terms) {
   return sum.value();
 }
 
-// Of both signs, with exponents between those given.
+// Draws terms of both signs with exponents in the given range.
 std::vector<double> random_terms(std::mt19937_64& random, std::size_t count, int lowest, int highest) {
   std::uniform_real_distribution<double> mantissa(-1.0, 1.0);
   std::uniform_int_distribution<int> exponent(lowest, highest);
@@ -88,7 +88,7 @@ TEST_CASE("an exact sum is rounded once, to the nearest double") {
       for (int trial = 0; trial < 40; ++trial) {
         std::vector<double> terms = random_terms(random, count, range[0], range[1]);
         CHECK(is_nearest(terms, sum_of(terms)));
-        // nearly nothing left: all but one are taken away again, and a little is added
+        // cancellation: all but one are subtracted again, and a little is added
         const std::size_t half = terms.size();
         for (std::size_t k = 1; k < half; ++k)
           terms.push_back(-terms[k]);
@@ -101,7 +101,7 @@ TEST_CASE("an exact sum is rounded once, to the nearest double") {
     }
 }
 
-TEST_CASE("a tie goes to the even double, and what lies far below it decides") {
+TEST_CASE("ties round to even, unless much lower bits decide") {
   for (const double sign : {1.0, -1.0})
     for (const int scale : {0, 17, 31, 32, 500, -500}) {
       const auto scaled = [&](double number) { return sign * std::ldexp(number, scale); };
@@ -113,7 +113,7 @@ TEST_CASE("a tie goes to the even double, and what lies far below it decides") {
     }
 }
 
-TEST_CASE("neither order nor grouping nor threads count") {
+TEST_CASE("exact sums do not depend on order, grouping or threads") {
   std::mt19937_64 random(7);
   std::vector<double> terms = random_terms(random, 20011, -60, 60);
   const double whole = sum_of(terms);
@@ -134,7 +134,7 @@ TEST_CASE("neither order nor grouping nor threads count") {
   set_threads(1);
 }
 
-TEST_CASE("sums within a parallel region of the caller's") {
+TEST_CASE("exact sums inside a parallel region of the caller") {
   double sums[4] = {};
 #pragma omp parallel num_threads(4)
   {
@@ -147,7 +147,7 @@ TEST_CASE("sums within a parallel region of the caller's") {
   set_threads(1);
 }
 
-TEST_CASE("more of one sign than waits for a carry, and as many merged") {
+TEST_CASE("more terms of one sign than fit before a carry, added and merged") {
   const double term = 1.0 - 0x1p-53; // all bits set
   ExactSum sum, merged;
   for (int k = 0; k < 100000; ++k) {
@@ -160,7 +160,7 @@ TEST_CASE("more of one sign than waits for a carry, and as many merged") {
   CHECK(merged.value() == sum.value());
 }
 
-TEST_CASE("ends of the range") {
+TEST_CASE("exact sums at the ends of the range of doubles") {
   constexpr double least = std::numeric_limits<double>::denorm_min(), most = std::numeric_limits<double>::max();
   constexpr double infinity = std::numeric_limits<double>::infinity();
   CHECK(sum_of({}) == 0.0);
@@ -176,7 +176,7 @@ TEST_CASE("ends of the range") {
   CHECK(std::isnan(sum_of({1.0, NAN})));
 }
 
-TEST_CASE("of vectors") {
+TEST_CASE("exact sums of vectors") {
   ExactVec3 sum, more;
   for (const Vec3& term : {Vec3(1.0, 1e17, 3.0), Vec3(1e-30, 1.0, -3.0)})
     sum += term;
@@ -185,7 +185,7 @@ TEST_CASE("of vectors") {
   CHECK(sum.value() == Vec3(1e-30, 1.0, 0.25));
 }
 
-TEST_CASE("in words: added word by word, of any number of parts") {
+TEST_CASE("words of exact sums can be added, for any number of parts") {
   std::mt19937_64 random(11);
   const std::vector<double> terms = random_terms(random, 3000, -60, 60);
   std::vector<std::uint64_t> words(ExactSum().words().size());

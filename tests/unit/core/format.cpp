@@ -8,7 +8,7 @@ namespace words_test {
 
 using namespace keeler;
 
-TEST_CASE("numbers have no exponent where people write none") {
+TEST_CASE("numbers of moderate size have no exponent") {
   CHECK(format_number(0.0, 3) == "0");
   CHECK(format_number(48.63, 3) == "48.6");
   CHECK(format_number(999.6, 3) == "1000");
@@ -20,13 +20,13 @@ TEST_CASE("numbers have no exponent where people write none") {
   CHECK(format_number(0.00012, 2) == "0.00012");
 }
 
-TEST_CASE("counts have their plural") {
+TEST_CASE("counts have a plural") {
   CHECK(pluralize(1, "thread") == "1 thread");
   CHECK(pluralize(0, "check") == "0 checks");
   CHECK(pluralize(34, "particle") == "34 particles");
 }
 
-TEST_CASE("a line that repeats the words of others can be printed") {
+TEST_CASE("a line with foreign text becomes printable") {
   CHECK(printable_line("Ω of 'a b' is 1e-4 ± 2 %, 10⁵ 𝛀") == "Ω of 'a b' is 1e-4 ± 2 %, 10⁵ 𝛀");
   CHECK(printable_line("a\x1b[31m\n\r\tb\x7f") == "a?[31m???b?");
   CHECK(printable_line("\xff\xfe \xce \xc0\xaf \xe0\x80\xaf \xed\xa0\x80 \xf4\x90\x80\x80 \xc2\x85") ==

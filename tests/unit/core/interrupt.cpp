@@ -8,7 +8,7 @@ namespace interrupt_test {
 
 using namespace keeler;
 
-TEST_CASE("a parallel loop ends soon after its flag is set, and only within the scope that names the flag") {
+TEST_CASE("a parallel loop ends soon after its flag is raised, and only within the scope of Interruptible") {
   constexpr std::size_t count = 100000, chunk = 64;
   for (const int number : {1, 3}) {
     set_threads(number);
@@ -38,7 +38,7 @@ TEST_CASE("a parallel loop ends soon after its flag is set, and only within the 
   set_threads(1);
 }
 
-TEST_CASE("the inner scope counts, and then the outer one again") {
+TEST_CASE("the innermost scope determines the flag") {
   const std::atomic<bool> set = true, clear = false;
   const Interruptible outer(set);
   {

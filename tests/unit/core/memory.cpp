@@ -11,7 +11,7 @@ namespace memory_test {
 
 using namespace keeler;
 
-TEST_CASE("the peak of memory grows by what is held, and stays when it is given back") {
+TEST_CASE("the peak of memory grows with allocations and does not decrease") {
   constexpr std::size_t bytes = 200'000'000;
   const double before = peak_memory();
   {
@@ -24,7 +24,7 @@ TEST_CASE("the peak of memory grows by what is held, and stays when it is given 
   CHECK(after >= before);
 }
 
-TEST_CASE("sizes are checked before they are ones") {
+TEST_CASE("counts are checked before they become sizes") {
   CHECK(available_memory() > 1e6);
   CHECK(available_memory() <= 0x1p47);
   CHECK(affordable_size(0.0, 8.0, "nothing", "") == 0);

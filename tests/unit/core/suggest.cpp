@@ -6,7 +6,7 @@ namespace suggest_test {
 
 using namespace keeler;
 
-TEST_CASE("a misspelt word has the closest name") {
+TEST_CASE("the closest name is suggested for a misspelt word") {
   const std::vector<std::string> names = {"run", "render", "resume", "check"};
   CHECK(closest("rnder", names) == "render");
   CHECK(closest("redner", names) == "render"); // a swap is one edit

@@ -12,7 +12,7 @@ namespace threads_test {
 
 using namespace keeler;
 
-TEST_CASE("sums have the same bits for any number of threads") {
+TEST_CASE("sums are bitwise equal for any number of threads") {
   const auto term = [](std::size_t k) { return std::sin(static_cast<double>(k)) * 1e3; };
   set_threads(1);
   const double one = ordered_sum(100003, term);
@@ -23,7 +23,7 @@ TEST_CASE("sums have the same bits for any number of threads") {
   CHECK(ordered_sum(0, term) == 0.0);
 }
 
-TEST_CASE("several sums in one pass are each the sum made alone") {
+TEST_CASE("several sums in one pass equal separate sums") {
   struct Two {
     double sines = 0.0, squares = 0.0;
     Two& operator+=(const Two& more) {
@@ -46,7 +46,7 @@ TEST_CASE("several sums in one pass are each the sum made alone") {
   set_threads(1);
 }
 
-TEST_CASE("the largest of all is that of a plain loop, and what is not a number stays") {
+TEST_CASE("the maximum equals that of a plain loop, and NaN propagates") {
   for (const std::size_t count : {0, 1, 1023, 1024, 5000}) {
     std::vector<double> values;
     for (std::size_t k = 0; k < count; ++k)
@@ -67,7 +67,7 @@ TEST_CASE("the largest of all is that of a plain loop, and what is not a number 
   set_threads(1);
 }
 
-TEST_CASE("an exception in a loop reaches its caller, from any thread, and the next loop is whole") {
+TEST_CASE("an exception in a loop reaches its caller from any thread, and the next loop is complete") {
   constexpr std::size_t count = 100000;
   for (const int number : {1, 2, 5}) {
     set_threads(number);

@@ -46,14 +46,14 @@ TEST_CASE("tables as spreadsheets, numpy and pandas write them") {
   CHECK(parse_columns("x\n0.1\n", "t.csv").values[0][0] == 0.1); // the nearest double
 }
 
-TEST_CASE("what is no text is told as such, whole") {
+TEST_CASE("a table that is not a text is reported as such") {
   CHECK(fault(std::string("\xff\xfex\0,\0", 6)) ==
         "t.csv: is a text in UTF-16 (its byte order mark says so); save it as UTF-8");
   CHECK(fault("a,b\n" + std::string(2, '\0') + ",2\n") ==
         "t.csv:2: a is '?\?' (it must be a number); correct it or remove the row");
 }
 
-TEST_CASE("a row that is not like the others is named") {
+TEST_CASE("an irregular row is an error that names it") {
   CHECK(fault("a,b\n1,2\n3\n") ==
         "t.csv:3: the row has 1 of 2 values (line 1 names the columns); correct or remove it");
   CHECK(fault("a,b\n1,2,3\n").find("t.csv:2: the row has 3 of 2 values") == 0);
@@ -64,9 +64,8 @@ TEST_CASE("a row that is not like the others is named") {
   CHECK(fault("a,b\n,2\n") == "t.csv:2: a has no value (every row needs all columns); fill it in or remove the row");
   CHECK(fault("1,2\n") ==
         "t.csv:1: the first row has numbers (it must name the columns); put a line of names above it");
-  CHECK(fault("a,b,\n1,2,\n") ==
-        "t.csv:1: the last column has no name (the line ends with a ','); remove that ',', and "
-        "those at the ends of the rows");
+  CHECK(fault("a,b,\n1,2,\n") == "t.csv:1: the last column has no name (the line ends with a ','); remove it here and "
+                                 "at the ends of the rows");
   CHECK(fault("# a;b;\n1;2;\n").find("t.csv:1: the last column has no name (the line ends with a ';')") == 0);
   CHECK(fault(",a,b\n0,1,2\n") ==
         "t.csv:1: the first column has no name (pandas writes its index so); write the table with "

@@ -1,4 +1,4 @@
-// Places to write to, and disks that fill up.
+// Temporary folders and full disks.
 #pragma once
 
 #include <keeler/files/files.hpp>
@@ -15,7 +15,7 @@
 
 namespace keeler::test {
 
-/// A new folder, removed with all that is in it.
+/// A temporary folder, removed with its content.
 class TemporaryFolder {
 public:
   TemporaryFolder() {
@@ -39,7 +39,7 @@ private:
   std::filesystem::path path_;
 };
 
-/// While it lives no file can grow beyond a size: to the writer that is a disk that becomes full (also for root).
+/// During its lifetime no file can grow beyond a size, which looks like a full disk to the writer (also for root).
 class SmallDisk {
 public:
   explicit SmallDisk(std::size_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -60,14 +60,14 @@ private:
   rlimit former_ = {};
 };
 
-/// Writes without forcing to disk, which would take most of a test's time; ext4 also does so for a file cut to nothing.
+/// Writes without forcing to disk, which would take most of a test's time (ext4 also forces truncated files).
 inline void write_quickly(const std::filesystem::path& file, std::string_view text) {
   std::filesystem::remove(file);
   std::ofstream(file, std::ios::binary) << text;
 }
 
-/// Calls `judge` with a damaged copy of a file in its place: cut at many lengths, one byte changed at many places.
-/// All of the last 200 bytes, where the seal stands, are tried.
+/// Replaces a file by damaged copies, truncated at many lengths or with one byte changed at many offsets, and calls
+/// `judge` for each. All of the last 200 bytes, which include the seal, are tried.
 inline void for_each_damage(const std::filesystem::path& file, std::size_t stride,
                             const std::function<void(const std::string& damage)>& judge) {
   const std::string whole = read_text(file);

@@ -33,7 +33,7 @@ TEST_CASE("a file is replaced as a whole and reads back") {
   CHECK(folder.file_count() == 1);
 }
 
-TEST_CASE("a guard that refuses a new file its name leaves none, and the former one") {
+TEST_CASE("a naming guard that throws leaves the former file and no other") {
   const TemporaryFolder folder;
   write_text(folder / "a.txt", "former");
   {
@@ -48,7 +48,7 @@ TEST_CASE("a guard that refuses a new file its name leaves none, and the former 
   CHECK(read_text(folder / "a.txt") == "new");
 }
 
-TEST_CASE("a full disk is an error and leaves the former file alone") {
+TEST_CASE("a full disk is an error and leaves the former file unchanged") {
   const TemporaryFolder folder;
   const auto file = folder / "a.txt";
   write_text(file, "former");
@@ -61,7 +61,7 @@ TEST_CASE("a full disk is an error and leaves the former file alone") {
   CHECK(folder.file_count() == 2);
 }
 
-TEST_CASE("places that cannot be written are errors that name the file and the reason") {
+TEST_CASE("an output that cannot be written is an error that names the file and the reason") {
   const TemporaryFolder folder;
   write_text(folder / "file", "");
   CHECK_THROWS_WITH_AS(write_text(folder / "absent/a.txt", "x"), doctest::Contains("No such file"), IoError);
@@ -71,7 +71,7 @@ TEST_CASE("places that cannot be written are errors that name the file and the r
   CHECK(folder.file_count() == 2);
 }
 
-TEST_CASE("what cannot be read is an error") {
+TEST_CASE("a file that cannot be read is an error") {
   const TemporaryFolder folder;
   CHECK_THROWS_WITH_AS(read_text(folder / "absent"), doctest::Contains("absent': No such file"), IoError);
   CHECK_THROWS_AS(read_text(folder.path()), IoError);
@@ -86,14 +86,14 @@ TEST_CASE("a file that is larger than the memory, or has no end, is an error tha
   CHECK_THROWS_WITH_AS(open_anywhere("/dev/zero"), doctest::Contains("/dev/zero': it is too large"), IoError);
 }
 
-TEST_CASE("a text of lines is what it was before a tool of Windows changed it") {
+TEST_CASE("byte order marks and carriage returns of Windows tools are removed") {
   const TemporaryFolder folder;
   write_text(folder / "lines", "\xef\xbb\xbf"
                                "a\r\nb\rc\n\r\n\r");
   CHECK(read_lines(folder / "lines") == "a\nb\rc\n\n\r");
 }
 
-TEST_CASE("a wait for a pipe ends with the work at hand, and with what ends waits") {
+TEST_CASE("waiting for a pipe can be interrupted") {
   const TemporaryFolder folder;
   const std::string pipe = folder / "pipe";
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
@@ -112,7 +112,7 @@ TEST_CASE("a wait for a pipe ends with the work at hand, and with what ends wait
   CHECK_THROWS_AS(Descriptor(pipe, O_WRONLY | O_APPEND), IoError);
 }
 
-TEST_CASE("a pipe can be read anywhere, and again as long as it is kept") {
+TEST_CASE("a pipe has random access, and can be read again while it is kept") {
   const TemporaryFolder folder;
   const std::string pipe = folder / "pipe", text(100000, 'x'); // more than a pipe holds
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);

@@ -16,7 +16,7 @@ namespace input_test {
 using namespace keeler;
 using namespace keeler::test;
 
-TEST_CASE("what a user names and cannot be read is told with the place where it was named") {
+TEST_CASE("an unreadable input file is an error with the location where it was named") {
   const TemporaryFolder folder;
   const std::string absent = folder / "absent";
   CHECK_THROWS_WITH_AS(
@@ -39,7 +39,7 @@ TEST_CASE("a pipe is read to its end") {
   writer.join();
 }
 
-TEST_CASE("a byte order mark is no part of a text, UTF-16 is called that, and what does not end is refused") {
+TEST_CASE("a byte order mark is removed; UTF-16 and endless input are errors") {
   const TemporaryFolder folder;
   const std::string file = folder / "f";
   std::ofstream(file) << "\xef\xbb\xbf"
@@ -54,7 +54,7 @@ TEST_CASE("a byte order mark is no part of a text, UTF-16 is called that, and wh
                        "/dev/zero: cannot be read (File too large); check the path and its permissions", UsageError);
 }
 
-TEST_CASE("rows of numbers are told with their lines") {
+TEST_CASE("rows of numbers are visited with their line numbers") {
   std::vector<std::pair<int, std::vector<double>>> rows;
   for_each_row("# speed  value\n1e-3, 0.9\n\n  -2;.5 # a comment\r\n  \r\n7 1.5x", [&](int line, auto numbers) {
     rows.emplace_back(line, std::vector<double>(numbers.begin(), numbers.end()));

@@ -28,7 +28,7 @@ std::span<const std::byte> bytes(std::string_view text) {
   return std::as_bytes(std::span(text));
 }
 
-// The file in the making beside one.
+// Returns the temporary file of `file`.
 fs::path unfinished_beside(const fs::path& file) {
   for (const fs::directory_entry& entry : fs::directory_iterator(file.parent_path()))
     if (unfinished_name(entry.path().filename().string()) == file.filename().string())
@@ -42,7 +42,7 @@ fs::perms mode_of(const fs::path& file) {
 
 } // namespace
 
-TEST_CASE("a file in the making has a name that nothing else has, and names say which file it is") {
+TEST_CASE("a temporary name is unique and contains the final name") {
   const TemporaryFolder folder;
   write_text(folder / "a.txt.tmp", "of another program");
   NewFile first(folder / "a.txt");
@@ -76,7 +76,7 @@ TEST_CASE("two writers of one name publish one whole file after the other") {
   CHECK(folder.file_count() == 1);
 }
 
-TEST_CASE("what a killed writer left is removed by the next writer of the name, and nothing else") {
+TEST_CASE("the next writer removes the temporary files that killed writers of the name left, and nothing else") {
   const TemporaryFolder folder;
   const std::string end = ".keeler-0123456789abcdef.tmp";
   write_text(folder / ("a.txt" + end), "torn");
@@ -92,7 +92,7 @@ TEST_CASE("what a killed writer left is removed by the next writer of the name, 
   CHECK(fs::exists(at_work));
 }
 
-TEST_CASE("a file that is replaced keeps its permissions, and a link is replaced and not followed") {
+TEST_CASE("a replaced file keeps its permissions; a link is replaced and not followed") {
   const TemporaryFolder folder;
   for (const unsigned mode : {0600u, 0640u, 0444u, 0666u}) {
     const fs::path file = folder / "a.txt";
@@ -123,7 +123,7 @@ TEST_CASE("a name of the greatest length can be written") {
   CHECK(folder.file_count() == 1);
 }
 
-TEST_CASE("pipes and devices are written to and stay what they are") {
+TEST_CASE("pipes and devices are written to directly") {
   const TemporaryFolder folder;
   const fs::path pipe = folder / "pipe", link = folder / "link";
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
@@ -146,7 +146,7 @@ TEST_CASE("pipes and devices are written to and stay what they are") {
   CHECK_THROWS_WITH_AS(refuse_stream(link, "HDF5"), doctest::Contains("link' cannot take HDF5"), UsageError);
 }
 
-TEST_CASE("descriptors of this process have names, and are written on where they are") {
+TEST_CASE("descriptors of this process have names, and writing continues at their position") {
   const TemporaryFolder folder;
   const int number = open((folder / "a.txt").c_str(), O_RDWR | O_CREAT, 0600);
   REQUIRE(number > 2);
@@ -164,7 +164,7 @@ TEST_CASE("descriptors of this process have names, and are written on where they
   CHECK_THROWS_AS(write_text("/dev/fd/987", "x"), IoError);
 }
 
-TEST_CASE("a pipe without a reader can be given up") {
+TEST_CASE("waiting for a pipe without a reader can be interrupted") {
   const TemporaryFolder folder;
   const fs::path pipe = folder / "pipe";
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);

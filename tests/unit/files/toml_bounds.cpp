@@ -26,19 +26,19 @@ std::string nested(std::size_t depth) {
 
 } // namespace
 
-TEST_CASE("names and lists may be so deep and no deeper") {
+TEST_CASE("the depth of names and lists is limited") {
   CHECK_FALSE(toml_excess(dotted(max_toml_depth) + " = 1.5"));
   CHECK(toml_excess(dotted(max_toml_depth + 1) + " = 1.5"));
   CHECK_FALSE(toml_excess("a = " + nested(max_toml_depth)));
   CHECK(toml_excess("a = " + nested(max_toml_depth + 1)));
   CHECK_FALSE(toml_excess("a = [" + nested(3) + "," + nested(3) + "]\nb = 1.0\nc.d = [1.0, 2.0, 3.0]\n"));
   CHECK_THROWS_WITH_AS(require_bounded_toml("é = 1\n[é." + dotted(20) + "]\n", "s.toml"),
-                       "s.toml:2:33: a name of more than 16 parts (nothing that is read here has more than a few); "
+                       "s.toml:2:33: a name of more than 16 parts (valid input has only a few); "
                        "shorten it",
                        UsageError);
 }
 
-TEST_CASE("strings and comments are read as TOML does") {
+TEST_CASE("strings and comments are read as in TOML") {
   const std::string deep = dotted(40) + nested(40);
   for (const std::string& text :
        std::vector<std::string>{"# " + deep + "\n", "a = \"" + deep + "\"\n", "a = '" + deep + "'\n",

@@ -16,7 +16,7 @@ Elements random_elements(RandomStream& random) {
           random.normal(),      random.normal(),      random.normal()};
 }
 
-// Hill's equations, fourth-order Runge–Kutta: the slow twin of the closed form.
+// Integrates Hill's equations by fourth-order Runge–Kutta, as reference for the closed form.
 State integrate(State s, const Frequencies& f, double time, int steps) {
   const auto slope = [&](const State& at) {
     State d;
@@ -45,7 +45,7 @@ constexpr Frequencies all_frequencies[] = {{1.0, 1.0}, {0.99458, 1.00539}, {1.0,
 
 } // namespace
 
-TEST_CASE("sine and cosine from our own polynomials are right to rounding") {
+TEST_CASE("sine and cosine by polynomials are accurate to rounding") {
   for (double a = -30.0; a < 30.0; a += 0.00137) {
     double s, c;
     sine_cosine(a, s, c);
@@ -78,7 +78,7 @@ TEST_CASE("elements and states are inverse, at any time after the epoch") {
     }
 }
 
-TEST_CASE("a kick changes the velocity and not the place") {
+TEST_CASE("a kick changes the velocity and not the position") {
   RandomStream random(1, RandomPurpose::velocity, 3);
   for (const Frequencies& f : all_frequencies)
     for (const double after : {0.0, -0.01, 0.4}) {
@@ -103,7 +103,7 @@ TEST_CASE("the energy of the elements is the Jacobi integral") {
     CHECK((c - s.velocity - Vec3(0.0, f.shear() * x, 0.0)).norm() < 1e-13 * (c.norm() + std::fabs(x)));
     const double own = 0.5 * c.squaredNorm() + f.shear() / k2 * c.y() * c.y() + 0.5 * f.nu * f.nu * z * z;
     CHECK(epicyclic_energy(el, f) == doctest::Approx(own).epsilon(1e-12));
-    // with the guiding centre's share it is the Jacobi energy
+    // with the contribution of the guiding centre it is the Jacobi energy
     const double jacobi = 0.5 * s.velocity.squaredNorm() - f.shear() * x * x + 0.5 * f.nu * f.nu * z * z;
     const double guiding = 0.25 * f.shear() * k2 * el.guiding_x * el.guiding_x;
     CHECK(epicyclic_energy(el, f) - guiding == doctest::Approx(jacobi).epsilon(1e-12));
@@ -111,7 +111,7 @@ TEST_CASE("the energy of the elements is the Jacobi integral") {
 }
 
 TEST_CASE("re-basing 10^4 orbits of 1000 steps leaves a random walk of roundings, no drift") {
-  // 10^7 roundings of relative size <= 1.1e-16 walk to about 3.5e-13; a drift of one unit a step would give 1e-9.
+  // 10^7 roundings of relative size <= 1.1e-16 walk to about 3.5e-13; a drift of one unit per step would give 1e-9.
   const Frequencies f{0.99458, 1.00539};
   const double h = two_pi * 1e-3;
   const Elements first{0.0, 3.0, 1.2, -0.4, 0.3, 0.9};
@@ -121,7 +121,7 @@ TEST_CASE("re-basing 10^4 orbits of 1000 steps leaves a random walk of roundings
   for (long k = 0; k < steps; ++k)
     rebase(el);
   const auto expect = [&](double frequency, double c, double s) {
-    // the angle per step is the rounded product, as the code has it
+    // the angle per step is the rounded product, as in the code
     const long double angle =
         std::fmod(static_cast<long double>(frequency * h) * steps, 2.0L * std::numbers::pi_v<long double>);
     return std::pair{static_cast<double>(c * std::cos(angle) - s * std::sin(angle)),

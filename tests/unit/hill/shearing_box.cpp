@@ -38,7 +38,7 @@ TEST_CASE("an image moves as a particle of its own: it drifts with the shear of 
   }
 }
 
-TEST_CASE("places too far for the number of a box, or not finite, get an image without undefined arithmetic") {
+TEST_CASE("coordinates that are too far away or not finite get an image without undefined behaviour") {
   const ShearingBox box{64.0, 32.0, 1.5, 0.0};
   CHECK(box.image_into_cell(64.0e6, 32.0e6, 0.0) == Image{-1000000, -1000000});
   for (const double far : {1e12, 1e300, HUGE_VAL, -1e12, -1e300, -HUGE_VAL}) {

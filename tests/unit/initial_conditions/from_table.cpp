@@ -43,7 +43,7 @@ Patch crowd() {
   RandomStream random(3, RandomPurpose::position, 0);
   for (int k = 0; k < 700; ++k) {
     const double x = random.uniform(), y = random.uniform(), z = random.uniform(), r = random.uniform();
-    table.places.emplace_back(60.0 * (x - 0.5), 40.0 * (y - 0.5), 4.0 * (z - 0.5));
+    table.positions.emplace_back(60.0 * (x - 0.5), 40.0 * (y - 0.5), 4.0 * (z - 0.5));
     table.radii.push_back(0.5 + r);
   }
   TableScene of = table_scene();
@@ -56,7 +56,7 @@ Patch crowd() {
 TEST_CASE("a table's particles are taken as they are") {
   ParticleTable table = one({10.0, -5.0, 1.0}, {1e-4, -3e-3, 2e-4});
   const Patch patch = patch_from_table(table, table_scene());
-  CHECK(patch.positions == table.places);
+  CHECK(patch.positions == table.positions);
   CHECK((patch.velocities[0] * omega - table.velocities[0]).norm() < 1e-18);
   CHECK(patch.masses == table.masses);
   CHECK(patch.ids == std::vector<std::uint64_t>{0});
@@ -105,8 +105,8 @@ TEST_CASE("a particle that no ring has, or outside the box, is named by its row"
     CHECK(fault(table).find("t.csv:2: the particle has " + words) == 0);
     CHECK(fault(table).find("; correct it or remove the row") != std::string::npos);
   };
-  says(one({1.0, NAN, 0.0}, still), "a place or a velocity that is not finite");
-  says(one(here, {0.0, INFINITY, 0.0}), "a place or a velocity that is not finite");
+  says(one({1.0, NAN, 0.0}, still), "a position or velocity that is not finite");
+  says(one(here, {0.0, INFINITY, 0.0}), "a position or velocity that is not finite");
   ParticleTable table = one(here, still);
   table.radii[0] = -1.0;
   says(table, "a radius (m) of -1 (possible is from 1e-6 to 1000000)");

@@ -22,7 +22,7 @@ struct Row {
   double a, b, c;
 };
 
-// State of every type that a table can hold.
+// State with fields of every type.
 struct Subject {
   std::vector<Row> rows;
   std::vector<float> floats;
@@ -73,7 +73,7 @@ CheckpointHeader read_checkpoint(const std::filesystem::path& file, const FieldT
 
 const CheckpointHeader header{"title = \"Ring κ\"\n", {{"version", "0"}, {"host", ""}}};
 
-// Fields, and the scene's text, as write_checkpoint would write them, with a version and a checksum of choice.
+// Writes fields and scene as write_checkpoint() does, with any version and checksum.
 void write_by_hand(const std::filesystem::path& file, std::int64_t version, const std::string& checksum) {
   SealedFile out(file);
   out.write([&](const hdf5::Handle& root) {
@@ -167,7 +167,7 @@ TEST_CASE("fields that are not those of the table are errors that name the field
   refused(more, "no field 'count'");
   FieldTable fewer;
   fewer.scalar("number", number, "1", "");
-  refused(fewer, "a field 'rows' that this run does not know");
+  refused(fewer, "a field 'rows' that this run does not have");
 
   FieldTable other_type, other_shape, scalar_now;
   other_type.scalar("number", count, "1", "");

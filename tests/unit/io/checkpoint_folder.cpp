@@ -42,7 +42,7 @@ TEST_CASE("checkpoints are listed by number, newest first") {
   CHECK(files[3].filename() == "checkpoint_000005.h5");
 }
 
-TEST_CASE("when the newest checkpoint is damaged the one before is taken, and that is said") {
+TEST_CASE("when the newest checkpoint is damaged, the previous one is used with a warning") {
   const TemporaryFolder folder;
   for (const int step : {10, 20, 30})
     write_step(folder, step);
@@ -85,7 +85,7 @@ TEST_CASE("pruning keeps the newest and removes torn files") {
   CHECK(folder.file_count() == 3);
 }
 
-TEST_CASE("pruning counts from the checkpoint that a run goes on from, and later ones are removed apart") {
+TEST_CASE("pruning counts from the checkpoint that a run resumes from; later ones are removed separately") {
   const TemporaryFolder folder;
   for (const int step : {10, 20, 30, 40, 50})
     write_step(folder, step);

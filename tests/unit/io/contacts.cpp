@@ -36,7 +36,7 @@ TEST_CASE("contacts read back as they were written") {
   CHECK(read_contacts(file).rows.empty());
 }
 
-TEST_CASE("a file of contacts that is damaged or something else is an error") {
+TEST_CASE("a contact file that is damaged or of another kind is an error") {
   const TemporaryFolder folder;
   const auto file = folder / "collisions_000000.h5";
   write_contacts(file, some_rows(), {});

@@ -22,7 +22,7 @@ hdf5::Handle new_file(const std::filesystem::path& path) {
 
 } // namespace
 
-TEST_CASE("what goes into a file comes out of its bytes") {
+TEST_CASE("everything that is written to a file is read back from its bytes") {
   const std::vector<double> values{1.0, -0.0, 1e-310, 0.1};
   const std::string long_text(100000, 'x'); // more than the 64 KiB of older attributes
   const std::vector<std::byte> image = hdf5_content([&](const hdf5::Handle& file) {
@@ -100,7 +100,7 @@ TEST_CASE("a second name is the same object") {
   const hdf5::Handle file = new_file(folder / "a.h5");
   const hdf5::Handle a = hdf5::create_group(file, "a"), b = hdf5::create_group(file, "b");
   const hdf5::Handle dataset = hdf5::write_dataset(a, "data", std::vector<double>{1.0, 2.0});
-  hdf5::link_again(a, "data", b, "other");
+  hdf5::create_hard_link(a, "data", b, "other");
   hdf5::write_attribute(dataset, "unit", std::string_view("m"));
   CHECK(hdf5::read_text_attribute(hdf5::open_dataset(b, "other"), "unit") == "m");
 }

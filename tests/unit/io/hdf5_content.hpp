@@ -1,4 +1,4 @@
-// The bytes of an HDF5 file that a test makes, as another program would write them: without a seal.
+// The bytes of an HDF5 file without a seal, as other programs write it.
 #pragma once
 
 #include "sealed_file.hpp"

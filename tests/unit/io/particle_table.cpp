@@ -27,7 +27,7 @@ ParticleTable table_of(const std::function<void(const hdf5::Handle&)>& fill) {
   return read_particle_table(file);
 }
 
-// Without the path of the file.
+// Returns the message without the path of the file.
 template<class Content> std::string fault(const Content& content) {
   try {
     table_of(content);
@@ -49,11 +49,11 @@ void write_all(const hdf5::Handle& image, const std::vector<std::string>& names)
 
 } // namespace
 
-TEST_CASE("columns may have their units, and an id that is passed over") {
+TEST_CASE("columns may have units as suffixes; an id is ignored") {
   const ParticleTable table = table_of("id,x_m,y,z_m,vx_m_s,vy_m_s,vz_m_s,r_m,m_kg,sx_rad_s,sy_rad_s,sz_rad_s\n"
                                        "7,1,2,3,4,5,6,7,8,9,10,11\n");
   REQUIRE(table.size() == 1);
-  CHECK(table.places[0] == Vec3(1, 2, 3));
+  CHECK(table.positions[0] == Vec3(1, 2, 3));
   CHECK(table.velocities[0] == Vec3(4, 5, 6));
   CHECK(table.radii[0] == 7.0);
   CHECK(table.masses[0] == 8.0);
@@ -61,13 +61,13 @@ TEST_CASE("columns may have their units, and an id that is passed over") {
   CHECK(fault(std::string("x_kg,y,z,r\n1,2,3,4\n")).find("unknown column 'x_kg'") != std::string::npos);
 }
 
-TEST_CASE("columns of a table may stand in any order, in either format") {
+TEST_CASE("the columns of a table may be in any order, in either format") {
   for (const ParticleTable& table : {table_of("m,r,vz,vy,vx,z,y,x\n1,2,3,4,5,6,7,8\n10,20,30,40,50,60,70,80\n"),
                                      table_of([](const hdf5::Handle& image) {
                                        write_all(image, {"m", "r", "vz", "vy", "vx", "z", "y", "x"});
                                      })}) {
     REQUIRE(table.size() == 2);
-    CHECK(table.places[0] == Vec3(8, 7, 6));
+    CHECK(table.positions[0] == Vec3(8, 7, 6));
     CHECK(table.velocities[1] == Vec3(50, 40, 30));
     CHECK(table.radii == std::vector<double>{2, 20});
     CHECK(table.masses == std::vector<double>{1, 10});
@@ -82,10 +82,10 @@ TEST_CASE("columns of a table may stand in any order, in either format") {
     CHECK(table.velocities.empty());
   }
   CHECK(table_of("x y z r\n1 2 3 4\n").masses.empty());
-  CHECK(table_of("x y z r\n\n1 2 3 4\n").place_of(0) == file.string() + ":3");
+  CHECK(table_of("x y z r\n\n1 2 3 4\n").location_of(0) == file.string() + ":3");
   CHECK(table_of([](const hdf5::Handle& image) {
           write_all(image, {"r", "x", "y", "z"});
-        }).place_of(1) == file.string() + ", row 1");
+        }).location_of(1) == file.string() + ", row 1");
   std::filesystem::remove(file);
 }
 
@@ -113,15 +113,14 @@ TEST_CASE("a table of other columns is refused") {
   CHECK(arrays([](Image image) {
           write_all(image, {"r", "x", "y"});
           hdf5::write_dataset(image, "z", std::vector<double>(3));
-        }) == ": z has 3 values, r has 2 (a value a particle); make them equally long");
+        }) == ": z has 3 values, r has 2 (one per particle); make them equally long");
   CHECK(arrays([](Image image) {
           write_all(image, {"r", "x", "y"});
           hdf5::write_text_dataset(image, "z", "up");
-        }) == ": z is no list of numbers (an array of one dimension); write it as such");
-  CHECK(arrays([](Image image) {
-          hdf5::create_group(image, "PartType1");
-        }).find(": it is a snapshot of another program, not a table (no /RingBox tells of its patch); write x, y, z") ==
-        0);
+        }) == ": z is not a one-dimensional array of numbers; write it as one");
+  CHECK(arrays([](Image image) { hdf5::create_group(image, "PartType1"); })
+            .find(": it is a snapshot of another program, not a table (it has no /RingBox that describes the patch); "
+                  "write x, y, z") == 0);
   CHECK(arrays([](Image image) {
           for (const char* group : {"PartType1", "Code", "RingBox"})
             hdf5::create_group(image, group);

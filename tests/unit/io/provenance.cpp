@@ -8,7 +8,7 @@ namespace provenance_test {
 
 using namespace keeler;
 
-TEST_CASE("provenance says which program, on what, started how") {
+TEST_CASE("provenance has the program, the machine and the command line") {
   const Provenance provenance = collect_provenance({"keeler", "run", "my scene.toml", "--set", "title=it's"});
   for (const char* name :
        {"version", "commit", "compiler", "flags", "libraries", "host", "threads", "arguments", "started"}) {

@@ -28,7 +28,7 @@ double number_in(const std::filesystem::path& file, const std::string& name) {
 
 } // namespace
 
-TEST_CASE("a sealed file opens here, and for readers that know no seal") {
+TEST_CASE("a sealed file opens here, and in readers that ignore the seal") {
   const TemporaryFolder folder;
   const auto file = folder / "a.h5";
   write_number(file, 42.0);
@@ -39,7 +39,7 @@ TEST_CASE("a sealed file opens here, and for readers that know no seal") {
   CHECK(hdf5::read_attribute<double>(plain, "number") == 42.0);
 }
 
-TEST_CASE("a file that is still open somewhere is not taken for finished") {
+TEST_CASE("a file with an open object cannot be finished") {
   const TemporaryFolder folder;
   {
     SealedFile out(folder / "a.h5");

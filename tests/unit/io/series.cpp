@@ -29,7 +29,7 @@ TEST_CASE("rows are in the file at once and read back to the same bits") {
   CHECK(read_text(folder / "series.csv") == "step,time_orbits,energy\n0,0,0.30000000000000004\n10,1e-300,-inf\n");
 }
 
-TEST_CASE("after a restart the series is what it would have been without") {
+TEST_CASE("after a restart the series equals that of an uninterrupted run") {
   const TemporaryFolder folder;
   const auto once = folder / "once.csv", twice = folder / "twice.csv";
   Series whole = Series::begin(once, columns);
@@ -73,7 +73,7 @@ TEST_CASE("a file that is not this series is an error and stays as it is") {
   }
 }
 
-TEST_CASE("a file that loses its name is written anew with all its rows; one that lost its rows is an error") {
+TEST_CASE("a file that is renamed or removed is restored with all its rows; one that lost rows is an error") {
   const TemporaryFolder folder;
   const auto file = folder / "series.csv";
   Series series = Series::begin(file, columns);
@@ -145,7 +145,7 @@ TEST_CASE("a series that a tool of Windows saved is read, and goes on as it was"
   CHECK(read_text(file).starts_with(kept + "10,"));
 }
 
-TEST_CASE("a series whose times do not rise is damaged") {
+TEST_CASE("a series with decreasing times is damaged") {
   const TemporaryFolder folder;
   const auto file = folder / "series.csv";
   for (const std::string time : {"nan", "inf", "0.05", "-1"}) {

@@ -112,7 +112,7 @@ TEST_CASE("spins are in a snapshot where there are any, in rad/s") {
   CHECK(address(file, "VTKHDF/PointData/Spins") == address(file, "PartType1/Spins"));
 }
 
-TEST_CASE("a snapshot gives back how its state clumped, where it did") {
+TEST_CASE("a snapshot stores how a clumped state was made") {
   const TemporaryFolder folder;
   SnapshotMeta clumped = meta;
   clumped.clumping = {{"amplitude", {0.1 + 0.2}}, {"history_amplitude", {0.02, 1.0 / 3.0, 0.3}}};
@@ -243,7 +243,7 @@ TEST_CASE("another tool may change a snapshot, within what a patch can be") {
   CHECK_THROWS_WITH_AS(read_snapshot(file), doctest::Contains("not a Keeler snapshot"), IoError);
 }
 
-TEST_CASE("a snapshot whose particles come in pieces is that of the whole patch, byte by byte") {
+TEST_CASE("a snapshot written in pieces equals that of the whole patch, byte by byte") {
   const TemporaryFolder folder;
   const Patch patch = sample(SnapshotFile::piece + 4321);
   write_snapshot(folder / "whole.hdf", patch, meta);

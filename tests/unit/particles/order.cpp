@@ -14,7 +14,7 @@ using namespace keeler;
 
 namespace {
 
-// The slow and obvious way.
+// The plain algorithm as reference.
 std::vector<std::uint32_t> twin(const std::vector<std::uint64_t>& ids) {
   std::vector<std::uint32_t> order(ids.size());
   std::iota(order.begin(), order.end(), 0);
@@ -24,7 +24,7 @@ std::vector<std::uint32_t> twin(const std::vector<std::uint64_t>& ids) {
 
 } // namespace
 
-TEST_CASE("particles in the order of any ids") {
+TEST_CASE("particles are ordered by any ids") {
   CHECK(order_by_id({}).empty());
   const std::vector<std::uint64_t> farthest = {5, std::numeric_limits<std::uint64_t>::max(), 0};
   CHECK(order_by_id(farthest) == std::vector<std::uint32_t>{2, 0, 1});

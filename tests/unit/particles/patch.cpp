@@ -8,7 +8,7 @@ namespace patch_test {
 
 using namespace keeler;
 
-TEST_CASE("a patch lists particles by id and gives the elements back") {
+TEST_CASE("a patch lists particles by id and converts back to elements") {
   const Frequencies f{0.99458, 1.00539};
   Particles particles;
   particles.ids = {5, 2, 9};
@@ -25,7 +25,7 @@ TEST_CASE("a patch lists particles by id and gives the elements back") {
     CHECK(std::fabs(d) < 1e-14);
 }
 
-TEST_CASE("a patch that no run can start from is named") {
+TEST_CASE("an invalid patch is an error that names the particle") {
   Patch patch;
   patch.positions = {Vec3::Zero(), Vec3(3.0, 0.0, 0.0)};
   patch.velocities = {Vec3::Zero(), Vec3::Zero()};

@@ -36,7 +36,7 @@ TEST_CASE("each row of populations has its number of particles, its radius and i
   CHECK(lightest == 20);
 }
 
-TEST_CASE("drawn radii have the moments of the law and depend on the seed alone") {
+TEST_CASE("drawn radii have the moments of the law and depend only on the seed") {
   for (const double q : {1.0, 2.9, 3.0, 4.0}) {
     const SizeLaw law = power_sizes(q, 0.5, 5.0);
     const std::vector<double> radii = draw_radii(law, 20000, 4);
@@ -65,7 +65,7 @@ TEST_CASE("equal sizes are exactly equal, listed sizes are used in turn") {
   CHECK(listed.largest == 2.0);
 }
 
-TEST_CASE("radii of a list as long as the particles are many are dealt out exactly, each once") {
+TEST_CASE("a list with as many radii as particles uses each exactly once") {
   std::vector<double> radii;
   for (int k = 0; k < 500; ++k)
     radii.push_back(0.1 + 1.0 / (1.0 + k));
@@ -81,7 +81,7 @@ TEST_CASE("radii of a list as long as the particles are many are dealt out exact
       CHECK(thrice[3 * k + copy] == radii[k]);
 }
 
-TEST_CASE("of tabulated sizes each has its number, and its share of any other number") {
+TEST_CASE("tabulated sizes have their numbers, and their fractions of any other number") {
   const SizeLaw law = tabulated_sizes({{30.0, 1}, {1.0, 19989}, {2.0, 10}});
   CHECK(law.smallest == 1.0);
   CHECK(law.largest == 30.0);
@@ -99,7 +99,7 @@ TEST_CASE("of tabulated sizes each has its number, and its share of any other nu
   }
 }
 
-TEST_CASE("whatever the count, each size of a list goes to one particle, and to any one as often") {
+TEST_CASE("for any count, each size of a list is used once, by any particle with equal probability") {
   std::vector<double> numbers;
   for (std::size_t count = 1; count <= 300; ++count) {
     numbers.push_back(static_cast<double>(count));

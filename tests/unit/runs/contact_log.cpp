@@ -100,12 +100,12 @@ TEST_CASE("the log holds what an observer sees, in SI") {
     CHECK(row.low_id == r.low_id);
     CHECK(row.high_id == r.high_id);
     CHECK(row.image == r.image);
-    CHECK(row.place == r.place);
+    CHECK(row.position == r.place);
     CHECK(row.normal_speed == r.normal_speed * omega);
     CHECK(row.tangential_speed == r.tangential_speed * omega);
     CHECK(row.fast == r.fast);
     CHECK(r.radius_sum == doctest::Approx(patch.radii[r.low_id] + patch.radii[r.high_id]));
-    CHECK(std::fabs(row.place.x()) < scene.size_x);
+    CHECK(std::fabs(row.position.x()) < scene.size_x);
     CHECK((k == 0 || rows[k - 1].time_orbits <= row.time_orbits));
   }
   double lost = 0.0;

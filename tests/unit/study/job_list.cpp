@@ -24,7 +24,7 @@ TEST_CASE("a list of jobs stops, is continued, and does nothing twice") {
                       return Json{{"square", k * k}};
                     }});
   double share = 0.0;
-  const auto progress = [&](const Progress& p) { share = p.share; };
+  const auto progress = [&](const Progress& p) { share = p.fraction; };
   {
     JobList list(file);
     CHECK_FALSE(list.run(jobs, progress, stop));

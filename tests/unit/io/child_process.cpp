@@ -1,4 +1,4 @@
-#include "apart.hpp"
+#include "child_process.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/interrupt.hpp>
@@ -13,16 +13,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace apart_test {
+namespace child_process_test {
 
 using namespace keeler;
 
 namespace {
 
-constexpr ApartLimits small = {.memory = std::size_t{1} << 28, .cpu_s = 1, .wall_s = 1};
+constexpr ChildLimits small = {.memory = std::size_t{1} << 28, .cpu_s = 1, .wall_s = 1};
 
-double apart(const std::function<double()>& read, const ApartLimits& limits = small) {
-  return read_apart<double>("read it", limits, read);
+double apart(const std::function<double()>& read, const ChildLimits& limits = small) {
+  return read_in_child<double>("read it", limits, read);
 }
 
 bool has_children() {
@@ -33,23 +33,23 @@ volatile double sink = 0.0; // work that no compiler leaves out
 
 } // namespace
 
-TEST_CASE("values come back as they were") {
+TEST_CASE("values are returned unchanged") {
   using Value = std::map<std::string, std::vector<double>>;
   const Value value = {{"", {}}, {"few", {1.0, -0.0}}, {"many", std::vector<double>(300'000, 0.1)}};
-  CHECK(read_apart<Value>("read it", small, [&] { return value; }) == value);
+  CHECK(read_in_child<Value>("read it", small, [&] { return value; }) == value);
   const std::vector<Vec3> places = {Vec3(1, 2, 3), Vec3(4, 5, 6)};
-  CHECK(read_apart<std::vector<Vec3>>("read it", small, [&] { return places; }) == places);
+  CHECK(read_in_child<std::vector<Vec3>>("read it", small, [&] { return places; }) == places);
   const std::vector<std::string> texts = {"", std::string("a\0b", 3), std::string(100'000, 'x')};
-  CHECK(read_apart<std::vector<std::string>>("read it", small, [&] { return texts; }) == texts);
+  CHECK(read_in_child<std::vector<std::string>>("read it", small, [&] { return texts; }) == texts);
   CHECK(!has_children());
 }
 
-TEST_CASE("an error is the same error here") {
+TEST_CASE("an error in the child is rethrown here") {
   CHECK_THROWS_WITH_AS(apart([]() -> double { throw UsageError("do this"); }), "do this", UsageError);
   CHECK_THROWS_WITH_AS(apart([]() -> double { throw IoError("cannot do that"); }), "cannot do that", IoError);
 }
 
-TEST_CASE("what a child does to itself is one line here") {
+TEST_CASE("a crash of the child is an error of one line here") {
   CHECK_THROWS_WITH_AS(apart([]() -> double { std::abort(); }), doctest::Contains("cannot read it: the library breaks"),
                        IoError);
   CHECK_THROWS_WITH_AS(apart([]() -> double { _exit(0); }), doctest::Contains("breaks on it"), IoError);
@@ -61,7 +61,7 @@ TEST_CASE("what a child does to itself is one line here") {
   CHECK(!has_children());
 }
 
-TEST_CASE("a child that does not end is ended") {
+TEST_CASE("a child that does not end is killed") {
   SUBCASE("it computes") {
     CHECK_THROWS_WITH_AS(apart(
                              []() -> double {
@@ -82,7 +82,7 @@ TEST_CASE("a child that does not end is ended") {
 }
 
 #ifndef KEELER_SANITIZED // sanitizers take terabytes of addresses
-TEST_CASE("a child gets no more memory than it may have") {
+TEST_CASE("a child cannot exceed its memory limit") {
   const auto eat = []() -> double {
     std::vector<double> meal(small.memory, 1.0); // eight times as many bytes
     sink = meal.back();
@@ -92,23 +92,23 @@ TEST_CASE("a child gets no more memory than it may have") {
 }
 #endif
 
-TEST_CASE("more than a child may send is not taken") {
+TEST_CASE("a child cannot send more than its limit") {
   using Value = std::vector<double>;
-  const ApartLimits limits = {.memory = 8000, .cpu_s = 1, .wall_s = 2};
-  CHECK_THROWS_WITH_AS(run_apart(
+  const ChildLimits limits = {.memory = 8000, .cpu_s = 1, .wall_s = 2};
+  CHECK_THROWS_WITH_AS(run_in_child(
                            "read it", limits, [] { return [](Sender& sender) { sender(Value(1000)); }; },
                            [](Receiver& receiver) {
                              Value value;
                              receiver(value);
                            }),
-                       doctest::Contains("cannot read it: more comes of it"), IoError);
+                       doctest::Contains("cannot read it: it yields more data"), IoError);
 }
 
-TEST_CASE("who waits for a child can be interrupted") {
+TEST_CASE("waiting for a child can be interrupted") {
   const std::atomic<bool> stop = true;
   const Interruptible work(stop);
   CHECK_THROWS_AS(apart([] { return 1.0; }), Interrupted);
   CHECK(!has_children());
 }
 
-} // namespace apart_test
+} // namespace child_process_test

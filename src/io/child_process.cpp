@@ -1,4 +1,4 @@
-#include "apart.hpp"
+#include "child_process.hpp"
 
 #include <keeler/core/error_at_hand.hpp>
 
@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -37,7 +38,7 @@ constexpr bool sanitized = false;
 
 using Work = std::function<std::function<void(Sender&)>()>;
 
-// How a parcel begins: the result follows, or a message.
+// First byte of a parcel: the result follows, or a message.
 enum Kind : std::uint8_t { has_result, has_usage_error, has_io_error, has_fault };
 
 void lower_limit(decltype(RLIMIT_CPU) resource, rlim_t limit) {
@@ -47,7 +48,7 @@ void lower_limit(decltype(RLIMIT_CPU) resource, rlim_t limit) {
   setrlimit(resource, &now);
 }
 
-// Pages of this process, in bytes; 0 where the system does not tell.
+// Returns the size of this process's address space in bytes; 0 if unknown.
 std::size_t address_space() {
   unsigned long pages = 0;
   if (std::FILE* const file = std::fopen("/proc/self/statm", "r")) {
@@ -58,26 +59,27 @@ std::size_t address_space() {
   return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
-// Its parent alone heeds the keyboard, and ends it by dying or by losing patience. It says nothing to the user.
-void become_apart(const ApartLimits& limits, pid_t parent) {
+// Sets signals, streams and limits of the child. Only the parent reacts to the keyboard; the child ends with its parent
+// or when its limits are exceeded, and prints nothing.
+void isolate_child(const ChildLimits& limits, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent)
     _exit(1);
-  for (const int heard : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGUSR2})
-    std::signal(heard, SIG_IGN);
+  for (const int ignored : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGUSR2})
+    std::signal(ignored, SIG_IGN);
   for (const int deadly : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGPIPE})
     std::signal(deadly, SIG_DFL);
-  const int nothing = open("/dev/null", O_RDWR);
+  const int null_device = open("/dev/null", O_RDWR);
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-    dup2(nothing, stream);
+    dup2(null_device, stream);
   lower_limit(RLIMIT_CORE, 0);
   lower_limit(RLIMIT_CPU, limits.cpu_s);
-  const std::size_t have = address_space();
-  if (!sanitized && have > 0) // sanitizers reserve terabytes of addresses
-    lower_limit(RLIMIT_AS, have + limits.memory);
+  const std::size_t used = address_space();
+  if (!sanitized && used > 0) // sanitizers reserve terabytes of addresses
+    lower_limit(RLIMIT_AS, used + limits.memory);
 }
 
-[[noreturn]] void live_apart(int descriptor, const Work& work) {
+[[noreturn]] void run_child(int descriptor, const Work& work) {
   Sender sender(descriptor);
   try {
     const std::function<void(Sender&)> send = work();
@@ -94,21 +96,22 @@ void become_apart(const ApartLimits& limits, pid_t parent) {
   _exit(0);
 }
 
-/// A child, which does not outlive this.
-class Process {
+/// Owns a child process; the destructor kills it.
+class ChildProcess {
 public:
-  explicit Process(pid_t id) : id_(id) {}
-  ~Process() {
+  explicit ChildProcess(pid_t id) : id_(id) { assert(id > 0); }
+  ~ChildProcess() {
     if (id_ > 0) {
       kill(id_, SIGKILL);
       wait();
     }
   }
-  Process(const Process&) = delete;
-  Process& operator=(const Process&) = delete;
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// How it ended, in words.
+  /// Waits for its end and returns the reason for a message. Precondition: not called before.
   std::string end() {
+    assert(id_ > 0);
     const int status = wait();
     if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL))
       return endless;
@@ -128,12 +131,12 @@ private:
   pid_t id_;
 };
 
-class End {
+class PipeEnd {
 public:
-  explicit End(int descriptor) : descriptor_(descriptor) {}
-  ~End() { close(); }
-  End(const End&) = delete;
-  End& operator=(const End&) = delete;
+  explicit PipeEnd(int descriptor) : descriptor_(descriptor) {}
+  ~PipeEnd() { close(); }
+  PipeEnd(const PipeEnd&) = delete;
+  PipeEnd& operator=(const PipeEnd&) = delete;
   int descriptor() const { return descriptor_; }
   void close() {
     if (descriptor_ >= 0)
@@ -144,7 +147,7 @@ private:
   int descriptor_;
 };
 
-// What came of it: the result is taken, or there is a message.
+// The outcome: the result has been taken, or there is a message.
 struct Answer {
   std::uint8_t kind = has_result;
   std::string message;
@@ -162,29 +165,31 @@ Answer receive(Receiver& receiver, const std::function<void(Receiver&)>& take) {
 
 } // namespace
 
-ApartLimits limits_for(std::size_t file_bytes) {
+ChildLimits limits_for(std::size_t file_bytes) {
   const auto megabytes = static_cast<unsigned>(file_bytes >> 20);
   return {.memory = (std::size_t{1} << 30) + 16 * file_bytes, .cpu_s = 20 + megabytes, .wall_s = 60 + 3 * megabytes};
 }
 
-void run_apart(const std::string& what, const ApartLimits& limits,
-               const std::function<std::function<void(Sender&)>()>& work, const std::function<void(Receiver&)>& take) {
+void run_in_child(const std::string& what, const ChildLimits& limits,
+                  const std::function<std::function<void(Sender&)>()>& work,
+                  const std::function<void(Receiver&)>& take) {
+  assert(limits.memory > 0 && limits.cpu_s > 0 && limits.wall_s > 0);
   const auto fail = [&](const std::string& reason) { throw IoError(fmt::format("cannot {}: {}", what, reason)); };
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0)
     fail(fmt::format("no pipe ({})", std::strerror(errno)));
-  fcntl(ends[1], F_SETPIPE_SZ, 1 << 20); // fewer turns between the two; the default will do
-  const End out(ends[0]);
-  End in(ends[1]);
+  fcntl(ends[1], F_SETPIPE_SZ, 1 << 20); // fewer context switches; failure is harmless
+  const PipeEnd out(ends[0]);
+  PipeEnd in(ends[1]);
   const pid_t parent = getpid(), id = fork();
   if (id < 0)
     fail(fmt::format("no process ({})", std::strerror(errno)));
   if (id == 0) {
-    become_apart(limits, parent);
-    live_apart(in.descriptor(), work);
+    isolate_child(limits, parent);
+    run_child(in.descriptor(), work);
   }
   in.close();
-  Process child(id);
+  ChildProcess child(id);
   Receiver receiver(out.descriptor(), limits.memory,
                     std::chrono::steady_clock::now() + std::chrono::seconds(limits.wall_s));
   Answer answer;
