@@ -25,7 +25,7 @@ for name in report.md report.html finders.csv finders.json figures; do
 done
 mkdir "$work/full"
 touch "$work/full/mine"
-refuses "a folder with other things" "holds no study" study finders --quick -o "$work/full"
+refuses "a folder with other things" "is not the folder of a study" study finders --quick -o "$work/full"
 
 # Twelve finders, four states, three steps, two repeats.
 expected=state,step_orbits,finder,repeat,cpu_s,calls,hits,missed,false_hits,late,misordered,evaluations,ns_per_call
@@ -36,7 +36,7 @@ awk -F, '$3 == "certified" && $8 + $9 + $10 + $11 != 0 { wrong = 1 } END { exit 
 awk -F, 'NR > 1 && !($5 > 0 && $6 > 0 && $13 > 0) { wrong = 1 } END { exit wrong }' "$folder/finders.csv" ||
   fail "a row without time or calls"
 grep -q '"rows"' "$folder/finders.json" || fail "finders.json has no rows"
-for words in "The paper's claims" "Truth: what each finder missed" "Figure 4" "Does it pay to keep the cubics?" \
+for words in "The paper's claims" "Truth: what each finder missed" "Figure 4" "Does it pay to store the cubics?" \
   "Where is the best step" "Particles at different local times" "A conservative rejection" "Straight paths drift"; do
   grep -qF "$words" "$folder/report.md" || fail "the report has no '$words'"
 done

@@ -39,7 +39,7 @@ done
 [ "$(wc -l <"$work/whole/settings.csv")" -eq 5 ] || fail "settings.csv: $(cut -c 1-100 "$work/whole/settings.csv")"
 [ "$(column reference 2 "$work/whole/settings.csv")" = true ] || fail "the shortest interval is not the reference"
 [ "$(column kick_interval_orbits 4 "$work/whole/settings.csv")" = 0.008 ] || fail "no interval of 8/1000"
-for words in "**Verdict**" "could not have seen" "Cost and health" "kick-auto" "vertical transmission"; do
+for words in "**Verdict**" "could not detect" "Cost and health" "kick-auto" "vertical transmission"; do
   grep -qF "$words" "$work/whole/report.md" || fail "the report has no '$words'"
 done
 grep -q 'src="[^d]' "$work/whole/report.html" && fail "the page needs other files"
@@ -71,7 +71,7 @@ refuses "other seeds" "another seeds (2)" "${kicks[@]}" --seeds 3 -o "$work/whol
 refuses "another scene" "was made with particles.density = 600" "${kicks[@]}" --set particles.density=500.0 -o "$work/whole"
 mkdir "$work/full"
 touch "$work/full/mine"
-refuses "other content" "holds no study" "${kicks[@]}" -o "$work/full"
+refuses "other content" "is not the folder of a study" "${kicks[@]}" -o "$work/full"
 refuses_with 4 "no folder can be made" "cannot make the folder" "${kicks[@]}" -o "$work/scene.toml/below"
 printf 'scene = "scene.toml"\n' >"$work/grid.toml"
 refuses "a sweep in a study" "holds no sweep" sweep "$work/grid.toml" -o "$work/whole"
@@ -79,7 +79,7 @@ refuses "a sweep in a study" "holds no sweep" sweep "$work/grid.toml" -o "$work/
 # What cannot be studied.
 sed '/^\[gravity\]/,/^solver/d' "$work/scene.toml" >"$work/plain.toml"
 none=$work/none
-refuses "kicks without gravity" 'no self-gravity, so nothing kicks; add [gravity]' study kicks "$work/plain.toml" -o "$none"
+refuses "kicks without gravity" 'no self-gravity, so it has no kick interval; add [gravity]' study kicks "$work/plain.toml" -o "$none"
 refuses "solvers without gravity" "no solver to study" study mesh "$work/plain.toml" -o "$none"
 refuses "one size" "one size, 1 m" study sizes "$work/scene.toml" -o "$none"
 refuses "a snapshot" "starts from a snapshot" study step "$work/scene.toml" -o "$none" \
@@ -107,7 +107,7 @@ runs 1 study step "$work/plain.toml" -o "$work/step" "${short[@]}" -q
 one_line "a damaged run" "a run is missing, the report has the reasons; remove what is damaged from '$work/step/runs'"
 grep -q "^$(basename "${damaged[0]}"),.*,failed,.*series.csv" "$work/step/study.csv" || fail "a damaged run: $(cut -c 1-200 "$work/step/study.csv")"
 runs 0 study box "$work/plain.toml" -o "$work/box" "${short[@]}"
-grep -q "no common one" "$work/box/report.md" || fail "the report does not say that boxes have starts of their own"
+grep -q "no common state" "$work/box/report.md" || fail "the report does not say that boxes have no common state"
 runs 0 study sizes "$work/plain.toml" -o "$work/sizes" "${short[@]}" \
   --set 'particles.sizes={ law = "power", exponent = 3, min = 0.5, max = 2 }'
 [ "$(column setting 4 "$work/sizes/settings.csv")" = equal ] || fail "sizes: $(cut -c 1-80 "$work/sizes/settings.csv")"
