@@ -78,7 +78,7 @@ END
 refuses "half a thread" "from 1 to 1024; give a whole number" run "$work/scene.toml" -o "$none" --threads 1.5
 runs 0 bench drift --count 2e2 --repeats 1e0 --threads 1.0
 refuses "an orbit in words" "--since: 'x' is not a number; \"keeler analyze --help\"" analyze run --since x
-refuses "a word too many" "'keeler check' has no place for 'b'" check "$work/scene.toml" b
+refuses "a word too many" "'keeler check' takes no further argument 'b'" check "$work/scene.toml" b
 refuses "two folders" "--output is given 2 times, and takes one value" run "$work/scene.toml" -o "$none" -o "$none"
 refuses "an option without its value" "--wall-time has no value" run "$work/scene.toml" -o "$none" --wall-time
 nothing_left "bad values of options"
@@ -86,8 +86,8 @@ nothing_left "bad values of options"
 # No result takes the place of what it is made from.
 cp "$work/scene.toml" "$work/kept.toml"
 printf 'x,y,z,r\n0,0,0,1\n' >"$work/table.csv"
-refuses "a scene's own place" "is what the result is made from" generate "$work/kept.toml" -o "$work/./kept.toml" --force
-refuses "a table's own place" "is what the result is made from" generate "$work/kept.toml" --from-table "$work/table.csv" \
+refuses "a scene's own place" "is the source of the result" generate "$work/kept.toml" -o "$work/./kept.toml" --force
+refuses "a table's own place" "is the source of the result" generate "$work/kept.toml" --from-table "$work/table.csv" \
   -o "$work/table.csv" --force
 cmp -s "$work/scene.toml" "$work/kept.toml" || fail "a scene was replaced by its state"
 

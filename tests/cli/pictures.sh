@@ -33,7 +33,7 @@ cp -r "$work/run" "$work/kept"
 keeps() {
   local file=$1
   shift
-  refuses "$* over $file" "exists already, and is not" "$@" "$work/run/$file"
+  refuses "$* over $file" "exists already and is not" "$@" "$work/run/$file"
   cmp -s "$work/run/$file" "$work/kept/$file" || fail "$*: $file is another one"
 }
 cp "$work/run/series.csv" "$work/run/series.png"

@@ -14,7 +14,7 @@ kill -TERM "$process"
 code=0
 wait "$process" || code=$?
 [ "$code" -eq 75 ] || fail "a stopped study: exit $code: $(tail -n 3 "$work/err")"
-grep -q "the same command goes on from here" "$work/err" || fail "a stopped study does not say how to go on"
+grep -q "the same command continues from here" "$work/err" || fail "a stopped study does not say how to continue"
 head -n 3 "$folder/measurements.jsonl" >"$work/kept"
 refuses "another count" "another count (100)" study finders --quick --count 101 -o "$folder"
 runs 0 study finders --quick --count 100 -o "$folder"

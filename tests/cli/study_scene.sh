@@ -61,7 +61,7 @@ kill -TERM "$study"
 code=0
 wait "$study" || code=$?
 [ "$code" -eq 75 ] || fail "TERM: exit $code: $(tail -n 3 "$work/err")"
-grep -q "the same command goes on from here" "$work/err" || fail "a stopped study does not say how to go on"
+grep -q "the same command continues from here" "$work/err" || fail "a stopped study does not say how to continue"
 runs 0 "${kicks[@]}" -o "$work/stopped"
 same_tables "stopped" "$work/stopped"
 
@@ -104,7 +104,7 @@ PATH=$work/bin:$PATH runs 4 study step "$work/plain.toml" -o "$work/step" "${sho
 one_line "a figure that fails" "gnuplot failed on '$work/step/figures/pareto.gp'"
 [ -s "$work/step/report.md" ] || fail "a figure that fails: no report"
 runs 1 study step "$work/plain.toml" -o "$work/step" "${short[@]}" -q
-one_line "a damaged run" "a run is missing, the report has the reasons; remove what is damaged from '$work/step/runs'"
+one_line "a damaged run" "a run is missing, the report has the reasons; remove the damaged files from '$work/step/runs'"
 grep -q "^$(basename "${damaged[0]}"),.*,failed,.*series.csv" "$work/step/study.csv" || fail "a damaged run: $(cut -c 1-200 "$work/step/study.csv")"
 runs 0 study box "$work/plain.toml" -o "$work/box" "${short[@]}"
 grep -q "no common state" "$work/box/report.md" || fail "the report does not say that boxes have no common state"

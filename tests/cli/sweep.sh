@@ -219,7 +219,7 @@ one_line "a figure that fails" "gnuplot failed on '$work/texts/figure.gp'"
 runs 0 sweep "$work/small.toml" -o "$work/damaged" -q
 sed -i 's/.*/x/' "$work/damaged/runs/seed-1/series.csv"
 runs 1 sweep "$work/small.toml" -o "$work/damaged" -q
-one_line "a damaged run" "1 finished run cannot be measured, sweep.csv has the reasons; remove what is damaged"
+one_line "a damaged run" "1 finished run cannot be measured, sweep.csv has the reasons; remove the damaged files"
 prints "a damaged run" "2 runs: 1 finished, 1 failed"
 [ "$(column finished_runs 2 "$work/damaged/points.csv")" = 1 ] || fail "a damaged run: $(cat "$work/damaged/points.csv")"
 grep -q "^seed-1,1,failed,.*series.csv" "$work/damaged/sweep.csv" || fail "a damaged run: $(cut -c 1-200 "$work/damaged/sweep.csv")"

@@ -37,7 +37,7 @@ grep -q "gravity" "$work/out" && fail "gravity in a scene that has none: $(cat "
 
 refuses "a file that exists" "exists already" tune "$scene" -o "$work/tuned.toml"
 refuses "a folder" "is a folder" tune "$scene" -o "$work"
-refuses "a file beside --set" "--output cannot stand beside --set" tune "$scene" -o "$work/new.toml" --set time.end=1
+refuses "a file beside --set" "--output cannot be combined with --set" tune "$scene" -o "$work/new.toml" --set time.end=1
 refuses "no such quality" "best" tune "$scene" --quality best
 refuses "a force error out of range" "is not a force error" tune "$scene" --force-error 2
 refuses "no scene" "cannot be read" tune "$work/absent.toml"
