@@ -1,5 +1,5 @@
 #!/bin/bash
-# bench.sh KEELER SOURCE_DIR: the numbers that benches print, on states as small as they can be.
+# bench.sh KEELER SOURCE_DIR: the numbers that benches print, on the smallest states.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 number='-?[0-9.]+(e[-+]?[0-9]+)?'

@@ -1,12 +1,12 @@
 #!/bin/bash
 # check.sh KEELER SOURCE_DIR: `keeler check` accepts the examples, and answers each bad scene with exit code 2 and exactly
-# one line on stderr that holds the expected words.
+# one line on stderr that contains the expected words.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 
 good=$source_dir/examples/a-ring-wakes/scene.toml
 
-# bad NAME WORDS SED-COMMAND: the good scene, changed, is refused
+# bad NAME WORDS SED-COMMAND: the good scene, changed by the command, is refused
 bad() {
   local scene=$work/scene.toml
   sed "$3" "$good" >"$scene"

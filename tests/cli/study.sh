@@ -1,5 +1,5 @@
 #!/bin/bash
-# study.sh KEELER SOURCE_DIR: studies from start to report; that of the finders interrupted and continued.
+# study.sh KEELER SOURCE_DIR: studies from start to report; the finder study is interrupted and continued.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 folder=$work/study
@@ -51,7 +51,7 @@ if command -v gnuplot >/dev/null; then
 fi
 grep -q 'src="[^d]' "$folder/report.html" && fail "the page needs other files"
 
-# The gravity study, as small as it can be.
+# The smallest gravity study.
 folder=$work/gravity
 small=(study gravity --count 100 --repeats 1 --orbits 0.01 --seeds 2 -o "$folder")
 runs 0 "${small[@]}"

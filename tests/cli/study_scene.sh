@@ -1,12 +1,12 @@
 #!/bin/bash
-# study_scene.sh KEELER SOURCE_DIR: a study of a user's scene gives the same tables however it was killed or stopped; what
-# a scene cannot show is refused in one line, before anything is written.
+# study_scene.sh KEELER SOURCE_DIR: the tables of a study of a user's scene do not depend on kills and stops; an unsuitable
+# scene is refused in one line, before anything is written.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
 kicks=(study kicks "$work/scene.toml" --quick --grow 0.3 --orbits 1.5)
 
-# without_cost FILE: without the columns of processor time and memory, which no two runs share
+# without_cost FILE: prints the table without the columns of processor time and memory, which differ between runs
 without_cost() {
   awk -F, 'NR == 1 { for (k = 1; k <= NF; ++k) keep[k] = $k !~ /^(cpu_s|peak_memory)/ }
     { line = ""; for (k = 1; k <= NF; ++k) if (keep[k]) line = line "," $k; print line }' "$1"
@@ -17,12 +17,12 @@ same_tables() {
     cmp <(without_cost "$work/whole/$name") <(without_cost "$2/$name") || fail "$1: $name differs"
   done
 }
-# column NAME ROW FILE
+# column NAME ROW FILE: prints one cell of a table
 column() {
   awk -F, -v name="$1" -v row="$2" 'NR == 1 { for (k = 1; k <= NF; ++k) if ($k == name) column = k }
     NR == row { print $column }' "$3"
 }
-# study_until PATTERN FOLDER: starts the study and waits for a file of this name; leaves $study
+# study_until PATTERN FOLDER: starts the study and waits for a file of this name; sets $study
 study_until() {
   "$keeler" "${kicks[@]}" -o "$2" --jobs 2 >"$work/out" 2>"$work/err" &
   study=$!
@@ -50,7 +50,7 @@ name=kick-0.008_seed-1
 runs 0 run "$work/whole/scenes/$name.toml" -o "$work/by_hand"
 same_state "by hand" "$work/whole/runs/$name" "$work/by_hand"
 
-# Killed among the settings, stopped while the states grow: the same command goes on.
+# Killed among the settings, stopped while the common states evolve: the same command continues.
 study_until "runs/kick-*/checkpoint_*.h5" "$work/killed"
 kill -9 "$study"
 wait "$study" 2>/dev/null
@@ -76,7 +76,7 @@ refuses_with 4 "no folder can be made" "cannot make the folder" "${kicks[@]}" -o
 printf 'scene = "scene.toml"\n' >"$work/grid.toml"
 refuses "a sweep in a study" "holds no sweep" sweep "$work/grid.toml" -o "$work/whole"
 
-# What cannot be studied.
+# Unsuitable scenes.
 sed '/^\[gravity\]/,/^solver/d' "$work/scene.toml" >"$work/plain.toml"
 none=$work/none
 refuses "kicks without gravity" 'no self-gravity, so it has no kick interval; add [gravity]' study kicks "$work/plain.toml" -o "$none"
@@ -89,7 +89,7 @@ refuses "too short" "give 1.5 or more" study step "$work/scene.toml" -o "$none" 
 refuses "a wrong key" "unknown key" study step "$work/scene.toml" -o "$none" --set time.stop=1
 [ -e "$none" ] && fail "a refused study wrote something"
 
-# The other kinds, as small as they can be.
+# The smallest studies of the other kinds.
 short=(--quick --grow 0.1 --orbits 1.5)
 runs 0 study mesh "$work/scene.toml" -o "$work/mesh" "${short[@]}"
 [ "$(column force_error 2 "$work/mesh/settings.csv")" != "" ] || fail "no force error"
