@@ -75,17 +75,17 @@ void ProgressLine::print(std::optional<double> fraction, const Parts& parts) {
   open_ = true;
 }
 
-double ProgressLine::quiet_s() const {
+double ProgressLine::patience_s() const {
   return terminal_ ? 0.5 : log_interval_s;
 }
 
 // Shows nothing for short starts.
 void ProgressLine::show(const StartProgress& p) {
   begin_phase("the start", 0.0);
-  if (p.elapsed_s >= quiet_s() && due(p.elapsed_s, p.share == 1.0))
+  if (p.elapsed_s >= patience_s() && due(p.elapsed_s, p.share == 1.0))
     print(p.share, {fmt::format("{:3.0f} % of the start", 100.0 * p.share), clock(p.remaining_s) + " left"});
   if (p.share == 1.0)
-    next_s_ = 0.0; // the next phase counts its time from 0
+    next_s_ = 0.0; // what follows has a clock of its own
 }
 
 void ProgressLine::show(const RunProgress& p) {
@@ -113,7 +113,7 @@ void ProgressLine::show(const Progress& p) {
 }
 
 void ProgressLine::show_if_long(const Progress& p) {
-  if (p.elapsed_s >= quiet_s())
+  if (p.elapsed_s >= patience_s())
     show(p);
 }
 

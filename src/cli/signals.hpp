@@ -1,5 +1,5 @@
 // Signals. INT, TERM, HUP and USR1 request a stop: the run finishes its step, writes a checkpoint and stops. A second
-// signal, or a stop that takes longer than RunRequests::patience_s, makes it give up the step. A third signal ends the
+// signal, or a stop that takes too long, makes it give up the step. A third signal ends the
 // program. Signals within a quarter of a second of the first count as one request: a batch system signals every process
 // of a job, and a sweep also passes the signal on to its runs. USR2 requests a snapshot. The signals are blocked from
 // the start of the program until the command line is read, so that none arrives before its handler is installed.
