@@ -51,7 +51,7 @@ void refuse_other_content(const RunFolders& folders) {
 }
 
 // What the runs would say, each thing once.
-void report_warnings(const Plan& plan, const Notice& notice) {
+void tell_doubts(const Plan& plan, const Notice& notice) {
   std::set<std::string> told;
   const auto tell = [&](const PlannedRun& run, const std::string& text) {
     if (told.insert(text).second)
@@ -121,7 +121,7 @@ SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
                                 pluralize(beside, "run"), (folders.path() / "runs").string()));
   if (!settings.tables_only) {
     result.began = true;
-    report_warnings(plan, settings.notice);
+    tell_doubts(plan, settings.notice);
     work_on(plan.runs, folders, claims, {settings.jobs, settings.threads_per_run, settings.progress, settings.notice},
             requests);
   }
