@@ -63,8 +63,8 @@ inline std::vector<Sphere> swarm(std::size_t count, double small, double thickne
     });
     if (!free)
       continue;
-    const double peculiar_speed = speed * random.uniform();
-    spheres.push_back({place, peculiar_speed * random.direction(), small, small * small * small});
+    const double own_speed = speed * random.uniform();
+    spheres.push_back({place, own_speed * random.direction(), small, small * small * small});
   }
   return spheres;
 }

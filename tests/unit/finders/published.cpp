@@ -16,7 +16,7 @@ using namespace keeler;
 namespace {
 
 // The share of calls in a histogram from one bin on.
-double fraction_from(const FinderCounts::Histogram& histogram, int first) {
+double share_from(const FinderCounts::Histogram& histogram, int first) {
   double all = 0.0, late = 0.0;
   for (int k = 0; k < FinderCounts::bins; ++k) {
     all += static_cast<double>(histogram[k]);
@@ -85,10 +85,10 @@ TEST_CASE("grid pairs of a settled state at a thousandth of an orbit: iterations
     CHECK(ratio(a.lost, contacts) < 0.02);
     CHECK(a.invented == 0);
     if (a.name == "original")
-      CHECK(fraction_from(hits.by_iterations, 20) > 0.5);
+      CHECK(share_from(hits.by_iterations, 20) > 0.5);
     else
-      CHECK(fraction_from(hits.by_iterations, 6) < 0.02);
-    CHECK(fraction_from(total.by_iterations, 1) < 0.5); // most calls end at once
+      CHECK(share_from(hits.by_iterations, 6) < 0.02);
+    CHECK(share_from(total.by_iterations, 1) < 0.5); // most calls end at once
   }
 
   const auto passes = [&](const char* name) { return all.of(name).counts.total().iterations; };
@@ -101,8 +101,8 @@ TEST_CASE("grid pairs of a settled state at a thousandth of an orbit: iterations
   CHECK(evaluations("newton-relative") == evaluations("newton-full")); // the same search on the same path
   CHECK(evaluations("linear-full-no-start") > 3 * evaluations("linear-full") / 2);
   for (const char* linear : {"linear-full", "linear-cubic"}) { // the tail on misses
-    CHECK(fraction_from(all.of(linear).counts.of(FinderExit::gave_up).by_iterations, 10) > 0.9);
-    CHECK(fraction_from(all.of(linear).counts.total().by_iterations, 10) > 0.005);
+    CHECK(share_from(all.of(linear).counts.of(FinderExit::gave_up).by_iterations, 10) > 0.9);
+    CHECK(share_from(all.of(linear).counts.total().by_iterations, 10) > 0.005);
   }
 }
 
