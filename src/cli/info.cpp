@@ -137,7 +137,7 @@ void add_info(CLI::App& program, Action& action) {
     bool json = false, verify = false;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App& command = *program.add_subcommand("info", "show what is in a file or a folder of results");
+  CLI::App& command = *program.add_subcommand("info", "describe a file or a folder of results");
   command
       .add_option("FILE|DIR", options->path,
                   "a snapshot, a checkpoint or a file of contacts; the folder of a run, a sweep or a study")

@@ -141,7 +141,7 @@ void ProgressLine::show(const ClumpingProgress& p) {
   if (!p.settling) {
     parts.push_back(fmt::format("compared from orbit {:g} on", p.criterion.min_orbits()));
   } else if (p.settling->standing < p.criterion.min_standing) {
-    parts.push_back("no wakes stand out");
+    parts.push_back("no wakes above the noise");
   } else {
     const auto change = [&](const WindowMeans& means) {
       return fmt::format("{:.0f} % (settled at {:.0f} %)", 100.0 * means.change(), 100.0 * means.tolerance);

@@ -36,7 +36,7 @@ awk -F, '$3 == "certified" && $8 + $9 + $10 + $11 != 0 { wrong = 1 } END { exit 
 awk -F, 'NR > 1 && !($5 > 0 && $6 > 0 && $13 > 0) { wrong = 1 } END { exit wrong }' "$folder/finders.csv" ||
   fail "a row without time or calls"
 grep -q '"rows"' "$folder/finders.json" || fail "finders.json has no rows"
-for words in "The paper's claims" "Truth: what each finder missed" "Figure 4" "Does it pay to store the cubics?" \
+for words in "The paper's claims" "Errors of each finder" "Figure 4" "Does it pay to store the cubics?" \
   "Where is the best step" "Particles at different local times" "A conservative rejection" "Straight paths drift"; do
   grep -qF "$words" "$folder/report.md" || fail "the report has no '$words'"
 done

@@ -115,7 +115,7 @@ void Report::claims() {
 }
 
 void Report::truth() {
-  document_.heading("Truth: what each finder missed");
+  document_.heading("Errors of each finder");
   document_.paragraph(
       "Every call of an untimed run of each kind was also answered by the certified finder. **missed**: there is a "
       "contact, the finder found none. **false**: there is no contact, or the finder reported it while the spheres "

@@ -256,7 +256,7 @@ void write_gravity_tables(const GravityStudyData& data) {
 }
 
 void write_gravity_report(const GravityStudyData& data, bool with_figures) {
-  Document document("The gravity solvers: error, cost, and what comes of it");
+  Document document("The gravity solvers: error, cost and effect on the physics");
   introduce(data, document);
   show_front(data, with_figures, document);
   show_convergence(data, with_figures, document);
