@@ -69,11 +69,11 @@ number 'info["state"], info["remaining_s"] > 0, info["wall_s"] >= 0' "('running'
 kill -KILL "$process"
 wait "$process" 2>/dev/null
 accepts "killed" info "$work/works"
-prints "killed" "state       not running; \"keeler resume $work/works\" goes on"
+prints "killed" "state       not running; \"keeler resume $work/works\" continues"
 prints "killed" "wall time   not known"
 interrupted TERM 75 "$work/stopped"
 accepts "stopped" info "$work/stopped"
-prints "stopped" "state       stopped; \"keeler resume $work/stopped\" goes on"
+prints "stopped" "state       stopped; \"keeler resume $work/stopped\" continues"
 
 printf 'scene = "scene.toml"\nseeds = [1, 2]\n[set]\n"time.end" = 0.004\n' >"$work/grid.toml"
 runs 0 sweep "$work/grid.toml" -o "$work/sweep"

@@ -107,7 +107,7 @@ kill -TERM "$sweep" "${runs[@]}" # as a queue does it: to all
 code=0
 wait "$sweep" || code=$?
 [ "$code" -eq 75 ] || fail "TERM: exit $code: $(cat "$work/err")"
-grep -q "the same command goes on" "$work/err" || fail "TERM: no advice: $(cat "$work/err")"
+grep -q "the same command continues" "$work/err" || fail "TERM: no advice: $(cat "$work/err")"
 for process in "${runs[@]}"; do
   kill -0 "$process" 2>/dev/null && fail "TERM: a run goes on"
 done
