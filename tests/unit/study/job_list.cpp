@@ -23,13 +23,13 @@ TEST_CASE("a list of jobs stops, is continued, and does nothing twice") {
                       stop = k == 2;
                       return Json{{"square", k * k}};
                     }});
-  double fraction = 0.0;
-  const auto progress = [&](const Progress& p) { fraction = p.share; };
+  double share = 0.0;
+  const auto progress = [&](const Progress& p) { share = p.share; };
   {
     JobList list(file);
     CHECK_FALSE(list.run(jobs, progress, stop));
     CHECK(worked == 3);
-    CHECK(fraction == doctest::Approx(0.6));
+    CHECK(share == doctest::Approx(0.6));
   }
   std::ofstream(file, std::ios::app) << "{\"job\": \"job 3\", \"res"; // cut short by a crash
   stop = false;
@@ -37,7 +37,7 @@ TEST_CASE("a list of jobs stops, is continued, and does nothing twice") {
   CHECK(list.results().size() == 3);
   CHECK(list.run(jobs, progress, stop));
   CHECK(worked == 5);
-  CHECK(fraction == 1.0);
+  CHECK(share == 1.0);
   CHECK(list.results().at("job 4").at("square") == 16);
   CHECK(JobList(file).results().size() == 5);
 }
