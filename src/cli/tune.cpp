@@ -172,8 +172,7 @@ void warn(const Tuning& t) {
     say("no solver meets the force error with a margin for other seeds; the most accurate one is chosen");
   if (!t.meets_physics_error)
     say("no kick interval down to 1/1000 orbit meets the physics error with a margin for other seeds; this shortest "
-        "one "
-        "is chosen");
+        "one is chosen");
 }
 
 ExitCode tune_scene(const TuneOptions& options) {

@@ -68,16 +68,16 @@ void Report::introduction() {
   const auto made = [&](const char* key) { return data_.made.at(key); };
   document_.paragraph(fmt::format(
       "M. C. Lewis, \"Collision Finding for Particles on Non-linear Paths\" (draft), compares five ways to find the "
-      "time "
-      "at which two ring particles touch: {}. This is its experiment, with {} finders: {} states × {} time steps × {} "
-      "repeats, each {} orbit, one thread, processor time, medians. All runs of a state start from the same particles.",
+      "time at which two ring particles touch: {}. This is its experiment, with {} finders: {} states × {} time "
+      "steps × {} repeats, each {} orbit, one thread, processor time, medians. All runs of a state start from the "
+      "same particles.",
       fmt::join(paper_finders, ", "), all_finders().size(), data_.states.size(), data_.steps.size(), data_.repeats,
       study_orbits));
   document_.paragraph(
       "In the timed runs every candidate pair of the grid is passed to the finder, as in the paper, and self-gravity "
-      "is "
-      "off: it made the clumped states, and its cost is given with them. Sines and cosines are polynomials in the time "
-      "since mid-step; the paper's code evaluates full phases with the C library, so trigonometry is cheaper here.");
+      "is off: it made the clumped states, and its cost is given with them. Sines and cosines are polynomials in the "
+      "time since mid-step; the paper's code evaluates full phases with the C library, so trigonometry is cheaper "
+      "here.");
   document_.paragraph(
       fmt::format("Made by `{}` on {} ({}), {}, flags `{}`, commit {}. Half the range of the repeats is {} "
                   "of their median (median over all timed runs): smaller differences are not significant.",
@@ -109,8 +109,7 @@ void Report::claims() {
   document_.paragraph(fmt::format(
       "**The certified finder** in comparison: on identical pairs, at step {}, a call of linear-full takes at least "
       "{:.1f} times and a call of linear-cubic at least {:.1f} times as long, in every state. It missed {:.0f} "
-      "contacts "
-      "in all runs, linear-full {:.0f}.",
+      "contacts in all runs, linear-full {:.0f}.",
       data_.shown_step, full, cubic, missed, others_missed));
 }
 
@@ -119,13 +118,11 @@ void Report::truth() {
   document_.paragraph(
       "Every call of an untimed run of each kind was also answered by the certified finder. **missed**: there is a "
       "contact, the finder found none. **false**: there is no contact, or the finder reported it while the spheres "
-      "were "
-      "apart by more than 1e-6 of the radius sum R. **late**: reported after the spheres had overlapped by more than "
-      "1e-6 R, even if they had parted again. **misordered**: particles with a wrong first contact in a step, by the "
-      "finder's times. **deepest**: the largest overlap before a contact was reported. **overlap**: the largest at the "
-      "end of the run; both in R. Sums over the four states, or the worst of them. The misses of a run change its "
-      "later "
-      "calls, so the numbers of calls differ slightly.");
+      "were apart by more than 1e-6 of the radius sum R. **late**: reported after the spheres had overlapped by more "
+      "than 1e-6 R, even if they had parted again. **misordered**: particles with a wrong first contact in a step, "
+      "by the finder's times. **deepest**: the largest overlap before a contact was reported. **overlap**: the "
+      "largest at the end of the run; both in R. Sums over the four states, or the worst of them. The misses of a "
+      "run change its later calls, so the numbers of calls differ slightly.");
   for (const double step : data_.steps) {
     Rows rows = {{fmt::format("step {:.3g}", step), "calls", "true contacts", "missed", "false", "late", "misordered",
                   "deepest", "overlap"}};
@@ -155,11 +152,9 @@ void Report::truth() {
   });
   document_.paragraph(fmt::format(
       "The certified finder was itself compared with a dense scan of the paths (512 times per pair and step, "
-      "bisection) "
-      "on the pairs of the first step of each state and step: {:.0f} pairs, {:.0f} contacts by the certified finder; "
-      "{:.0f} found by the scan alone, {:.0f} by the certified finder alone, {:.0f} with times that differ by more "
-      "than "
-      "1e-6 of the step.",
+      "bisection) on the pairs of the first step of each state and step: {:.0f} pairs, {:.0f} contacts by the "
+      "certified finder; {:.0f} found by the scan alone, {:.0f} by the certified finder alone, {:.0f} with times "
+      "that differ by more than 1e-6 of the step.",
       pairs, contacts, only_scan, only_certified, other_time));
 }
 
@@ -186,11 +181,9 @@ void Report::calls() {
   document_.heading(fmt::format("The time of a call, step {}", data_.shown_step));
   document_.paragraph(
       "All finders are timed on identical pairs: the grid's candidates at the start of the first step. In brackets, "
-      "the "
-      "ratio to the certified finder's time. Its calls include its rejection by straight lines, which ends nearly all "
-      "of "
-      "them before the search; the last row is its search alone. The work of a finder per particle at the start of a "
-      "step is not in these times; the table of the memory below has it.");
+      "the ratio to the certified finder's time. Its calls include its rejection by straight lines, which ends "
+      "nearly all of them before the search; the last row is its search alone. The work of a finder per particle at "
+      "the start of a step is not in these times; the table of the memory below has it.");
   Rows rows = {head_of_states("ns per call")};
   for (const std::string& finder : all_finders()) {
     Row row = {finder};
@@ -290,8 +283,8 @@ void Report::local_times() {
       "particles received a velocity change of 0.2 rΩ per component at a random time of the step, as by an earlier "
       "collision; a search then begins at the later of the pair's two times, and pairs that overlap at that time are "
       "left out. In Keeler all elements refer to one epoch at any time, so no particle must be brought to a common "
-      "time; "
-      "a finder loses only the data that it stored for the start of the step. Wrong answers: missed / false / late.");
+      "time; a finder loses only the data that it stored for the start of the step. Wrong answers: missed / false / "
+      "late.");
   for (const double step : {1e-3, 1e-2}) {
     Row head = {fmt::format("step {}: ns per call; wrong", step)}, contacts = {"true contacts"};
     for (const double fraction : data_.moved_fractions) {
@@ -349,10 +342,10 @@ void Report::rejection() {
 
 void Report::straight_lines() {
   document_.heading("Straight paths drift, curved ones do not (Figures 1 and 2)");
-  document_.paragraph("A ring of 1000 spheres (τ = 0.3) with streamlines that bunch once per orbit, q = 0.6; Keeler's "
-                      "`docs/theory/straight-lines.md` describes it. The table has the drift of the mean guiding "
-                      "centre and of the mean "
-                      "vertical motion, in particle radii; exact collisions conserve both.");
+  document_.paragraph("A ring of 1000 spheres (τ = 0.3) with streamlines that bunch once per orbit, q = 0.6; "
+                      "Keeler's `docs/theory/straight-lines.md` describes it. The table has the drift of the mean "
+                      "guiding centre and of the mean vertical motion, in particle radii; exact collisions conserve "
+                      "both.");
   Rows rows = {{"path", "step", "orbits", "drift in x", "vertical drift", "collisions per particle"}};
   for (const auto& [name, result] : data_.results) {
     if (!name.starts_with("drift/"))

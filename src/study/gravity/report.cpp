@@ -30,18 +30,14 @@ void introduce(const GravityStudyData& data, Document& document) {
   const auto made = [&](const char* key) { return data.made.at(key); };
   const Json& b = data.bench;
   document.paragraph(fmt::format(
-      "{:.0f} particles in a patch of Saturn's A ring with self-gravity wakes, the physics of `examples/a-ring-wakes`; "
-      "{:.4g} m by {:.4g} m, shear offset {:.4g} m. Every solver computes all accelerations with each of its settings. "
-      "The error is measured on {:.0f} particles, drawn at random, against the sum over all pairs and periodic images "
-      "in "
-      "double precision, relative to the rms acceleration; the error near the edges on {:.0f} particles within {:g} m "
-      "of "
-      "the cell's edges. **Edge pull** is the mean error in the plane near the worst of the four edges, relative to "
-      "the "
-      "rms acceleration in the plane; as the errors of neighbours are correlated, such means reach half of the rms "
-      "error "
-      "anywhere in the cell. **Net force** is |Σ m a| / Σ m |a|. Times are processor time on one thread, including "
-      "sorting and tree or mesh building, medians of {:.0f}.",
+      "{:.0f} particles in a patch of Saturn's A ring with self-gravity wakes, the physics of "
+      "`examples/a-ring-wakes`; {:.4g} m by {:.4g} m, shear offset {:.4g} m. Every solver computes all accelerations "
+      "with each of its settings. The error is measured on {:.0f} particles, drawn at random, against the sum over "
+      "all pairs and periodic images in double precision, relative to the rms acceleration; the error near the edges "
+      "on {:.0f} particles within {:g} m of the cell's edges. **Edge pull** is the mean error in the plane near the "
+      "worst of the four edges, relative to the rms acceleration in the plane; as the errors of neighbours are "
+      "correlated, such means reach half of the rms error anywhere in the cell. **Net force** is |Σ m a| / Σ m |a|. "
+      "Times are processor time on one thread, including sorting and tree or mesh building, medians of {:.0f}.",
       of(b, "count"), b.at("box_m")[0].get<double>(), b.at("box_m")[1].get<double>(), of(b, "offset_m"),
       of(b, "sample"), of(b, "edge_sample"), of(b, "edge_width_m"), of(b, "repeats")));
   document.paragraph(fmt::format("Made by `{}` on {} ({}), {}, flags `{}`, commit {}.", made("command"),

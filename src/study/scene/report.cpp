@@ -27,8 +27,7 @@ std::string what_changes(const StudyPlan& plan) {
                : "`time.step` varies. `step-auto` has `time.step = \"auto\"`.";
   case SceneStudyKind::kicks:
     return "The kick interval varies, by `gravity.kick_every`, at the scene's step, which is shortened where it does "
-           "not "
-           "divide the interval. `kick-auto` has `time.step = \"auto\"`.";
+           "not divide the interval. `kick-auto` has `time.step = \"auto\"`.";
   case SceneStudyKind::mesh:
     return "Solver and accuracy of self-gravity vary: `fft` with `gravity.force_error`, `tree` with "
            "`gravity.opening_angle`.";

@@ -185,8 +185,7 @@ StudyMeans means_of(const StudyChoices& choices, const std::vector<SettingRun>& 
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   const std::vector<Scatter>& reference = means.settings[means.reference].scatter;
   for (std::size_t s = 0; s < means.settings.size(); ++s)
-    for (std::size_t n = 0; n < count;
-         ++n) // a reference of 0, as the gravitational stress without gravity, has no relative difference
+    for (std::size_t n = 0; n < count; ++n) // a reference of 0, as a stress without gravity, has no relative difference
       means.settings[s].from_reference.push_back(s != means.reference && numbers[n].compared && reference[n].mean != 0.0
                                                      ? mean_difference(reference[n], means.settings[s].scatter[n])
                                                      : MeanDifference{unknown, unknown});
