@@ -103,13 +103,13 @@ std::vector<StepProbe> probe_steps(const Scene& scene, const std::vector<Patch>&
   return probes;
 }
 
-std::vector<ThreadProbe> probe_threads(const Scene& scene, const Patch& patch, int max_threads,
+std::vector<ThreadProbe> probe_threads(const Scene& scene, const Patch& patch, int thread_limit,
                                        PhaseProgress& progress) {
   std::vector<int> counts = {1};
-  for (int count = 2; count < max_threads; count *= 2)
+  for (int count = 2; count < thread_limit; count *= 2)
     counts.push_back(count);
-  if (max_threads > 1)
-    counts.push_back(max_threads);
+  if (thread_limit > 1)
+    counts.push_back(thread_limit);
   if (counts.size() == 1)
     return {ThreadProbe{}};
   const int before = threads();

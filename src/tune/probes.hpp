@@ -24,8 +24,8 @@ KickProbe probe_kicks(const Scene& scene, const std::vector<Patch>& states, doub
 std::vector<StepProbe> probe_steps(const Scene& scene, const std::vector<Patch>& states, double interval,
                                    const std::vector<int>& drifts, PhaseProgress& progress);
 
-/// Measures the speedup on 1, 2, 4 … and `max_threads` threads.
-std::vector<ThreadProbe> probe_threads(const Scene& scene, const Patch& patch, int max_threads,
+/// Measures the speedup on 1, 2, 4 … and `thread_limit` threads.
+std::vector<ThreadProbe> probe_threads(const Scene& scene, const Patch& patch, int thread_limit,
                                        PhaseProgress& progress);
 
 } // namespace keeler
