@@ -8,13 +8,14 @@
 #include <keeler/simulation/simulation.hpp>
 #include <keeler/statistics/median.hpp>
 
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-constexpr double min_call_seconds = 0.1; // of finder calls, for the time of one
-constexpr double max_orbits = 0.1;       // in each repeat
+constexpr double min_call_seconds = 0.1; // of calls that one measurement of the time per call averages over
+constexpr double max_orbits = 0.1;       // per repeat
 
 void time_calls(const DriftBenchSettings& settings, const Scene& scene, const SimulationState& state,
                 DriftBench& bench) {
@@ -29,6 +30,7 @@ void time_calls(const DriftBenchSettings& settings, const Scene& scene, const Si
       static_cast<double>(pairs.queries.size()) / static_cast<double>(state.particles.size());
 }
 
+// Makes the drift pass every candidate pair to the finder.
 struct Everything final : DriftObserver {
   bool wants_every_candidate() const override { return true; }
   bool looks_on() const override { return false; }
@@ -37,6 +39,7 @@ struct Everything final : DriftObserver {
 } // namespace
 
 DriftBench bench_drift(const DriftBenchSettings& settings) {
+  assert(settings.repeats > 0 && settings.step_orbits > 0.0);
   PhaseProgress progress(settings.progress);
   BenchState made = bench_state(settings, progress);
   DriftBench bench;
@@ -44,7 +47,7 @@ DriftBench bench_drift(const DriftBenchSettings& settings) {
   const double steps = steps_worth_timing(made.patch.size(), settings.step_orbits, max_orbits / settings.step_orbits);
 
   Simulation simulation(made.scene, made.patch);
-  made.patch = {}; // room: a large state is held once
+  made.patch = {}; // frees memory: a large state is stored once
   time_calls(settings, made.scene, simulation.state(), bench);
   Everything everything;
   simulation.drift().observe(settings.all_pairs ? &everything : nullptr);

@@ -8,6 +8,7 @@
 #include <keeler/statistics/median.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -15,15 +16,15 @@ namespace keeler {
 namespace {
 
 constexpr ImageSettings reference_images{2, true};
-constexpr double reference_pairs = 5e9; // as many as seconds allow
+constexpr double reference_pairs = 5e9; // pair forces of the reference, some seconds
 constexpr double min_sample = 500.0, max_sample = 2000.0;
-constexpr double edge_width = 5.0; // m, of a box of more than 120 m
+constexpr double edge_width = 5.0; // m; boxes are wider than 120 m
 constexpr std::size_t min_at_edge = 64;
-constexpr std::size_t reference_block = 128; // targets between two looks at the progress
-constexpr double min_repeat_seconds = 0.05;  // of solves, in one repeat
-constexpr std::size_t max_direct = 10000;    // particles, unless it is asked for
+constexpr std::size_t reference_block = 128; // targets per progress report
+constexpr double min_repeat_seconds = 0.05;  // of solves per repeat
+constexpr std::size_t max_direct = 10000;    // particles, unless requested by name
 
-// The patch in the order of places, as a run has its particles.
+// Returns the patch with its particles in the spatial order of a run.
 Patch in_memory_order(const Patch& patch) {
   const std::vector<std::uint32_t> order = order_by_position(particles_from(patch, 0.0), patch.box, patch.offset);
   Patch sorted = patch;
@@ -56,9 +57,11 @@ std::vector<Vec3> exact_accelerations(const GravityProblem& problem, const Force
   return exact;
 }
 
-// Times of one solve in each repeat, s; the first one, in which buffers grow, tells how many make a repeat.
+// Returns the time per solve in each repeat, s. An untimed first solve, in which buffers grow, determines the number of
+// solves per repeat.
 std::vector<double> solve_times(GravitySolver& solver, const GravityProblem& problem, std::span<Vec3> accelerations,
                                 int repeats) {
+  assert(repeats > 0 && accelerations.size() == problem.positions.size());
   const double start = bench_seconds();
   solver.accelerate(problem, accelerations);
   const double first = std::max(1e-9, bench_seconds() - start);
@@ -97,6 +100,7 @@ std::vector<std::pair<std::string, double>> GravityBenchRow::numbers() const {
 
 GravityBench bench_gravity_of(const Patch& state, const std::vector<GravityChoice>& choices, int repeats,
                               PhaseProgress& progress) {
+  assert(state.size() > 0);
   const Patch patch = in_memory_order(state);
   const GravityProblem problem = gravity_problem(patch);
   const ForceSample sample = sample_of(problem);

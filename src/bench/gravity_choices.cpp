@@ -67,7 +67,7 @@ GravityChoice default_gravity_choice(const std::string& solver) {
   if (solver == "direct")
     return direct();
   if (solver == "fft")
-    return fft(cut_for(GravitySettings{}.force_error, 1.0)); // the benches' spheres are equal
+    return fft(cut_for(GravitySettings{}.force_error, 1.0)); // 1: the benches' spheres have equal masses
   if (solver == "mesh")
     return mesh(GravitySettings{}.mesh_spacing);
   throw std::invalid_argument("no gravity solver '" + solver + "'");

@@ -9,12 +9,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-constexpr double min_wavelengths = 2.0; // λ_cr along a tile
+constexpr double min_wavelengths = 2.0; // side of a tile, λ_cr
 constexpr double evolving_step = 2e-3;  // orbits
 constexpr double evolving_angle = 0.7;
 constexpr double clumping_orbits = 1.5;
@@ -50,11 +51,12 @@ end = 1.0
 } // namespace
 
 Scene a_ring_scene(std::size_t count, std::uint64_t seed) {
-  const auto least = static_cast<double>(scene_of(min_wavelengths, seed).particles.count);
-  return scene_of(min_wavelengths * std::max(1.0, std::sqrt(static_cast<double>(count) / least)), seed);
+  const auto min_count = static_cast<double>(scene_of(min_wavelengths, seed).particles.count);
+  return scene_of(min_wavelengths * std::max(1.0, std::sqrt(static_cast<double>(count) / min_count)), seed);
 }
 
 Patch evolved_with_gravity(const Scene& scene, double orbits, PhaseProgress& progress) {
+  assert(orbits >= 0.0);
   Scene coarse = scene;
   coarse.time.step = evolving_step;
   coarse.gravity = GravitySettings{};
@@ -70,6 +72,7 @@ Patch evolved_with_gravity(const Scene& scene, double orbits, PhaseProgress& pro
 }
 
 BenchState gravity_state(std::size_t count, GravityState kind, PhaseProgress& progress) {
+  assert(count > 0);
   const bool clumped = kind == GravityState::clumped;
   const auto asked = static_cast<double>(count);
   const double side = std::ceil(std::sqrt(asked / (clumped ? largest_clumped_tile : largest_uniform_tile)));

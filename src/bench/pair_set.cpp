@@ -2,11 +2,13 @@
 
 #include <keeler/core/stopwatch.hpp>
 
+#include <cassert>
 #include <limits>
 
 namespace keeler {
 namespace {
 
+// Records the queries of a step up to its first collision.
 struct Recorder : DriftObserver {
   explicit Recorder(bool every_candidate) : every_candidate_(every_candidate) {}
   bool wants_every_candidate() const override { return every_candidate_; }
@@ -32,7 +34,7 @@ Separation separation(const Pair& pair, const Frequencies& f, double time) {
   return {hi.position - lo.position, hi.velocity - lo.velocity};
 }
 
-// The time where a condition that holds at a ends, between a and b.
+// Returns the time between a and b at which a condition that holds at a ends.
 template<class Condition> double bisect(double a, double b, const Condition& holds) {
   for (int k = 0; k < 60; ++k) {
     const double middle = 0.5 * (a + b);
@@ -51,6 +53,7 @@ PairSet PairSet::of(Particles particles, const ShearingBox& box, double offset, 
   drift.observe(&recorder);
   CollisionTally tally;
   drift.collide(particles, box, offset, tally);
+  assert(recorder.step && "the drift called begins()");
   PairSet set(*recorder.step);
   set.bodies = before;
   set.queries = std::move(recorder.queries);
@@ -60,16 +63,17 @@ PairSet PairSet::of(Particles particles, const ShearingBox& box, double offset, 
 DriftStep PairSet::view() const {
   DriftStep step = step_;
   step.bodies = bodies;
-  step.tested = false; // they may have been changed
+  step.tested = false; // the caller may have changed `bodies`
   return step;
 }
 
 double ns_per_call(const PairSet& pairs, Finder& finder, double min_seconds) {
+  assert(min_seconds > 0.0);
   if (pairs.queries.empty())
     return 0.0;
   const DriftStep step = pairs.view();
   finder.begin(step);
-  double seconds = 0.0, used = 0.0; // `used` keeps the compiler from leaving calls out
+  double seconds = 0.0, used = 0.0; // `used` prevents the compiler from removing the calls
   std::size_t calls = 0;
   while (seconds < min_seconds) {
     const double start = cpu_seconds();
@@ -82,6 +86,7 @@ double ns_per_call(const PairSet& pairs, Finder& finder, double min_seconds) {
 }
 
 ScanResult dense_scan(const Pair& pair, const Frequencies& f) {
+  assert(pair.radius_sum > 0.0 && pair.start <= pair.end);
   constexpr int points = 512;
   const auto approaching = [&](double t) { return separation(pair, f, t).closing() < 0.0; };
   const auto apart = [&](double t) { return separation(pair, f, t).gap(pair.radius_sum) > 0.0; };

@@ -12,27 +12,28 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
 constexpr double moonlet_radius = 100.0;
-constexpr double moonlet_orbits = 0.5; // that the particles around a moonlet get to answer it
+constexpr double moonlet_orbits = 0.5; // relaxation of the particles around a moonlet
 
-// How a state of each kind is made.
+// The construction of one kind of state.
 struct Recipe {
   SizeLaw sizes;
-  const char* table;        // of the scene: the same sizes
+  const char* table;        // `sizes` as in a scene file
   std::size_t largest_tile; // particles
-  double heat;              // of the start, over equal spheres as large as the mass is
-  double orbits;            // from the start to the equilibrium,
-  double step;              // in steps of so many
+  double heat;              // initial dispersion relative to equal spheres of the mass-weighted radius
+  double orbits;            // to the equilibrium
+  double step;              // orbits
 };
 
-// In a power law the large ones stir the small ones, which collide rarely: at τ = 0.5 those below 1.5 m get to c_x =
-// 230 m rad⁻¹, those above 12 m to 50–100, within four orbits from half of the heat. Now and then two large ones
-// squeeze a small one out at 10⁴ m rad⁻¹: within a short step that one still meets others through one image.
+// In a power law large particles stir small ones, which collide rarely: at τ = 0.5 particles below 1.5 m reach c_x =
+// 230 m rad⁻¹, and particles above 12 m 50–100, within four orbits from half of this dispersion. Occasionally two large
+// particles squeeze out a small one at 10⁴ m rad⁻¹; the short step keeps its path within one periodic image.
 Recipe recipe_for(BenchSizes sizes) {
   if (sizes == BenchSizes::power)
     return {power_sizes(3.0, 1.0, 100.0),
@@ -44,9 +45,9 @@ Recipe recipe_for(BenchSizes sizes) {
   return {equal_sizes(1.0), "{ law = \"equal\", radius = 1.0 }", 100000, 1.0, 1.5, 0.01};
 }
 
-// c_x of the start, in ⟨r⟩ Ω; more than near the equilibrium's where particles of that dispersion could not be placed.
-// Equilibria of equal spheres at ε = 0.5 have 2.82, 2.18 and 1.62 at τ = 0.1, 0.5 and 1.
-double first_dispersion(const Recipe& recipe, std::size_t count, double optical_depth) {
+// Returns the initial c_x, ⟨r⟩ Ω: near the equilibrium's, or larger if the particles could not be placed in so thin a
+// layer. Equilibria of equal spheres at ε = 0.5 have 2.82, 2.18 and 1.62 at τ = 0.1, 0.5 and 1.
+double initial_dispersion(const Recipe& recipe, std::size_t count, double optical_depth) {
   const SizeLaw& sizes = recipe.sizes;
   const double placed = 1.001 * dispersion_for_filling(optical_depth, layer_sizes(sizes, count), 1.0, largest_filling);
   const double mass_radius = sizes.mean_power(3) / sizes.mean_power(2);
@@ -72,12 +73,13 @@ restitution = {{ law = "constant", value = 0.5 }}
 step = {5}
 end = {5}
 )",
-                                 size, count, first_dispersion(recipe, count, s.optical_depth), recipe.table, s.finder,
-                                 s.step_orbits),
+                                 size, count, initial_dispersion(recipe, count, s.optical_depth), recipe.table,
+                                 s.finder, s.step_orbits),
                      "bench");
 }
 
 Patch evolved(Scene scene, const Patch& start, double orbits, double step, PhaseProgress& progress) {
+  assert(orbits >= 0.0 && step > 0.0);
   scene.collisions.finder = "certified";
   scene.time.step = step;
   Simulation simulation(scene, start);
@@ -89,29 +91,31 @@ Patch evolved(Scene scene, const Patch& start, double orbits, double step, Phase
   return simulation.patch();
 }
 
-// Small particles that a moonlet takes the place of, in a layer of this optical depth.
+// Returns the number of small particles that a moonlet displaces in a layer of this optical depth.
 double covered(double optical_depth, const SizeLaw& sizes) {
   return optical_depth * moonlet_radius * moonlet_radius / sizes.mean_power(2);
 }
 
 void require_room_for_moonlet(double width) {
-  constexpr double least = 3.0 * moonlet_radius;
-  if (width < least)
-    throw UsageError(fmt::format("too few particles for a moonlet: their box is {:.4g} m wide (one of {:g} m needs "
-                                 "{:g} m); raise --count or lower --optical-depth",
-                                 width, moonlet_radius, least));
+  constexpr double min_width = 3.0 * moonlet_radius;
+  if (width < min_width)
+    throw UsageError(
+        fmt::format("too few particles for a moonlet: their box is {:.4g} m wide (a moonlet of {:g} m needs "
+                    "{:g} m); raise --count or lower --optical-depth",
+                    width, moonlet_radius, min_width));
 }
 
-double middle_distance(const Patch& patch, std::size_t k) {
-  const Vec3& place = patch.positions[k];
-  const Image image = patch.box.image_into_cell(place.x(), place.y(), patch.offset);
-  return (place + patch.box.displacement(image, patch.offset)).norm();
+double distance_from_centre(const Patch& patch, std::size_t k) {
+  const Vec3& position = patch.positions[k];
+  const Image image = patch.box.image_into_cell(position.x(), position.y(), patch.offset);
+  return (position + patch.box.displacement(image, patch.offset)).norm();
 }
 
 } // namespace
 
 Patch with_moonlet(const Patch& patch, double radius) {
-  constexpr double clearance = 1e-6; // of the contact
+  assert(patch.size() > 0 && radius > 0.0);
+  constexpr double clearance = 1e-6; // relative to the contact distance
   const double density = patch.masses.front() / std::pow(patch.radii.front(), 3);
   Patch result;
   result.box = patch.box;
@@ -119,21 +123,22 @@ Patch with_moonlet(const Patch& patch, double radius) {
   result.frequencies = patch.frequencies;
   result.orbital_frequency = patch.orbital_frequency;
   result.time_orbits = patch.time_orbits;
-  const auto add = [&](const Vec3& place, const Vec3& velocity, double r, double mass, std::uint64_t id) {
-    result.positions.push_back(place);
+  const auto add = [&](const Vec3& position, const Vec3& velocity, double r, double mass, std::uint64_t id) {
+    result.positions.push_back(position);
     result.velocities.push_back(velocity);
     result.radii.push_back(r);
     result.masses.push_back(mass);
     result.ids.push_back(id);
   };
   for (std::size_t k = 0; k < patch.size(); ++k)
-    if (middle_distance(patch, k) > (1.0 + clearance) * (radius + patch.radii[k]))
+    if (distance_from_centre(patch, k) > (1.0 + clearance) * (radius + patch.radii[k]))
       add(patch.positions[k], patch.velocities[k], patch.radii[k], patch.masses[k], patch.ids[k]);
   add(Vec3::Zero(), Vec3::Zero(), radius, density * std::pow(radius, 3), patch.ids.back() + 1);
   return result;
 }
 
 BenchState bench_state(const DriftBenchSettings& settings, PhaseProgress& progress) {
+  assert(settings.count > 0 && settings.optical_depth > 0.0);
   const Recipe recipe = recipe_for(settings.sizes);
   const bool moonlet = settings.sizes == BenchSizes::moonlet;
   double count = static_cast<double>(settings.count);

@@ -11,20 +11,21 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-constexpr double max_steps = 100.0; // in each repeat
+constexpr double max_steps = 100.0; // per repeat
 
 BenchState stored_state(const std::string& file) {
   Snapshot snapshot = read_snapshot(file);
   BenchState state{parse_stored_scene(snapshot.meta.scene, file), {}};
   if (!state.scene.gravity)
     throw UsageError(
-        fmt::format("'{}' is of a scene without self-gravity (its scene has no [gravity]); take a snapshot "
-                    "of a run with gravity, or time the drift alone with \"keeler bench drift\"",
+        fmt::format("'{}' has a scene without self-gravity (the scene has no [gravity]); use a snapshot of a run "
+                    "with gravity, or time the drift alone with \"keeler bench drift\"",
                     file));
   state.patch = patch_from_snapshot(std::move(snapshot.patch), file, state.scene);
   return state;
@@ -36,7 +37,7 @@ GravityChoice choice_for(const StepBenchSettings& settings, const BenchState& st
     GravitySettings gravity = *state.scene.gravity;
     if (settings.solver) {
       gravity = {};
-      gravity.solver = choice.settings.solver; // its cut, if any, by the masses that there are
+      gravity.solver = choice.settings.solver; // Simulation derives the cut from the snapshot's masses
       gravity.kick_every = state.scene.gravity->kick_every;
     }
     choice = choice_of(gravity, state.patch.size());
@@ -46,7 +47,8 @@ GravityChoice choice_for(const StepBenchSettings& settings, const BenchState& st
   return choice;
 }
 
-// Particles are the first rank's; all else each rank has made for itself.
+// Throws when the ranks have different requests. Each rank read its command line and made its scene itself; only the
+// particles come from rank 0.
 void require_same_bench(const StepBenchSettings& settings, const BenchState& state, const GravityChoice& choice) {
   std::vector<Asked> request = {{"--count", fmt::format("{}", settings.count)},
                                 {"--repeats", fmt::format("{}", settings.repeats)},
@@ -61,7 +63,9 @@ void require_same_bench(const StepBenchSettings& settings, const BenchState& sta
   require_same_request(request, settings.ranks);
 }
 
+// Returns `steps`, rounded up to whole kick intervals.
 int whole_intervals(double steps, int kick_every) {
+  assert(kick_every > 0);
   return static_cast<int>(std::ceil(steps / kick_every)) * kick_every;
 }
 
@@ -87,7 +91,7 @@ StepBench bench_step(const StepBenchSettings& settings) {
   std::optional<Simulation> alone;
   if (settings.ranks.distributed() && settings.ranks.is_root())
     alone.emplace(state.scene, state.patch);
-  state.patch = {}; // room: a large state is held once, and by the first rank twice
+  state.patch = {}; // frees memory: a large state is stored once, on rank 0 twice
   bench.timed = time_steps(simulation, steps, settings.repeats, kick_every, progress, alone ? &*alone : nullptr);
   return bench;
 }

@@ -5,18 +5,19 @@
 #include <keeler/statistics/median.hpp>
 
 #include <algorithm>
+#include <cassert>
 
 namespace keeler {
 namespace {
 
 constexpr int untimed_steps = 10;
-// In each repeat:
-constexpr double min_steps = 20.0;                // more than two windows of the drift
-constexpr double life_steps = 64.0, life = 0.159; // neighbour lists live so many steps at most, and so many orbits
-constexpr double enough_passes = 4e6;             // particles × steps,
-constexpr double max_passes = 6.4e7;              // and for a life
+// Per repeat:
+constexpr double min_steps = 20.0;                               // more than two pruning intervals of the drift
+constexpr double lifetime_steps = 64.0, lifetime_orbits = 0.159; // upper limits of the lifetime of neighbour lists
+constexpr double enough_passes = 4e6;                            // particles × steps for a precise time,
+constexpr double max_passes = 6.4e7;                             // and the largest number for a lifetime
 
-// All clocks of a run as they stand, s.
+// All clocks of a run at one moment, s.
 struct Clocks {
   double whole = bench_seconds(), wall = wall_seconds();
   double drift, advance, gravity, kick;
@@ -50,7 +51,7 @@ Lap run(Simulation& simulation, int steps) {
   return {before, Clocks(simulation)};
 }
 
-// What several threads gain over one, lap by lap of the same run.
+// Speedups of each lap by several threads or ranks.
 struct Gains {
   std::vector<double> step, drift, events, gravity, pair;
 
@@ -62,9 +63,10 @@ struct Gains {
     set_threads(count);
   }
 
-  // The others wait.
-  void compare_ranks(const Communicator& ranks, Simulation* alone, const Lap& shared, int steps) {
-    ranks.on_root([&] { compare(run(*alone, steps), shared); });
+  // Runs `alone` on rank 0 while the other ranks wait.
+  void compare_ranks(const Communicator& ranks, Simulation* alone, const Lap& distributed, int steps) {
+    assert((alone != nullptr) == ranks.is_root());
+    ranks.on_root([&] { compare(run(*alone, steps), distributed); });
     pair.push_back(1.0);
   }
 
@@ -93,7 +95,7 @@ void take_times(const std::vector<Lap>& laps, TimedSteps& timed) {
   timed.drift_split = {ns(&Clocks::build), ns(&Clocks::reject), ns(&Clocks::solve), ns(&Clocks::events)};
 }
 
-// All counts of a run as they stand.
+// All counts of a run at one moment.
 struct Counts {
   CollisionTally tally;
   DriftCosts costs;
@@ -101,16 +103,16 @@ struct Counts {
   explicit Counts(Simulation& simulation) : tally(simulation.state().collisions), costs(simulation.drift().costs()) {}
 };
 
-// Those that each rank has of its own particles.
+// Replaces the counts that refer to the particles of one rank by their sums over the ranks.
 void add_over_ranks(const Communicator& ranks, TimedSteps& timed) {
   for (std::uint64_t* const count : {&timed.recontacts, &timed.lists_made, &timed.listed_anew, &timed.deferred,
                                      &timed.in_sequence, &timed.rolled_back, &timed.pairs_tested, &timed.survivors})
     *count = ranks.sum(*count);
 }
 
-// What ranks told each other since `before`.
+// Returns the communication since `before`, as means over the ranks.
 ExchangeSplit exchange_since(const ExchangeCosts& before, const Communicator& ranks, double steps, std::size_t count) {
-  const ExchangeCosts after = exchange_costs(); // and what follows adds to them
+  const ExchangeCosts after = exchange_costs(); // read before the sums below add to them
   const double each_step = 1.0 / (steps * static_cast<double>(ranks.size()));
   const auto total = [&](std::uint64_t number) { return static_cast<double>(ranks.sum(number)) * each_step; };
   const std::uint64_t messages = after.messages - before.messages, bytes = after.bytes - before.bytes;
@@ -144,14 +146,16 @@ void add_counts(const Counts& before, const Counts& after, TimedSteps& timed) {
 
 } // namespace
 
-double steps_worth_timing(std::size_t count, double step, double most) {
+double steps_worth_timing(std::size_t count, double step, double limit) {
+  assert(step > 0.0);
   const double particles = static_cast<double>(std::max<std::size_t>(1, count));
-  const double least = std::max(min_steps, std::min({life_steps, life / step, max_passes / particles}));
-  return std::clamp(enough_passes / particles, least, std::max(least, most));
+  const double lower = std::max(min_steps, std::min({lifetime_steps, lifetime_orbits / step, max_passes / particles}));
+  return std::clamp(enough_passes / particles, lower, std::max(lower, limit));
 }
 
 TimedSteps time_steps(Simulation& simulation, int steps, int repeats, int kick_every, PhaseProgress& progress,
                       Simulation* alone) {
+  assert(repeats > 0 && kick_every > 0 && steps > 0 && steps % kick_every == 0);
   const Communicator& ranks = simulation.ranks();
   TimedSteps timed;
   timed.count = simulation.count();
@@ -171,7 +175,7 @@ TimedSteps time_steps(Simulation& simulation, int steps, int repeats, int kick_e
     line.push_back(memory.measure());
     pair.push_back(pair_yardstick());
     const Counts before(simulation);
-    ranks.any(false); // all begin together
+    ranks.any(false); // barrier: all ranks begin together
     const ExchangeCosts exchanged = exchange_costs();
     laps.push_back(run(simulation, steps));
     timed.exchange += exchange_since(exchanged, ranks, steps * repeats, timed.count);

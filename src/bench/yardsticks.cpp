@@ -3,14 +3,15 @@
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
 
+#include <cassert>
 #include <chrono>
 
 namespace keeler {
 namespace {
 
-constexpr double min_yardstick_seconds = 0.03; // of work, for one measurement
+constexpr double min_yardstick_seconds = 0.03; // of work per measurement
 
-// Time of one call of work(), s; the first one is not counted.
+// Returns the time per call of work(), s; the first call is not timed.
 template<class Work> double seconds_of(const Work& work, double (*clock)()) {
   work();
   const double start = clock();
@@ -45,8 +46,9 @@ double bench_seconds() {
 }
 
 double MemoryYardstick::measure() {
+  assert(!lines_.empty());
   constexpr int chunk = 4096;
-  constexpr std::size_t min_lines = 200000; // between two looks at the clock
+  constexpr std::size_t min_lines = 200000; // per reading of the clock
   const std::size_t rounds = 1 + min_lines / (lines_.size() + 1);
   const auto once = [&] {
     parallel_for(
@@ -86,7 +88,7 @@ double pair_yardstick(double (*clock)()) {
               squares += d.squaredNorm();
               closing += d.dot(v);
             }
-          sums[b] += squares + closing; // used, so that nothing is left out
+          sums[b] += squares + closing; // prevents the compiler from removing the work
         },
         1);
   };

@@ -1,4 +1,4 @@
-// keeler analyze: numbers from a snapshot, or averaged over the part of a run that is steady.
+// keeler analyze: numbers from a snapshot, or averaged over the steady part of a run.
 #include "command.hpp"
 #include "common_options.hpp"
 #include "number_options.hpp"
@@ -19,6 +19,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cassert>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -40,8 +41,9 @@ struct AnalyzeOptions {
   ThreadOption threads;
 };
 
-// A row a snapshot: the numbers of each by itself.
+// Writes one row per snapshot, with the numbers of this snapshot only.
 void write_snapshots(const fs::path& file, const StoredPatches& stored, const AnalyzeOptions& options) {
+  assert(!stored.patches.empty());
   auto rows = nlohmann::ordered_json::array();
   for (const Patch& patch : stored.patches) {
     const TransportReport transport = TransportReport::of_snapshot(patch, stored.gravity);
@@ -53,13 +55,13 @@ void write_snapshots(const fs::path& file, const StoredPatches& stored, const An
   write_table(file, csv_with_gaps(rows));
 }
 
-// The files that get tables. One of them may go to standard output, in place of what is printed there.
+// The output files for tables. One of them may be standard output, which then has no other text.
 struct Tables {
   explicit Tables(const AnalyzeOptions& options) : profile(named(options.profile)), csv(named(options.csv)) {
-    const auto there = [](const auto& file) { return file && is_standard_output(*file) ? 1 : 0; };
-    const int asked = there(profile) + there(csv);
-    fill_standard_output = asked > 0;
-    if (asked > 1 || (asked == 1 && options.json))
+    const auto is_output = [](const auto& file) { return file && is_standard_output(*file) ? 1 : 0; };
+    const int count = is_output(profile) + is_output(csv);
+    fill_standard_output = count > 0;
+    if (count > 1 || (count == 1 && options.json))
       throw UsageError("only one of --csv, --profile and --json can go to standard output; name files for the others");
   }
 
@@ -84,7 +86,7 @@ ExitCode run(const AnalyzeOptions& options) {
   const auto [stored, transport] = measured_part(options.path, options.window);
   const Record numbers = options.numbers.chosen(record_of(measure(stored.patches, transport, options.settings)));
   std::optional<Sights> sights;
-  if (options.sights.asked())
+  if (options.sights.requested())
     sights.emplace(options.sights, stored.patches);
   if (tables.profile)
     write_profiles(*tables.profile, stored.patches, options.profile_bins);
@@ -113,15 +115,15 @@ void add_analyze(CLI::App& program, Action& action) {
       "analyze", "measure a snapshot, or the steady part of a run: viscosities, energy, wakes, structure");
   command.add_option("FILE|DIR", options->path, "a snapshot, or the folder of a run")->required()->type_name("");
   command.add_flag("--json", options->json, "print the numbers as JSON");
-  command.add_option("--since", options->window.since, "first orbit (default: from where on the run is steady)")
+  command.add_option("--since", options->window.since, "first orbit (default: the first of the steady part)")
       ->type_name("ORBIT");
   command.add_option("--until", options->window.until, "last orbit (default: the newest)")->type_name("ORBIT");
-  command.add_option("--csv", options->csv, "write the numbers of each snapshot by itself to this file, a row each")
+  command.add_option("--csv", options->csv, "write the numbers of the single snapshots to this file, one row each")
       ->type_name("FILE");
   command
       .add_option("--cluster-gap", options->settings.cluster_gap,
                   "largest gap between touching spheres, over the sum of their radii (default: 0.01)")
-      ->check(positive_number(10.0)); // wider ones make everything one cluster, in the time of all pairs
+      ->check(positive_number(10.0)); // wider gaps put all particles into one cluster, at the cost of all pairs
   command.add_option("--modes", options->settings.radial_modes, "radial modes to measure (default: 4)")
       ->transform(whole_number_between(1, 1000, "a number of modes"));
   CLI::Option* const profile =

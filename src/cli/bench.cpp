@@ -1,4 +1,4 @@
-// keeler bench: what the program's kernels cost on this machine.
+// keeler bench: times the program's kernels on this machine.
 #include "bench.hpp"
 
 namespace keeler {

@@ -1,4 +1,4 @@
-// The parts of keeler bench: each registers a subcommand of it.
+// The subcommands of keeler bench, and their common options.
 #pragma once
 
 #include "command.hpp"
@@ -11,7 +11,7 @@ void add_bench_drift(CLI::App& bench, Action& action);
 void add_bench_gravity(CLI::App& bench, Action& action);
 void add_bench_step(CLI::App& bench, Action& action, const Communicator& ranks);
 
-/// --threads N for a bench: one unless given.
+/// --threads N of a bench; one thread by default.
 struct BenchThreadOption {
   int count = 1;
 
@@ -28,21 +28,21 @@ struct BenchThreadOption {
   }
 };
 
-/// --repeats N.
+/// Adds --repeats N.
 inline void add_repeats(CLI::App& command, int& repeats) {
-  command.add_option("--repeats", repeats, "times measured; medians are given (default: 5)")
+  command.add_option("--repeats", repeats, "number of measurements; their medians are printed (default: 5)")
       ->transform(repeat_number());
 }
 
-/// What measure(settings) returns, with progress shown when it takes so long that one wonders; the first rank's alone.
+/// Returns measure(settings). Rank 0 shows progress after five seconds.
 template<class Settings, class Measure>
 auto measured(Settings settings, const Measure& measure, const Communicator& ranks = {}) {
-  constexpr double patience_s = 5.0;
+  constexpr double quiet_s = 5.0;
   if (!ranks.is_root())
     return measure(settings);
   ProgressLine line;
   settings.progress = [&line](const Progress& progress) {
-    if (progress.elapsed_s > patience_s)
+    if (progress.elapsed_s > quiet_s)
       line.show(progress);
   };
   return measure(settings);

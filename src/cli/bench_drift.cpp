@@ -1,4 +1,4 @@
-// keeler bench drift: the drift phase.
+// keeler bench drift: times the drift phase.
 #include "bench.hpp"
 #include "bench_numbers.hpp"
 #include "print_record.hpp"
@@ -49,14 +49,14 @@ void add_bench_drift(CLI::App& bench_command, Action& action) {
   drift.add_option("--optical-depth", s.optical_depth, "optical depth, up to 10 (default: 0.5)")
       ->check(number_between(1e-6, 10.0, "an optical depth"));
   one_of(drift.add_option("--sizes", options->sizes,
-                          "equal: all of 1 m; power: n(r) ~ r^-3 from 1 m to 100 m; moonlet: 1 m, and one of 100 m "
+                          "equal: all 1 m; power: n(r) ~ r^-3 from 1 m to 100 m; moonlet: 1 m, with one of 100 m "
                           "(default: equal)"),
          {"equal", "power", "moonlet"});
   one_of(drift.add_option("--finder", s.finder, "collision finder, as in a scene (default: certified)"),
          find_key("collisions.finder")->choices);
   add_repeats(drift, s.repeats);
   drift.add_flag("--all-pairs", s.all_pairs,
-                 "hand every candidate of the grid to the finder, without rejecting any first");
+                 "pass every candidate pair of the grid to the finder, without prior rejection");
   options->threads.add_to(drift);
   drift.add_flag("--json", options->json, "print the numbers as JSON");
   examples_of(drift, {"keeler bench drift --count 10000"});

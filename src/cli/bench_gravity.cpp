@@ -1,4 +1,4 @@
-// keeler bench gravity: every solver with every setting, its error and its cost.
+// keeler bench gravity: error and cost of every solver and setting.
 #include "bench.hpp"
 #include "print.hpp"
 
@@ -47,7 +47,7 @@ void print_text(const GravityOptions& options, const GravityBench& b) {
   print("{}, {}, box {} m x {} m, shear offset {} m, {}\n", pluralize(b.count, "particle"), options.state,
         format_number(b.size_x_m, 4), format_number(b.size_y_m, 4), format_number(b.offset_m, 4),
         pluralize(threads(), "thread"));
-  print("errors of {} particles' forces over the rms force, of {} within {:g} m of the edges; medians of {}\n\n",
+  print("errors relative to the rms force, of {} particles and of {} within {:g} m of the edges; medians of {}\n\n",
         b.sample, b.edge_sample, b.edge_width_m, pluralize(options.bench.repeats, "repeat"));
   print("{:<8}{:<22}{:>12}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>10}{:>10}\n", "solver", "settings", "ns/particle", "rms",
         "99.9 %", "x", "y", "z", "edge", "edge pull", "net force");
@@ -77,11 +77,11 @@ void add_bench_gravity(CLI::App& bench_command, Action& action) {
   CLI::App& gravity = *bench_command.add_subcommand(
       "gravity", "the gravity solvers: cost and error of each setting, in a patch of Saturn's A ring");
   one_of(gravity.add_option("--solver", options->bench.solver,
-                            "one solver (default: all, direct for up to 10000 particles only)"),
+                            "one solver (default: all, direct only up to 10000 particles)"),
          gravity_solver_names());
   gravity.add_option("--count", options->bench.count, "particles (default: 100000)")->transform(particle_number());
   one_of(gravity.add_option("--state", options->state,
-                            "clumped: self-gravity wakes stand; uniform: a fresh patch (default: clumped)"),
+                            "clumped: with self-gravity wakes; uniform: a uniform initial state (default: clumped)"),
          {"clumped", "uniform"});
   add_repeats(gravity, options->bench.repeats);
   options->threads.add_to(gravity);

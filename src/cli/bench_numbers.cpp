@@ -2,6 +2,8 @@
 
 #include <keeler/core/threads.hpp>
 
+#include <cassert>
+
 namespace keeler {
 namespace {
 
@@ -26,65 +28,67 @@ TimedRows phase_rows(const std::string& object, const std::string& before) {
   const auto phase = [&](const char* name, const char* label, const char* meaning) {
     return three_digits(object + "." + name, ns, before + label, meaning);
   };
-  return {{phase("build", "build", "making neighbour lists"), [](Timed t) -> Value { return t.drift_split.build; }},
-          {phase("reject", "reject", "leaving out pairs that cannot meet in the step"),
+  return {{phase("build", "build", "building neighbour lists"), [](Timed t) -> Value { return t.drift_split.build; }},
+          {phase("reject", "reject", "rejecting pairs that cannot touch in the step"),
            [](Timed t) -> Value { return t.drift_split.reject; }},
-          {phase("solve", "solve", "the finder on the rest, at the start of the step"),
+          {phase("solve", "solve", "the finder on the remaining pairs, at the start of the step"),
            [](Timed t) -> Value { return t.drift_split.solve; }},
-          {phase("events", "events", "carrying out contacts, and finding those that follow"),
+          {phase("events", "events", "resolving contacts, and the searches after them"),
            [](Timed t) -> Value { return t.drift_split.events; }}};
 }
 
-// How often things happen, and what the machine can do.
+// Returns the rows of the counts and of the machine's speed.
 TimedRows count_rows() {
   return {
-      {three_digits("pairs_per_particle", unit::none, "pairs tested, a particle",
-                    "in a step, when neighbours are found"),
+      {three_digits("pairs_per_particle", unit::none, "pairs tested per particle",
+                    "per step, to build neighbour lists"),
        [](Timed t) -> Value { return t.per_particle_step(t.pairs_tested); }},
-      {three_digits("survivors_per_particle", unit::none, "pairs for the finder, a particle", "at the start of a step"),
+      {three_digits("survivors_per_particle", unit::none, "pairs for the finder per particle",
+                    "at the start of a step"),
        [](Timed t) -> Value { return t.per_particle_step(t.survivors); }},
       {{"contacts", unit::none, "", "fast and slow, in all repeats"}, [](Timed t) -> Value { return t.contacts; }},
-      {{"recontacts", unit::none, "", "contacts of a pair that has met in the same step"},
+      {{"recontacts", unit::none, "", "contacts of a pair that has touched before in the step"},
        [](Timed t) -> Value { return t.recontacts; }},
-      {{"lists_made", unit::none, "", "how often neighbour lists were made"},
+      {{"lists_made", unit::none, "", "number of times that all neighbour lists were built"},
        [](Timed t) -> Value { return t.lists_made; }},
-      {{"listed_anew", unit::none, "", "particles whose neighbours were found anew within a list's life"},
+      {{"listed_anew", unit::none, "", "particles with a list rebuilt within the lifetime of the lists"},
        [](Timed t) -> Value { return t.listed_anew; }},
-      {{"deferred", unit::none, "", "contacts that a domain left to the rounds after it"},
+      {{"deferred", unit::none, "", "contacts that a domain left to later rounds"},
        [](Timed t) -> Value { return t.deferred; }},
-      {{"in_sequence", unit::none, "", "contacts carried out one after the other"},
+      {{"in_sequence", unit::none, "", "contacts resolved one after the other"},
        [](Timed t) -> Value { return t.in_sequence; }},
-      {{"rolled_back", unit::none, "", "contacts taken back, since one before them touched their particles"},
+      {{"rolled_back", unit::none, "", "contacts undone, because of an earlier one of their particles"},
        [](Timed t) -> Value { return t.rolled_back; }},
-      {{"widest_list", unit::none, "", "neighbours of the particle that has most"},
+      {{"widest_list", unit::none, "", "largest number of neighbours of a particle"},
        [](Timed t) -> Value { return t.widest_list; }},
-      {{"bytes_per_particle", unit::none, "bytes a particle", "held by the drift"},
+      {{"bytes_per_particle", unit::none, "bytes per particle", "memory of the drift"},
        [](Timed t) -> Value { return std::uint64_t{t.bytes_per_particle}; }},
-      {three_digits("yardsticks.line_ns", ns, "yardstick: a line of memory", "time to load a line from memory"),
+      {three_digits("yardsticks.line_ns", ns, "yardstick: a line of memory", "time to read and write a line of memory"),
        [](Timed t) -> Value { return t.yardsticks.line_ns; }},
       {three_digits("yardsticks.pair_ns", ns, "yardstick: a pair", "time for |d|² and d·v of a pair"),
        [](Timed t) -> Value { return t.yardsticks.pair_ns; }}};
 }
 
 TimedRows rank_rows() {
-  return {{{"ranks", unit::none, "ranks", "processes that share the particles"},
-           [](Timed t) -> Value { return std::uint64_t{t.ranks}; },
-           has_many_ranks},
-          {three_digits("exchange.ns", ns, "  exchange", "of a particle and step, waiting included"),
-           [](Timed t) -> Value { return t.exchange.ns; }, has_many_ranks},
-          {three_digits("exchange.messages", unit::none, "  messages a step", "that a rank sends in a step"),
-           [](Timed t) -> Value { return t.exchange.messages; }, has_many_ranks},
-          {three_digits("exchange.bytes", unit::none, "  bytes a step", "that a rank sends in a step"),
-           [](Timed t) -> Value { return t.exchange.bytes; }, has_many_ranks},
-          {three_digits("exchange.common", unit::none, "  common sums a step", "in which all ranks take part"),
-           [](Timed t) -> Value { return t.exchange.common; }, has_many_ranks},
-          {{"shared_again", unit::none, "  steps done again", "of all timed ones"},
-           [](Timed t) -> Value { return t.repeated_steps; },
-           has_many_ranks}};
+  return {
+      {{"ranks", unit::none, "ranks", "number of ranks"},
+       [](Timed t) -> Value { return std::uint64_t{t.ranks}; },
+       has_many_ranks},
+      {three_digits("exchange.ns", ns, "  exchange", "per particle and step, waiting included"),
+       [](Timed t) -> Value { return t.exchange.ns; }, has_many_ranks},
+      {three_digits("exchange.messages", unit::none, "  messages per step", "sent per rank and step"),
+       [](Timed t) -> Value { return t.exchange.messages; }, has_many_ranks},
+      {three_digits("exchange.bytes", unit::none, "  bytes per step", "sent per rank and step"),
+       [](Timed t) -> Value { return t.exchange.bytes; }, has_many_ranks},
+      {three_digits("exchange.common", unit::none, "  collective calls per step", "sums and other calls of all ranks"),
+       [](Timed t) -> Value { return t.exchange.common; }, has_many_ranks},
+      {{"shared_again", unit::none, "  repeated steps", "of the timed steps"},
+       [](Timed t) -> Value { return t.repeated_steps; },
+       has_many_ranks}};
 }
 
 TimedRows speedup_rows(bool with_gravity) {
-  TimedRows rows = {{three_digits("speedup.step", times, "speedup: step", "over one thread or rank, timed by turns"),
+  TimedRows rows = {{three_digits("speedup.step", times, "speedup: step", "over one thread or rank, timed in turn"),
                      [](Timed t) -> Value { return t.speedup.step; }, has_speedup}};
   if (with_gravity)
     rows.push_back({three_digits("speedup.drift", times, "speedup: drift", "of the drift"),
@@ -108,7 +112,7 @@ TimedRows all_of(std::initializer_list<TimedRows> parts) {
 
 TimedRows step_rows() {
   return all_of(
-      {{{three_digits("ns_per_particle_step", ns, "a particle and step", "median of the repeats"),
+      {{{three_digits("ns_per_particle_step", ns, "per particle and step", "median of the repeats"),
          [](Timed t) -> Value { return t.ns_per_particle_step; }},
         {three_digits("split.drift", ns, "  drift", "motion and contacts"),
          [](Timed t) -> Value { return t.split.drift; }},
@@ -118,16 +122,16 @@ TimedRows step_rows() {
          [](Timed t) -> Value { return t.split.gravity; }},
         {three_digits("split.kick", ns, "  kick", "of the elements"), [](Timed t) -> Value { return t.split.kick; }}},
        phase_rows("drift_split", "  drift: "),
-       {{three_digits("drift_over_pair", unit::none, "drift over a pair's time", "times the yardstick `pair_ns`"),
+       {{three_digits("drift_over_pair", unit::none, "drift over a pair's time", "in units of the yardstick `pair_ns`"),
          [](Timed t) -> Value { return t.split.drift / t.yardsticks.pair_ns; }},
-        {three_digits("ns_drift_per_collision", ns, "drift for each contact", "drift over contacts"),
+        {three_digits("ns_drift_per_collision", ns, "drift per contact", "drift over contacts"),
          [](Timed t) -> Value { return t.per_contact(t.split.drift); }},
         {three_digits("ns_events_per_collision", ns, "events for each contact", "events over contacts"),
          [](Timed t) -> Value { return t.per_contact(t.drift_split.events); }},
-        {three_digits("collisions_per_particle_step", unit::none, "collisions a particle and step",
+        {three_digits("collisions_per_particle_step", unit::none, "collisions per particle and step",
                       "faster than v_cut"),
          [](Timed t) -> Value { return 2.0 * t.per_particle_step(t.collisions); }},
-        {three_digits("contacts_per_particle_step", unit::none, "contacts a particle and step", "fast and slow"),
+        {three_digits("contacts_per_particle_step", unit::none, "contacts per particle and step", "fast and slow"),
          [](Timed t) -> Value { return 2.0 * t.per_particle_step(t.contacts); }}},
        count_rows(),
        rank_rows(),
@@ -136,14 +140,14 @@ TimedRows step_rows() {
 
 TimedRows drift_rows() {
   return all_of(
-      {{{three_digits("ns_per_particle_step", ns, "a particle and step", "median of the repeats"),
+      {{{three_digits("ns_per_particle_step", ns, "per particle and step", "median of the repeats"),
          [](Timed t) -> Value { return t.ns_per_particle_step; }},
         {three_digits("split.advance", ns, "  advance", "of the epicycles' phases"),
          [](Timed t) -> Value { return t.split.advance; }}},
        phase_rows("split", "  "),
-       {{three_digits("drift_over_pair", unit::none, "that over a pair's time", "times the yardstick `pair_ns`"),
+       {{three_digits("drift_over_pair", unit::none, "step over a pair's time", "in units of the yardstick `pair_ns`"),
          [](Timed t) -> Value { return t.ns_per_particle_step / t.yardsticks.pair_ns; }},
-        {three_digits("ns_per_collision", ns, "for each contact", "all of that time over contacts"),
+        {three_digits("ns_per_collision", ns, "per contact", "whole time over contacts"),
          [](Timed t) -> Value { return t.per_contact(t.ns_per_particle_step); }},
         {three_digits("ns_events_per_collision", ns, "events for each contact", "events over contacts"),
          [](Timed t) -> Value { return t.per_contact(t.drift_split.events); }}},
@@ -159,9 +163,9 @@ std::vector<QuantityRow<TimedStep>> step_setting_rows() {
            [](Step s) -> Value { return s.bench.dispersion_r_omega; }},
           {word("solver", "solver", "of gravity"), [](Step s) -> Value { return s.bench.choice.solver; }},
           {word("settings", "  its settings", "of the solver"), [](Step s) -> Value { return s.bench.choice.text; }},
-          {{"kick_every", unit::none, "steps for each kick", "of gravity"},
+          {{"kick_every", unit::none, "steps per kick", "of gravity"},
            [](Step s) -> Value { return static_cast<std::uint64_t>(s.bench.choice.settings.kick_every); }},
-          {word("from", "from", "the snapshot that is timed"), [](Step s) -> Value { return *s.settings.from; },
+          {word("from", "from", "the timed snapshot"), [](Step s) -> Value { return *s.settings.from; },
            [](Step s) { return s.settings.from.has_value(); }},
           {{"count", unit::none, "particles", "N"}, [](Step s) -> Value { return std::uint64_t{s.bench.timed.count}; }},
           {{"step_orbits", unit::unnamed("orbits"), "a step", "its length"},
@@ -176,14 +180,14 @@ std::vector<QuantityRow<TimedStep>> step_setting_rows() {
 
 std::vector<QuantityRow<TimedDrift>> drift_setting_rows() {
   return {
-      {three_digits("cost_per_orbit_us", unit::unnamed("us"), "a particle and orbit",
-                    "that time for all steps of an orbit"),
+      {three_digits("cost_per_orbit_us", unit::unnamed("us"), "per particle and orbit",
+                    "the time of all steps of an orbit"),
        [](Drift d) -> Value { return 1e-3 * d.bench.timed.ns_per_particle_step / d.settings.step_orbits; }},
-      {three_digits("ns_per_call", ns, "for each finder call", "at the start of steps"),
+      {three_digits("ns_per_call", ns, "per finder call", "at the start of steps"),
        [](Drift d) -> Value { return d.bench.ns_per_call; }},
-      {three_digits("calls_per_particle_step", unit::none, "finder calls", "a particle, at the start of a step"),
+      {three_digits("calls_per_particle_step", unit::none, "finder calls", "per particle, at the start of a step"),
        [](Drift d) -> Value { return d.bench.calls_per_particle_step; }},
-      {three_digits("collisions_per_particle_orbit", unit::none, "collisions a particle and orbit",
+      {three_digits("collisions_per_particle_orbit", unit::none, "collisions per particle and orbit",
                     "faster than v_cut"),
        [](Drift d) -> Value {
          return 2.0 * d.bench.timed.per_particle_step(d.bench.timed.collisions) / d.settings.step_orbits;
@@ -197,7 +201,7 @@ std::vector<QuantityRow<TimedDrift>> drift_setting_rows() {
        [](Drift d) -> Value { return d.settings.optical_depth; }},
       {word("sizes", "sizes", "of the particles"), [](Drift d) -> Value { return d.sizes; }},
       {word("finder", "finder", "of collisions"), [](Drift d) -> Value { return d.settings.finder; }},
-      {word("all_pairs", "all pairs", "whether no pair is rejected before the finder"),
+      {word("all_pairs", "all pairs", "true if every candidate pair is passed to the finder"),
        [](Drift d) -> Value { return d.settings.all_pairs; }},
       {{"threads", unit::none, "threads", "that were used"},
        [](Drift) -> Value { return static_cast<std::uint64_t>(threads()); }},
@@ -210,10 +214,12 @@ std::vector<QuantityRow<TimedDrift>> drift_setting_rows() {
 } // namespace
 
 Record record_of(const TimedStep& step) {
+  assert(step.bench.timed.repeats > 0);
   return {joined(entries_of(step_rows(), step.bench.timed), entries_of(step_setting_rows(), step)), {}};
 }
 
 Record record_of(const TimedDrift& drift) {
+  assert(drift.bench.timed.repeats > 0 && drift.settings.step_orbits > 0.0);
   return {joined(entries_of(drift_rows(), drift.bench.timed), entries_of(drift_setting_rows(), drift)), {}};
 }
 

@@ -1,4 +1,4 @@
-// What keeler bench tells of timed steps, as numbers with names.
+// The table of the numbers of keeler bench drift and step.
 #pragma once
 
 #include <keeler/bench/drift.hpp>
@@ -7,14 +7,14 @@
 
 namespace keeler {
 
-/// A bench and what it was asked for.
+/// The result of a bench and its settings.
 struct TimedStep {
   const StepBenchSettings& settings;
   const StepBench& bench;
 };
 struct TimedDrift {
   const DriftBenchSettings& settings;
-  std::string sizes; ///< in words
+  std::string sizes; ///< name of settings.sizes
   const DriftBench& bench;
 };
 

@@ -1,4 +1,4 @@
-// keeler bench step: a whole step with self-gravity and collisions.
+// keeler bench step: times whole steps with self-gravity and collisions.
 #include "bench.hpp"
 #include "bench_numbers.hpp"
 #include "print_record.hpp"
@@ -38,11 +38,11 @@ void add_bench_step(CLI::App& bench_command, Action& action, const Communicator&
   StepBenchSettings& s = options->bench;
   CLI::Option* count = step.add_option("--count", s.count, "particles of the clumped patch (default: 100000)")
                            ->transform(particle_number());
-  step.add_option("--from", s.from, "time the state of this snapshot as it stands, with the scene that it holds")
+  step.add_option("--from", s.from, "time the state of this snapshot, with the scene in it")
       ->type_name("FILE")
       ->excludes(count);
   step.add_option("--kick-every", s.kick_every,
-                  "steps for each kick of gravity (default: 1; with --from as in the snapshot's scene)")
+                  "steps per kick of gravity (default: 1; with --from as in the snapshot's scene)")
       ->transform(whole_number_between(1, find_key("gravity.kick_every")->range.high, "a number of steps"));
   one_of(step.add_option("--solver", s.solver,
                          "gravity solver with its default settings (default: tree; with --from that of the snapshot's "

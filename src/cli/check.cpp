@@ -1,4 +1,4 @@
-// keeler check: what a scene means, before anything runs.
+// keeler check: validates a scene and prints its derived quantities, warnings and cost.
 #include "check_numbers.hpp"
 #include "command.hpp"
 #include "print_record.hpp"
@@ -36,12 +36,12 @@ struct CheckOptions {
 
 using Lines = std::vector<std::string>;
 
-// How large the patch of a start file is, and of what density, is known to it alone.
+// Returns size and density of the patch, from the start file if the scene has one.
 PatchScale scale_of_start(const Scene& scene) {
   return scene.start_from ? scale_of(initial_patch(scene)) : scale_of(scene);
 }
 
-// None when only a start file knows the particles.
+// Returns the estimated cost of the run; none if the particles come from a start file.
 std::optional<RunEstimate> estimate(const Scene& scene, const Derived& d) {
   if (!d.particles_known)
     return std::nullopt;
@@ -60,13 +60,13 @@ ExitCode check(const CheckOptions& options) {
   require_start_file(asked);
   const PatchScale start = scale_of_start(asked);
   const Scene scene = decided_by(asked, start);
-  Lines said = warnings(scene, start);
+  Lines notes = warnings(scene, start);
   const Derived derived = derive(scene);
   if (const double left = 1e-6 * available_memory(); derived.memory_mb > left)
-    said.push_back(fmt::format("the run needs about {} GB of memory, and {} GB can be had here: run refuses it; take "
-                               "fewer particles, a coarser mesh, or a machine that has more",
-                               format_number(1e-3 * derived.memory_mb, 3), format_number(1e-3 * left, 3)));
-  print_record(record_of(CheckedScene{scene, start, derived, estimate(scene, derived), said}), options.json);
+    notes.push_back(fmt::format("the run needs about {} GB of memory, and {} GB are available: \"keeler run\" refuses "
+                                "it; use fewer particles, a coarser mesh, or a machine with more memory",
+                                format_number(1e-3 * derived.memory_mb, 3), format_number(1e-3 * left, 3)));
+  print_record(record_of(CheckedScene{scene, start, derived, estimate(scene, derived), notes}), options.json);
   return ExitCode::done;
 }
 
@@ -74,7 +74,8 @@ ExitCode check(const CheckOptions& options) {
 
 void add_check(CLI::App& program, Action& action) {
   const auto options = std::make_shared<CheckOptions>();
-  CLI::App& command = *program.add_subcommand("check", "validate a scene and print what follows from it; runs nothing");
+  CLI::App& command =
+      *program.add_subcommand("check", "validate a scene and print its derived quantities; runs nothing");
   options->scene.add_to(command);
   command.add_flag("--json", options->json, "print the numbers as JSON");
   CLI::Option* defaults =

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
@@ -25,7 +26,7 @@ bool has_kicks(Checked c) {
   return c.scene.gravity && !c.scene.time.automatic;
 }
 
-// Of a scene whose particles attract each other by pairs.
+// True if particles attract each other in pairs, so that contacts at rest can occur.
 bool may_rest(Checked c) {
   return c.scene.gravity && c.scene.gravity->by_pairs();
 }
@@ -34,16 +35,16 @@ bool has_estimate(Checked c) {
   return c.cost.has_value();
 }
 
-// What only a start file knows of its particles.
+// Returns the number, or "unknown" if the particles come from a start file.
 Value known(Checked c, double number) {
-  return particles_known(c) ? Value(number) : Value(Unknown{"only the start file knows it"});
+  return particles_known(c) ? Value(number) : Value(Unknown{"only the start file has it"});
 }
 
 std::string resting_word(Checked c) {
   return c.scene.gravity->carries() ? "carried" : "bounced";
 }
 
-// What the default would be, where the scene has chosen otherwise, and why.
+// Returns the reason of the default, and which one it is if the scene has chosen otherwise.
 std::string resting_reason(Checked c) {
   const RestingChoice choice = choose_resting_contacts(c.start, c.scene);
   if (choice.carried == c.scene.gravity->carries())
@@ -51,8 +52,9 @@ std::string resting_reason(Checked c) {
   return (choice.carried ? "by default they are carried: " : "by default they bounce: ") + choice.reason;
 }
 
-// The first and the last id, and what bodies there are of.
+// Returns the entry of a body: first id and number of its particles, radius, mass, Hill radius.
 Record body(std::size_t first, std::size_t count, double radius, double mass, Checked c) {
+  assert(count > 0 && radius > 0.0 && mass > 0.0);
   const double g = newton_g(c.scene.planet.orbital_frequency);
   return {{{{"first_id", unit::none, "id"}, std::uint64_t{first}},
            {{"count", unit::none, "particles"}, std::uint64_t{count}},
@@ -100,13 +102,13 @@ std::vector<QuantityRow<CheckedScene>> patch_rows() {
                                    : hill_parameter(c.start.density, distance_from_saturn(c.scene.planet));
        }},
       {{"midplane_filling", unit::none, "mid-plane filling at the start",
-        "share of the plane z = 0 that spheres cut, where streamlines are closest; at most 0.55", Spread::none,
+        "fraction of the plane z = 0 inside spheres, where streamlines are closest; at most 0.55", Spread::none,
         Forms::si, 3},
        [](Checked c) { return known(c, c.derived.midplane_filling); }},
       {{"box", unit::metres, "box", "sides along the radius and the orbit", Spread::none, Forms::si, 4, Shape::other},
        [](Checked c) -> Value {
          return particles_known(c) ? Value(std::vector{c.scene.size_x, c.scene.size_y})
-                                   : Value(Unknown{"only the start file knows it"});
+                                   : Value(Unknown{"only the start file has it"});
        }},
       {{"box_wavelengths", unit::unnamed("λ_cr"), "  in critical wavelengths", "these sides over λ_cr", Spread::none,
         Forms::si, 3, Shape::other},
@@ -119,32 +121,33 @@ std::vector<QuantityRow<CheckedScene>> patch_rows() {
 }
 
 std::vector<QuantityRow<CheckedScene>> course_rows() {
-  return {{{"steps", unit::none, "steps", "length of the run; of an automatic step of the shortest ones"},
-           [](Checked c) -> Value { return static_cast<std::uint64_t>(c.derived.steps); }},
-          {{"step", unit::orbits, "a step", "its length; null where it is automatic"},
-           [](Checked c) -> Value {
-             return c.scene.time.automatic
-                        ? Value(Unknown{fmt::format("it is automatic, from 1/{} to 1/{} orbits",
-                                                    TimeSettings::ticks_per_orbit,
-                                                    TimeSettings::ticks_per_orbit / TimeSettings::longest)})
-                        : Value(c.scene.time.step);
-           }},
-          {{"kick_interval", unit::orbits, "from kick to kick", "of a fixed step with self-gravity, else null"},
-           [](Checked c) -> Value {
-             return has_kicks(c) ? Value(c.scene.time.step * static_cast<double>(c.scene.gravity->kick_every))
-                                 : Value(Unknown{});
-           }},
-          {word("gravity", "gravity", "solver and settings of self-gravity"),
-           [](Checked c) -> Value {
-             return in_words(particles_known(c) ? chosen_for(c.derived.particle_count, *c.scene.gravity)
-                                                : *c.scene.gravity);
-           },
-           [](Checked c) { return c.scene.gravity.has_value(); }},
-          {word("resting_contacts", "contacts at rest",
-                "\"carried\" or \"bounced\": what contacts at rest do; null without self-gravity between particles"),
-           [](Checked c) -> Value { return may_rest(c) ? Value(resting_word(c)) : Value(Unknown{}); }},
-          {word("resting_reason", "  why", "why they do by default"),
-           [](Checked c) -> Value { return resting_reason(c); }, may_rest}};
+  return {
+      {{"steps", unit::none, "steps", "length of the run; with an automatic step in shortest steps"},
+       [](Checked c) -> Value { return static_cast<std::uint64_t>(c.derived.steps); }},
+      {{"step", unit::orbits, "a step", "its length; null if it is automatic"},
+       [](Checked c) -> Value {
+         return c.scene.time.automatic
+                    ? Value(Unknown{fmt::format("it is automatic, from 1/{} to 1/{} orbits",
+                                                TimeSettings::ticks_per_orbit,
+                                                TimeSettings::ticks_per_orbit / TimeSettings::longest)})
+                    : Value(c.scene.time.step);
+       }},
+      {{"kick_interval", unit::orbits, "from kick to kick", "with a fixed step and self-gravity, otherwise null"},
+       [](Checked c) -> Value {
+         return has_kicks(c) ? Value(c.scene.time.step * static_cast<double>(c.scene.gravity->kick_every))
+                             : Value(Unknown{});
+       }},
+      {word("gravity", "gravity", "solver and settings of self-gravity"),
+       [](Checked c) -> Value {
+         return in_words(particles_known(c) ? chosen_for(c.derived.particle_count, *c.scene.gravity)
+                                            : *c.scene.gravity);
+       },
+       [](Checked c) { return c.scene.gravity.has_value(); }},
+      {word("resting_contacts", "contacts at rest",
+            "treatment of contacts at rest: \"carried\" or \"bounced\"; null without self-gravity between particles"),
+       [](Checked c) -> Value { return may_rest(c) ? Value(resting_word(c)) : Value(Unknown{}); }},
+      {word("resting_reason", "  why", "reason of the default"), [](Checked c) -> Value { return resting_reason(c); },
+       may_rest}};
 }
 
 std::vector<QuantityRow<CheckedScene>> cost_rows() {
@@ -154,12 +157,12 @@ std::vector<QuantityRow<CheckedScene>> cost_rows() {
       {{"estimated", unit::seconds, "time on one thread, an estimate", "processor time of `keeler run` on this machine",
         Spread::none, Forms::si, 2},
        [](Checked c) -> Value { return c.cost ? Value(c.cost->total()) : Value(Unknown{}); }},
-      {word("estimate", "", "null where only a start file knows the particles"),
-       [](Checked) -> Value { return Unknown{}; }, [](Checked c) { return !has_estimate(c); }},
+      {word("estimate", "", "null if the particles come from a start file"), [](Checked) -> Value { return Unknown{}; },
+       [](Checked c) { return !has_estimate(c); }},
       {{"estimate.start", unit::seconds, "  start", "making the initial state", Spread::none, Forms::si, 2},
        [](Checked c) -> Value { return c.cost->start; },
        has_estimate},
-      {{"estimate.drift", unit::seconds, "  drift", "moving particles, finding and carrying out contacts", Spread::none,
+      {{"estimate.drift", unit::seconds, "  drift", "moving particles, finding and resolving contacts", Spread::none,
         Forms::si, 2},
        [](Checked c) -> Value { return c.cost->drift; },
        has_estimate},
@@ -171,20 +174,19 @@ std::vector<QuantityRow<CheckedScene>> cost_rows() {
        has_estimate},
       {word("estimate.dominates", "  most of it", "the largest part"),
        [](Checked c) -> Value { return std::string(c.cost->dominating()); }, has_estimate},
-      {{"estimate.contacts_per_particle_orbit", unit::none, "", "contacts that the estimate reckons with"},
+      {{"estimate.contacts_per_particle_orbit", unit::none, "", "contacts that the estimate assumes"},
        [](Checked c) -> Value { return scene_contacts(c.scene).wakes.all(); },
        has_estimate},
-      {{"estimate.grains_in_piles", unit::none, "", "particles that the estimate takes to rest on large bodies"},
+      {{"estimate.grains_in_piles", unit::none, "", "particles at rest on large bodies that the estimate assumes"},
        [](Checked c) -> Value {
          return GrainPiles(c.scene).grains(static_cast<double>(c.scene.time.end_step) * c.scene.time.step);
        },
        has_estimate},
-      {word("notices", "note", "what was rounded or dropped, a text each"),
+      {word("notices", "note", "rounded or dropped settings, one text each"),
        [](Checked c) -> Value { return c.scene.notices; }},
-      {word("doubts", "note", "what is seldom meant, or what a patch of this size cannot show, a text each"),
+      {word("doubts", "note", "unusual settings, and results that this patch cannot resolve, one text each"),
        [](Checked c) -> Value { return c.warnings; }},
-      {word("costs", "note", "what makes the scene at least five times as dear as its like, a text each"),
-       [](Checked c) -> Value {
+      {word("costs", "note", "settings that multiply the cost by five or more, one text each"), [](Checked c) -> Value {
          return particles_known(c) ? expensive_settings(c.scene) : std::vector<std::string>();
        }}};
 }

@@ -1,4 +1,4 @@
-// What keeler check tells of a scene, as numbers with names.
+// The table of the numbers of keeler check.
 #pragma once
 
 #include <keeler/advice/derived.hpp>
@@ -13,12 +13,12 @@
 
 namespace keeler {
 
-/// A scene and what follows from it.
+/// A scene with its derived quantities.
 struct CheckedScene {
   const Scene& scene;
-  PatchScale start; ///< of the start file where there is one
+  PatchScale start; ///< of the start file, if there is one
   Derived derived;
-  std::optional<RunEstimate> cost; ///< none: only the start file knows the particles
+  std::optional<RunEstimate> cost; ///< none: the particles come from a start file
   std::vector<std::string> warnings;
 };
 

@@ -1,4 +1,4 @@
-// A subcommand: one file, which registers its options and leaves the action to main.
+// Subcommands: each is one file, which registers its options and sets the action that main carries out.
 #pragma once
 
 #include <keeler/comm/communicator.hpp>
@@ -12,18 +12,18 @@
 
 namespace keeler {
 
-/// What the chosen subcommand does; the program ends with the code it returns.
+/// The action of the chosen subcommand. The program ends with the code that it returns.
 using Action = std::function<ExitCode()>;
 
-/// Ends the --help of a command with these lines, each a whole command: "keeler run scene.toml -o run". A test parses
-/// them all.
+/// Appends examples to the --help of a command, each a whole command line: "keeler run scene.toml -o run". A test
+/// parses all of them.
 void examples_of(CLI::App& command, const std::vector<std::string>& lines);
 
-/// Prints what --help prints.
+/// Prints the text of --help.
 ExitCode print_help(const CLI::App& command);
 
-/// Each adds its subcommand to the program; when the command line names it, it sets the action. `arguments` is the
-/// whole command line, for the provenance of what is written.
+/// Each function adds its subcommand, which sets `action` when the command line names it. `arguments` is the whole
+/// command line, for the provenance of written files.
 void add_check(CLI::App& program, Action& action);
 void add_generate(CLI::App& program, Action& action, const std::vector<std::string>& arguments);
 void add_run(CLI::App& program, Action& action, const std::vector<std::string>& arguments, const Communicator& ranks);

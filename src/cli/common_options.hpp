@@ -1,4 +1,4 @@
-// Options that several commands share.
+// Options of several commands.
 #pragma once
 
 #include <keeler/core/error.hpp>
@@ -14,6 +14,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -23,21 +24,22 @@
 
 namespace keeler {
 
-/// Refuses what is no number above 0, up to `most`, in fewer words than CLI11's own check.
-inline CLI::Validator positive_number(double most = std::numeric_limits<double>::infinity()) {
-  const auto refusal = [most](const std::string& text) {
+/// Accepts numbers above 0 and up to `max`, with a shorter message than CLI11's check.
+inline CLI::Validator positive_number(double max = std::numeric_limits<double>::infinity()) {
+  assert(max > 0.0);
+  const auto refusal = [max](const std::string& text) {
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
-    return *end == '\0' && end != text.c_str() && value > 0.0 && std::isfinite(value) && value <= most
+    return *end == '\0' && end != text.c_str() && value > 0.0 && std::isfinite(value) && value <= max
                ? std::string()
-               : "'" + text + "' is not a number above 0" +
-                     (std::isfinite(most) ? ", up to " + format_number(most) : "");
+               : "'" + text + "' is not a number above 0" + (std::isfinite(max) ? ", up to " + format_number(max) : "");
   };
   return CLI::Validator(refusal, "");
 }
 
-/// Refuses what is no number within these limits, both included; `what` names it.
+/// Accepts numbers from `low` to `high`, both included; `what` names the number in the message.
 inline CLI::Validator number_between(double low, double high, const std::string& what) {
+  assert(low <= high);
   const auto refusal = [=](const std::string& text) {
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
@@ -48,9 +50,10 @@ inline CLI::Validator number_between(double low, double high, const std::string&
   return CLI::Validator(refusal, "");
 }
 
-/// The same for whole numbers, for an option's transform(): CLI11 itself reads neither 1e9 nor 4.0, so they are handed
-/// on in digits.
+/// Accepts whole numbers from `low` to `high`, for an option's transform(): it passes 1e9 or 4.0, which CLI11 does not
+/// read as integers, on in digits.
 inline CLI::Validator whole_number_between(double low, double high, const std::string& what) {
+  assert(low <= high);
   const auto digits_or_refusal = [=](std::string& text) {
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
@@ -64,7 +67,7 @@ inline CLI::Validator whole_number_between(double low, double high, const std::s
   return CLI::Validator(digits_or_refusal, "");
 }
 
-/// Numbers of particles that a run may have, of times that something is measured, of threads.
+/// Accept numbers of particles of a run, of repeats of a measurement, and of threads.
 inline CLI::Validator particle_number() {
   return whole_number_between(1, find_key("particles.count")->range.high, "a number of particles");
 }
@@ -75,11 +78,12 @@ inline CLI::Validator thread_number() {
   return whole_number_between(1, max_threads, "a number of threads");
 }
 
-inline constexpr double max_orbits = 1e6;   ///< of a probe, or of a run of a study
+inline constexpr double max_orbits = 1e6;   ///< of a probe or a run of a study
 inline constexpr double max_seeds = 1000.0; ///< of a study
 
-/// Takes one of these words; --help shows them, and the shell completes them.
+/// Restricts an option to these words, which --help lists and the shell completes.
 inline CLI::Option& one_of(CLI::Option* option, const std::vector<std::string>& words) {
+  assert(option && !words.empty());
   const auto refusal = [words](const std::string& word) {
     if (std::find(words.begin(), words.end(), word) != words.end())
       return std::string();
@@ -91,11 +95,12 @@ inline CLI::Option& one_of(CLI::Option* option, const std::vector<std::string>& 
   return *option;
 }
 
-/// --quantities NAME,…: columns of a table of runs.
+/// Adds --quantities NAME,…: columns of a table of runs.
 inline void add_quantities(CLI::App& command, std::vector<std::string>& names) {
   command
-      .add_option("--quantities", names,
-                  "more columns: numbers of keeler analyze (a list with commas; \"keeler help numbers\" has the names)")
+      .add_option(
+          "--quantities", names,
+          "further columns: numbers of keeler analyze, separated by commas (\"keeler help numbers\" lists them)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NAME,...");
@@ -103,10 +108,10 @@ inline void add_quantities(CLI::App& command, std::vector<std::string>& names) {
 
 /// --threads N.
 struct ThreadOption {
-  int count = 0; ///< 0: as many as the machine offers
+  int count = 0; ///< 0: all threads of the machine
 
   void add_to(CLI::App& command) {
-    command.add_option("--threads", count, "threads to use (default: all); the results are the same for any number")
+    command.add_option("--threads", count, "threads to use (default: all); the results do not depend on the number")
         ->transform(thread_number());
   }
 

@@ -1,5 +1,5 @@
-// keeler complete: what a shell may offer at the end of a command line. The scripts in src/cli/completion ask it, so
-// that it follows the options by itself.
+// keeler complete: prints the completions at the end of a command line. The scripts in src/cli/completion call it, so
+// that completions always match the program's options.
 #include "command.hpp"
 #include "print.hpp"
 #include "usage.hpp"
@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <memory>
 
 namespace keeler {
@@ -20,7 +21,7 @@ struct Candidate {
   std::string word, meaning;
 };
 
-// What can follow: these words, and names that only the shell knows.
+// The possible completions: words, and names of files that the shell lists itself.
 struct Offer {
   std::string names = "none"; // "none", "files" or "folders"
   std::vector<Candidate> candidates{};
@@ -30,17 +31,17 @@ bool is_flag(const CLI::Option& option) {
   return option.get_items_expected_max() == 0;
 }
 
-// The option that the word names, with or without a value behind '='; null when there is none.
+// Returns the option that the word names, with or without "=VALUE"; null when there is none.
 const CLI::Option* option_of(const CLI::App& command, const std::string& word) {
   return word.starts_with('-') ? command.get_option_no_throw(word.substr(0, word.find('='))) : nullptr;
 }
 
-// What a command line asks for at its end.
+// The state of a command line at its end.
 struct Position {
   const CLI::App* command = nullptr;
-  const CLI::Option* option = nullptr; // whose value is expected; null: an option or an argument is
+  const CLI::Option* option = nullptr; // an option without its value yet; null: an option or argument can follow
   std::vector<const CLI::Option*> given{};
-  std::size_t arguments = 0; // that stand already
+  std::size_t arguments = 0; // positional arguments so far
 };
 
 Position position_after(const CLI::App& program, const std::vector<std::string>& words) {
@@ -76,8 +77,8 @@ std::vector<Candidate> commands_below(const CLI::App& command) {
 std::vector<Candidate> options_of(const Position& at) {
   std::vector<Candidate> candidates;
   for (const CLI::Option* option : at.command->get_options()) {
-    const bool again = option->get_expected_max() > 1;
-    if (!again && std::find(at.given.begin(), at.given.end(), option) != at.given.end())
+    const bool repeatable = option->get_expected_max() > 1;
+    if (!repeatable && std::find(at.given.begin(), at.given.end(), option) != at.given.end())
       continue;
     for (const std::string& name : option->get_lnames())
       candidates.push_back({"--" + name, option->get_description()});
@@ -92,7 +93,7 @@ std::vector<Candidate> examples() {
   return candidates;
 }
 
-// "step.length=", and when the key stands already, the words that it can be.
+// Returns the keys as "time.step=", or the choices of a key that is complete.
 std::vector<Candidate> scene_assignments(const std::string& begun) {
   std::vector<Candidate> candidates;
   if (const std::size_t equals = begun.find('='); equals != std::string::npos) {
@@ -106,7 +107,7 @@ std::vector<Candidate> scene_assignments(const std::string& begun) {
   return candidates;
 }
 
-// Names with commas between them: the last one is still being written.
+// Returns the completions of a comma-separated list of names, of which the last one is incomplete.
 std::vector<Candidate> numbers_after(const std::string& begun) {
   const std::string done = begun.substr(0, begun.rfind(',') + 1);
   std::vector<Candidate> candidates;
@@ -115,7 +116,7 @@ std::vector<Candidate> numbers_after(const std::string& begun) {
   return candidates;
 }
 
-// What stands in --help for a value says what it can be: "dark|light" are its words, "FILE" the name of a file.
+// Returns the possible values of an option, by its placeholder in --help: "dark|light" are words, "FILE" is a file.
 Offer values_of(const CLI::Option& option, const std::string& begun) {
   const std::string placeholder = placeholder_of(option);
   if (placeholder == "NAME")
@@ -159,9 +160,10 @@ Offer offer_at(const Position& at, const std::string& begun) {
 }
 
 ExitCode complete(const CLI::App& program, std::vector<std::string> words) {
+  assert(!words.empty());
   const std::string begun = words.back();
   words.pop_back();
-  const bool help = !words.empty() && words.front() == "help" && !begun.starts_with('-'); // of a command or its part
+  const bool help = !words.empty() && words.front() == "help" && !begun.starts_with('-'); // of a command or subcommand
   if (help)
     words.erase(words.begin());
   const Position at = position_after(program, words);
@@ -176,13 +178,14 @@ ExitCode complete(const CLI::App& program, std::vector<std::string> words) {
 } // namespace
 
 void add_complete(CLI::App& program, Action& action) {
-  CLI::App& command = *program.add_subcommand("complete", "what a shell may offer at the end of these words");
+  CLI::App& command = *program.add_subcommand("complete", "print the completions at the end of these words");
   command.group("")->prefix_command();
   command.callback([&command, &program, &action] {
     action = [&command, &program] {
       std::vector<std::string> words = command.remaining();
       if (words.size() < 2)
-        throw UsageError("what the shell completes begins with 'keeler'; ask as in \"keeler complete keeler run --\"");
+        throw UsageError(
+            "the words to complete begin with 'keeler'; write for example \"keeler complete keeler run --\"");
       words.erase(words.begin());
       return complete(program, words);
     };

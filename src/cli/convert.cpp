@@ -1,4 +1,4 @@
-// keeler convert: snapshots and checkpoints for other programs, as CSV or for ParaView.
+// keeler convert: writes snapshots and checkpoints as CSV or for ParaView.
 #include "command.hpp"
 #include "common_options.hpp"
 #include "print.hpp"
@@ -48,7 +48,7 @@ Patch patch_in(const fs::path& file) {
                                file.string()));
 }
 
-// Returns the time of the file, in orbits.
+// Converts one file and returns its time, in orbits.
 double convert_file(const fs::path& file, const fs::path& output, const ConvertOptions& options) {
   const Patch patch = patch_in(file);
   if (options.format == "csv")
@@ -62,13 +62,13 @@ void convert_one(const ConvertOptions& options) {
   const fs::path file(options.path);
   const fs::path output = options.output ? output_named(*options.output)
                                          : output_beside(file, fs::path(file).replace_extension(options.ending()));
-  const KeptStreams kept; // a pipe is looked at more than once
+  const KeptStreams kept; // a pipe is read more than once
   require_new_file(output, options.force, "the result");
   convert_file(file, output, options);
   print_written(output);
 }
 
-// All snapshots of a run, into a folder of their own; the list for ParaView is written last.
+// Converts all snapshots of a run into a separate folder; the list for ParaView is written last.
 void convert_run(const ConvertOptions& options) {
   const std::vector<fs::path> snapshots = snapshots_in(options.path);
   const fs::path folder = options.output.value_or(fs::path(options.path) / options.format);
@@ -107,20 +107,21 @@ void add_convert(CLI::App& program, Action& action) {
       .add_option("FILE|DIR", options->path, "a snapshot or a checkpoint, or the folder of a run: all its snapshots")
       ->required()
       ->type_name("");
-  one_of(command.add_option("--to", options->format, "csv: a row a particle; vtp: a point a particle, for ParaView"),
+  one_of(command.add_option("--to", options->format,
+                            "csv: one row per particle; vtp: one point per particle, for ParaView"),
          {"csv", "vtp"})
       .required();
   command
       .add_option("-o,--output", options->output,
-                  "the file to write (default: the same name with the other ending), or for a run the folder "
-                  "(default: csv or vtp in the run's)")
+                  "the file to write (default: the source's name with the new ending), or for a run the folder "
+                  "(default: csv or vtp in the run's folder)")
       ->type_name("FILE|DIR");
   command.add_flag("--force", options->force, "replace files that exist");
   examples_of(command,
               {"keeler convert wakes --to vtp", "keeler convert wakes/snap_000030.hdf --to csv -o particles.csv"});
   command.callback([options, &action] {
     action = [options] {
-      return unless_stopped("stopped before all was written (on request); the files that are there are whole", [&] {
+      return unless_stopped("stopped before all was written (on request); the written files are complete", [&] {
         if (fs::is_directory(options->path))
           convert_run(*options);
         else

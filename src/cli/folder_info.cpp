@@ -33,7 +33,7 @@ Json or_null(const std::optional<double>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-// Files may come and go while a run works: what is gone counts nothing.
+// Returns the size of a file, 0 if a working run has removed it.
 std::uintmax_t size_of(const fs::path& file) {
   std::error_code gone;
   const std::uintmax_t size = fs::file_size(file, gone);
@@ -49,7 +49,7 @@ std::uintmax_t size_of_all(const fs::path& folder) {
   return size;
 }
 
-// The files of a folder with such names, in their order.
+// Returns the files of a folder with this beginning and ending of their names, sorted.
 std::vector<fs::path> files_named(const fs::path& folder, const std::string& beginning, const std::string& ending) {
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
@@ -61,7 +61,7 @@ std::vector<fs::path> files_named(const fs::path& folder, const std::string& beg
   return files;
 }
 
-// None for a file that is damaged.
+// Returns nothing for a damaged file.
 std::optional<FileDescription> description_of(const fs::path& file) {
   try {
     return describe_file(file);
@@ -70,19 +70,19 @@ std::optional<FileDescription> description_of(const fs::path& file) {
   }
 }
 
-// What is no number is null: files of others may hold anything.
+// Returns the number in a text, or null: files of other programs may hold anything.
 Json number_in(const std::string& text) {
   const Json number = json_of<Json>(text);
   return number.is_number() ? number : Json(nullptr);
 }
 
-// As above, with a point in it also when it is whole.
+// As above, but always a floating-point number.
 Json real_number_in(const std::string& text) {
   const Json number = number_in(text);
   return number.is_number() ? Json(number.get<double>()) : number;
 }
 
-// Empty where the file has none.
+// Returns an empty text if the file has no such attribute.
 std::string attribute_of(const FileDescription& file, const std::string& name) {
   const auto found = file.attributes.find(name);
   return found == file.attributes.end() ? "" : found->second;
@@ -95,7 +95,7 @@ Json value_of_field(const FileDescription& file, const std::string& name) {
   return nullptr;
 }
 
-// What tells the files of a kind apart: the time of a snapshot, the step of a checkpoint, the rows of contacts.
+// Adds the number that identifies a file: the time of a snapshot, the step of a checkpoint, the rows of contacts.
 void add_mark(Json& line, const std::optional<FileDescription>& file) {
   line["damaged"] = !file;
   if (!file)
@@ -108,7 +108,7 @@ void add_mark(Json& line, const std::optional<FileDescription>& file) {
     line["contact_count"] = value_of_field(*file, "Step");
 }
 
-// Which program wrote a file.
+// Adds the version, commit, host and threads of the program that wrote a file.
 void add_writer(Json& json, const FileDescription& file) {
   const std::string group = file.kind == FileKind::checkpoint ? "provenance/" : "Code/";
   for (const char* const name : {"version", "commit", "host"})
@@ -117,13 +117,13 @@ void add_writer(Json& json, const FileDescription& file) {
   json["threads"] = number_in(attribute_of(file, group + "threads"));
 }
 
-// Lines of the files; the last whole one says which program wrote them.
+// Returns one entry per file. The last undamaged file sets the writer in `json`.
 Json files_of(Json& json, const fs::path& folder, const std::string& beginning, const std::string& ending) {
   Json lines = Json::array();
   for (const fs::path& path : files_named(folder, beginning, ending)) {
     const std::optional<FileDescription> file = description_of(path);
     if (!fs::exists(path))
-      continue; // a run at work keeps two checkpoints
+      continue; // a working run removed it: it keeps two checkpoints
     Json line = {{"file", path.filename().string()}, {"bytes", size_of(path)}};
     add_mark(line, file);
     lines.push_back(line);
@@ -171,7 +171,7 @@ const char* stage_of(const fs::path& run) {
   return "empty";
 }
 
-// The runs of a sweep, or of a study that has runs.
+// Counts the runs of a sweep or a study by stage.
 Json runs_of(const RunFolders& folders) {
   Json runs = Json::object();
   for (const char* const stage : {"finished", "running", "resumable", "begun", "empty", "failed"})
@@ -218,7 +218,7 @@ std::string in_words(const Json& value) {
                              : "unknown";
 }
 
-// What lies on disk of one kind: how many, how large, and the first and the last.
+// Prints number and size of the files of one kind, and one line per file.
 void print_files(const char* what, const Json& files, const char* mark, const char* unit) {
   std::uintmax_t bytes = 0;
   for (const Json& file : files)
@@ -245,7 +245,7 @@ void print_run(const Json& json) {
         state == "finished"  ? std::string()
         : state == "running" ? ", " + clock(json["remaining_s"]) + " left"
         : state == "broken"  ? ": log.jsonl has the reason, broken_*.hdf the state"
-                             : "; \"keeler resume " + text("folder") + "\" goes on");
+                             : "; \"keeler resume " + text("folder") + "\" continues");
   print("orbits      {} of {}\n", format_number(json["time_orbits"].get<double>(), 4),
         format_number(json["end_orbits"].get<double>(), 4));
   print("particles   {}\nwall time   {}\n", json["particle_count"].get<std::uint64_t>(), clock(json["wall_s"]));

@@ -1,4 +1,4 @@
-// What is in a folder of results: of a run, a sweep or a study. For `keeler info`.
+// The content of a folder of results (run, sweep or study) for `keeler info`.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,10 +7,10 @@
 
 namespace keeler {
 
-/// Under the names of `keeler info --json`. Throws IoError when the folder holds none of them.
+/// Returns the content under the names of `keeler info --json`. Throws IoError when the folder holds no results.
 nlohmann::ordered_json describe_folder(const std::filesystem::path& folder);
 
-/// The same in words.
+/// Prints the result of describe_folder() as text.
 void print_folder(const nlohmann::ordered_json& json);
 
 } // namespace keeler

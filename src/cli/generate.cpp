@@ -1,4 +1,4 @@
-// keeler generate: an initial state, of a scene or of a table of particles, as a snapshot in double precision.
+// keeler generate: writes an initial state, of a scene or of a table of particles, as a snapshot in double precision.
 #include "command.hpp"
 #include "common_options.hpp"
 #include "messages.hpp"
@@ -39,15 +39,15 @@ struct GenerateOptions {
 };
 
 constexpr const char* stopped =
-    "stopped before the state was made (on request), so no state is written; start again, or "
-    "use \"keeler run\", which keeps checkpoints";
+    "stopped before the state was complete (on request), so no state is written; start again, or "
+    "use \"keeler run\", which writes checkpoints";
 
 Patch make_patch(const Scene& scene, const TalkOption& talk) {
   ProgressLine line(talk);
   return initial_patch(scene, [&line](const StartProgress& progress) { line.show(progress); });
 }
 
-// Beside the state that it would have become.
+// Returns the name for a broken state, in the folder of the requested output.
 std::filesystem::path broken_name(const std::filesystem::path& output, std::int64_t step) {
   return output.parent_path() / fmt::format("{}_broken_{:06}.hdf", output.stem().string(), step);
 }
@@ -77,26 +77,26 @@ void print_clumping(const Clumping& c) {
   print_means("viscosity from the loss of energy", "m²/s", s.viscosity, c.criterion.viscosity, c.orbital_frequency);
   print_means("wake length lambda_perp", "m", s.wavelength, c.criterion.wavelengths, 1.0);
   print_means("wake length lambda_x", "m", s.radial_wavelength, c.criterion.wavelengths, 1.0);
-  print("contrast: {:.3g}, of this state {:.1f} % off it (at most {:g} %)\n", s.contrast, 100.0 * s.deviation,
+  print("contrast: {:.3g}; this state differs by {:.1f} % (at most {:g} %)\n", s.contrast, 100.0 * s.deviation,
         100.0 * c.criterion.largest_deviation);
 }
 
-void require_place_for_state(const GenerateOptions& options) {
+void require_output(const GenerateOptions& options) {
   refuse_stream(output_named(options.output), "HDF5");
   for (const std::string& source : {options.scene.path, options.table})
     refuse_own_source(options.output, source);
   require_new_file(options.output, options.force, "a state");
 }
 
-void print_doubts(const Scene& scene, const Patch& patch, const TalkOption& talk) {
+void print_warnings(const Scene& scene, const Patch& patch, const TalkOption& talk) {
   if (talk.quiet)
     return;
   for (const std::string& warning : warnings(scene, scale_of(patch)))
     print("note: {}\n", warning);
 }
 
-// Overlaps that a run would refuse are reported, or removed where the user asks for it.
-void part(Patch& patch, const GenerateOptions& options, const ParticleTable& table) {
+// Removes overlaps that a run would refuse if --relax is given, otherwise reports them. Throws InvariantError.
+void remove_overlaps(Patch& patch, const GenerateOptions& options, const ParticleTable& table) {
   const std::size_t overlaps = count_overlaps(patch, allowed_overlap);
   if (overlaps == 0)
     return;
@@ -105,7 +105,7 @@ void part(Patch& patch, const GenerateOptions& options, const ParticleTable& tab
       fmt::format("{} of particles overlap, worst those of {} and {}, by {:.2g} of their radius sum",
                   pluralize(overlaps, "pair"), table.location_of(worst.id_i), table.location_of(worst.id_j), worst.depth);
   if (!options.relax)
-    throw InvariantError(found + "; correct them, or move them apart by --relax");
+    throw InvariantError(found + "; correct them, or move them apart with --relax");
   const Relaxation moved = unless_stopped(stopped, [&] { return relax(patch); });
   print("{}; moved {} apart, by {} m at most\n", found, pluralize(moved.moved, "particle"),
         format_number(moved.farthest, 3));
@@ -118,16 +118,16 @@ void print_state(const Patch& patch, const std::string& output) {
 
 ExitCode generate_from_table(const GenerateOptions& options, const std::vector<std::string>& arguments) {
   const TableScene of = load_table_scene(options.scene.path, options.scene.overrides);
-  require_place_for_state(options);
+  require_output(options);
   const ParticleTable table = read_particle_table(options.table);
   Patch patch = patch_from_table(table, of);
-  part(patch, options, table);
+  remove_overlaps(patch, options, table);
   if (table.velocities.empty())
     options.talk.notice()("note: the table has no velocities: all orbits are circular");
-  // No fresh start makes this state: the scene that goes with it starts from the file.
+  // The scene cannot reproduce this state, so the scene in the snapshot starts from the file.
   const Scene scene =
       decided_by(parse_scene(of.scene.resolved, options.scene.path, {}, options.output), scale_of(patch));
-  print_doubts(scene, patch, options.talk);
+  print_warnings(scene, patch, options.talk);
   write_snapshot(options.output, patch, {scene.resolved, collect_provenance(arguments)});
   print_state(patch, options.output);
   return ExitCode::done;
@@ -140,7 +140,7 @@ ExitCode generate(const GenerateOptions& options, const std::vector<std::string>
     return generate_from_table(options, arguments);
   const Scene scene = options.scene.load();
   options.talk.say_scene(scene);
-  require_place_for_state(options);
+  require_output(options);
   SnapshotMeta meta{scene.resolved, collect_provenance(arguments)};
   Patch patch;
   if (options.clumped) {
@@ -153,7 +153,7 @@ ExitCode generate(const GenerateOptions& options, const std::vector<std::string>
   }
   for (const std::string& notice : scene.notices)
     options.talk.notice()(notice);
-  print_doubts(scene, patch, options.talk);
+  print_warnings(scene, patch, options.talk);
   meta.scene = decided_by(scene, scale_of(patch)).resolved;
   write_snapshot(options.output, patch, meta);
   print_state(patch, options.output);
@@ -173,13 +173,13 @@ void add_generate(CLI::App& program, Action& action, const std::vector<std::stri
                                            "evolve the state under its own gravity until its wakes have settled");
   command
       .add_option("--most-orbits", options->criterion.max_orbits,
-                  "give up when wakes have not settled by then (default: 30)")
+                  "give up if wakes have not settled by then (default: 30)")
       ->check(number_between(0.0, 200.0, "a number of orbits"))
       ->needs(&clumped);
   CLI::Option& table = *command.add_option("--from-table", options->table,
-                                           "the particles are those of this table (CSV or HDF5) in the scene's box");
+                                           "take the particles from this table (CSV or HDF5), in the scene's box");
   table.excludes(&clumped)->type_name("FILE");
-  command.add_flag("--relax", options->relax, "move particles of the table that overlap apart")->needs(&table);
+  command.add_flag("--relax", options->relax, "move overlapping particles of the table apart")->needs(&table);
   command.add_flag("--force", options->force, "replace the file if it exists");
   options->threads.add_to(command);
   options->talk.add_to(command);

@@ -1,4 +1,4 @@
-// keeler help, and what --help ends with.
+// keeler help, and the examples at the end of --help.
 #include "bench_numbers.hpp"
 #include "check_numbers.hpp"
 #include "command.hpp"
@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <memory>
 
 namespace keeler {
@@ -25,8 +26,8 @@ struct NumberTable {
 
 std::vector<NumberTable> number_tables() {
   return {{"keeler analyze: a snapshot, or the steady part of a run", measured_quantities()},
-          {"summary.json: what a run came to (keeler run --json)", summary_quantities()},
-          {"series.csv: a run through time", series_quantities()},
+          {"summary.json: results of a run (keeler run --json)", summary_quantities()},
+          {"series.csv: time series of a run", series_quantities()},
           {"keeler check", check_quantities()},
           {"keeler bench step", step_bench_quantities()},
           {"keeler bench drift", drift_bench_quantities()}};
@@ -50,22 +51,22 @@ ExitCode list_numbers() {
   return ExitCode::done;
 }
 
-// What a number is, wherever it is told. False where none has the name.
-bool tell_number(const std::string& name) {
+// Explains a number in every table that contains it. Returns false if none does.
+bool explain_number(const std::string& name) {
   bool is_known = false;
   for (const NumberTable& table : number_tables()) {
-    std::string told;
+    std::string lines;
     for (const Quantity& quantity : table.quantities)
       if (quantity.is_called(name))
-        told += line_of(quantity);
-    if (!told.empty())
-      print("{}\n{}", table.title, told);
-    is_known = is_known || !told.empty();
+        lines += line_of(quantity);
+    if (!lines.empty())
+      print("{}\n{}", table.title, lines);
+    is_known = is_known || !lines.empty();
   }
   return is_known;
 }
 
-// The command of these words: {"bench", "drift"}.
+// Returns the command named by these words, such as {"bench", "drift"}. Throws UsageError with a suggestion.
 const CLI::App& find_command(const CLI::App& program, const std::vector<std::string>& words) {
   const CLI::App* command = &program;
   for (const std::string& word : words) {
@@ -95,6 +96,7 @@ const CLI::App& find_command(const CLI::App& program, const std::vector<std::str
 } // namespace
 
 void examples_of(CLI::App& command, const std::vector<std::string>& lines) {
+  assert(!lines.empty());
   std::string footer = "Examples:";
   for (const std::string& line : lines)
     footer += "\n  " + line;
@@ -112,11 +114,12 @@ void add_help(CLI::App& program, Action& action) {
     bool man = false;
   };
   const auto options = std::make_shared<HelpOptions>();
-  CLI::App& command = *program.add_subcommand("help", "list the commands, or say what a command does or a number is");
+  CLI::App& command = *program.add_subcommand("help", "list the commands, or explain a command or a number");
   command
-      .add_option("COMMAND", options->words, "a command, and its part: bench drift; \"numbers\", or the name of one")
+      .add_option("COMMAND", options->words,
+                  "a command, with a subcommand: bench drift; \"numbers\", or the name of a number")
       ->type_name("");
-  command.add_flag("--man", options->man, "print it as the source of a manual page, for man -l");
+  command.add_flag("--man", options->man, "print the source of a manual page, for man -l");
   examples_of(command, {"keeler help run", "keeler help bench drift", "keeler help run --man", "keeler help numbers",
                         "keeler help toomre_q"});
   command.callback([options, &program, &action] {
@@ -124,7 +127,7 @@ void add_help(CLI::App& program, Action& action) {
       const std::vector<std::string>& words = options->words;
       if (words.size() == 1 && words.front() == "numbers")
         return list_numbers();
-      if (words.size() == 1 && !options->man && tell_number(words.front()))
+      if (words.size() == 1 && !options->man && explain_number(words.front()))
         return ExitCode::done;
       const CLI::App& about = find_command(program, words);
       return options->man ? print_man_page(about) : print_help(about);

@@ -1,4 +1,4 @@
-// keeler info: what is in a snapshot, a checkpoint or a file of contacts, or in a folder of results.
+// keeler info: describes a snapshot, a checkpoint, a file of contacts, or a folder of results.
 #include "command.hpp"
 #include "folder_info.hpp"
 #include "print.hpp"
@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What tells one file from another of its kind.
+// Returns the numbers that identify a file among others of its kind.
 nlohmann::ordered_json describe_state(const std::string& path, FileKind kind) {
   nlohmann::ordered_json json;
   if (kind == FileKind::checkpoint) {
@@ -110,7 +110,7 @@ void print_verified(const VerifiedFile& file) {
   print("{:<11} {:<32} {}\n", file.kind, fs::path(file.file).filename().string(), verdict);
 }
 
-// A line a file; the first damage ends the program.
+// Prints one line per file. Throws IoError if any file is damaged.
 ExitCode verify(const std::string& path, bool json) {
   const std::vector<VerifiedFile> files =
       fs::is_directory(path) ? verify_folder(path) : std::vector<VerifiedFile>{verify_file(path)};
@@ -137,20 +137,20 @@ void add_info(CLI::App& program, Action& action) {
     bool json = false, verify = false;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App& command = *program.add_subcommand("info", "show what is in a file or a folder of results");
+  CLI::App& command = *program.add_subcommand("info", "describe a file or a folder of results");
   command
       .add_option("FILE|DIR", options->path,
                   "a snapshot, a checkpoint or a file of contacts; the folder of a run, a sweep or a study")
       ->required()
       ->type_name("");
-  command.add_flag("--json", options->json, "print it as JSON");
+  command.add_flag("--json", options->json, "print the content as JSON");
   command.add_flag("--verify", options->verify,
-                   "say of each file whether it is whole: seal, checksums, format, scene against state, ids, overlaps, "
-                   "finite numbers; exit code 4 where one is damaged");
+                   "check that each file is whole: seal, checksums, format, scene against state, ids, overlaps, "
+                   "finite numbers; exit code 4 if one is damaged");
   examples_of(command, {"keeler info wakes", "keeler info wakes/snap_000030.hdf --json", "keeler info --verify wakes"});
   command.callback([options, &action] {
     action = [options] {
-      const KeptStreams kept; // a pipe is looked at more than once
+      const KeptStreams kept; // a pipe is read more than once
       if (options->verify)
         return verify(options->path, options->json);
       const bool folder = fs::is_directory(options->path);

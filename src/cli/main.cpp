@@ -35,13 +35,13 @@ int fail(ExitCode code, const std::string& message) {
   return static_cast<int>(code);
 }
 
-// Within a catch clause.
+// Reports the current exception. Precondition: called within a catch clause.
 int fail_at_hand() {
   const Error error = error_at_hand();
   return fail(error.code(), error.what());
 }
 
-// Results that nobody got must not look like success.
+// Returns the exit code after flushing standard output. Throws IoError when the results could not be written.
 int end_with(ExitCode code) {
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
     throw IoError(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
@@ -49,7 +49,7 @@ int end_with(ExitCode code) {
   return static_cast<int>(code);
 }
 
-// Puts the commands that were added since the last call under a heading of --help.
+// Puts the commands added since the last call under a heading of --help.
 void group(CLI::App& program, const std::string& heading) {
   const std::string none = CLI::App().get_group();
   for (CLI::App* command : program.get_subcommands({}))
@@ -57,7 +57,7 @@ void group(CLI::App& program, const std::string& heading) {
       command->group(heading);
 }
 
-// In the order in which a user meets them.
+// Adds the commands in the order of a user's work.
 void add_commands(CLI::App& program, Action& action, const std::vector<std::string>& arguments,
                   const Communicator& ranks) {
   add_new(program, action);
@@ -85,19 +85,19 @@ void add_commands(CLI::App& program, Action& action, const std::vector<std::stri
   add_complete(program, action);
 }
 
-// Commands of one process would all do the same.
+// Throws UsageError when an MPI launcher starts several copies of a command that is not distributed.
 void refuse_ranks(const std::string& command, const Communicator& ranks) {
-  const std::vector<std::string> shared = {"keeler", "keeler run", "keeler resume", "keeler bench step"};
-  if (ranks.distributed() && std::find(shared.begin(), shared.end(), command) == shared.end())
-    throw UsageError(fmt::format("'{}' is for one process, and a launcher of MPI has started {}; start it by itself "
-                                 "(only run, resume and bench step are shared by ranks)",
+  const std::vector<std::string> distributed = {"keeler", "keeler run", "keeler resume", "keeler bench step"};
+  if (ranks.distributed() && std::find(distributed.begin(), distributed.end(), command) == distributed.end())
+    throw UsageError(fmt::format("'{}' is for one process, and an MPI launcher has started {}; start it without the "
+                                 "launcher (only run, resume and bench step can be distributed)",
                                  command, ranks.size()));
 }
 
-// The command that a command line asks for.
+// The parsed command line.
 struct Parsed {
   std::string command; // "keeler bench step"
-  Action help;         // prints --help or --version, where these are asked for
+  Action help;         // prints --help or --version if requested
 };
 
 Parsed parse(CLI::App& program, int argc, char** argv, const Communicator& ranks) {
@@ -121,7 +121,7 @@ Parsed parse(CLI::App& program, int argc, char** argv, const Communicator& ranks
 
 int run(int argc, char** argv) {
   const Communicator ranks = Communicator::launched();
-  if (!ranks.is_root() && !std::freopen("/dev/null", "w", stdout)) // results are the first rank's to tell
+  if (!ranks.is_root() && !std::freopen("/dev/null", "w", stdout)) // only rank 0 prints results
     throw IoError("cannot open /dev/null");
   CLI::App program("Keeler simulates a self-gravitating patch of a planetary ring.", "keeler");
   program.set_version_flag("--version", "keeler " + program_version());
@@ -138,23 +138,23 @@ int run(int argc, char** argv) {
     return end_with(parsed.help());
   if (!action)
     return end_with(print_help(program));
-  ranks.together([] { set_threads(threads()); }); // refuses what OMP_NUM_THREADS must not ask for
+  ranks.together([] { set_threads(threads()); }); // refuses an invalid OMP_NUM_THREADS
   return end_with(action());
 }
 
-// OpenMP reads its wait policy when it is loaded, before main. Threads that spin while they wait make a run ten times
-// slower on a busy machine, so the program starts itself again with the policy set; where that fails it is only slower.
+// Sets OpenMP's wait policy and restarts the program, since OpenMP reads the policy when it is loaded, before main.
+// Threads that spin while waiting make a run ten times slower on a busy machine. If exec() fails the program continues.
 void let_threads_sleep(char** argv) {
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT"))
     return;
   setenv("OMP_WAIT_POLICY", "passive", 1);
-  setenv("GOMP_SPINCOUNT", "6000", 1); // some tens of microseconds: steps have many short loops
+  setenv("GOMP_SPINCOUNT", "6000", 1); // some 10 µs: steps have many short loops
   execv("/proc/self/exe", argv);
 }
 
-// After a damaged file HDF5 cannot close itself, and says so at length when the program ends. What it has open is in
-// memory alone and need not be closed. It crashes where there is too little memory for its start, so that is tried
-// first.
+// Initializes HDF5 without its exit handler: after a damaged file HDF5 cannot close itself and prints long messages at
+// exit, and its open objects are in memory only. HDF5 crashes when it starts with too little memory, so an allocation
+// is tested first.
 void start_hdf5() {
   constexpr std::size_t enough = std::size_t{4} << 20;
   H5dont_atexit();
@@ -162,8 +162,8 @@ void start_hdf5() {
   H5open();
 }
 
-// The next file that is opened would take the place of a closed standard stream, and messages would go into it. What
-// stands there instead refuses them.
+// Opens /dev/null for reading in place of closed standard streams. Otherwise the next opened file would get that
+// descriptor, and messages would be written into it.
 void fill_closed_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(stream, F_GETFD) < 0)

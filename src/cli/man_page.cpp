@@ -28,7 +28,7 @@ constexpr Exit exits[] = {
     {ExitCode::input_output, "reading or writing failed: a full disk, a damaged file, a folder that cannot be made"},
     {ExitCode::stopped, "stopped early on request, a valid checkpoint is on disk"}};
 
-// Text as roff takes it: '-' is a minus sign that can be copied, and no line begins with a request.
+// Escapes text for roff: '-' becomes a minus sign that can be copied, and no line begins with a request.
 std::string roff(const std::string& text) {
   std::string escaped = text.starts_with('.') || text.starts_with('\'') ? "\\&" : "";
   for (const char letter : text)
@@ -36,7 +36,7 @@ std::string roff(const std::string& text) {
   return escaped;
 }
 
-// "keeler-bench drift" stands on the page of keeler-bench.
+// Returns the name of a command's page: "keeler-run".
 std::string page_name(const CLI::App& command) {
   std::string name = full_name(command);
   std::replace(name.begin(), name.end(), ' ', '-');
@@ -62,7 +62,7 @@ std::string usage_of(const CLI::App& command) {
 std::string explained(const CLI::Option& option) {
   std::string text = option.get_description();
   if (option.get_required())
-    text += "; needed";
+    text += "; required";
   for (const CLI::Option* other : option.get_excludes())
     text += "; not with " + other->get_name();
   for (const CLI::Option* other : option.get_needs())
@@ -97,7 +97,7 @@ void print_parts(const CLI::App& command) {
   }
 }
 
-// The lines of --help below "Examples:", of the command and of its parts.
+// Prints the lines of --help below "Examples:" of the command and its subcommands.
 void print_examples(const CLI::App& command) {
   for (const std::string& line : CLI::detail::split(command.get_footer(), '\n'))
     if (line.starts_with("  "))
@@ -128,8 +128,8 @@ ExitCode print_man_page(const CLI::App& command) {
     print_tagged(fmt::format("\\fB{}\\fR", static_cast<int>(exit.code)), exit.meaning);
   print(".SH EXAMPLES\n.nf\n");
   print_examples(command);
-  print(".fi\n.SH SEE ALSO\n{}the manual: commands, scene keys, a tutorial, in the folder doc/keeler beside that "
-        "of this page.\n",
+  print(".fi\n.SH SEE ALSO\n{}the manual (commands, scene keys, a tutorial), in the folder doc/keeler beside the "
+        "folder of this page.\n",
         program ? "" : "\\fBkeeler\\fR(1), ");
   return ExitCode::done;
 }

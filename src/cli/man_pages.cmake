@@ -1,4 +1,4 @@
-# cmake -DPROGRAM=keeler -DFOLDER=man -P man_pages.cmake: a manual page of each command, and keeler.1 last.
+# cmake -DPROGRAM=keeler -DFOLDER=man -P man_pages.cmake: writes a manual page for each command, and keeler.1 last.
 execute_process(COMMAND "${PROGRAM}" complete keeler "" OUTPUT_VARIABLE offered COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "\n[a-z]+\t" commands "${offered}")
 file(MAKE_DIRECTORY "${FOLDER}")

@@ -1,5 +1,5 @@
-// Messages to the user on standard error: progress, notices, errors. A message that cannot be written is lost and
-// nothing else happens: no run ends because nobody reads its progress.
+// Messages to the user on standard error: progress, notices, errors. A message that cannot be written is dropped: a run
+// does not end because its standard error is closed.
 #pragma once
 
 #include <keeler/core/format.hpp>
@@ -10,10 +10,10 @@
 namespace keeler {
 
 inline void write_message(const std::string& text) {
-  std::fputs(text.c_str(), stderr); // whether it could be written does not matter
+  std::fputs(text.c_str(), stderr); // failure is ignored
 }
 
-/// One line that names the program.
+/// Writes one line that begins with the program's name.
 inline void say(const std::string& line) {
   write_message("keeler: " + printable_line(line) + "\n");
 }

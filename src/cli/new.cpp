@@ -1,4 +1,4 @@
-// keeler new: a shipped example as the beginning of one's own scene.
+// keeler new: copies a shipped example as the beginning of a user's scene.
 #include "command.hpp"
 #include "common_options.hpp"
 #include "print.hpp"
@@ -31,14 +31,13 @@ ExitCode list_examples() {
   return ExitCode::done;
 }
 
-// The scene and, beside it, its tables. Nothing is written when one of the names is taken.
+// Writes the scene and its tables into one folder. Writes nothing if one of the files exists.
 ExitCode write_example(const NewOptions& options) {
   const ExampleScene& example = find_example(options.name);
   const fs::path scene = options.output ? output_named(*options.output) : fs::path(options.name + ".toml");
   if (is_stream(scene) && !example.tables.empty())
-    throw UsageError(
-        fmt::format("'{}' cannot take the example {} (it has tables in files beside its scene); name a file",
-                    scene.string(), options.name));
+    throw UsageError(fmt::format("'{}' cannot take the example {} (it needs tables in further files); name a file",
+                                 scene.string(), options.name));
   require_new_file(scene, options.force, "a scene");
   for (const ExampleScene::Table& table : example.tables)
     require_new_file(scene.parent_path() / table.file, options.force, "a table");

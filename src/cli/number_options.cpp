@@ -7,7 +7,7 @@ namespace keeler {
 void NumberOptions::add_to(CLI::App& command) {
   command
       .add_option("--only", names_,
-                  "tell these numbers alone (a list with commas; \"keeler help numbers\" has the names)")
+                  "print only these numbers, separated by commas (\"keeler help numbers\" lists them)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->type_name("NAME,...");

@@ -1,4 +1,4 @@
-// Which numbers a command tells, and in which units.
+// Options that select the printed numbers and their units.
 #pragma once
 
 #include <keeler/quantities/quantity.hpp>
@@ -16,13 +16,13 @@ class NumberOptions {
 public:
   void add_to(CLI::App& command);
 
-  /// None: those that each number has by default.
+  /// Returns the requested units; none: the default units of each number.
   std::optional<UnitSystem> system() const;
 
-  /// Before anything is measured. Throws UsageError for a name that none of the quantities has.
+  /// Checks the names before anything is measured. Throws UsageError for a name that none of the quantities has.
   void check(std::span<const Quantity> quantities) const { require_names(quantities, names_); }
 
-  /// All, or the ones that are named. Throws UsageError for a name that the record does not have.
+  /// Returns all numbers, or the requested ones. Throws UsageError for a name that the record does not have.
   Record chosen(const Record& record) const { return names_.empty() ? record : only(record, names_); }
 
 private:

@@ -1,4 +1,4 @@
-// Standard output: results for people and for programs. All that commands print passes here.
+// Standard output of all commands: results as text and as JSON.
 #pragma once
 
 #include <keeler/core/printable.hpp>
@@ -9,7 +9,7 @@
 
 namespace keeler {
 
-/// Prints as fmt::print does, without what a terminal would obey: files of others have titles and attributes too.
+/// Prints as fmt::print does, without control characters: titles and attributes come from files of unknown origin.
 template<class... Values> void print(fmt::format_string<Values...> format, Values&&... values) {
   fmt::print("{}", printable_text(fmt::format(format, std::forward<Values>(values)...)));
 }

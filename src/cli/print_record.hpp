@@ -1,4 +1,4 @@
-// Numbers on standard output.
+// Prints records of numbers on standard output.
 #pragma once
 
 #include "print.hpp"
@@ -8,7 +8,7 @@
 
 namespace keeler {
 
-/// Prints numbers as lines, or as JSON.
+/// Prints the numbers as lines, or as JSON.
 inline void print_record(const Record& record, bool as_json) {
   print("{}", as_json ? json_text(json_of(record), 2) + "\n" : lines_of(record));
 }

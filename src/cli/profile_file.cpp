@@ -6,9 +6,12 @@
 #include <keeler/diagnostics/radial_profile.hpp>
 #include <keeler/report/csv.hpp>
 
+#include <cassert>
+
 namespace keeler {
 
 void write_profiles(const std::filesystem::path& file, std::span<const Patch> patches, std::size_t bins) {
+  assert(bins > 0);
   auto rows = nlohmann::ordered_json::array();
   for (const Patch& patch : patches)
     for (const RadialBin& bin : radial_profile(patch, bins)) {

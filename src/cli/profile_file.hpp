@@ -10,7 +10,8 @@ namespace keeler {
 
 inline constexpr std::size_t default_profile_bins = 100;
 
-/// A line a snapshot and bin. The motion in an empty bin is left empty. Throws IoError.
+/// Writes one line per snapshot and bin; velocities of an empty bin are empty. Precondition: `bins` > 0. Throws
+/// IoError.
 void write_profiles(const std::filesystem::path& file, std::span<const Patch> patches, std::size_t bins);
 
 } // namespace keeler

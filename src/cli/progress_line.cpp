@@ -17,7 +17,7 @@ namespace {
 
 constexpr int longest_bar = 30, shortest_bar = 10;
 constexpr double terminal_interval_s = 0.1, log_interval_s = 10.0;
-constexpr double settling_s = 1.0; // before it a time left would be a guess
+constexpr double settling_s = 1.0; // before it the estimate of the time left is too uncertain
 
 std::string clock(double seconds) {
   const long whole = std::lround(seconds);
@@ -25,14 +25,14 @@ std::string clock(double seconds) {
                        : fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
-// How long the rest takes, when there is something to tell it by: a part of a line, or none.
-ProgressLine::Parts time_left(double share, double elapsed_s, double remaining_s) {
-  if (share < 1.0 && (share <= 0.0 || elapsed_s < settling_s))
+// Returns the time left as a part of a line, or nothing while it is unknown.
+ProgressLine::Parts time_left(double fraction, double elapsed_s, double remaining_s) {
+  if (fraction < 1.0 && (fraction <= 0.0 || elapsed_s < settling_s))
     return {};
   return {clock(remaining_s) + " left"};
 }
 
-// The parts of a line side by side, the last ones left out where they do not fit.
+// Joins the parts of a line and drops the last ones that do not fit.
 std::string line_of(const ProgressLine::Parts& parts, std::size_t columns) {
   std::string line;
   for (const std::string& part : parts) {
@@ -60,8 +60,8 @@ bool ProgressLine::due(double elapsed_s, bool last) {
   return true;
 }
 
-// On a terminal the line stays shorter than its width, else redrawing would begin new ones: the bar shrinks first.
-void ProgressLine::print(std::optional<double> share, const Parts& parts) {
+// Prints a line. On a terminal it is shorter than the width, so that it can be redrawn in place; the bar shrinks first.
+void ProgressLine::print(std::optional<double> fraction, const Parts& parts) {
   if (!terminal_) {
     write_message(line_of(parts, std::string::npos) + "\n");
     return;
@@ -69,8 +69,8 @@ void ProgressLine::print(std::optional<double> share, const Parts& parts) {
   const int columns = std::max(terminal_width(STDERR_FILENO) - 1, shortest_bar);
   std::string numbers = line_of(parts, static_cast<std::size_t>(columns));
   const int left = std::min(columns - static_cast<int>(numbers.size()) - 1, longest_bar);
-  if (share && left >= shortest_bar)
-    numbers = progress_bar(*share, left) + " " + numbers;
+  if (fraction && left >= shortest_bar)
+    numbers = progress_bar(*fraction, left) + " " + numbers;
   write_message("\r" + numbers + "\033[K");
   open_ = true;
 }
@@ -79,7 +79,7 @@ double ProgressLine::patience_s() const {
   return terminal_ ? 0.5 : log_interval_s;
 }
 
-// Most starts are made before anybody looks.
+// Shows nothing for short starts.
 void ProgressLine::show(const StartProgress& p) {
   begin_phase("the start", 0.0);
   if (p.elapsed_s >= patience_s() && due(p.elapsed_s, p.share == 1.0))
@@ -132,7 +132,7 @@ void ProgressLine::note(const std::string& text) {
   say(text);
 }
 
-// No bar and no time left: nobody knows when wakes settle.
+// Shows neither a bar nor a time left: the time at which wakes settle is unknown.
 void ProgressLine::show(const ClumpingProgress& p) {
   if (!due(p.elapsed_s, p.settled))
     return;
@@ -141,7 +141,7 @@ void ProgressLine::show(const ClumpingProgress& p) {
   if (!p.settling) {
     parts.push_back(fmt::format("compared from orbit {:g} on", p.criterion.min_orbits()));
   } else if (p.settling->standing < p.criterion.min_standing) {
-    parts.push_back("no wakes stand out");
+    parts.push_back("no wakes above the noise");
   } else {
     const auto change = [&](const WindowMeans& means) {
       return fmt::format("{:.0f} % (settled at {:.0f} %)", 100.0 * means.change(), 100.0 * means.tolerance);

@@ -1,5 +1,5 @@
-// Progress on standard error: one line that redraws itself on a terminal and fits its width, one line every ten seconds
-// elsewhere.
+// Progress on standard error: on a terminal one line that is redrawn and fits its width, otherwise one line every ten
+// seconds.
 #pragma once
 
 #include "talk.hpp"
@@ -16,7 +16,7 @@ namespace keeler {
 
 class ProgressLine {
 public:
-  /// What a line says, the most important first.
+  /// The parts of a line, the most important first.
   using Parts = std::vector<std::string>;
 
   explicit ProgressLine(const TalkOption& talk = {});
@@ -25,24 +25,24 @@ public:
   void show(const RunProgress& progress);
   void show(const ClumpingProgress& progress);
   void show(const Progress& progress);
-  /// The same of work that is mostly over before anybody looks: nothing is shown then.
+  /// Shows progress only if the work takes longer than patience_s().
   void show_if_long(const Progress& progress);
 
-  /// A note, on a line of its own.
+  /// Prints a note on a separate line.
   void note(const std::string& text);
 
 private:
-  double patience_s() const;
+  double patience_s() const; // duration of work that shows no progress
   void begin_phase(const std::string& phase, double elapsed_s);
-  // Whether it is time for the next line.
+  // Returns true when the next line is due.
   bool due(double elapsed_s, bool last);
-  void print(std::optional<double> share, const Parts& parts);
+  void print(std::optional<double> fraction, const Parts& parts);
 
   bool terminal_;
   TalkOption talk_;
-  std::string phase_; // that was said to have begun
+  std::string phase_; // last announced phase
   double next_s_ = 0.0;
-  bool open_ = false; // a line without its end is on the terminal
+  bool open_ = false; // the terminal shows a line without a line end
 };
 
 } // namespace keeler

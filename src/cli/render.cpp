@@ -1,4 +1,4 @@
-// keeler render: pictures of a snapshot, or of the last state of a run.
+// keeler render: draws a snapshot, the last state of a run, or its series.
 #include "command.hpp"
 #include "common_options.hpp"
 #include "progress_line.hpp"
@@ -20,6 +20,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cassert>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -38,7 +39,7 @@ struct RenderOptions {
 
 constexpr std::string_view png_signature = "\x89PNG", svg_signature = "<svg ";
 
-// picture.png in a run's folder, NAME.png beside a snapshot NAME.hdf.
+// Returns picture.png in a run's folder, or NAME.png beside a snapshot NAME.hdf.
 fs::path picture_path(const RenderOptions& options) {
   if (options.output)
     return output_named(*options.output);
@@ -46,13 +47,14 @@ fs::path picture_path(const RenderOptions& options) {
   return output_beside(path, fs::is_directory(path) ? path / "picture.png" : fs::path(path).replace_extension(".png"));
 }
 
-// "orbits 2 to 3": of the snapshots that are averaged.
+// Returns the times of the averaged snapshots: "orbits 2 to 3".
 std::string orbits_of(const std::vector<Patch>& patches) {
+  assert(!patches.empty());
   const double first = patches.front().time_orbits, last = patches.back().time_orbits;
   return patches.size() == 1 ? fmt::format("orbit {:.3g}", last) : fmt::format("orbits {:.3g} to {:.3g}", first, last);
 }
 
-// Of the same snapshots as `keeler analyze`, so that its pitch and spacing are those.
+// Draws the autocorrelation of the snapshots that `keeler analyze` uses, so that pitch and spacing agree with it.
 void draw_autocorrelation(const RenderOptions& options, fs::path file, const std::string& title) {
   const StoredPatches stored =
       fs::is_directory(options.path) ? measured_part(options.path, {}).stored : load_newest_patch(options.path);
@@ -64,18 +66,18 @@ void draw_autocorrelation(const RenderOptions& options, fs::path file, const std
   print_written(file);
 }
 
-PictureOptions look_of(const RenderOptions& options) {
-  PictureOptions look;
-  look.width = options.width;
-  look.theme = options.theme == "light" ? PictureTheme::light : PictureTheme::dark;
-  look.colour = colour_field_named(options.colour);
-  look.oblique = options.oblique;
-  return look;
+PictureOptions picture_options(const RenderOptions& options) {
+  PictureOptions picture;
+  picture.width = options.width;
+  picture.theme = options.theme == "light" ? PictureTheme::light : PictureTheme::dark;
+  picture.colour = colour_field_named(options.colour);
+  picture.oblique = options.oblique;
+  return picture;
 }
 
 ExitCode draw_movie(const RenderOptions& options) {
   if (!fs::is_directory(options.path))
-    throw UsageError(fmt::format("no movie of '{}': it is no folder; name the folder of a run", options.path));
+    throw UsageError(fmt::format("no movie of '{}': it is not a folder; name the folder of a run", options.path));
   const fs::path movie = options.output ? output_named(*options.output)
                                         : options.path / fs::path(has_ffmpeg() ? "movie.mp4" : "movie.png");
   require_movie_name(movie.string());
@@ -84,13 +86,13 @@ ExitCode draw_movie(const RenderOptions& options) {
   else
     require_replaceable(movie, "a picture", png_signature);
   const std::vector<fs::path> snapshots = snapshots_in(options.path);
-  PictureOptions look = look_of(options);
+  PictureOptions picture = picture_options(options);
   if (const std::string title = load_newest_patch(snapshots.front()).title; !title.empty())
-    look.title = title;
+    picture.title = title;
   const auto patch = [&](std::size_t k) { return load_newest_patch(snapshots[k]).patches.back(); };
   {
     ProgressLine line;
-    render_movie(snapshots.size(), patch, movie.string(), look,
+    render_movie(snapshots.size(), patch, movie.string(), picture,
                  [&line](const Progress& progress) { line.show_if_long(progress); });
   }
   print_written(movie);
@@ -99,7 +101,7 @@ ExitCode draw_movie(const RenderOptions& options) {
 
 ExitCode draw_series(const RenderOptions& options) {
   if (!fs::is_directory(options.path))
-    throw UsageError(fmt::format("no plots of '{}': it is no folder; name the folder of a run", options.path));
+    throw UsageError(fmt::format("no plots of '{}': it is not a folder; name the folder of a run", options.path));
   const fs::path figure = options.output ? output_named(*options.output) : fs::path(options.path) / "series.svg";
   if (!is_stream(figure) && figure.extension() != ".svg")
     throw UsageError(
@@ -113,11 +115,11 @@ ExitCode draw_series(const RenderOptions& options) {
 ExitCode render(const RenderOptions& options) {
   if (options.series)
     return draw_series(options);
-  PictureOptions look = look_of(options);
+  PictureOptions drawing = picture_options(options);
   if (options.movie)
     return draw_movie(options);
   const fs::path picture = picture_path(options);
-  const KeptStreams kept; // of a pipe, for --autocorrelation
+  const KeptStreams kept; // --autocorrelation reads a pipe a second time
   const StoredPatches stored = load_newest_patch(options.path);
   if (is_stream(picture) && options.autocorrelation)
     throw UsageError(fmt::format("'{}' takes one picture, and --autocorrelation draws a second one into a file beside "
@@ -128,11 +130,11 @@ ExitCode render(const RenderOptions& options) {
         fmt::format("'{}' cannot be a picture: pictures are .png files; give it that ending", picture.string()));
   require_replaceable(picture, "a picture", png_signature);
   if (!stored.title.empty())
-    look.title = stored.title;
-  render_patch(stored.patches.back(), picture.string(), look);
+    drawing.title = stored.title;
+  render_patch(stored.patches.back(), picture.string(), drawing);
   print_written(picture);
   if (options.autocorrelation)
-    draw_autocorrelation(options, picture, look.title);
+    draw_autocorrelation(options, picture, drawing.title);
   return ExitCode::done;
 }
 
@@ -146,29 +148,29 @@ void add_render(CLI::App& program, Action& action) {
       .add_option("-o,--output", options->output,
                   "the file to write (default: picture.png in the folder, or beside the file)")
       ->type_name("FILE");
-  command.add_option("--width", options->width, "of the picture (default: 1600)")
+  command.add_option("--width", options->width, "width of the picture (default: 1600)")
       ->type_name("PIXELS")
       ->transform(whole_number_between(min_picture_width, max_picture_width, "a number of pixels"));
-  one_of(command.add_option("--theme", options->theme, "the page: dark (the default), or light for print"),
+  one_of(command.add_option("--theme", options->theme, "background: dark (the default), or light for print"),
          {"dark", "light"});
   CLI::Option* const colour =
       command
           .add_option("--colour", options->colour,
-                      "what the colours say, with a bar (default: height, shades without a bar)")
+                      "quantity shown by colours, with a colour bar (default: height, shades without a bar)")
           ->type_name(fmt::format("{}", fmt::join(colour_field_names(), "|")));
-  CLI::Option* const oblique =
-      command.add_flag("--oblique", options->oblique, "see the patch from 35 degrees above its plane, not from above");
+  CLI::Option* const oblique = command.add_flag("--oblique", options->oblique,
+                                                "view the patch from 35 degrees above its plane instead of from above");
   CLI::Option* const autocorrelation = command.add_flag(
       "--autocorrelation", options->autocorrelation,
-      "draw the autocorrelation of the surface density too, averaged over the snapshots that analyze takes");
+      "also draw the autocorrelation of the surface density, averaged over the snapshots that analyze uses");
   CLI::Option* const movie =
       command
           .add_flag("--movie", options->movie,
-                    "draw all snapshots of a run at one scale: movie.mp4 by ffmpeg, or movie.png where that is missing")
+                    "draw all snapshots of a run at one scale: movie.mp4 by ffmpeg, or movie.png without ffmpeg")
           ->excludes(autocorrelation);
   command
       .add_flag("--series", options->series,
-                "draw the series of a run, not its particles: series.svg, a plot a quantity with its errors")
+                "draw the series of a run instead of its particles: series.svg, one plot per quantity, with errors")
       ->excludes(autocorrelation)
       ->excludes(movie)
       ->excludes(colour)

@@ -1,4 +1,4 @@
-// keeler report: a run as one page.
+// keeler report: writes a page about a run.
 #include "command.hpp"
 #include "common_options.hpp"
 #include "progress_line.hpp"
@@ -29,7 +29,7 @@ ExitCode report(ReportOptions& options) {
   options.threads.apply();
   const fs::path file = options.output ? output_named(*options.output) : fs::path(options.folder) / "report.html";
   if (!fs::is_directory(options.folder))
-    throw UsageError(fmt::format("no report of '{}': it is no folder; name the folder of a run", options.folder));
+    throw UsageError(fmt::format("no report of '{}': it is not a folder; name the folder of a run", options.folder));
   require_replaceable(file, "a report", "<!DOCTYPE html>");
   std::string page;
   {
@@ -53,7 +53,7 @@ void add_report(CLI::App& program, Action& action) {
       ->type_name("FILE");
   command
       .add_option("--snapshots", options->page.snapshots,
-                  "how many snapshots the 3-D view has at most, evenly through the run (default: 8)")
+                  "largest number of snapshots in the 3-D view, evenly spaced in the run (default: 8)")
       ->transform(whole_number_between(1, 1000, "a number of snapshots"));
   options->threads.add_to(command);
   examples_of(command, {"keeler report wakes", "keeler report wakes --snapshots 20 -o page.html"});

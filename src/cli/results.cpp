@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <fstream>
 
 #include <unistd.h>
@@ -23,7 +24,7 @@ void refuse_folder(const fs::path& file, const std::string& what) {
     throw UsageError(fmt::format("'{}' is a folder ({} is one file); name a file in it", file.string(), what));
 }
 
-// Of a file that is not there, or cannot be read: nothing.
+// Returns the first bytes of a file; empty if it does not exist or cannot be read.
 std::string first_bytes(const fs::path& file, std::size_t count) {
   std::string bytes(count, '\0');
   std::ifstream in(file, std::ios::binary);
@@ -42,9 +43,10 @@ fs::path output_named(const std::string& name) {
 
 fs::path output_beside(const fs::path& source, const fs::path& name) {
   if (reads_once(source) || descriptor_named(source))
-    throw UsageError(fmt::format("'{}' is no file on a disk, so no result can be put beside it; name the file to write "
-                                 "by -o",
-                                 source.string()));
+    throw UsageError(
+        fmt::format("'{}' is a pipe or a device, so the result has no default name; name the file to write "
+                    "with -o",
+                    source.string()));
   return name;
 }
 
@@ -69,26 +71,28 @@ void require_new_file(const fs::path& file, bool force, const std::string& what)
     return;
   refuse_folder(file, what);
   if (fs::exists(file) && !force)
-    throw UsageError(fmt::format("'{}' exists already ({} is never overwritten unasked); name another file or add "
-                                 "--force",
-                                 file.string(), what));
+    throw UsageError(
+        fmt::format("'{}' exists already ({} is never overwritten without --force); name another file or add "
+                    "--force",
+                    file.string(), what));
   require_writable_folder(folder_of(file), file);
 }
 
 void refuse_own_source(const fs::path& file, const fs::path& source) {
-  std::error_code unknown; // of a file that is not there
+  std::error_code unknown; // ignored: a file that does not exist
   if (fs::equivalent(file, source, unknown))
     throw UsageError(
-        fmt::format("'{}' is what the result is made from, and would be lost; name another file", source.string()));
+        fmt::format("'{}' is the source of the result, and would be lost; name another file", source.string()));
 }
 
-void require_replaceable(const fs::path& file, const std::string& what, std::string_view bytes, std::size_t place) {
+void require_replaceable(const fs::path& file, const std::string& what, std::string_view bytes, std::size_t position) {
+  assert(!bytes.empty());
   if (is_stream(file))
     return;
   refuse_folder(file, what);
-  const std::string there = first_bytes(file, place + bytes.size());
-  if (!there.empty() && (there.size() < place || there.substr(place) != bytes))
-    throw UsageError(fmt::format("'{}' exists already, and is not {} that could be made anew; name another file",
+  const std::string existing = first_bytes(file, position + bytes.size());
+  if (!existing.empty() && (existing.size() < position || existing.substr(position) != bytes))
+    throw UsageError(fmt::format("'{}' exists already and is not {}, so it is not replaced; name another file",
                                  file.string(), what));
   require_writable_folder(folder_of(file), file);
 }

@@ -1,4 +1,4 @@
-// Files that commands write where the user says: what may take the place of what.
+// Output files of commands: their names, and which existing files they may replace.
 #pragma once
 
 #include <filesystem>
@@ -7,35 +7,36 @@
 
 namespace keeler {
 
-/// The file that a user names for a result; "-" is standard output. Throws UsageError where it has no name.
+/// Returns the output file for a name from the command line; "-" is standard output. Throws UsageError for an empty
+/// name.
 std::filesystem::path output_named(const std::string& name);
 
-/// Where a result goes that a user gives no name: the `name` derived from that of its source. Throws UsageError where
-/// the source is a pipe or a device.
+/// Returns `name`, the default name of a result of `source`. Throws UsageError if the source is a pipe or a device.
 std::filesystem::path output_beside(const std::filesystem::path& source, const std::filesystem::path& name);
 
-/// Whether a result goes to standard output: then nothing else may go there.
+/// True if a result goes to standard output; then nothing else may be printed there.
 bool is_standard_output(const std::filesystem::path& file);
 
-/// Prints the name of a file that was written, where it has one.
+/// Prints the name of a written file, unless it is standard output.
 void print_written(const std::filesystem::path& file);
 
-/// Refuses "-" for results that fill a folder. Throws UsageError.
+/// Throws UsageError for an empty name or "-" of a folder for results.
 void require_folder_name(const std::filesystem::path& folder);
 
-/// Refuses to make a file ("a state") where there is a folder, where there is one unless `force`, or where none can be
-/// made. A device or a pipe is written to, and replaced by nothing. Throws UsageError, IoError.
+/// Checks that a new file can be written: throws UsageError for a folder, and for an existing file unless `force`;
+/// throws IoError if the file's folder is not writable. Accepts devices and pipes. `what` names the result ("a state").
 void require_new_file(const std::filesystem::path& file, bool force, const std::string& what);
 
-/// Refuses to put a result in the place of the file that it is made from. Throws UsageError.
+/// Throws UsageError if a result would overwrite its source.
 void refuse_own_source(const std::filesystem::path& file, const std::filesystem::path& source);
 
-/// Pictures, pages and tables are made again as often as one likes, but take the place of nothing else: refuses a
-/// folder, and a file that does not have these bytes at this place. Throws UsageError, IoError.
+/// Checks that a picture, page or table can be written: it may replace only an earlier one. Throws UsageError for a
+/// folder, and for a file without these bytes at this position; throws IoError if the file's folder is not writable.
+/// Precondition: `bytes` is not empty.
 void require_replaceable(const std::filesystem::path& file, const std::string& what, std::string_view bytes,
-                         std::size_t place = 0);
+                         std::size_t position = 0);
 
-/// Writes a table over nothing, over one with the same columns, or to a device or a pipe. Throws UsageError, IoError.
+/// Writes a table to a new file, a device or a pipe, or over a table with equal columns. Throws UsageError, IoError.
 void write_table(const std::filesystem::path& file, const std::string& table);
 
 } // namespace keeler

@@ -1,4 +1,4 @@
-// keeler run and keeler resume: the main job.
+// keeler run and keeler resume.
 #include "command.hpp"
 #include "common_options.hpp"
 #include "messages.hpp"
@@ -26,7 +26,7 @@ struct JobOptions {
   TalkOption talk;
 };
 
-// The first rank alone speaks.
+// Returns the options of the run. Only rank 0 gets functions for progress and notices.
 RunOptions run_options(const JobOptions& job, const std::vector<std::string>& arguments, ProgressLine& line,
                        const Communicator& ranks) {
   RunOptions options;
@@ -62,7 +62,7 @@ ExitCode report(const JobOptions& job, const RunResult& result, const Communicat
 void add_common(CLI::App& command, JobOptions& job) {
   command.add_option("--wall-time", job.wall_time, "stop with a checkpoint before this many seconds have passed")
       ->check(positive_number());
-  command.add_flag("--check", job.check, "hold each step against all invariants; slower, and the results are the same");
+  command.add_flag("--check", job.check, "check all invariants in every step; slower, with identical results");
   command.add_flag("--json", job.json, "print the summary as JSON");
   job.threads.add_to(command);
   job.talk.add_to(command);
@@ -74,11 +74,11 @@ void add_run(CLI::App& program, Action& action, const std::vector<std::string>& 
   const auto job = std::make_shared<JobOptions>();
   CLI::App& command = *program.add_subcommand("run", "evolve a scene into a folder of results");
   job->scene.add_to(command)->required();
-  command.add_option("-o,--output", job->folder, "the folder for the results; made if absent")
+  command.add_option("-o,--output", job->folder, "the folder for the results; created if absent")
       ->required()
       ->type_name("DIR");
   command.add_option("--from", job->from, "start from the particles and the box of this snapshot")->type_name("FILE");
-  command.add_flag("--force", job->force, "replace the run that the folder holds");
+  command.add_flag("--force", job->force, "replace the run in the folder");
   add_common(command, *job);
   examples_of(command,
               {"keeler run scene.toml -o wakes", "keeler run scene.toml --set time.end=10 --threads 4 -o longer",
@@ -111,7 +111,7 @@ void add_resume(CLI::App& program, Action& action, const std::vector<std::string
   const auto job = std::make_shared<JobOptions>();
   CLI::App& command = *program.add_subcommand("resume", "continue a run from its newest whole checkpoint");
   command.add_option("DIR", job->folder, "the folder of the run")->required()->type_name("");
-  command.add_option("--until", job->until, "another end, in orbits since the run began")->check(positive_number());
+  command.add_option("--until", job->until, "new end of the run, in orbits since its begin")->check(positive_number());
   add_common(command, *job);
   examples_of(command, {"keeler resume wakes", "keeler resume wakes --until 20"});
   command.callback([job, arguments, ranks, &action] {

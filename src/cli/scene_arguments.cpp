@@ -3,7 +3,7 @@
 namespace keeler {
 
 CLI::Option* SceneArguments::add_to(CLI::App& command) {
-  command.add_option("--set", overrides, "override a key of the scene, as often as needed: --set particles.count=500")
+  command.add_option("--set", overrides, "override a key of the scene; can be repeated: --set particles.count=500")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   return command.add_option("SCENE", path, "scene file (TOML), or the name of an example")->type_name("");

@@ -1,4 +1,4 @@
-// The arguments of every command that takes a scene: the file and its overrides.
+// The arguments of commands that read a scene: the file and its overrides.
 #pragma once
 
 #include <keeler/scene/load.hpp>
@@ -16,10 +16,10 @@ struct SceneArguments {
   std::string path;
   std::vector<std::string> overrides;
 
-  /// Adds SCENE and --set to a command; returns SCENE, so that the command can make it required.
+  /// Adds SCENE and --set to a command. Returns SCENE, so that the caller can make it required.
   CLI::Option* add_to(CLI::App& command);
 
-  /// `from`: the snapshot of --from.
+  /// Reads the scene. `from` is the snapshot of --from.
   Scene load(const std::optional<std::string>& from = {}) const { return load_scene(path, overrides, from); }
 };
 

@@ -1,4 +1,4 @@
-// keeler analyze --elevation …: the ring as a star behind it shows it.
+// keeler analyze --elevation …: occultations of a star by the ring, along several lines of sight.
 #pragma once
 
 #include <keeler/diagnostics/occultation.hpp>
@@ -12,16 +12,17 @@ namespace keeler {
 
 struct SightOptions {
   std::vector<double> elevations, azimuths; ///< degrees
-  std::size_t rays = 1000000;               ///< a snapshot and line of sight
+  std::size_t rays = 1000000;               ///< per snapshot and line of sight
   double footprint = 10.0;                  ///< m
 
   void add_to(CLI::App& command);
-  bool asked() const { return !elevations.empty(); }
+  bool requested() const { return !elevations.empty(); }
 };
 
-/// All azimuths of one elevation after the other. Without azimuths every 10° of half a turn.
+/// Occultations at all requested azimuths of each elevation; without azimuths every 10° of half a turn.
 class Sights {
 public:
+  /// Precondition: there are patches and at least one elevation.
   Sights(const SightOptions& options, std::span<const Patch> patches);
 
   nlohmann::ordered_json json() const;
@@ -31,7 +32,7 @@ private:
   struct Elevation {
     double degrees;
     std::vector<double> azimuths; // degrees
-    std::vector<Occultation> looks;
+    std::vector<Occultation> sights;
   };
 
   RayLattice rays_;

@@ -9,7 +9,7 @@
 namespace keeler {
 namespace {
 
-// A handler can reach nothing else.
+// Global, since a signal handler has no other access.
 RunRequests requests;
 std::atomic<double> first_stop_s = 0.0;
 
@@ -31,7 +31,7 @@ void ask_to_stop(int signal) {
     first_stop_s = now_s();
   } else if (now_s() - first_stop_s > one_request_s) {
     give_up(signal);
-    std::signal(signal, SIG_DFL); // one more ends the program
+    std::signal(signal, SIG_DFL); // a further one ends the program
   }
   alarm(requests.patience_s);
 }
@@ -47,7 +47,7 @@ void install(int signal, void (*handler)(int)) {
   sigaction(signal, &action, nullptr);
 }
 
-// SIG_BLOCK or SIG_UNBLOCK.
+// Blocks or unblocks the handled signals; `how` is SIG_BLOCK or SIG_UNBLOCK.
 void mask_signals(int how) {
   sigset_t set;
   sigemptyset(&set);

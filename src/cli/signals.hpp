@@ -1,8 +1,8 @@
-// Signals: INT, TERM, HUP and USR1 ask the run to finish its step, write a checkpoint and stop; when that takes longer
-// than the run's patience, or at a second one, to give the step up. A third one ends the program. Signals within a
-// quarter of a second of the first are the same request: a queue sends one to each process of a job, and a sweep passes
-// it on to its runs as well. USR2 asks for a snapshot. A process holds them back from its begin until the command line
-// is read, so that none comes before the handlers of the commands that have some.
+// Signals. INT, TERM, HUP and USR1 request a stop: the run finishes its step, writes a checkpoint and stops. A second
+// signal, or a stop that takes too long, makes it give up the step. A third signal ends the
+// program. Signals within a quarter of a second of the first count as one request: a batch system signals every process
+// of a job, and a sweep also passes the signal on to its runs. USR2 requests a snapshot. The signals are blocked from
+// the start of the program until the command line is read, so that none arrives before its handler is installed.
 #pragma once
 
 #include <keeler/core/interrupt.hpp>
@@ -12,15 +12,16 @@
 
 namespace keeler {
 
-/// Holds these signals back, in the program that takes this one's place by exec() too, and lets them come.
+/// Blocks these signals, also across exec().
 void hold_signals();
+/// Unblocks these signals.
 void release_signals();
 
-/// The requests that the handlers set. Installs the handlers; a stop also ends what waits for a pipe or a device.
+/// Installs the handlers and returns the requests that they set. A stop also ends waiting for a pipe or a device.
 RunRequests& requests_from_signals();
 
-/// What make() returns. The first signal is heeded at once, where nothing could be kept: then throws Error with this
-/// message.
+/// Returns make(), for work without checkpoints: the first signal interrupts it at once, and Error with this message is
+/// thrown.
 template<class Make> auto unless_stopped(const std::string& message, const Make& make) {
   try {
     const Interruptible by_signals(requests_from_signals().stop);

@@ -1,4 +1,4 @@
-// keeler study: whole experiments, with tables, figures and a report.
+// keeler study: experiments with tables, figures and a report.
 #include "command.hpp"
 #include "common_options.hpp"
 #include "messages.hpp"
@@ -21,7 +21,7 @@
 namespace keeler {
 namespace {
 
-// Carries out a study and prints what it wrote.
+// Carries out a study and prints the names of its results.
 template<class Settings, class Study>
 ExitCode carry_out(Settings& settings, const TalkOption& talk, const Study& study,
                    const std::vector<const char*>& results) {
@@ -33,14 +33,14 @@ ExitCode carry_out(Settings& settings, const TalkOption& talk, const Study& stud
     settings.notice = [&](const std::string& text) { line.note(text); };
     settings.progress = [&](const Progress& progress) { line.show(progress); };
     try {
-      const Interruptible measurement(requests_from_signals().give_up); // by a second signal
+      const Interruptible measurement(requests_from_signals().give_up); // a second signal interrupts a measurement
       finished =
           using_json_of<nlohmann::json>(settings.folder, [&] { return study(settings, requests_from_signals().stop); });
-    } catch (const Interrupted&) { // what was measured so far is kept
+    } catch (const Interrupted&) { // the finished measurements are in the folder
     }
   }
   if (!finished) {
-    say("stopped; the same command goes on from here");
+    say("stopped; the same command continues from here");
     return ExitCode::stopped;
   }
   for (const char* name : results)
@@ -57,12 +57,12 @@ template<class Settings> void add_folder(CLI::App& command, Settings& settings) 
 void add_finders(CLI::App& command, Action& action, const std::vector<std::string>& arguments) {
   const auto settings = std::make_shared<FinderStudySettings>();
   CLI::App& finders = *command.add_subcommand(
-      "finders", "the collision finders: time, truth and the paper's claims, on four states; stopped (exit 75), the "
-                 "same command goes on");
+      "finders", "the collision finders: times, errors and the paper's claims, on four states; after a stop (exit 75) "
+                 "the same command continues");
   add_folder(finders, *settings);
   const auto talk = std::make_shared<TalkOption>();
   talk->add_to(finders);
-  finders.add_option("--count", settings->count, "particles of equal size (default: 10000, some 95 minutes)")
+  finders.add_option("--count", settings->count, "particles of equal size (default: 10000, about 95 minutes)")
       ->transform(particle_number());
   finders.add_flag("--quick", settings->quick, "3000 particles, three steps, two repeats: a few minutes");
   examples_of(finders, {"keeler study finders -o finders"});
@@ -76,16 +76,16 @@ void add_finders(CLI::App& command, Action& action, const std::vector<std::strin
   });
 }
 
-// What the command line leaves open.
+// Sets the options that the command line does not give to small values.
 void make_quick(GravityStudySettings& settings, const CLI::App& command) {
-  const auto open = [&](const char* option) { return command.count(option) == 0; };
-  if (open("--count"))
+  const auto is_default = [&](const char* option) { return command.count(option) == 0; };
+  if (is_default("--count"))
     settings.count = 5000;
-  if (open("--repeats"))
+  if (is_default("--repeats"))
     settings.repeats = 2;
-  if (open("--orbits"))
+  if (is_default("--orbits"))
     settings.orbits = 0.5;
-  if (open("--seeds"))
+  if (is_default("--seeds"))
     settings.seeds = 2;
 }
 
@@ -93,17 +93,17 @@ void add_gravity(CLI::App& command, Action& action, const std::vector<std::strin
   const auto settings = std::make_shared<GravityStudySettings>();
   CLI::App& gravity = *command.add_subcommand(
       "gravity", "the gravity solvers: error against cost, and whether the physics of wakes depends on them or on the "
-                 "kick interval; stopped (exit 75), the same command goes on");
+                 "kick interval; after a stop (exit 75) the same command continues");
   add_folder(gravity, *settings);
   const auto talk = std::make_shared<TalkOption>();
   talk->add_to(gravity);
   gravity.add_option("--count", settings->count, "particles of the state (default: 100000)")
       ->transform(particle_number());
-  gravity.add_option("--repeats", settings->repeats, "times measured; medians are given (default: 5)")
+  gravity.add_option("--repeats", settings->repeats, "number of measurements; their medians are printed (default: 5)")
       ->transform(repeat_number());
-  gravity.add_option("--orbits", settings->orbits, "orbits that each run is measured over (default: 4)")
+  gravity.add_option("--orbits", settings->orbits, "measured orbits of each run (default: 4)")
       ->check(positive_number(max_orbits));
-  gravity.add_option("--seeds", settings->seeds, "runs with each solver and kick interval (default: 3)")
+  gravity.add_option("--seeds", settings->seeds, "runs per solver and kick interval (default: 3)")
       ->transform(whole_number_between(1, max_seeds, "a number of seeds"));
   const auto quick = std::make_shared<bool>(false);
   gravity.add_flag("--quick", *quick,

@@ -23,7 +23,7 @@ namespace {
 struct SceneStudyOptions {
   SceneArguments scene;
   SceneStudySettings settings;
-  std::size_t jobs = 0; // 0: as many as there are threads for
+  std::size_t jobs = 0; // 0: one per thread of the machine
   TalkOption talk;
 };
 
@@ -43,7 +43,7 @@ ExitCode carry_out(SceneStudyOptions& options) {
         using_json_of<nlohmann::json>(settings.folder, [&] { return study_scene(settings, requests_from_signals()); });
   }
   if (result.stopped) {
-    say("stopped; the same command goes on from here");
+    say("stopped; the same command continues from here");
     return ExitCode::stopped;
   }
   for (const char* const name : {"report.md", "report.html", "study.csv", "settings.csv", "figures"})
@@ -54,8 +54,9 @@ ExitCode carry_out(SceneStudyOptions& options) {
                       count == 1 ? "a run is" : fmt::format("{} runs are", count), advice));
   };
   say_missing(result.failed - result.unmeasurable, "the same command tries again");
-  say_missing(result.unmeasurable, fmt::format("remove what is damaged from '{}', and the same command makes it again",
-                                               (settings.folder / "runs").string()));
+  say_missing(result.unmeasurable,
+              fmt::format("remove the damaged files from '{}', and the same command makes them again",
+                          (settings.folder / "runs").string()));
   return result.failed > 0 ? ExitCode::run_time : ExitCode::done;
 }
 
@@ -64,25 +65,26 @@ void add_one(CLI::App& study, Action& action, const std::vector<std::string>& ar
   const auto options = std::make_shared<SceneStudyOptions>();
   SceneStudySettings& settings = options->settings;
   settings.kind = kind;
-  CLI::App& command = *study.add_subcommand(name, about + "; stopped (exit 75) or killed, the same command goes on");
+  CLI::App& command =
+      *study.add_subcommand(name, about + "; after a stop (exit 75) or kill the same command continues");
   options->scene.add_to(command)->required();
   command.add_option("-o,--output", settings.folder, "the folder for the results; a study in it is continued")
       ->required()
       ->type_name("DIR");
   options->talk.add_to(command);
-  command.add_option("--seeds", settings.seeds, "runs with each setting (default: 3)")
+  command.add_option("--seeds", settings.seeds, "runs per setting (default: 3)")
       ->transform(whole_number_between(1, max_seeds, "a number of seeds"));
   command
       .add_option("--grow", settings.grow_orbits,
-                  "orbits before anything is compared (default: 6 with self-gravity, 10 without)")
+                  "orbits before the comparison begins (default: 6 with self-gravity, 10 without)")
       ->check(positive_number(max_orbits));
-  command.add_option("--orbits", settings.orbits, "orbits of each run from then on (default: 6)")
+  command.add_option("--orbits", settings.orbits, "orbits of each run after that (default: 6)")
       ->check(positive_number(max_orbits));
-  command.add_option("--jobs", options->jobs, "runs at once, on one thread each (default: threads of the machine)")
+  command.add_option("--jobs", options->jobs, "concurrent runs, each on one thread (default: threads of the machine)")
       ->transform(whole_number_between(1, max_threads, "a number of runs"));
   add_quantities(command, settings.quantities);
   command.add_flag("--quick", settings.quick,
-                   "few settings, and by default two seeds, an orbit to grow and two to compare: a first look");
+                   "few settings, and by default two seeds, one orbit before the comparison and two after it");
   examples_of(command, {"keeler study " + name + " scene.toml -o " + name});
   command.callback([options, arguments, &action] {
     requests_from_signals(); // before signals are released
@@ -95,7 +97,7 @@ void add_one(CLI::App& study, Action& action, const std::vector<std::string>& ar
 
 void add_scene_studies(CLI::App& study, Action& action, const std::vector<std::string>& arguments) {
   add_one(study, action, arguments, SceneStudyKind::step, "step",
-          "your scene with several lengths of the step: what it costs, and what it changes");
+          "your scene with several step lengths: cost and effect");
   add_one(study, action, arguments, SceneStudyKind::kicks, "kicks",
           "your scene with several kick intervals of self-gravity");
   add_one(study, action, arguments, SceneStudyKind::mesh, "mesh",

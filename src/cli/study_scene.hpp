@@ -8,7 +8,7 @@
 
 namespace keeler {
 
-/// Adds the five to `keeler study`.
+/// Adds these five subcommands to `keeler study`.
 void add_scene_studies(CLI::App& study, Action& action, const std::vector<std::string>& arguments);
 
 } // namespace keeler

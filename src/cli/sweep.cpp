@@ -22,7 +22,7 @@ namespace {
 
 struct SweepOptions {
   SweepSettings settings;
-  std::size_t jobs = 0; // 0: as many as there are processors for
+  std::size_t jobs = 0; // 0: as the threads of the machine allow
   bool json = false;
   TalkOption talk;
 };
@@ -45,14 +45,15 @@ void print_text(const SweepResult& result, const std::filesystem::path& folder) 
 
 void say_failed(const SweepResult& result, const std::filesystem::path& folder) {
   if (!result.figure_fault.empty())
-    say(result.figure_fault + "; the tables and report.md are there");
+    say(result.figure_fault + "; the tables and report.md are written");
   if (result.failed > result.unmeasurable)
     say(fmt::format("{} failed, sweep.csv has the reasons; the same command tries again",
                     pluralize(result.failed - result.unmeasurable, "run")));
   if (result.unmeasurable > 0)
-    say(fmt::format("{} cannot be measured, sweep.csv has the reasons; remove what is damaged from '{}', and the same "
-                    "command makes it again",
-                    pluralize(result.unmeasurable, "finished run"), (folder / "runs").string()));
+    say(fmt::format(
+        "{} cannot be measured, sweep.csv has the reasons; remove the damaged files from '{}', and the same "
+        "command makes them again",
+        pluralize(result.unmeasurable, "finished run"), (folder / "runs").string()));
 }
 
 ExitCode carry_out(SweepOptions& options) {
@@ -70,7 +71,7 @@ ExitCode carry_out(SweepOptions& options) {
     result = sweep(settings, requests_from_signals());
   }
   if (result.stopped) {
-    say(result.began           ? "stopped, each run with a checkpoint; the same command goes on from here"
+    say(result.began           ? "stopped, each run with a checkpoint; the same command continues from here"
         : settings.tables_only ? "stopped before the tables were made; the same command makes them"
                                : "stopped before any run was started; the same command begins again");
     return ExitCode::stopped;
@@ -94,21 +95,21 @@ void add_sweep(CLI::App& program, Action& action) {
   const auto options = std::make_shared<SweepOptions>();
   SweepSettings& settings = options->settings;
   CLI::App& command = *program.add_subcommand(
-      "sweep", "run a scene over a grid of keys and seeds, with tables and a figure; stopped or killed, the same "
-               "command goes on");
-  command.add_option("GRID", settings.grid, "the grid (TOML): a scene, seeds, and which keys take which values")
+      "sweep", "run a scene over a grid of keys and seeds, with tables and a figure; after a stop or kill the same "
+               "command continues");
+  command.add_option("GRID", settings.grid, "the grid (TOML): a scene, seeds, and the values of keys")
       ->required()
       ->type_name("");
   command.add_option("-o,--output", settings.folder, "the folder for the results; several programs may share it")
       ->required()
       ->type_name("DIR");
-  command.add_option("--jobs", options->jobs, "runs at once (default: threads of the machine / threads of a run)")
+  command.add_option("--jobs", options->jobs, "concurrent runs (default: threads of the machine / threads of a run)")
       ->transform(whole_number_between(1, max_threads, "a number of runs"));
   command.add_option("--threads", settings.threads_per_run, "threads of each run (default: 1)")
       ->transform(thread_number());
   add_quantities(command, settings.quantities);
   command.add_flag("--tables", settings.tables_only,
-                   "start nothing: make the tables and the figure of what is finished");
+                   "start no runs: write the tables and the figure of the finished ones");
   options->talk.add_to(command);
   command.add_flag("--json", options->json, "print the counts and the table of points as JSON");
   examples_of(command, {"keeler sweep grid.toml -o sweep"});

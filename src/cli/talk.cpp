@@ -13,8 +13,8 @@
 namespace keeler {
 
 void TalkOption::add_to(CLI::App& command) {
-  CLI::Option* const no_notes = command.add_flag("-q,--quiet", quiet, "no progress and no notes; errors stay");
-  command.add_flag("-v,--verbose", verbose, "say which program works, how, and when its phases begin")
+  CLI::Option* const no_notes = command.add_flag("-q,--quiet", quiet, "print errors only, no progress and no notes");
+  command.add_flag("-v,--verbose", verbose, "print version, threads, solvers, and the begin of each phase")
       ->excludes(no_notes);
 }
 

@@ -1,4 +1,4 @@
-// How much a command says on standard error beside errors: -q and -v.
+// The options -q and -v: messages on standard error besides errors.
 #pragma once
 
 #include <keeler/scene/scene.hpp>
@@ -15,11 +15,12 @@ struct TalkOption {
 
   void add_to(CLI::App& command);
 
-  /// For notes: says them, or nothing when quiet.
+  /// Returns a function that prints notes, or drops them when quiet.
   std::function<void(const std::string&)> notice() const;
 
-  /// When verbose: which program works, with what; and how a scene is computed.
+  /// Prints version, compiler, threads and instruction set when verbose.
   void say_program() const;
+  /// Prints the finder and the gravity solver of a scene when verbose.
   void say_scene(const Scene& scene) const;
 };
 

@@ -1,6 +1,7 @@
-// What the terminal that a stream ends in can show.
+// Properties of terminals, and texts that depend on their width.
 #pragma once
 
+#include <cassert>
 #include <cstdlib>
 #include <string>
 
@@ -9,15 +10,18 @@
 
 namespace keeler {
 
-/// Columns of the terminal behind a stream's descriptor; 80 where it does not say, or is none.
+/// Returns the columns of the terminal at a descriptor; 80 if they are unknown or it is not a terminal.
 inline int terminal_width(int descriptor) {
   winsize size{};
   return ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
-/// A bar of so many columns, brackets included, that is full to this share (0 … 1).
-inline std::string progress_bar(double share, int columns) {
-  const auto inside = static_cast<std::size_t>(columns - 2), filled = static_cast<std::size_t>(share * (columns - 2));
+/// Returns a bar of `columns` characters, brackets included, filled to this fraction.
+/// Precondition: 0 ≤ `fraction` ≤ 1 and `columns` ≥ 2.
+inline std::string progress_bar(double fraction, int columns) {
+  assert(0.0 <= fraction && fraction <= 1.0 && columns >= 2);
+  const auto inside = static_cast<std::size_t>(columns - 2),
+             filled = static_cast<std::size_t>(fraction * (columns - 2));
   return "[" + std::string(filled, '#') + std::string(inside - filled, '.') + "]";
 }
 

@@ -1,4 +1,4 @@
-// keeler tile: a snapshot repeated into a larger patch, as a snapshot.
+// keeler tile: repeats a snapshot into a larger patch, and writes it as a snapshot.
 #include "command.hpp"
 #include "common_options.hpp"
 #include "print.hpp"
@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,6 +31,7 @@ struct TileOptions {
   ThreadOption threads;
 };
 
+// Writes the tiled patch in pieces, so that it is never whole in memory.
 void write(const TiledPatch& tiled, const std::string& file, const SnapshotMeta& meta) {
   const Patch frame = tiled.some(0, 0);
   SnapshotFile snapshot(file, frame, tiled.size(), tiled.rough(), meta);
@@ -39,11 +41,12 @@ void write(const TiledPatch& tiled, const std::string& file, const SnapshotMeta&
 }
 
 ExitCode tile(const TileOptions& options, const std::vector<std::string>& arguments) {
+  assert(options.nx > 0 && options.ny > 0);
   options.threads.apply();
   refuse_stream(output_named(options.output), "HDF5");
   require_new_file(options.output, options.force, "a state");
   Snapshot snapshot = read_snapshot(options.file);
-  // No fresh start makes this state: the scene that goes with it starts from the file, and keeps all of it.
+  // The scene cannot reproduce this state, so the scene in the snapshot starts from the file, with all particles.
   const Scene scene = parse_scene(snapshot.meta.scene, options.file, {"start.keep=1.0"}, options.output);
   const Patch patch = patch_from_snapshot(std::move(snapshot.patch), options.file, scene);
   require_no_overlap(patch, "'" + options.file + "'");

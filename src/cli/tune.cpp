@@ -1,4 +1,4 @@
-// keeler tune: the cheapest settings of a scene that are as accurate as one asks for.
+// keeler tune: finds the cheapest settings of a scene within given tolerances.
 #include "command.hpp"
 #include "common_options.hpp"
 #include "messages.hpp"
@@ -23,6 +23,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <memory>
 
 namespace keeler {
@@ -49,12 +50,13 @@ TuneSettings tolerances(const TuneOptions& options) {
   return settings;
 }
 
-// The text stays as it is, and files in it are relative to where it stands.
+// Throws UsageError unless the text, written to `output`, gives this scene: paths of files in it are relative to its
+// folder, and the text is not changed.
 void require_same_files(const std::string& text, const Scene& scene, const std::string& output) {
   bool same = false;
   try {
     same = parse_scene(text, output).resolved == scene.resolved;
-  } catch (const UsageError&) { // a file is not there
+  } catch (const UsageError&) { // a file is missing
   }
   if (!same)
     throw UsageError(fmt::format("'{}' would not find the files that the scene names (their paths are relative to the "
@@ -62,18 +64,17 @@ void require_same_files(const std::string& text, const Scene& scene, const std::
                                  output));
 }
 
-// The scene alone goes there then.
+// True if the scene goes to standard output; then nothing else may be printed there.
 bool fills_standard_output(const TuneOptions& options) {
   return options.output && is_standard_output(output_named(*options.output));
 }
 
-void refuse_what_cannot_be_written(const TuneOptions& options) {
+void require_writable_output(const TuneOptions& options) {
   if (!options.output)
     return;
   if (!options.scene.overrides.empty())
-    throw UsageError(
-        "--output cannot be combined with --set (the file would not have what was tuned); write the keys into "
-        "the scene first");
+    throw UsageError("--output cannot be combined with --set (the file would lack the overrides); write the keys into "
+                     "the scene first");
   require_new_file(output_named(*options.output), options.force, "a scene");
   if (options.json && fills_standard_output(options))
     throw UsageError("--json and --output are both for standard output; name a file for the scene");
@@ -91,6 +92,8 @@ nlohmann::ordered_json as_json(const Tuning& t, const std::vector<KeyChange>& ke
   for (const KeyChange& key : keys)
     if (key.value)
       json["keys"][key.path] = *key.value;
+  assert(t.gravity.empty() || t.chosen_gravity < t.gravity.size());
+  assert(t.kicks.empty() || t.chosen_kicks < t.kicks.size());
   json["particles"] = t.particles;
   json["orbits"] = t.orbits;
   json["gravity"] = nlohmann::ordered_json::array();
@@ -132,20 +135,20 @@ const char* mark(bool chosen) {
 void print_text(const Tuning& t) {
   print("{} in states up to {:.3g} orbits old, one thread\n", pluralize(t.particles, "particle"), t.orbits);
   if (!t.gravity.empty())
-    print("errors are held to {} of what is allowed, since other seeds differ\n", margin_for_seeds);
+    print("errors must be below {} of the tolerances, since seeds differ\n", margin_for_seeds);
   if (!t.gravity.empty())
-    print("\n{:<8}{:<22}{:>14}{:>18}\n", "solver", "settings", "force error", "ns a particle");
+    print("\n{:<8}{:<22}{:>14}{:>18}\n", "solver", "settings", "force error", "ns per particle");
   for (std::size_t k = 0; k < t.gravity.size(); ++k)
     print("{:<8}{:<22}{:>14.1e}{:>18.0f}{}\n", t.gravity[k].choice.solver, t.gravity[k].choice.text,
           t.gravity[k].errors.rms, t.gravity[k].ns_per_particle, mark(k == t.chosen_gravity));
   if (!t.kicks.empty())
-    print("\n{:<22}{:>22}{:>18}\n", "kick interval, orbits", "contacts by kicks", "loss over work");
+    print("\n{:<22}{:>22}{:>18}\n", "kick interval, orbits", "unresolved contacts", "excess loss");
   for (std::size_t k = 0; k < t.kicks.size(); ++k)
     print("{:<22g}{:>22}{:>+16.2g} %{}\n", t.kicks[k].interval,
           fmt::format("{:.2g} +- {:.1g} %", 100.0 * t.kicks[k].unresolved, 100.0 * t.kicks[k].unresolved_error),
           100.0 * t.kicks[k].physics_error(), mark(k == t.chosen_kicks));
-  print("\n{:<16}{:>16}{:>28}{:>28}\n", "step, orbits", "drifts a kick", "contacts a particle, drift",
-        "processor s an orbit");
+  print("\n{:<16}{:>16}{:>28}{:>28}\n", "step, orbits", "drifts per kick", "contacts/(particle drift)",
+        "processor s per orbit");
   for (std::size_t k = 0; k < t.steps.size(); ++k)
     print("{:<16g}{:>16}{:>28.2g}{:>28.3g}{}\n", t.steps[k].step, t.steps[k].drifts, t.steps[k].contacts,
           t.steps[k].seconds, mark(k == t.chosen_step));
@@ -171,8 +174,8 @@ void warn(const Tuning& t) {
   if (!t.meets_force_error)
     say("no solver meets the force error with a margin for other seeds; the most accurate one is chosen");
   if (!t.meets_physics_error)
-    say("no kick interval down to 1/1000 orbit meets the physics error with a margin for other seeds; that one is "
-        "chosen");
+    say("no kick interval down to 1/1000 orbit meets the physics error with a margin for other seeds; this shortest "
+        "one is chosen");
 }
 
 ExitCode tune_scene(const TuneOptions& options) {
@@ -181,7 +184,7 @@ ExitCode tune_scene(const TuneOptions& options) {
   TuneSettings settings = tolerances(options);
   settings.max_threads = threads();
   const Scene scene = options.scene.load();
-  refuse_what_cannot_be_written(options);
+  require_writable_output(options);
   const std::string text = read_scene_text(options.scene.path);
   if (options.output)
     require_same_files(text, scene, fills_standard_output(options) ? "standard output" : *options.output);
@@ -208,27 +211,26 @@ ExitCode tune_scene(const TuneOptions& options) {
 void add_tune(CLI::App& program, Action& action) {
   const auto options = std::make_shared<TuneOptions>();
   CLI::App& command = *program.add_subcommand(
-      "tune", "find the cheapest solver, kick interval, step and threads that are as accurate as asked for, by probes "
-              "on the scene's own state");
+      "tune", "find the cheapest solver, kick interval, step and threads within given tolerances, by probes on the "
+              "scene's evolved state");
   options->scene.add_to(command)->required();
   std::vector<std::string> names;
   for (const Quality& quality : qualities)
     names.emplace_back(quality.name);
-  one_of(command.add_option("--quality", options->quality, "what is asked for (default: balanced)"), names);
+  one_of(command.add_option("--quality", options->quality, "set of tolerances (default: balanced)"), names);
   command
       .add_option("--force-error", options->force_error,
-                  "rms error of gravity's forces that is allowed, in place of the quality's")
+                  "largest rms error of gravity's forces, instead of the quality's")
       ->check(number_between(1e-5, 0.1, "a force error"));
   command
       .add_option("--physics-error", options->physics_error,
-                  "share of the energy loss that kicks may make, in place of the quality's")
-      ->check(number_between(1e-4, 0.5, "a share"));
+                  "largest excess of the energy loss by kicks, instead of the quality's")
+      ->check(number_between(1e-4, 0.5, "a physics error"));
   command
       .add_option("--orbits", options->settings.orbits,
-                  "age of the state that is probed (default: 4 with self-gravity, else 8; at most the run's end)")
+                  "age of the probed state (default: 4 with self-gravity, otherwise 8; at most the run's end)")
       ->check(positive_number(max_orbits));
-  command.add_option("-o,--output", options->output, "write the scene with the keys that were found")
-      ->type_name("FILE");
+  command.add_option("-o,--output", options->output, "write the scene with the chosen keys")->type_name("FILE");
   command.add_flag("--force", options->force, "replace the file if it exists");
   command.add_flag("--json", options->json, "print the numbers as JSON");
   options->threads.add_to(command);

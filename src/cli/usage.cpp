@@ -17,7 +17,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
 }
 
 std::string or_help(const CLI::App& command, const std::string& near) {
-  return near.empty() ? fmt::format("\"{} --help\" lists what can be asked", full_name(command))
+  return near.empty() ? fmt::format("\"{} --help\" lists commands and options", full_name(command))
                       : fmt::format("did you mean '{}'?", near);
 }
 
@@ -25,24 +25,24 @@ bool is_option(const std::string& word) {
   return word.size() > 1 && word[0] == '-';
 }
 
-// "NAME: what CLI11 says", or "What CLI11 says: NAME = VALUE", in the program's words; other faults as CLI11 has them.
-std::string in_own_words(const CLI::App& command, const CLI::ParseError& error) {
-  const std::string said = error.what();
+// Rewords the common messages of CLI11; returns others unchanged.
+std::string describe_fault(const CLI::App& command, const CLI::ParseError& error) {
+  const std::string text = error.what();
   const auto between = [&](const std::string& before, const std::string& after) {
-    const std::size_t begin = said.find(before), end = said.find(after, begin + before.size());
-    return begin == said.npos || end == said.npos ? said
-                                                  : said.substr(begin + before.size(), end - begin - before.size());
+    const std::size_t begin = text.find(before), end = text.find(after, begin + before.size());
+    return begin == text.npos || end == text.npos ? text
+                                                  : text.substr(begin + before.size(), end - begin - before.size());
   };
-  if (dynamic_cast<const CLI::ConversionError*>(&error) && said.find(" = ") != said.npos)
-    return fmt::format("{}: '{}' is not a number", between("convert: ", " = "), said.substr(said.find(" = ") + 3));
+  if (dynamic_cast<const CLI::ConversionError*>(&error) && text.find(" = ") != text.npos)
+    return fmt::format("{}: '{}' is not a number", between("convert: ", " = "), text.substr(text.find(" = ") + 3));
   if (dynamic_cast<const CLI::ExtrasError*>(&error) && !command.remaining().empty())
-    return fmt::format("'{}' has no place for '{}'", full_name(command), command.remaining().front());
+    return fmt::format("'{}' takes no further argument '{}'", full_name(command), command.remaining().front());
   if (!dynamic_cast<const CLI::ArgumentMismatch*>(&error))
-    return said;
+    return text;
   for (const CLI::Option* option : command.get_options())
     if (const auto given = static_cast<int>(option->results().size()); given > option->get_items_expected_max())
       return fmt::format("{} is given {} times, and takes one value", option->get_name(), given);
-  return said.ends_with(" missing") ? between("", ": ") + " has no value" : said;
+  return text.ends_with(" missing") ? between("", ": ") + " has no value" : text;
 }
 
 } // namespace
@@ -75,18 +75,18 @@ std::string usage_fault(const CLI::App& program, const CLI::ParseError& error) {
   for (const CLI::App* below : listed_commands(command))
     names.push_back(below->get_name());
   if (!names.empty() && words.empty())
-    return fmt::format("'{}' wants a part: {}", full_name(command), fmt::join(names, ", "));
+    return fmt::format("'{}' needs a subcommand: {}", full_name(command), fmt::join(names, ", "));
   if (!names.empty() && !is_option(words.front()))
     return fmt::format("'{}' has no command '{}'; {}", full_name(command), words.front(),
                        or_help(command, closest(words.front(), names)));
-  // An option that is unknown explains why another word stands where nothing is expected, or a value is missing.
+  // An unknown option is the likely cause of an unexpected word or a missing value, so it is reported first.
   for (const std::string& word : words)
     if (is_option(word)) {
       const std::string name = word.substr(0, word.find('='));
       return fmt::format("'{}' has no option '{}'; {}", full_name(command), name,
                          or_help(command, closest(name, option_names(command))));
     }
-  return fmt::format("{}; {}", in_own_words(command, error), or_help(command, ""));
+  return fmt::format("{}; {}", describe_fault(command, error), or_help(command, ""));
 }
 
 } // namespace keeler

@@ -1,4 +1,4 @@
-// keeler watch: a run as seen from another terminal.
+// keeler watch: shows a run from another terminal.
 #include "command.hpp"
 #include "print.hpp"
 #include "terminal.hpp"
@@ -27,7 +27,7 @@ struct Line {
   const char* column; ///< of the series
   const char* label;
 
-  /// Since the run began: its rate an orbit is shown.
+  /// True for columns that accumulate since the start of the run; their rate per orbit is shown.
   bool counts() const {
     const auto columns = series_columns();
     const auto same = [&](const SeriesColumn& known) { return std::string_view(known.name) == column; };
@@ -47,7 +47,7 @@ constexpr Line lines[] = {
     {"step_orbits", "step, orbits"},
 };
 
-// The last values of a column that are numbers; of one that counts, its rate between rows.
+// Returns the finite values of a column, or its rates between rows if it accumulates.
 std::vector<double> values_of(const SeriesTable& series, const Line& line) {
   const std::vector<double>& times = series.of("time_orbits");
   const std::vector<double>& column = series.of(line.column);
@@ -61,7 +61,7 @@ std::vector<double> values_of(const SeriesTable& series, const Line& line) {
   return values;
 }
 
-// A plot one line high: the mean of each part of the run, from the least to the largest of them.
+// Returns a plot of one line: the means over equal parts of the run, scaled from the smallest to the largest.
 std::string small_plot(std::span<const double> values, std::size_t columns) {
   static constexpr const char* heights[] = {"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
   columns = std::min(columns, values.size());
@@ -76,11 +76,11 @@ std::string small_plot(std::span<const double> values, std::size_t columns) {
   }
   if (means.empty())
     return "";
-  const auto [least, largest] = std::minmax_element(means.begin(), means.end());
-  const double range = *largest - *least;
+  const auto [smallest, largest] = std::minmax_element(means.begin(), means.end());
+  const double range = *largest - *smallest;
   std::string plot;
   for (const double mean : means)
-    plot += heights[range > 0.0 ? std::lround(7.0 * (mean - *least) / range) : 0];
+    plot += heights[range > 0.0 ? std::lround(7.0 * (mean - *smallest) / range) : 0];
   return plot;
 }
 
@@ -89,16 +89,16 @@ std::string remaining(double seconds) {
   return fmt::format("{}:{:02}:{:02} left", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
-std::string standing(const RunView& view) {
+std::string state_and_time_left(const RunView& view) {
   const std::optional<double> left = view.remaining_s(static_cast<double>(std::time(nullptr)));
   return left ? view.state() + ", " + remaining(*left) : view.state();
 }
 
-// No line is longer than the terminal is wide.
+// Returns the text of the screen; no line is longer than `width`.
 std::string text_of(const RunView& view, const std::string& folder, int width) {
   const auto columns = static_cast<std::size_t>(width);
   std::vector<std::string> text = {
-      folder, standing(view),
+      folder, state_and_time_left(view),
       fmt::format("orbit {} of {}", format_number(view.orbits, 4), format_number(view.end_orbits, 4)),
       progress_bar(view.share(), std::clamp(width, 10, 60))};
   for (const auto& [what, name] : {std::pair{"snapshot", view.snapshot}, std::pair{"checkpoint", view.checkpoint},
@@ -123,7 +123,7 @@ std::string text_of(const RunView& view, const std::string& folder, int width) {
   return all;
 }
 
-// Elsewhere than on a terminal it is said once. On one it is said each second, in the same place, until the run ends.
+// Prints the state of the run: on a terminal every second, redrawn in place, until the run ends; otherwise once.
 ExitCode watch(const std::string& folder) {
   const bool terminal = isatty(STDOUT_FILENO) == 1;
   for (;;) {
@@ -143,7 +143,7 @@ ExitCode watch(const std::string& folder) {
 
 void add_watch(CLI::App& program, Action& action) {
   const auto folder = std::make_shared<std::string>();
-  CLI::App& command = *program.add_subcommand("watch", "look at a run from another terminal while it works");
+  CLI::App& command = *program.add_subcommand("watch", "show a run from another terminal while it works");
   command.add_option("DIR", *folder, "the folder of the run")->required()->type_name("");
   examples_of(command, {"keeler watch wakes"});
   command.callback([folder, &action] { action = [folder] { return watch(*folder); }; });

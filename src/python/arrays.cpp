@@ -7,6 +7,9 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
+#include <cmath>
+
 namespace keeler::python {
 namespace {
 
@@ -29,6 +32,7 @@ py::array sealed(py::array array) {
 }
 
 py::array scaled_copy(std::span<const Vec3> rows, double factor) {
+  assert(std::isfinite(factor));
   require_own_threads();
   py::array_t<double> array({static_cast<py::ssize_t>(rows.size()), py::ssize_t{3}});
   double* const out = array.mutable_data();
@@ -41,8 +45,8 @@ py::array scaled_copy(std::span<const Vec3> rows, double factor) {
 
 std::vector<Vec3> vectors_from(const Doubles& array, std::size_t count, const std::string& name, double factor) {
   if (array.ndim() != 2 || static_cast<std::size_t>(array.shape(0)) != count || array.shape(1) != 3)
-    throw UsageError(
-        fmt::format("{} has the shape {}; give one row of x, y, z a particle, ({}, 3)", name, shape_of(array), count));
+    throw UsageError(fmt::format("{} has the shape {}; give one row of x, y, z per particle, ({}, 3)", name,
+                                 shape_of(array), count));
   std::vector<Vec3> rows(count);
   const double* const in = array.data();
   for (std::size_t k = 0; k < count; ++k)
@@ -51,10 +55,10 @@ std::vector<Vec3> vectors_from(const Doubles& array, std::size_t count, const st
 }
 
 std::vector<double> numbers_from(const Doubles& array, std::size_t count, const std::string& name) {
-  if (array.ndim() == 0) // one number for all
+  if (array.ndim() == 0) // one number for all particles
     return std::vector<double>(count, array.data()[0]);
   if (array.ndim() != 1 || static_cast<std::size_t>(array.shape(0)) != count)
-    throw UsageError(fmt::format("{} has the shape {}; give one number a particle, ({},), or one for all", name,
+    throw UsageError(fmt::format("{} has the shape {}; give one number per particle, ({},), or one for all", name,
                                  shape_of(array), count));
   return {array.data(), array.data() + count};
 }

@@ -1,4 +1,4 @@
-// Scenes, and restitution laws of a user's own.
+// Python bindings of scenes and of user-defined restitution laws.
 #include "bindings.hpp"
 
 #include <keeler/advice/warnings.hpp>
@@ -8,6 +8,7 @@
 
 #include <pybind11/stl.h>
 
+#include <cassert>
 #include <cstdint>
 
 namespace py = pybind11;
@@ -18,6 +19,7 @@ namespace {
 using CFunction = double (*)(double speed, double radius_low, double radius_high);
 
 void add_c_function(const std::string& name, std::uintptr_t address) {
+  assert(address != 0);
   const auto function = reinterpret_cast<CFunction>(address); // NOLINT(performance-no-int-to-ptr): ctypes gives numbers
   add_own_restitution(
       name, [function](const Impact& impact) { return function(impact.speed, impact.radius_low, impact.radius_high); });

@@ -1,4 +1,4 @@
-// A running simulation: views of its state, its course, and changes from outside.
+// Python bindings of a simulation: views of its state, its steps, and changes of the state.
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "computing.hpp"
@@ -23,16 +23,17 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <bit>
+#include <cassert>
 
 namespace keeler::python {
 namespace {
 
 using Held = HeldSimulation;
 
-// With what the start decides.
+// Makes a simulation of start(), with the settings that depend on the initial state filled in.
 template<class Make> std::unique_ptr<Held> from_patch(const Scene& scene, const Make& start) {
   Scene decided;
-  auto simulation = made([&] {
+  auto simulation = make_interruptibly([&] {
     const Patch patch = start();
     decided = decided_by(scene, scale_of(patch));
     return std::make_unique<Simulation>(decided, patch);
@@ -53,41 +54,42 @@ std::unique_ptr<Held> from_snapshot(const PythonSnapshot& snapshot, const std::s
 }
 
 std::unique_ptr<Held> from_stored(StoredRun stored) {
-  auto simulation = made([&] { return std::make_unique<Simulation>(stored.scene, std::move(stored.state)); });
+  auto simulation =
+      make_interruptibly([&] { return std::make_unique<Simulation>(stored.scene, std::move(stored.state)); });
   return std::make_unique<Held>(stored.scene, std::move(simulation));
 }
 
-// `notice` is called with each line.
+// Loads the newest checkpoint; calls `notice` with each note.
 std::unique_ptr<Held> resume(const std::filesystem::path& folder, const py::function& notice) {
   return from_stored(load_newest_checkpoint(folder, [&](const std::string& line) { notice(printable_line(line)); }));
 }
 
-// --- views: of bodies in memory, by their strides
+// --- strided views of the bodies in memory
 
-py::capsule share_of(const Held& held) {
-  return {new std::shared_ptr<Keep>(held.keep()),
-          [](void* share) { delete static_cast<std::shared_ptr<Keep>*>(share); }};
+py::capsule owner_of(const Held& held) {
+  return {new std::shared_ptr<ViewedState>(held.viewed_state()),
+          [](void* owner) { delete static_cast<std::shared_ptr<ViewedState>*>(owner); }};
 }
 
 py::array elements(const Held& held) {
   const std::vector<Body>& bodies = held.state().particles.bodies;
   static_assert(sizeof(Elements) == 6 * sizeof(double));
   return view(&bodies.data()->elements.guiding_x, {static_cast<py::ssize_t>(bodies.size()), 6},
-              {sizeof(Body), sizeof(double)}, share_of(held));
+              {sizeof(Body), sizeof(double)}, owner_of(held));
 }
 
 template<double Body::*Field> py::array of_bodies(const Held& held) {
   const std::vector<Body>& bodies = held.state().particles.bodies;
-  return view(&(bodies.data()->*Field), {static_cast<py::ssize_t>(bodies.size())}, {sizeof(Body)}, share_of(held));
+  return view(&(bodies.data()->*Field), {static_cast<py::ssize_t>(bodies.size())}, {sizeof(Body)}, owner_of(held));
 }
 
 py::array ids(const Held& held) {
-  return view(held.state().particles.ids, share_of(held));
+  return view(held.state().particles.ids, owner_of(held));
 }
 
-// --- copies in Cartesian form, in the order of memory
+// --- Cartesian copies in memory order
 
-// m and m/s.
+// Returns positions (m) and velocities (m/s).
 std::pair<py::array, py::array> motion(const Held& held) {
   const SimulationState& state = held.state();
   const std::size_t count = state.particles.size();
@@ -106,12 +108,13 @@ std::pair<py::array, py::array> motion(const Held& held) {
   return {sealed(std::move(positions)), sealed(std::move(velocities))};
 }
 
-// rad/s, against the stars, in Hill's frame now.
+// Returns inertial spins in components of Hill's frame at the current time, rad/s; None for smooth particles.
 py::object spins(const Held& held) {
   const SimulationState& state = held.state();
   if (!state.particles.rough)
     return py::none();
   const SpinTurn turn(held.simulation().time_at_break());
+  assert(state.particles.spins.size() == state.particles.size());
   std::vector<Vec3> now(state.particles.size());
   for (std::size_t k = 0; k < now.size(); ++k)
     now[k] = turn.from_epoch(state.particles.spins[k]);
@@ -123,12 +126,12 @@ double orbits(const Held& held) {
   return simulation.orbits() + (simulation.time_at_break() + 0.5 * simulation.state().step_length) / two_pi;
 }
 
-// What a file may have of it.
+// Returns the state as a snapshot; of a broken state only the particles that a file may hold.
 PythonSnapshot snapshot(const Held& held) {
   require_own_threads();
   Patch patch = held.simulation().patch_at_break();
   if (held.broken() && keep_possible(patch) > 0 && patch.size() == 0)
-    throw Error(ExitCode::run_time, "no particle of this broken simulation can be in a snapshot; look at its arrays");
+    throw Error(ExitCode::run_time, "no particle of this broken simulation is valid in a snapshot; use its arrays");
   return {std::move(patch), held.scene().resolved};
 }
 
@@ -141,8 +144,8 @@ bool same_bits(const double* a, const double* b) {
 
 void change_spins(Particles& particles, const Doubles& spins, const py::object& before, double after, double omega) {
   if (before.is_none())
-    throw UsageError("spins are given, and the particles of this scene are smooth; leave them None, or give the scene "
-                     "[collisions.friction]");
+    throw UsageError("spins are given, but the particles of this scene are smooth; leave spins None, or add "
+                     "[collisions.friction] to the scene");
   const auto old = before.cast<Doubles>();
   const SpinTurn turn(after);
   const std::vector<Vec3> rows = vectors_from(spins, particles.size(), "spins", 1.0 / omega);
@@ -151,7 +154,7 @@ void change_spins(Particles& particles, const Doubles& spins, const py::object& 
       particles.spins[k] = turn.to_epoch(rows[k]);
 }
 
-// What a start may not have, no change may bring.
+// Throws InvariantError if the changed particles would not be valid in an initial state.
 void require_possible_change(const Held& held, const Particles& particles) {
   const SimulationState& state = held.state();
   Patch patch = make_patch(particles, state.box, held.simulation().boundary().offset, held.scene().planet.frequencies,
@@ -160,8 +163,8 @@ void require_possible_change(const Held& held, const Particles& particles) {
   require_possible_particles(patch, "the changed state");
 }
 
-// Arrays in the order of memory. Only particles whose place or velocity differs get new elements: from one form to the
-// other and back, a bit or two is lost.
+// Replaces the particles by arrays in memory order. Only particles with a changed position or velocity get new
+// elements: the conversion to Cartesian form and back loses a bit or two.
 void replace(Held& held, const Doubles& positions, const Doubles& velocities, const Doubles& radii,
              const Doubles& masses, const std::optional<Doubles>& changed_spins) {
   const SimulationState& state = held.whole_state();
@@ -170,7 +173,7 @@ void replace(Held& held, const Doubles& positions, const Doubles& velocities, co
   const double omega = held.scene().planet.orbital_frequency;
   const auto [old_positions, old_velocities] = motion(held);
   const Doubles before_x = old_positions, before_v = old_velocities;
-  vectors_from(positions, count, "positions"), vectors_from(velocities, count, "velocities"); // their shapes
+  vectors_from(positions, count, "positions"), vectors_from(velocities, count, "velocities"); // check the shapes
   const std::vector<double> new_radii = numbers_from(radii, count, "radii"),
                             new_masses = numbers_from(masses, count, "masses");
   Particles particles = state.particles;

@@ -1,4 +1,4 @@
-// Snapshots: a patch at one instant with the scene it is of; files, starts and pictures of it, and what is measured.
+// Python bindings of snapshots (a patch at one time with its scene): files, initial states, pictures and measurements.
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "computing.hpp"
@@ -28,6 +28,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <cassert>
+
 namespace keeler::python {
 namespace {
 
@@ -41,7 +43,7 @@ PythonSnapshot read(const fs::path& file, bool is_a_start) {
   return {std::move(snapshot.patch), std::move(snapshot.meta.scene), is_a_start};
 }
 
-// As a start, its scene names the file; for copies in memory it stays as it is.
+// Writes a snapshot. The scene of a start then starts from this file, unless `as_it_is`, for copies in memory.
 void write(const PythonSnapshot& snapshot, const fs::path& file, bool as_it_is) {
   require_own_threads();
   const Unlocked unlocked;
@@ -52,16 +54,16 @@ void write(const PythonSnapshot& snapshot, const fs::path& file, bool as_it_is) 
 }
 
 PythonSnapshot generate(const Scene& scene, bool clumped) {
-  return made([&] {
+  return make_interruptibly([&] {
     Patch patch = clumped ? clumped_state(scene).patch : initial_patch(scene);
     const Scene decided = decided_by(scene, scale_of(patch));
     return PythonSnapshot{std::move(patch), decided.resolved};
   });
 }
 
-// No fresh start makes this state, so the scene that goes with it starts from a file, and keeps all of it.
+// Tiles a snapshot. The scene cannot reproduce this state, so the new scene starts from a file, with all particles.
 PythonSnapshot tile(const PythonSnapshot& snapshot, std::size_t nx, std::size_t ny, const std::string& name) {
-  return made([&] {
+  return make_interruptibly([&] {
     const Scene scene = parse_scene(snapshot.scene, name, {"start.keep=1.0"}, name);
     const Patch patch = patch_from_snapshot(snapshot.patch, name, scene);
     require_no_overlap(patch, "'" + name + "'");
@@ -85,7 +87,7 @@ PythonSnapshot from_arrays(const std::string& text, const std::string& name, con
     table.masses = numbers_from(*masses, count, "masses");
   if (spins)
     table.spins = vectors_from(*spins, count, "spins");
-  return made([&] {
+  return make_interruptibly([&] {
     const TableScene of = parse_table_scene(text, name, overrides);
     Patch patch = patch_from_table(table, of);
     if (relaxed)
@@ -96,13 +98,13 @@ PythonSnapshot from_arrays(const std::string& text, const std::string& name, con
   });
 }
 
-// With their names, units and meanings: what the package makes a mapping of.
+// Returns the numbers and their descriptions; the Python package combines them into a mapping.
 py::object numbers_of(const Record& record) {
   return py::make_tuple(as_python(json_of(record)), described(quantities_of(record)));
 }
 
 py::object analyze_snapshot(const PythonSnapshot& snapshot) {
-  return numbers_of(made([&] {
+  return numbers_of(make_interruptibly([&] {
     const TransportReport transport =
         TransportReport::of_snapshot(snapshot.patch, parse_stored_scene(snapshot.scene, "snapshot").gravity);
     return record_of(measure({&snapshot.patch, 1}, transport));
@@ -110,7 +112,7 @@ py::object analyze_snapshot(const PythonSnapshot& snapshot) {
 }
 
 py::object analyze_path(const fs::path& path, const std::optional<double>& since, const std::optional<double>& until) {
-  return numbers_of(made([&] {
+  return numbers_of(make_interruptibly([&] {
     const MeasuredPart part = measured_part(path, {since, until});
     return record_of(measure(part.stored.patches, part.transport));
   }));
@@ -118,6 +120,7 @@ py::object analyze_path(const fs::path& path, const std::optional<double>& since
 
 py::dict series(const fs::path& file) {
   const SeriesTable table = read_series(file);
+  assert(table.names.size() == table.columns.size());
   py::dict columns;
   for (std::size_t c = 0; c < table.names.size(); ++c) {
     const std::vector<double>& column = table.columns[c];
@@ -129,10 +132,10 @@ py::dict series(const fs::path& file) {
 void render(const PythonSnapshot& snapshot, const fs::path& file, const std::string& title, int width) {
   require_own_threads();
   const Unlocked unlocked;
-  PictureOptions look;
-  look.title = title;
-  look.width = width;
-  render_patch(snapshot.patch, file.string(), look);
+  PictureOptions options;
+  options.title = title;
+  options.width = width;
+  render_patch(snapshot.patch, file.string(), options);
 }
 
 void write_bytes(const fs::path& file, const std::string& content) {

@@ -1,4 +1,4 @@
-// What each file of the module adds to it.
+// The functions that add the parts of the module.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -3,6 +3,7 @@
 #include <keeler/core/error.hpp>
 
 #include <atomic>
+#include <cassert>
 #include <condition_variable>
 #include <cstddef>
 #include <mutex>
@@ -15,26 +16,26 @@
 namespace keeler::python {
 namespace {
 
-std::atomic<pid_t> computed_in = 0; // the process whose threads there are
+std::atomic<pid_t> computing_process = 0; // the process that started the OpenMP threads
 
-// Threads that are without the interpreter's lock, and whether they may take it again.
-struct Others {
+// The threads that have released the interpreter's lock, and whether they may take it again.
+struct UnlockedThreads {
   std::mutex guard;
   std::condition_variable fewer;
   int count = 0;
-  std::optional<std::thread::id> ends; // the thread in which the interpreter ends
-  pid_t process = getpid();            // a fork has none of them
+  std::optional<std::thread::id> ends; // the thread that ends the interpreter
+  pid_t process = getpid();            // a forked process has none of these threads
 };
 
-// Never destroyed, since threads may come to it until the process has ended; and not on the heap, which may have no
-// room when the interpreter's lock has been given back already.
-Others& others() {
-  alignas(Others) static std::byte memory[sizeof(Others)];
-  static Others* const all = new (memory) Others;
+// Never destroyed, since threads may use it until the process ends. Not on the heap: an allocation could fail after the
+// interpreter's lock is released.
+UnlockedThreads& unlocked_threads() {
+  alignas(UnlockedThreads) static std::byte memory[sizeof(UnlockedThreads)];
+  static UnlockedThreads* const all = new (memory) UnlockedThreads;
   return *all;
 }
 
-[[noreturn]] void stand_still() {
+[[noreturn]] void block_forever() {
   for (;;)
     pause();
 }
@@ -42,34 +43,35 @@ Others& others() {
 } // namespace
 
 Unlocked::Unlocked() : state_(PyEval_SaveThread()) {
-  Others& all = others();
+  UnlockedThreads& all = unlocked_threads();
   std::unique_lock lock(all.guard);
   if (all.ends && *all.ends != std::this_thread::get_id()) {
     lock.unlock();
-    stand_still();
+    block_forever();
   }
   ++all.count;
 }
 
 Unlocked::~Unlocked() {
-  Others& all = others();
+  UnlockedThreads& all = unlocked_threads();
   std::unique_lock lock(all.guard);
   const bool ended = all.ends && *all.ends != std::this_thread::get_id();
   if (!ended) {
     lock.unlock();
-    PyEval_RestoreThread(state_); // end_other_threads() waits, so the interpreter is still there
+    PyEval_RestoreThread(state_); // end_other_threads() waits, so the interpreter still exists
     lock.lock();
   }
+  assert(all.count > 0);
   --all.count;
   all.fewer.notify_all();
   lock.unlock();
   if (ended)
-    stand_still();
+    block_forever();
 }
 
 void end_other_threads() {
   Keyboard::end_others();
-  Others& all = others();
+  UnlockedThreads& all = unlocked_threads();
   if (all.process != getpid())
     return;
   const pybind11::gil_scoped_release unlocked;
@@ -80,10 +82,10 @@ void end_other_threads() {
 
 void require_own_threads() {
   pid_t none = 0;
-  if (computed_in.compare_exchange_strong(none, getpid()) || none == getpid())
+  if (computing_process.compare_exchange_strong(none, getpid()) || none == getpid())
     return;
-  throw Error(ExitCode::run_time, "this process was forked from one in which Keeler had computed, and threads do not "
-                                  "survive that; start it by multiprocessing's \"spawn\" or \"forkserver\"");
+  throw Error(ExitCode::run_time, "this process was forked from one in which Keeler had computed, and a fork has no "
+                                  "threads; start it by multiprocessing's \"spawn\" or \"forkserver\"");
 }
 
 } // namespace keeler::python

@@ -1,4 +1,4 @@
-// How long work is done for Python: without the interpreter's lock, and so that an interrupt ends it.
+// Long computations for Python: without the interpreter's lock, and interruptible.
 #pragma once
 
 #include "keyboard.hpp"
@@ -9,12 +9,12 @@
 
 namespace keeler::python {
 
-/// Computing in a process that was forked after its parent had computed would wait for threads that the fork did not
-/// copy. Throws Error (run_time) there.
+/// Throws Error (run_time) in a process that was forked after its parent had computed: it would wait for threads that
+/// the fork did not copy.
 void require_own_threads();
 
-/// Without the interpreter's lock as long as it lives. When the interpreter ends meanwhile, the thread stands still for
-/// good once its work is done: the interpreter would end it inside C++.
+/// Releases the interpreter's lock during its lifetime. If the interpreter ends meanwhile, the thread blocks forever
+/// after its work: otherwise the interpreter would end it inside C++. Precondition: the thread holds the lock.
 class Unlocked {
 public:
   Unlocked();
@@ -26,11 +26,11 @@ private:
   PyThreadState* state_;
 };
 
-/// Interrupts what other threads compute and waits for them: the interpreter is about to end.
+/// Interrupts the computations of other threads and waits for them. Called when the interpreter is about to end.
 void end_other_threads();
 
-/// What `make` makes. An interrupt ends it at once: nothing could be kept.
-template<class Make> auto made(const Make& make) {
+/// Returns make(), without the interpreter's lock. An interrupt ends it at once, without a result.
+template<class Make> auto make_interruptibly(const Make& make) {
   require_own_threads();
   const Keyboard keyboard;
   try {

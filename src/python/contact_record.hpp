@@ -1,9 +1,10 @@
-// Contacts that Python asked for, as they happen.
+// Records contacts of a running simulation for Python.
 #pragma once
 
 #include <keeler/core/units.hpp>
 #include <keeler/simulation/simulation.hpp>
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -15,17 +16,20 @@ namespace keeler::python {
 struct ContactRecord {
   double time_orbits;
   std::uint64_t low_id, high_id;
-  double x_m, y_m, z_m; ///< where the spheres touch, beside the particle with the lower id
+  double x_m, y_m, z_m; ///< point of contact, at the image of the particle with the lower id
   double normal_speed_m_s, tangential_speed_m_s;
   double energy_lost_j;
 };
 
+/// Records contacts with a normal speed of at least `minimum_speed` (m/s).
 class ContactRecorder : public DriftObserver {
 public:
   ContactRecorder(double minimum_speed, double orbital_frequency)
-      : minimum_speed_(minimum_speed), omega_(orbital_frequency) {}
+      : minimum_speed_(minimum_speed), omega_(orbital_frequency) {
+    assert(minimum_speed >= 0.0 && orbital_frequency > 0.0);
+  }
 
-  /// The simulation whose contacts come next.
+  /// Observes this simulation from now on.
   void watch(Simulation& simulation) {
     simulation_ = &simulation;
     simulation.drift().observe(this);
@@ -34,6 +38,7 @@ public:
   bool looks_on() const override { return false; }
   bool wants_records() const override { return true; }
   void recorded(std::span<const CollisionRecord> records) override {
+    assert(simulation_ && "watch() was called");
     const SimulationState& state = simulation_->state();
     const double middle = simulation_->orbits() + 0.5 * state.step_length / two_pi;
     for (const CollisionRecord& c : records)
@@ -44,8 +49,11 @@ public:
 
   const std::vector<ContactRecord>& rows() const { return rows_; }
   void clear() { rows_.clear(); }
-  /// Forgets all rows but the first ones.
-  void keep_first(std::size_t count) { rows_.erase(rows_.begin() + static_cast<std::ptrdiff_t>(count), rows_.end()); }
+  /// Drops all rows except the first `count`. Precondition: there are that many.
+  void keep_first(std::size_t count) {
+    assert(count <= rows_.size());
+    rows_.erase(rows_.begin() + static_cast<std::ptrdiff_t>(count), rows_.end());
+  }
 
 private:
   double minimum_speed_, omega_;

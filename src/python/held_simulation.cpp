@@ -7,41 +7,43 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
+
 namespace keeler::python {
 namespace {
 
-constexpr double between_signals = 0.2; // s: the interpreter's handlers of other signals wait no longer
+constexpr double between_signals = 0.2; // s: longest delay of the interpreter's handlers of other signals
 
-[[noreturn]] void refuse_at_work() {
+[[noreturn]] void refuse_busy() {
   throw Error(ExitCode::run_time,
-              "this simulation is at work, in another thread or below this call; wait for it, or use a second one");
+              "this simulation is computing, in another thread or below this call; wait for it, or use a second one");
 }
 
 } // namespace
 
-// Who computes; a second thread is told.
-class HeldSimulation::AtWork {
+// Marks the simulation as busy during its lifetime. Throws Error (run_time) in a second thread.
+class HeldSimulation::Busy {
 public:
-  explicit AtWork(std::atomic<bool>& flag) : flag_(flag) {
+  explicit Busy(std::atomic<bool>& flag) : flag_(flag) {
     if (flag_.exchange(true))
-      refuse_at_work();
+      refuse_busy();
   }
-  ~AtWork() { flag_ = false; }
-  AtWork(const AtWork&) = delete;
-  AtWork& operator=(const AtWork&) = delete;
+  ~Busy() { flag_ = false; }
+  Busy(const Busy&) = delete;
+  Busy& operator=(const Busy&) = delete;
 
 private:
   std::atomic<bool>& flag_;
 };
 
 HeldSimulation::~HeldSimulation() {
-  if (simulation_ && keep_.use_count() > 1)
-    keep_->state = std::move(*simulation_).take_state();
+  if (simulation_ && viewed_state_.use_count() > 1)
+    viewed_state_->state = std::move(*simulation_).take_state();
 }
 
 void HeldSimulation::require_idle() const {
-  if (at_work_)
-    refuse_at_work();
+  if (busy_)
+    refuse_busy();
 }
 
 const Simulation& HeldSimulation::simulation() const {
@@ -53,31 +55,31 @@ const SimulationState& HeldSimulation::whole_state() const {
   const SimulationState& state = simulation().state();
   if (broken())
     throw Error(ExitCode::run_time,
-                fmt::format("this simulation cannot go on (an invariant broke: {}); look at its "
-                            "state with snapshot(), load the last one that was saved, or begin again",
+                fmt::format("this simulation cannot go on (an invariant broke: {}); inspect its state with snapshot(), "
+                            "load the last saved state, or start again",
                             broken_->what()));
   return state;
 }
 
-// Leaves the state to arrays that look at it, and goes on with a simulation made of a copy; likewise where the present
-// one cannot go on. All that may fail comes first.
-void HeldSimulation::make_way() {
-  if (keep_.use_count() == 1 && !put_back_)
+// If arrays view the state, leaves it to them and continues with a simulation made of a copy; likewise if the present
+// simulation cannot continue. All steps that may fail come first.
+void HeldSimulation::detach_views() {
+  if (viewed_state_.use_count() == 1 && !put_back_)
     return;
-  auto keep = std::make_shared<Keep>();
+  auto viewed = std::make_shared<ViewedState>();
   auto next = std::make_unique<Simulation>(scene_, simulation_->state());
   static_assert(std::is_nothrow_move_constructible_v<SimulationState>);
-  if (keep_.use_count() > 1)
-    keep_->state.emplace(std::move(*simulation_).take_state());
-  keep_ = std::move(keep);
+  if (viewed_state_.use_count() > 1)
+    viewed_state_->state.emplace(std::move(*simulation_).take_state());
+  viewed_state_ = std::move(viewed);
   simulation_ = std::move(next);
   put_back_ = false;
   if (recorder_)
     recorder_->watch(*simulation_);
 }
 
-// Calls change(); where it throws, the state and the contacts that were recorded are those of before, unless an
-// invariant broke. `before` is memory for the copy.
+// Calls change(). If it throws, restores the state and the recorded contacts, unless an invariant broke. `before` is
+// the memory for the copy.
 template<class Change> void HeldSimulation::change(SimulationState& before, const Change& change) {
   const std::size_t contacts = recorder_ ? recorder_->rows().size() : 0;
   {
@@ -102,6 +104,7 @@ void HeldSimulation::step_until(std::int64_t until_tick) {
   const Interruptible by_keyboard(keyboard.give_up());
   const Unlocked unlocked;
   const std::int64_t interval = scene_.kick_interval();
+  assert(interval > 0 && until_tick % interval == 0);
   double elapsed = 0.0;
   const Stopwatch watch(elapsed);
   const auto must_return = [&] {
@@ -119,16 +122,16 @@ void HeldSimulation::step_until(std::int64_t until_tick) {
 
 void HeldSimulation::advance(std::int64_t until_tick) {
   whole_state();
-  const AtWork here(at_work_);
+  const Busy here(busy_);
   require_own_threads();
-  make_way();
+  detach_views();
   SimulationState before;
   while (simulation_->state().step < until_tick) {
     try {
       change(before, [&] { step_until(until_tick); });
     } catch (const InvariantError&) {
       throw;
-    } catch (...) { // an interrupt, no memory, a law that gives no coefficient
+    } catch (...) { // an interrupt, no memory, a restitution law without a valid coefficient
       raise_interrupts();
       throw;
     }
@@ -138,9 +141,9 @@ void HeldSimulation::advance(std::int64_t until_tick) {
 
 void HeldSimulation::replace(Particles particles) {
   whole_state();
-  const AtWork here(at_work_);
+  const Busy here(busy_);
   require_own_threads();
-  make_way();
+  detach_views();
   SimulationState before;
   change(before, [&] {
     const Unlocked unlocked;
@@ -152,7 +155,7 @@ void HeldSimulation::record_contacts(std::optional<double> minimum_speed) {
   require_idle();
   std::unique_ptr<ContactRecorder> next;
   if (minimum_speed) {
-    whole_state(); // recording ends in any state
+    whole_state(); // required to begin recording; it can end in any state
     next = std::make_unique<ContactRecorder>(*minimum_speed, scene_.planet.orbital_frequency);
   }
   simulation_->drift().observe(nullptr);

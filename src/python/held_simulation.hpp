@@ -1,5 +1,5 @@
-// A simulation that Python holds: it computes without the interpreter's lock, heeds the keyboard, and keeps what Python
-// looks at as it was.
+// A simulation owned by Python: it computes without the interpreter's lock, can be interrupted from the keyboard, and
+// never changes a state that numpy arrays view.
 #pragma once
 
 #include "contact_record.hpp"
@@ -10,6 +10,7 @@
 #include <pybind11/pybind11.h>
 
 #include <atomic>
+#include <cassert>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -17,46 +18,50 @@
 
 namespace keeler::python {
 
-/// Arrays on the state hold a share of its Keep. When the simulation moves on and somebody has such a share, the state
-/// is left to them as it is, and the simulation goes on with a copy.
-struct Keep {
-  std::optional<SimulationState> state; ///< once the simulation has left it
+/// The owner of the memory that numpy arrays view; the arrays share it. When the simulation continues while such arrays
+/// exist, it leaves its state to them and continues with a copy.
+struct ViewedState {
+  std::optional<SimulationState> state; ///< after the simulation has left it
 };
 
 class HeldSimulation {
 public:
+  /// Precondition: `simulation` is not null and is of this scene.
   HeldSimulation(const Scene& scene, std::unique_ptr<Simulation> simulation)
-      : scene_(scene), simulation_(std::move(simulation)) {}
+      : scene_(scene), simulation_(std::move(simulation)) {
+    assert(simulation_);
+  }
   ~HeldSimulation();
   HeldSimulation(const HeldSimulation&) = delete;
   HeldSimulation& operator=(const HeldSimulation&) = delete;
 
   const Scene& scene() const { return scene_; }
 
-  /// To be looked at. Throws Error (run_time) when it is at work in another thread.
+  /// Returns the simulation for reading. Throws Error (run_time) while another thread computes with it.
   const Simulation& simulation() const;
   const SimulationState& state() const { return simulation().state(); }
 
-  /// Of a simulation that can go on. Throws Error (run_time) where none can: see simulation(), or an invariant broke.
+  /// Returns the state of a simulation that can continue. Throws Error (run_time) as simulation() does, and after a
+  /// broken invariant.
   const SimulationState& whole_state() const;
 
-  /// An invariant broke in a step: the state stands at Simulation::time_at_break(), and can be looked at.
+  /// True if an invariant broke in a step; the state is then at Simulation::time_at_break(), and can be read.
   bool broken() const { return broken_.has_value(); }
 
-  /// Steps until that tick, a multiple of the scene's kick interval. Interrupts are raised at the next such multiple;
-  /// a second one gives up the steps at hand. Whatever it throws but InvariantError, the state is that of a multiple
-  /// from before: of the call, or of at most 0.2 s of computing ago.
+  /// Advances to a tick. Interrupts are raised at the next multiple of the kick interval; a second one gives up the
+  /// current steps. After any exception except InvariantError the state is at an earlier multiple: that of the call, or
+  /// at most 0.2 s of computing ago. Precondition: `until_tick` is a multiple of the scene's kick interval.
   void advance(std::int64_t until_tick);
 
-  /// For arrays on the state.
-  std::shared_ptr<Keep> keep() const { return keep_; }
+  /// Returns the owner for arrays that view the state.
+  std::shared_ptr<ViewedState> viewed_state() const { return viewed_state_; }
 
-  /// The state is as before where it throws.
+  /// Replaces the particles. If it throws, the state is unchanged.
   void replace(Particles particles);
 
-  /// Contacts are recorded from now on, those at least as fast (m/s); none: they are not.
+  /// Records contacts of at least this normal speed (m/s) from now on; none: stops recording.
   void record_contacts(std::optional<double> minimum_speed);
-  /// Hands those of since the last call to take(rows), and forgets them unless that throws.
+  /// Calls take(rows) with the contacts since the last call, and drops them unless it throws.
   template<class Take> auto take_contacts(const Take& take) {
     require_idle();
     if (!recorder_)
@@ -67,19 +72,19 @@ public:
   }
 
 private:
-  class AtWork;
+  class Busy;
   void require_idle() const;
-  void make_way();
+  void detach_views();
   void step_until(std::int64_t until_tick);
   template<class Change> void change(SimulationState& before, const Change& change);
 
   Scene scene_;
-  std::shared_ptr<Keep> keep_ = std::make_shared<Keep>();
+  std::shared_ptr<ViewedState> viewed_state_ = std::make_shared<ViewedState>();
   std::unique_ptr<Simulation> simulation_;
   std::unique_ptr<ContactRecorder> recorder_;
-  std::atomic<bool> at_work_ = false;
-  bool put_back_ = false;                // the simulation can only be looked at
-  std::optional<InvariantError> broken_; // why
+  std::atomic<bool> busy_ = false;
+  bool put_back_ = false;                // the state was restored: the simulation can only be read
+  std::optional<InvariantError> broken_; // the broken invariant
 };
 
 } // namespace keeler::python

@@ -19,7 +19,7 @@ Keyboard::Keyboard() : main_(in_main_thread()) {
     return;
   sigaction(SIGINT, nullptr, &before);
   if ((before.sa_flags & SA_SIGINFO) != 0 || before.sa_handler == SIG_DFL || before.sa_handler == SIG_IGN)
-    return; // somebody else's, or nobody's
+    return; // not Python's handler
   stop_ = give_up_ = false;
   struct sigaction now = before;
   now.sa_handler = note;

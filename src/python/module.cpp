@@ -1,5 +1,5 @@
-// The compiled part of the Python package `keeler`: thin, so that the package beside it (src/python/keeler) holds what
-// a user reads. Docstrings are there.
+// The compiled part of the Python package `keeler`. It is thin: the package in src/python/keeler has the interface and
+// the docstrings.
 #include "bindings.hpp"
 #include "computing.hpp"
 
@@ -25,7 +25,7 @@ PyObject* raised_for(ExitCode code, const py::module_& errors) {
 
 } // namespace
 
-// The classes are Python's own (keeler/errors.py), with two bases each.
+// Translates exceptions to the Python classes of keeler/errors.py.
 void bind_errors(py::module_&) {
   py::register_exception_translator(
       [](std::exception_ptr pointer) { // NOLINT(performance-unnecessary-value-param): its type
@@ -33,7 +33,7 @@ void bind_errors(py::module_&) {
           return;
         try {
           std::rethrow_exception(pointer);
-        } catch (const py::error_already_set&) { // these two are Python's
+        } catch (const py::error_already_set&) { // this and the next one are Python's
           throw;
         } catch (const py::builtin_exception&) {
           throw;

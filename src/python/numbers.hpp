@@ -1,4 +1,4 @@
-// Numbers with names as Python's own objects.
+// Conversion of named numbers to Python objects.
 #pragma once
 
 #include <keeler/quantities/quantity.hpp>
@@ -12,11 +12,11 @@ namespace keeler::python {
 
 namespace py = pybind11;
 
-/// Dictionaries, lists, numbers, texts and None.
+/// Converts JSON to dictionaries, lists, numbers, strings and None.
 py::object as_python(const nlohmann::ordered_json& json);
 
-/// A dictionary: a full name, and (unit, meaning, name of what stands beside the number in SI or None, name of that
-/// number).
+/// Returns a dictionary from full names to (unit, meaning, name of the error or scatter in SI or None, name of the
+/// number in SI).
 py::dict described(std::span<const Quantity> quantities);
 
 } // namespace keeler::python

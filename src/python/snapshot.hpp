@@ -1,4 +1,4 @@
-// A patch as Python holds it.
+// The snapshot behind Python's class Snapshot.
 #pragma once
 
 #include <keeler/particles/patch.hpp>
@@ -10,7 +10,7 @@ namespace keeler::python {
 struct PythonSnapshot {
   Patch patch;
   std::string scene;       ///< resolved, as TOML
-  bool is_a_start = false; ///< no fresh start makes it: its scene starts from the file that it is written to
+  bool is_a_start = false; ///< its scene cannot reproduce it, and starts from the file that it is written to
 };
 
 } // namespace keeler::python

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <span>
 #include <sstream>
 
@@ -28,7 +29,7 @@ JobList::JobList(const std::filesystem::path& file) : file_(file) {
     text += line + "\n";
   }
   if (text.size() != std::filesystem::file_size(file))
-    write_text(file, text); // without a line that was cut short
+    write_text(file, text); // drops the incomplete line of an interrupted program
 }
 
 void JobList::keep(const std::string& name, const Json& result) {
@@ -45,8 +46,10 @@ void JobList::keep(const std::string& name, const Json& result) {
 bool JobList::run(const std::vector<Job>& jobs, const std::function<void(const Progress&)>& progress,
                   const std::atomic<bool>& stop) {
   double elapsed = 0.0, spent = 0.0, all = 0.0, done = 0.0;
-  for (const Job& job : jobs)
+  for (const Job& job : jobs) {
+    assert(job.weight >= 0.0 && job.work);
     all += job.weight;
+  }
   for (const Job& job : jobs) {
     if (stop)
       return false;

@@ -1,5 +1,5 @@
-// A long list of measurements that can be interrupted: each job has a name and gives one JSON object, which is kept as
-// a line of a file as soon as it is known. Started again on the same file, the list does only what is missing.
+// An interruptible list of measurements. Each job has a name and returns one JSON object, which is appended to a file
+// at once, one line per job. A later list on this file carries out only the missing jobs.
 #pragma once
 
 #include <keeler/core/progress.hpp>
@@ -19,20 +19,21 @@ using Json = nlohmann::ordered_json;
 
 struct Job {
   std::string name;
-  double weight; ///< expected duration, in any unit: for the time left
+  double weight; ///< expected duration in any unit, for the estimate of the time left; not negative
   std::function<Json()> work;
 };
 
 class JobList {
 public:
-  /// Reads the results that the file holds; a line that an interruption cut short is dropped.
+  /// Reads the results in the file and drops an incomplete line of an interrupted program.
   explicit JobList(const std::filesystem::path& file);
 
-  /// Does the jobs that have no result yet, in order; returns false when `stop` was set, which is obeyed between jobs.
+  /// Carries out the jobs without a result, in order. Checks `stop` between jobs and returns false if it is set.
+  /// Precondition: each job has its `work` and a weight ≥ 0.
   bool run(const std::vector<Job>& jobs, const std::function<void(const Progress&)>& progress,
            const std::atomic<bool>& stop);
 
-  /// By name of the job.
+  /// Returns the results by job name.
   const std::map<std::string, Json>& results() const { return results_; }
 
 private:

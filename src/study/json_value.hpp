@@ -1,4 +1,4 @@
-// A number of a measurement by its key, as reports and figures ask for it.
+// Returns a number of a measurement by its key. Throws nlohmann::json::exception when it is missing.
 #pragma once
 
 #include "job_list.hpp"

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <exception>
 #include <fstream>
 
@@ -25,23 +26,25 @@ std::string processor() {
 
 } // namespace
 
-std::map<std::string, std::string> study_builder(const std::vector<std::string>& arguments) {
+std::map<std::string, std::string> study_provenance(const std::vector<std::string>& arguments) {
   const Provenance p = collect_provenance(arguments);
   return {{"command", p.at("arguments")}, {"host", p.at("host")},   {"processor", processor()},
           {"compiler", p.at("compiler")}, {"flags", p.at("flags")}, {"commit", p.at("commit")}};
 }
 
-Json open_study_folder(const fs::path& folder, const Json& options, const std::map<std::string, std::string>& builder) {
+Json open_study_folder(const fs::path& folder, const Json& options,
+                       const std::map<std::string, std::string>& provenance) {
   const fs::path file = folder / "study.json";
   if (!fs::exists(file)) {
     if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
-      throw UsageError(fmt::format("'{}' is not empty and holds no study; name another folder", folder.string()));
+      throw UsageError(
+          fmt::format("'{}' is not empty and is not the folder of a study; name another folder", folder.string()));
     std::error_code error;
     fs::create_directories(folder, error);
     if (error)
       throw IoError(fmt::format("cannot make the folder '{}': {}; name another", folder.string(), error.message()));
     Json begun = options;
-    for (const auto& [key, value] : builder)
+    for (const auto& [key, value] : provenance)
       begun[key] = value;
     write_text(file, json_text(begun, 2) + "\n");
     return begun;
@@ -57,6 +60,7 @@ Json open_study_folder(const fs::path& folder, const Json& options, const std::m
 }
 
 void draw_and_report(const std::function<bool()>& draw, const std::function<void(bool)>& report) {
+  assert(draw && report);
   std::exception_ptr fault;
   bool drawn = false;
   try {

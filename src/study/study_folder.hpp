@@ -1,4 +1,4 @@
-// The folder of a study: with which options it was begun, and by which program.
+// The folder of a study: its study.json records the options and the program that started it.
 #pragma once
 
 #include "job_list.hpp"
@@ -11,17 +11,16 @@
 
 namespace keeler {
 
-/// Who measures: command, host, processor, compiler, flags, commit.
-std::map<std::string, std::string> study_builder(const std::vector<std::string>& arguments);
+/// Returns the provenance of the measurements: command, host, processor, compiler, flags, commit.
+std::map<std::string, std::string> study_provenance(const std::vector<std::string>& arguments);
 
-/// Makes the folder with its study.json, or checks that it holds a study of the same options. Returns what is written
-/// of it, its builder included. Throws UsageError when it holds another study or other things, IoError.
+/// Makes the folder with its study.json, or checks that the existing one has these options. Returns the content of
+/// study.json, provenance included. Throws UsageError when the folder holds another study or other files, and IoError.
 Json open_study_folder(const std::filesystem::path& folder, const Json& options,
-                       const std::map<std::string, std::string>& builder);
+                       const std::map<std::string, std::string>& provenance);
 
-/// Draws the figures of a study, and then writes its report, which has the numbers whatever becomes of the figures: one
-/// that cannot be drawn is told afterwards. `draw` returns whether there are figures, `report` takes it. Throws
-/// IoError.
+/// Draws the figures of a study and then writes its report, even when drawing fails: that IoError is thrown after the
+/// report is written. `draw` returns true if there are figures; `report` receives this value.
 void draw_and_report(const std::function<bool()>& draw, const std::function<void(bool)>& report);
 
 } // namespace keeler

@@ -7,14 +7,15 @@
 #include <keeler/simulation/simulation.hpp>
 
 #include <algorithm>
+#include <cassert>
 
 namespace keeler {
 namespace {
 
 constexpr double growth_force_error = 1e-2;
-constexpr int instants = 3; // of the last orbit, or of the last half of a shorter time
+constexpr int instants = 3; // probed states of the last orbit, or of the last half of a shorter evolution
 
-// The same physics, to get somewhere.
+// Returns the scene's physics with cheap numerical settings, to evolve the state.
 Scene coarse(Scene scene) {
   scene.time.automatic = true;
   scene.time.step = 1.0 / TimeSettings::ticks_per_orbit;
@@ -32,7 +33,8 @@ std::uint64_t contacts_of(const Simulation& simulation) {
   return simulation.state().collisions.fast + simulation.state().collisions.slow;
 }
 
-// To a tick where the longest steps end: there the state stands with both halves of its kicks.
+// Advances to a time, and on to the next tick at which the longest steps end: there both halves of the kicks are
+// applied.
 void run_until(Simulation& simulation, double orbits, PhaseProgress& progress) {
   while (simulation.orbits() < orbits || simulation.state().step % TimeSettings::longest != 0) {
     const double before = simulation.orbits();
@@ -44,7 +46,8 @@ void run_until(Simulation& simulation, double orbits, PhaseProgress& progress) {
 } // namespace
 
 GrownScene grow(const Scene& scene, double orbits, PhaseProgress& progress) {
-  progress.begin("the state that is probed", orbits);
+  assert(orbits > 0.0);
+  progress.begin("evolving the probed state", orbits);
   const Patch start = initial_patch(scene);
   GrownScene growth;
   growth.scene = decided_by(scene, scale_of(start));

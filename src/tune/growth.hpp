@@ -1,4 +1,4 @@
-// The state that a scene comes to, and what it costs to get there.
+// The state that a scene evolves to, and the cost of the evolution.
 #pragma once
 
 #include <keeler/core/phase_progress.hpp>
@@ -10,15 +10,16 @@
 namespace keeler {
 
 struct GrownScene {
-  Scene scene;                 ///< with what its start decides
-  std::vector<Patch> states;   ///< of its last orbit, the last one at its end: in a small box wakes come and go
-  double orbits = 0.0;         ///< its age
-  double contact_rate = 0.0;   ///< of a particle, in the last orbit
-  double seconds = 0.0;        ///< all of it; processor time on one thread, wall time on several
-  double seconds_at_end = 0.0; ///< an orbit, over the last one
+  Scene scene;                 ///< with the settings that depend on the initial state filled in
+  std::vector<Patch> states;   ///< several of the last orbit, since wakes of a small box fluctuate; the last at its end
+  double orbits = 0.0;         ///< age of the last state
+  double contact_rate = 0.0;   ///< contacts per particle and orbit, in the last orbit
+  double seconds = 0.0;        ///< of the evolution; processor time on one thread, wall time on several
+  double seconds_at_end = 0.0; ///< per orbit, over the last orbit
 };
 
-/// Evolves the scene's start on all threads, with an automatic step and the cheapest solver that is of use.
+/// Evolves the scene's initial state on all threads, with an automatic step and the cheapest suitable solver.
+/// Precondition: `orbits` > 0.
 GrownScene grow(const Scene& scene, double orbits, PhaseProgress& progress);
 
 } // namespace keeler

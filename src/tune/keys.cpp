@@ -4,25 +4,31 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
+#include <cmath>
+
 namespace keeler {
 namespace {
 
-std::string per_cent(double share) {
-  return format_number(100.0 * share, 2) + " %";
+std::string per_cent(double fraction) {
+  return format_number(100.0 * fraction, 2) + " %";
 }
 
+// Formats a number as TOML float, with a decimal point or an exponent.
 std::string with_point(double number) {
+  assert(std::isfinite(number));
   const std::string digits = fmt::format("{}", number);
   return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
 }
 
 void add_gravity(std::vector<KeyChange>& keys, const Tuning& tuning, const TuneSettings& settings) {
   using Solver = GravitySettings::Solver;
+  assert(tuning.chosen_gravity < tuning.gravity.size());
   const GravityBenchRow& row = tuning.gravity[tuning.chosen_gravity];
   const GravitySettings& gravity = row.choice.settings;
   const std::string error = fmt::format(
       "an rms force error of {} was measured (at most {}{})", per_cent(row.errors.rms), per_cent(settings.force_error),
-      tuning.meets_force_error ? "" : ", which nothing meets with a margin for other seeds");
+      tuning.meets_force_error ? "" : ", which no setting meets with a margin for other seeds");
   const bool tree = gravity.solver == Solver::tree, fft = gravity.solver == Solver::fft;
   const std::string comment = "tune: " + error;
   keys.push_back({"gravity.solver", fmt::format("\"{}\"", row.choice.solver), tree || fft ? "" : comment});
@@ -38,11 +44,12 @@ void add_gravity(std::vector<KeyChange>& keys, const Tuning& tuning, const TuneS
 }
 
 void add_kicks(std::vector<KeyChange>& keys, const Tuning& tuning, const TuneSettings& settings) {
+  assert(tuning.chosen_kicks < tuning.kicks.size());
   const KickProbe& kicks = tuning.kicks[tuning.chosen_kicks];
   keys.push_back(
       {"gravity.kick_every", fmt::format("{}", tuning.steps[tuning.chosen_step].drifts),
-       fmt::format("tune: a kick each {:g} orbits makes {} of the contacts; the loss exceeds the work of the "
-                   "shear by about {} (at most {}{})",
+       fmt::format("tune: with a kick every {:g} orbits {} of the contacts are unresolved; the loss exceeds the "
+                   "work of the shear by about {} (at most {}{})",
                    kicks.interval, per_cent(kicks.unresolved), per_cent(kicks.physics_error()),
                    per_cent(settings.physics_error),
                    tuning.meets_physics_error ? "" : ", which no interval meets with a margin for other seeds")});
@@ -56,9 +63,10 @@ std::vector<KeyChange> chosen_keys(const Tuning& tuning, const TuneSettings& set
     add_gravity(keys, tuning, settings);
     add_kicks(keys, tuning, settings);
   }
+  assert(tuning.chosen_step < tuning.steps.size());
   const StepProbe& step = tuning.steps[tuning.chosen_step];
   keys.push_back({"time.step", with_point(step.step),
-                  fmt::format("tune: {} processor seconds an orbit in the state after {:.3g} orbits, {} contacts a "
+                  fmt::format("tune: {} processor seconds per orbit in the state after {:.3g} orbits, {} contacts per "
                               "particle and drift",
                               format_number(step.seconds, 2), tuning.orbits, format_number(step.contacts, 2))});
   return keys;

@@ -7,23 +7,25 @@
 #include <keeler/statistics/scatter.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-constexpr double settling = 0.05, counting = 0.15; // orbits of a probe of kicks, from each state
-constexpr std::uint64_t enough_contacts = 50000;   // of a state: a hundredth of them is 500, which scatters by 5 %
-constexpr double untimed = 0.02, timed = 0.03;     // at least, of each lap of a probe of steps
-constexpr double enough_seconds = 0.15;            // of a lap
-constexpr int laps = 3;                            // of a probe of threads
+constexpr double settling = 0.05, counting = 0.15; // orbits per state in a probe of kicks
+constexpr std::uint64_t enough_contacts = 50000;   // per state: 1 % of them is 500, which scatters by 5 %
+constexpr double untimed = 0.02, timed = 0.03;     // smallest orbits of a lap
+constexpr double enough_seconds = 0.15;            // smallest duration of a lap
+constexpr int laps = 3;                            // in a probe of threads
 
 std::uint64_t contacts_of(const CollisionTally& tally) {
   return tally.fast + tally.slow;
 }
 
-// Whole kick intervals.
+// Advances by at least `orbits` in whole kick intervals of `drifts` steps.
 void run(Simulation& simulation, double orbits, int drifts) {
+  assert(drifts > 0);
   constexpr double rounding = 1e-9;
   const double end = simulation.orbits() + orbits - rounding;
   do
@@ -32,9 +34,9 @@ void run(Simulation& simulation, double orbits, int drifts) {
   while (simulation.orbits() < end);
 }
 
-// Seconds an orbit of one lap, and the contacts in it.
 struct Lap {
-  double seconds = 0.0, contacts = 0.0, orbits = 0.0;
+  double seconds = 0.0; // per orbit
+  double contacts = 0.0, orbits = 0.0;
 };
 
 Lap lap_of(const Scene& scene, const Patch& state, const StepProbe& probe) {
@@ -53,6 +55,7 @@ Lap lap_of(const Scene& scene, const Patch& state, const StepProbe& probe) {
 } // namespace
 
 Scene with_steps(Scene scene, double step, int drifts) {
+  assert(step > 0.0 && drifts > 0);
   scene.time.automatic = false;
   scene.time.step = step;
   if (scene.gravity)
@@ -61,8 +64,9 @@ Scene with_steps(Scene scene, double step, int drifts) {
 }
 
 KickProbe probe_kicks(const Scene& scene, const std::vector<Patch>& states, double interval, int drifts,
-                      double longest) {
-  std::vector<double> shares;
+                      double max_orbits) {
+  assert(!states.empty());
+  std::vector<double> unresolved;
   for (const Patch& state : states) {
     Simulation simulation(with_steps(scene, interval / drifts, drifts), state);
     run(simulation, settling, drifts);
@@ -71,39 +75,41 @@ KickProbe probe_kicks(const Scene& scene, const std::vector<Patch>& states, doub
     do
       run(simulation, counting, drifts);
     while (contacts_of(simulation.state().collisions) - contacts_of(before) < enough_contacts &&
-           simulation.orbits() - from < longest);
+           simulation.orbits() - from < max_orbits);
     const CollisionTally after = simulation.state().collisions;
     const auto contacts = static_cast<double>(contacts_of(after) - contacts_of(before));
-    shares.push_back(static_cast<double>(after.unresolved - before.unresolved) / std::max(1.0, contacts));
+    unresolved.push_back(static_cast<double>(after.unresolved - before.unresolved) / std::max(1.0, contacts));
   }
-  const Scatter scatter = scatter_of(shares);
+  const Scatter scatter = scatter_of(unresolved);
   return {interval, scatter.mean, scatter.mean_error()};
 }
 
 std::vector<StepProbe> probe_steps(const Scene& scene, const std::vector<Patch>& states, double interval,
                                    const std::vector<int>& drifts, PhaseProgress& progress) {
+  assert(!states.empty() && !drifts.empty());
   progress.begin("steps", static_cast<double>(drifts.size() * states.size()));
   std::vector<StepProbe> probes;
   for (const int count : drifts)
     probes.push_back({interval / count, count, 0.0, 0.0});
   const double particles = static_cast<double>(std::max<std::size_t>(1, states.back().size()));
-  const double share = 1.0 / static_cast<double>(states.size());
+  const double weight = 1.0 / static_cast<double>(states.size());
   for (const Patch& state : states)
     for (StepProbe& probe : probes) {
       const Lap lap = lap_of(scene, state, probe);
-      probe.seconds += share * lap.seconds;
-      probe.contacts += share * 2.0 * lap.contacts * probe.step / (particles * lap.orbits);
+      probe.seconds += weight * lap.seconds;
+      probe.contacts += weight * 2.0 * lap.contacts * probe.step / (particles * lap.orbits);
       progress.add(1.0);
     }
   return probes;
 }
 
-std::vector<ThreadProbe> probe_threads(const Scene& scene, const Patch& patch, int most, PhaseProgress& progress) {
+std::vector<ThreadProbe> probe_threads(const Scene& scene, const Patch& patch, int thread_limit,
+                                       PhaseProgress& progress) {
   std::vector<int> counts = {1};
-  for (int count = 2; count < most; count *= 2)
+  for (int count = 2; count < thread_limit; count *= 2)
     counts.push_back(count);
-  if (most > 1)
-    counts.push_back(most);
+  if (thread_limit > 1)
+    counts.push_back(thread_limit);
   if (counts.size() == 1)
     return {ThreadProbe{}};
   const int before = threads();

@@ -1,4 +1,5 @@
-// Short runs from the states of a growth: what a kick interval makes, what a step costs, what threads gain.
+// Short runs from evolved states that measure the effect of a kick interval, the cost of a step, and the speedup by
+// threads.
 #pragma once
 
 #include <keeler/core/phase_progress.hpp>
@@ -9,18 +10,22 @@
 
 namespace keeler {
 
-/// The scene with another step and kick interval, which without self-gravity is the step.
+/// Returns the scene with this step (orbits), and with self-gravity a kick every `drifts` steps.
+/// Precondition: both are positive.
 Scene with_steps(Scene scene, double step, int drifts);
 
-/// A fifth of an orbit from each state; where contacts are few, up to the longest time, orbits.
+/// Counts unresolved contacts with this kick interval (orbits) over a fifth of an orbit from each state, or over up to
+/// `max_orbits` when contacts are few. Precondition: `states` is not empty.
 KickProbe probe_kicks(const Scene& scene, const std::vector<Patch>& states, double interval, int drifts,
-                      double longest);
+                      double max_orbits);
 
-/// Of the kick interval divided into so many drifts each, in turns, from each state.
+/// Times the kick interval with each of these numbers of drifts, in turn, from each state.
+/// Precondition: `states` and `drifts` are not empty.
 std::vector<StepProbe> probe_steps(const Scene& scene, const std::vector<Patch>& states, double interval,
                                    const std::vector<int>& drifts, PhaseProgress& progress);
 
-/// On 1, 2, 4 … threads and the most.
-std::vector<ThreadProbe> probe_threads(const Scene& scene, const Patch& patch, int most, PhaseProgress& progress);
+/// Measures the speedup on 1, 2, 4 … and `thread_limit` threads.
+std::vector<ThreadProbe> probe_threads(const Scene& scene, const Patch& patch, int thread_limit,
+                                       PhaseProgress& progress);
 
 } // namespace keeler

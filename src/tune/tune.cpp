@@ -10,19 +10,21 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-// In a tenth of an orbit, so that files fall where one asks for them. Neighbours differ by a third at most.
+// Kicks per tenth of an orbit: the intervals divide it, so that outputs fall on the requested times. Consecutive
+// intervals differ by a third at most.
 constexpr std::array<int, 14> kicks_of_tenth = {100, 80, 64, 50, 40, 32, 25, 20, 16, 12, 10, 8, 6, 5};
-constexpr double longest_probe = 0.25;                     // of a kick interval from each state, over their age
-constexpr double usual_contacts = 0.3;                     // of a particle in a drift: near the cheapest
-constexpr double few_contacts = 0.04, many_contacts = 1.2; // where the cheapest is looked for
-constexpr std::size_t max_direct = 3000;                   // particles
+constexpr double longest_probe = 0.25;                    // of a kick interval from each state, relative to their age
+constexpr double usual_contacts = 0.3;                    // per particle and drift: near the cheapest step
+constexpr double min_contacts = 0.04, max_contacts = 1.2; // per particle and drift, of the probed steps
+constexpr std::size_t max_direct = 3000;                  // particles
 constexpr int gravity_repeats = 3;
-constexpr double min_gain = 1.15; // of twice the threads
+constexpr double min_gain = 1.15; // by twice the threads
 constexpr double clock_noise = 1.03;
 
 double orbits_of(const Scene& scene) {
@@ -41,8 +43,8 @@ GravityChoice choice(const Scene& scene, GravitySettings::Solver solver, std::si
   return choice_of(settings, particles);
 }
 
-// What a scene's keys can say, about the error that is asked for. Exactly n rings of images are physics, which the mesh
-// does not have.
+// Returns solvers and settings near the requested error that a scene's keys can express. A finite number of image rings
+// is part of the physics, and the mesh cannot represent it.
 std::vector<GravityChoice> gravity_candidates(const Scene& scene, std::size_t particles, double force_error) {
   using Solver = GravitySettings::Solver;
   std::vector<GravityChoice> candidates;
@@ -56,34 +58,39 @@ std::vector<GravityChoice> gravity_candidates(const Scene& scene, std::size_t pa
   return candidates;
 }
 
-// Of those that meet the tolerance and cost the same, but for the noise of the clock, the most accurate.
+// Chooses the cheapest candidate that meets the tolerance; of equally cheap ones, within the noise of the clock, the
+// most accurate. If none meets it, chooses the most accurate.
 void choose_gravity(Tuning& tuning, double force_error) {
   const auto error = [&](std::size_t k) { return tuning.gravity[k].errors.rms; };
   const auto cost = [&](std::size_t k) { return tuning.gravity[k].ns_per_particle; };
-  double least = HUGE_VAL;
+  assert(!tuning.gravity.empty());
+  double min_cost = HUGE_VAL;
   for (std::size_t k = 0; k < tuning.gravity.size(); ++k)
     if (error(k) <= force_error)
-      least = std::min(least, cost(k));
-  tuning.meets_force_error = least < HUGE_VAL;
+      min_cost = std::min(min_cost, cost(k));
+  tuning.meets_force_error = min_cost < HUGE_VAL;
   std::size_t best = tuning.gravity.size();
   for (std::size_t k = 0; k < tuning.gravity.size(); ++k) {
-    const bool cheap = !tuning.meets_force_error || (error(k) <= force_error && cost(k) <= clock_noise * least);
+    const bool cheap = !tuning.meets_force_error || (error(k) <= force_error && cost(k) <= clock_noise * min_cost);
     if (cheap && (best == tuning.gravity.size() || error(k) < error(best)))
       best = k;
   }
   tuning.chosen_gravity = best;
 }
 
+// Returns the power of two of drifts per kick interval with nearly `usual_contacts` per particle and drift.
 int usual_drifts(double interval, double contact_rate) {
   const double drifts = interval * contact_rate / usual_contacts;
   return 1 << static_cast<int>(std::lround(std::clamp(std::log2(std::max(1.0, drifts)), 0.0, 9.0)));
 }
 
-// The longest interval that meets the tolerance, by bisection; if none does, the shortest.
+// Chooses the longest interval that meets the tolerance, by bisection; if none does, the shortest.
 void choose_kicks(Tuning& tuning, const Scene& scene, const GrownScene& growth, double physics_error,
                   PhaseProgress& progress) {
   progress.begin("kick intervals", std::ceil(std::log2(kicks_of_tenth.size())));
-  std::size_t meeting = 0, missing = kicks_of_tenth.size(); // of the intervals the first `meeting` do
+  std::size_t meeting = 0,
+              missing =
+                  kicks_of_tenth.size(); // the first `meeting` intervals meet it; intervals from `missing` miss it
   while (meeting < missing) {
     const std::size_t k = (meeting + missing) / 2;
     const double interval = 0.1 / kicks_of_tenth[k];
@@ -98,24 +105,26 @@ void choose_kicks(Tuning& tuning, const Scene& scene, const GrownScene& growth, 
   tuning.meets_physics_error = meeting > 0;
 }
 
-// Into so many drifts the interval is divided, by powers of two.
+// Returns the probed numbers of drifts per kick interval, powers of two.
 std::vector<int> drift_candidates(double interval, double contact_rate) {
   std::vector<int> candidates;
   for (int drifts = 1; drifts <= 512; drifts *= 2)
-    if (const double contacts = interval * contact_rate / drifts; contacts >= few_contacts && contacts <= many_contacts)
+    if (const double contacts = interval * contact_rate / drifts; contacts >= min_contacts && contacts <= max_contacts)
       candidates.push_back(drifts);
   if (candidates.empty())
     candidates.push_back(usual_drifts(interval, contact_rate));
   return candidates;
 }
 
-// Of those that cost the same, but for the noise of the clock, the longest.
+// Returns the index of the cheapest step; of equally cheap ones, within the noise of the clock, the longest.
+// Precondition: `steps` is not empty and begins with the longest step.
 std::size_t cheapest_step(const std::vector<StepProbe>& steps) {
-  double least = steps.front().seconds;
+  assert(!steps.empty() && steps.front().step >= steps.back().step);
+  double min_seconds = steps.front().seconds;
   for (const StepProbe& probe : steps)
-    least = std::min(least, probe.seconds);
-  std::size_t best = 0; // the longest comes first
-  while (steps[best].seconds > clock_noise * least)
+    min_seconds = std::min(min_seconds, probe.seconds);
+  std::size_t best = 0;
+  while (steps[best].seconds > clock_noise * min_seconds)
     ++best;
   return best;
 }
@@ -134,11 +143,13 @@ void choose_threads(Tuning& tuning) {
   tuning.chosen_threads = best.threads;
 }
 
-// The way to the state that was probed costs what it did, times what the settings change at its end.
+// Predicts the duration of the run. Up to the probed state it scales the measured duration of the evolution by the
+// ratio of the costs per orbit at its end: chosen settings over the settings of the evolution.
 void predict(Tuning& tuning, const Scene& scene, const GrownScene& growth) {
-  const double an_orbit = tuning.steps[tuning.chosen_step].seconds, whole = orbits_of(scene);
-  const double until_probed = std::min(1.0, whole / growth.orbits) * growth.seconds * an_orbit / growth.seconds_at_end;
-  const double steps = until_probed + std::max(0.0, whole - growth.orbits) * an_orbit;
+  assert(growth.orbits > 0.0 && growth.seconds_at_end > 0.0);
+  const double per_orbit = tuning.steps[tuning.chosen_step].seconds, whole = orbits_of(scene);
+  const double until_probed = std::min(1.0, whole / growth.orbits) * growth.seconds * per_orbit / growth.seconds_at_end;
+  const double steps = until_probed + std::max(0.0, whole - growth.orbits) * per_orbit;
   double files = 0.0;
   if (!scene.start_from) {
     const RunEstimate estimate = estimate_run(scene, pair_yardstick(bench_seconds));
@@ -152,7 +163,7 @@ void predict(Tuning& tuning, const Scene& scene, const GrownScene& growth) {
   tuning.wall_seconds = steps / speedup + files;
 }
 
-// On one thread, whose processor time other work on the machine changes least.
+// Sets one thread during its lifetime: other work on the machine affects its processor time least.
 class OneThread {
 public:
   OneThread() { set_threads(1); }
@@ -168,10 +179,11 @@ private:
 
 Tuning tune(const Scene& scene, const TuneSettings& settings) {
   if (scene.gravity && !scene.gravity->by_pairs())
-    throw UsageError("the scene's gravity is axisymmetric (its forces have no other solver to choose from); choose "
-                     "its step by \"keeler study step\" or take another gravity.solver");
+    throw UsageError("the scene's gravity is axisymmetric, which has one solver only; choose the step with \"keeler "
+                     "study step\", or use another gravity.solver");
+  assert(settings.force_error > 0.0 && settings.physics_error > 0.0 && settings.max_threads > 0);
   PhaseProgress progress(settings.progress);
-  const double usual = scene.gravity ? 4.0 : 8.0; // wakes stand and have passed their overshoot
+  const double usual = scene.gravity ? 4.0 : 8.0; // after the overshoot of the wakes
   const GrownScene growth = grow(scene, std::min(settings.orbits.value_or(usual), orbits_of(scene)), progress);
   const OneThread measured;
   Tuning tuning;

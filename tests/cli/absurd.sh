@@ -1,13 +1,13 @@
 #!/bin/bash
-# absurd.sh KEELER SOURCE_DIR: what once made steps that never ended, pages of messages, or a wrong exit code: values that are
-# finite and absurd, long, or no text. Each is one line and the right exit code now, soon. What start files may hold is in
-# tests/python/test_foreign_files.py, what happens around a run in hardening.sh and intrusions.sh.
+# absurd.sh KEELER SOURCE_DIR: values that are finite but absurd, very long, or not text must end soon with one line and the
+# right exit code. (They once caused endless steps, pages of messages, or a wrong exit code.) Start files are tested in
+# tests/python/test_foreign_files.py, the environment of a run in hardening.sh and intrusions.sh.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
 sed 's/^preset = .*/orbital_frequency = 2e-4/' "$work/scene.toml" >"$work/planet.toml"
 
-# refused_by_all NAME WORDS ARGUMENT...: by check and by run, and no folder is made
+# refused_by_all NAME WORDS ARGUMENT...: check and run refuse the scene, and no folder is made
 refused_by_all() {
   local name=$1 words=$2
   shift 2
@@ -26,12 +26,12 @@ for absurd in particles.density=1e12 particles.density=1e-300 particles.velocity
   refused_by_all "$absurd" "${absurd%%=*}" "$work/scene.toml" --set "$absurd"
 done
 
-# A run can be told to go on for as long as numbers of steps go, and no longer.
+# The length of a run is limited by the largest number of steps.
 runs 0 run "$work/scene.toml" -o "$work/run" --set time.end=0.02
 refuses "--until 1e18" "is too long" resume "$work/run" --until 1e18
 refuses "--until 1e300" "is too long" resume "$work/run" --until 1e300
 
-# Long values and bytes that are no text: a line that can be read.
+# Long values and bytes that are not text give a readable line.
 python3 -c 'print("x" * 1000000)' >"$work/long"
 sed "s/^solver = .*/solver = \"$(head -c 100000 "$work/long")\"/" "$work/scene.toml" >"$work/long.toml"
 refused_by_all "a long value" "gravity.solver" "$work/long.toml"
@@ -43,7 +43,7 @@ refused_by_all "bytes that are no text" "TOML" "$work/bytes.toml"
 refused_by_all "the same by --set" "gravity.solver" "$work/scene.toml" --set "gravity.solver=$(printf 'tr\xff\x1b[31mee')"
 LC_ALL=C grep -qP '[\x80-\xff\x1b]' "$work/said" && fail "raw bytes in: $(cat -v "$work/said")"
 
-# Depth, length and number of what a file holds.
+# Nesting depth, length and number of entries of a file.
 python3 - "$work" <<'END'
 import sys
 from pathlib import Path
@@ -107,7 +107,7 @@ for command in "info --json" "analyze" "resume"; do
   [ "$code" -lt 128 ] || fail "deep JSON, $command: exit $code"
 done
 
-# What a person would write.
+# Plausible mistakes of a user.
 accepts "a count with an exponent" check "$work/scene.toml" --set particles.count=1e2
 prints "a count with an exponent" "particles                          100"
 refused_by_all "a seed of 2^64 - 1" "particles.seed is 1.8446744073709552e+19, but must be a whole number from 0" \
@@ -116,7 +116,7 @@ accepts "a scene with a byte order mark" check "$work/marked.toml"
 accepts "radii with a byte order mark" check "$work/scene.toml" \
   --set "particles.sizes={law=\"file\",path=\"$work/marked_radii.toml\"}"
 
-# What a scene will cost is a number.
+# The estimated cost of a scene is a finite number.
 accepts "a long run" check "$work/scene.toml" --set time.end=1e9
 prints "a long run" "time on one thread, an estimate    "
 grep -qi 'inf\|nan' "$work/out" && fail "a long run: $(cat "$work/out")"

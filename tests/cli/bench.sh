@@ -1,5 +1,5 @@
 #!/bin/bash
-# bench.sh KEELER SOURCE_DIR: the numbers that benches print, on states as small as they can be.
+# bench.sh KEELER SOURCE_DIR: the numbers that benches print, on the smallest states.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 number='-?[0-9.]+(e[-+]?[0-9]+)?'
@@ -19,7 +19,7 @@ has_numbers "bench" ns_per_particle_step cost_per_orbit_us ns_per_collision ns_p
   events line_ns pair_ns
 grep -q speedup "$work/out" && fail "bench: a speedup on one thread in: $(cat "$work/out")"
 runs 0 bench drift --count 500 --repeats 1 --finder original --all-pairs --threads 2
-prints "bench" "a particle and step                "
+prints "bench" "per particle and step              "
 prints "bench" "speedup: events                    "
 runs 0 bench drift --count 500 --repeats 1 --threads 2 --json
 has_numbers "bench on two threads" step events pair
@@ -28,7 +28,7 @@ grep -qF '"sizes": "moonlet"' "$work/out" || fail "bench: no moonlet in: $(cat "
 refuses "too few for a moonlet" "raise --count" bench drift --count 500 --sizes moonlet
 refuses "unknown sizes" "--sizes" bench drift --sizes huge
 refuses "an unknown finder" "'guess'" bench drift --finder guess
-refuses "bench without a kernel" "wants a part: drift, gravity, step" bench
+refuses "bench without a kernel" "needs a subcommand: drift, gravity, step" bench
 refuses "no particles" "--count" bench drift --count 0
 
 runs 0 bench gravity --count 100 --state uniform --repeats 1 --json
@@ -59,9 +59,9 @@ refuses "no interval" "--kick-every" bench step --kick-every 0
 small_scene
 runs 0 run "$work/scene.toml" -o "$work/run" --set time.end=0.01 --set gravity.kick_every=5 --set gravity.opening_angle=0.5
 runs 0 bench step --from "$work/run/snap_000001.hdf" --repeats 1
-for words in "collisions a particle and step     " "contacts a particle and step       " "  drift: build  " \
+for words in "collisions per particle and step   " "contacts per particle and step     " "  drift: build  " \
   "drift over a pair's time" "particles                          400" "solver                             tree" "opening_angle 0.5" \
-  "steps for each kick                5"; do
+  "steps per kick                     5"; do
   prints "bench step of a snapshot as text" "$words"
 done
 runs 0 bench step --from "$work/run/snap_000001.hdf" --repeats 1 --kick-every 2 --solver mesh --threads 2

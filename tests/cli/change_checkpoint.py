@@ -1,5 +1,5 @@
-"""change_checkpoint.py FILE FIELD FACTOR: multiplies a number of a checkpoint, and gives the file the checksums that go
-with it: as if the program had written a state that is wrong."""
+"""change_checkpoint.py FILE FIELD FACTOR: multiplies a number in a checkpoint and updates the file's checksums, as if
+the program had written a wrong state."""
 
 import ctypes
 import sys

@@ -1,12 +1,12 @@
 #!/bin/bash
 # check.sh KEELER SOURCE_DIR: `keeler check` accepts the examples, and answers each bad scene with exit code 2 and exactly
-# one line on stderr that holds the expected words.
+# one line on stderr that contains the expected words.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 
 good=$source_dir/examples/a-ring-wakes/scene.toml
 
-# bad NAME WORDS SED-COMMAND: the good scene, changed, is refused
+# bad NAME WORDS SED-COMMAND: the good scene, changed by the command, is refused
 bad() {
   local scene=$work/scene.toml
   sed "$3" "$good" >"$scene"
@@ -74,7 +74,7 @@ refuses "unknown command" "did you mean 'check'?" chekc
 refuses "unknown option" "--wibble" check --wibble
 refuses "unknown command with an option" "did you mean 'check'?" chekc "$good" --json
 refuses "unknown command with --help" "did you mean 'check'?" chekc --help
-refuses "a command without its part" "'keeler bench' wants a part: drift, gravity, step" bench
+refuses "a command without its part" "'keeler bench' needs a subcommand: drift, gravity, step" bench
 refuses "misspelt word of an option" "did you mean 'csv'?" convert "$good" --to cvs
 refuses "a grid for a scene" 'keeler sweep' check <(printf 'scene = "a.toml"\n')
 refuses_with 4 "a scene for a snapshot" "is no snapshot" info "$good"

@@ -1,6 +1,7 @@
 #!/bin/bash
-# clumped.sh KEELER SOURCE_DIR: `generate --clumped` evolves a scene until its wakes have settled, says by which numbers,
-# keeps them in the file, and its state is where a run goes on. (The same for any number of threads: tests/unit/initial_conditions.)
+# clumped.sh KEELER SOURCE_DIR: `generate --clumped` evolves a scene until its wakes have settled, prints the numbers of the
+# criterion and stores them in the file, and a run continues from its state. (Tests with several threads:
+# tests/unit/initial_conditions.)
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 cat >"$work/scene.toml" <<END
@@ -27,7 +28,7 @@ runs 0 "${clump[@]}" -o "$work/one.hdf" --threads 1
 cp "$work/out" "$work/printed"
 grep -q ' orbits .* contrast .* viscosity changes by ' "$work/err" || fail "no progress: $(cat "$work/err")"
 
-# recorded KEY: the number of this name in the record of the file
+# recorded KEY: prints the number with this name in the file's record
 runs 0 info "$work/one.hdf" --json
 cp "$work/out" "$work/info.json"
 recorded() { text "Clumping\/$1" "$work/info.json"; }
@@ -62,7 +63,7 @@ same_state "run --from, 1 and 2 threads" "$work/run1" "$work/run2"
 runs 0 info "$work/run1/snap_000000.hdf"
 grep -q Clumping "$work/out" && fail "a snapshot of a run has the record of its start"
 
-# What does not clump, or is not let, leaves nothing behind.
+# A patch that does not clump, or not in time, leaves no file.
 nothing_left() { [ -e "$work/none.hdf" ] && fail "$1: left a file behind"; }
 refuses_with 1 "too light" "no wakes stand in the patch" "${clump[@]}" -o "$work/none.hdf" \
   --set particles.density=110 --set 'box.size=[60,60]' --most-orbits 9
@@ -78,7 +79,7 @@ refuses "no gravity" "add [gravity]" generate "$work/light.toml" --clumped -o "$
 refuses "a state that exists" "--force" "${clump[@]}" -o "$work/one.hdf"
 nothing_left "refused"
 
-# A stop, long before a patch of this size can have settled.
+# A stop, long before a patch of this size can settle.
 for signal in INT TERM; do
   : >"$work/err"
   "$keeler" "${clump[@]}" -o "$work/none.hdf" --set 'box.size_in_wavelengths=[8,8]' >"$work/out" 2>"$work/err" &

@@ -19,7 +19,7 @@ if child == 0:
 
 
 def shown(drawn):
-    """The text as it stands on the screen: shells go back to write anew."""
+    """Returns the text as shown on the screen: shells move back and overwrite."""
     text, at = [], 0
     for letter in re.sub(r"\x1b\[[0-9;?]*[A-Za-z]|\x1b[=>]|[\x00\r\x07]", "", drawn.decode(errors="replace")):
         if letter == "\b":

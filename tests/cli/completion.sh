@@ -1,11 +1,11 @@
 #!/bin/bash
-# completion.sh KEELER SOURCE_DIR: what `keeler complete` offers; the scripts for bash, zsh and fish, typed at on a
-# terminal; the manual pages that the build writes.
+# completion.sh KEELER SOURCE_DIR: the candidates of `keeler complete`; the scripts for bash, zsh and fish on a terminal; the
+# manual pages that the build writes.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 cd "$work" || exit 1
 
-# offers NAMES WORD... -- TYPED...: the first line, and candidates that are among those for what is typed
+# offers NAMES WORD... -- TYPED...: completing the typed words gives this first line, and candidates that include the words
 offers() {
   local names=$1 expected=()
   shift
@@ -20,7 +20,7 @@ offers() {
     tail -n +2 out | cut -f 1 | grep -qxF -e "$word" || fail "complete $*: no '$word' in $(cut -f 1 out | tr '\n' ' ')"
   done
 }
-# only COUNT: so many were offered
+# only COUNT: the last call of offers had this number of candidates
 only() { [ "$(tail -n +2 out | wc -l)" -eq "$1" ] || fail "$1 expected: $(cat out)"; }
 
 offers none render report resume -- re
@@ -84,7 +84,7 @@ PATH=$(dirname "$keeler"):$PATH
 export PATH HOME=$work TERM=vt100
 mkdir folder && echo >folder/part.toml
 
-# types NAME SHELL...: the same words, completed in this shell
+# types NAME SHELL...: completes the words in this shell
 types() {
   local name=$1
   shift

@@ -1,12 +1,12 @@
 #!/bin/bash
-# contacts.sh KEELER SOURCE_DIR: the log of contacts is the same however a run was cut into pieces and with any number of
-# threads; one that cannot be written ends the run with exit code 4 and one line, and the run goes on from there.
+# contacts.sh KEELER SOURCE_DIR: the log of contacts does not depend on interruptions or on the number of threads. If it
+# cannot be written the run ends with exit code 4 and one line, and can be continued.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
 echo "collisions = {}" >>"$work/scene.toml" # in [output]
 
-# same NAME FOLDER: the log of the uninterrupted run, and its state
+# same NAME FOLDER: log and state equal those of the uninterrupted run
 same() {
   [ "$(state_hash "$work/whole")" = "$(state_hash "$2")" ] || fail "$1: another state"
   same_bytes "$1" /Contacts "$work/whole/collisions_000000.h5" "$2/collisions_000000.h5"
@@ -29,7 +29,7 @@ interrupted KILL 137 "$work/killed"
 runs 0 resume "$work/killed"
 same "kill -9" "$work/killed"
 
-# A folder stands where the log is to be.
+# A folder has the name of the log.
 runs 0 run "$work/scene.toml" -o "$work/blocked" --set time.end=0.5
 mv "$work/blocked/collisions_000000.h5" "$work/kept.h5"
 mkdir "$work/blocked/collisions_000000.h5"

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""convert.py SNAPSHOT CSV VTP [PVD]: the numbers that numpy and VTK find are those of the snapshot; spins too where it
-has them. Times of the PVD are printed."""
+"""convert.py SNAPSHOT CSV VTP [PVD]: the numbers read by numpy and VTK equal those of the snapshot, spins included.
+Prints the times in the PVD."""
 import sys
 import xml.etree.ElementTree
 
@@ -16,7 +16,7 @@ with h5py.File(snapshot) as file:
 
 
 def same(found, name):
-    """But for two roundings of a velocity, which is kept in other units."""
+    """The arrays are equal, except for two roundings of velocities, which are stored in other units."""
     np.testing.assert_allclose(found, arrays[name], rtol=5e-16 if name in ("Velocities", "Spins") else 0.0, atol=0.0)
 
 

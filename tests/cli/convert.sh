@@ -1,11 +1,11 @@
 #!/bin/bash
-# convert.sh KEELER SOURCE_DIR: keeler convert: numpy and VTK read from CSV and VTP what the snapshot holds, a table goes
-# back to the state that it came from, and what cannot be converted leaves nothing behind.
+# convert.sh KEELER SOURCE_DIR: numpy and VTK read the snapshot's numbers from the CSV and VTP files of keeler convert, a
+# table converts back to its state, and a failed conversion leaves no files.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
 sed -i 's/^end .*/end = 0.5/' "$work/scene.toml"
-# Debian's Python, to which its packages of h5py and VTK belong.
+# Debian's Python, for which its packages of h5py and VTK are built.
 read_back() { /usr/bin/python3 -B "$source_dir/tests/cli/convert.py" "$@" >"$work/read" 2>&1 || fail "$1: $(cat "$work/read")"; }
 
 runs 0 run "$work/scene.toml" -o "$work/run"
@@ -42,7 +42,7 @@ runs 0 convert "$work/again.hdf" --to csv
 runs 0 convert "$work/again.hdf" --to vtp
 read_back "$work/run/snap_000000.hdf" "$work/again.csv" "$work/again.vtp"
 
-# nothing_new NAME: no file lies about that was not there
+# nothing_new NAME: there are no new files
 nothing_new() { compgen -G "$work/new*" && fail "$1 left something"; }
 refuses "no format" "--to" convert "$work/run"
 refuses "another format" "--to" convert "$work/run" --to xls

@@ -1,6 +1,6 @@
 #!/bin/bash
-# damage.sh KEELER SOURCE_DIR: a damaged checkpoint is never continued from: resume takes the older one, says so, and
-# ends in the same state; without any whole checkpoint it ends with exit code 4.
+# damage.sh KEELER SOURCE_DIR: resume skips a damaged checkpoint with a message, continues from the older one and reaches the
+# same final state; without any undamaged checkpoint it ends with exit code 4.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene

@@ -1,7 +1,7 @@
 #!/bin/bash
-# disk.sh KEELER SOURCE_DIR: on a full disk a run ends with exit code 4 and one line that says how to go on, the last
-# checkpoint stays whole, and with room again the run goes on to the state that it would have reached. A limit on file size stands for the full disk
-# everywhere; where mounting is permitted, a disk of 600 KiB fills up.
+# disk.sh KEELER SOURCE_DIR: on a full disk a run ends with exit code 4 and one line that says how to continue, its last
+# checkpoint stays valid, and with free space again the run continues to the state of an uninterrupted run. The full disk is
+# simulated by a limit on file size; where mounting is permitted, also by a disk of 600 KiB.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
@@ -10,7 +10,7 @@ sed -i 's/^end .*/end = 0.5/; s/^snapshot_every.*/snapshot_every = 0.05/; s/^che
 runs 0 run "$work/scene.toml" -o "$work/whole"
 expected=$(state_hash "$work/whole")
 
-# goes_on NAME FOLDER: its newest checkpoint is whole, no part of a file lies about, and the run ends as it should
+# goes_on NAME FOLDER: the newest checkpoint is valid, there are no partial files, and the run can be completed
 goes_on() {
   runs 0 info "$(newest_checkpoint "$2")"
   compgen -G "$2/*.tmp" && fail "$1: a part of a file was left"
@@ -21,7 +21,7 @@ goes_on() {
   [ "$(cd "$2" && echo *.hdf *.h5)" = "$(cd "$work/whole" && echo *.hdf *.h5)" ] || fail "$1: other files: $(ls "$2")"
 }
 
-# limited KIBIBYTES: the next resume meets a limit on the size of files
+# limited KIBIBYTES: resumes with a limit on the size of files
 limited() {
   cp -r "$work/start" "$work/limited"
   (
@@ -52,7 +52,7 @@ refuses_with 4 "no checkpoint yet" "start again with \"keeler run\" and --force"
 runs 0 run "$work/scene.toml" -o "$work/early" --force
 [ "$(state_hash "$work/early")" = "$expected" ] || fail "started again: another state"
 
-# The same command inside and outside of a mount namespace of our own, as root or as one's own root.
+# Runs a command in a new mount namespace, as root or as root of a user namespace.
 # shellcheck disable=SC2016 # that shell expands it
 on_small_disk='mount -t tmpfs -o size=600k none "$2/disk" || exit 99
   "$1" run "$2/scene.toml" -o "$2/disk/run" >"$2/out" 2>"$2/err"

@@ -1,5 +1,5 @@
 #!/bin/bash
-# errors.sh KEELER SOURCE_DIR: what cannot be done ends with one line and its exit code, and leaves nothing behind.
+# errors.sh KEELER SOURCE_DIR: an impossible request ends with one line and its exit code, and leaves no files.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
@@ -11,7 +11,7 @@ nothing_left() {
   rm -rf "$none"
 }
 
-# bad NAME WORDS SED-COMMAND: neither a run nor a state of the good scene, changed like this
+# bad NAME WORDS SED-COMMAND: run and generate refuse the good scene, changed by the command
 bad() {
   sed "$3" "$work/good.toml" >"$work/scene.toml"
   cmp -s "$work/scene.toml" "$work/good.toml" && fail "$1: the change does nothing"
@@ -47,7 +47,7 @@ refuses "no threads" "--threads" run "$work/scene.toml" -o "$none" --threads 0
 refuses "no wall time" "--wall-time" run "$work/scene.toml" -o "$none" --wall-time -1
 nothing_left "bad options"
 
-# Whole numbers may be written as scenes take them; what CLI11 cannot take is told in the program's words.
+# Whole numbers may be written as in scenes; faults that CLI11 finds are reported in the program's words.
 while read -r option what words; do
   read -ra command <<<"$words"
   for value in 1.5 x 99999999999999999999 1e400 0x; do
@@ -78,16 +78,16 @@ END
 refuses "half a thread" "from 1 to 1024; give a whole number" run "$work/scene.toml" -o "$none" --threads 1.5
 runs 0 bench drift --count 2e2 --repeats 1e0 --threads 1.0
 refuses "an orbit in words" "--since: 'x' is not a number; \"keeler analyze --help\"" analyze run --since x
-refuses "a word too many" "'keeler check' has no place for 'b'" check "$work/scene.toml" b
+refuses "a word too many" "'keeler check' takes no further argument 'b'" check "$work/scene.toml" b
 refuses "two folders" "--output is given 2 times, and takes one value" run "$work/scene.toml" -o "$none" -o "$none"
 refuses "an option without its value" "--wall-time has no value" run "$work/scene.toml" -o "$none" --wall-time
 nothing_left "bad values of options"
 
-# No result takes the place of what it is made from.
+# No result overwrites its source.
 cp "$work/scene.toml" "$work/kept.toml"
 printf 'x,y,z,r\n0,0,0,1\n' >"$work/table.csv"
-refuses "a scene's own place" "is what the result is made from" generate "$work/kept.toml" -o "$work/./kept.toml" --force
-refuses "a table's own place" "is what the result is made from" generate "$work/kept.toml" --from-table "$work/table.csv" \
+refuses "a scene's own place" "is the source of the result" generate "$work/kept.toml" -o "$work/./kept.toml" --force
+refuses "a table's own place" "is the source of the result" generate "$work/kept.toml" --from-table "$work/table.csv" \
   -o "$work/table.csv" --force
 cmp -s "$work/scene.toml" "$work/kept.toml" || fail "a scene was replaced by its state"
 
@@ -135,7 +135,7 @@ for command in info analyze render; do
   refuses_with 4 "$command, not HDF5" "good.toml" $command "$work/good.toml"
   refuses "$command of nothing" "required" $command
 done
-# What is no number passes no comparison, whichever way round it is written, and no length of time or place is infinite.
+# NaN passes no range check, and no time or length may be infinite.
 for number in nan -nan inf; do
   refuses "a limit of $number" "--most-orbits" generate "$work/scene.toml" --clumped -o "$none" --most-orbits $number
   refuses "an optical depth of $number" "--optical-depth" bench drift --count 100 --optical-depth $number

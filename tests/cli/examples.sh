@@ -1,12 +1,12 @@
 #!/bin/bash
-# examples.sh KEELER SOURCE_DIR: the commands in the READMEs of the examples' scenes work as they stand there;
-# runs are cut to two steps, and states that are to be clumped stay as they begin (clumped.sh clumps one). So do those of
-# the gallery, and the sweeps of examples/papers.
+# examples.sh KEELER SOURCE_DIR: the commands in the READMEs of the examples, in the gallery, and the sweeps of
+# examples/papers work. Runs are shortened to two steps, and clumped states are replaced by initial ones (clumped.sh tests
+# clumping).
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 ln -s "$source_dir/examples" "$work/examples"
 cd "$work" || exit 1
-# follow PAGE: does what its indented lines say, but for sweeps
+# follow PAGE: runs the commands in its indented lines, except sweeps
 follow() {
   local count=0 program command
   while read -r program command; do

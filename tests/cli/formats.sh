@@ -1,6 +1,6 @@
 #!/bin/bash
-# formats.sh KEELER SOURCE_DIR: files of each format that a Keeler has written (tests/fixtures, made by scripts/fixtures) are
-# whole, mean the same as then, and can be gone on from; and `keeler info --verify` finds what is not whole.
+# formats.sh KEELER SOURCE_DIR: files of every earlier format (tests/fixtures, made by scripts/fixtures) can be read with
+# unchanged meaning and continued from; and `keeler info --verify` finds damaged files.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 
@@ -28,7 +28,7 @@ for fixture in "$source_dir"/tests/fixtures/*/; do
   cmp -s <(head -n 1 "$fixture/run/series.csv") <(head -n 1 "$work/run/series.csv") || fail "$name: other columns in the series"
 done
 
-# What is verified of a run.
+# The verified files of a run.
 run=$work/run
 each() { # NAME LINE...: the lines on the files, in this order
   local said
@@ -41,7 +41,7 @@ each "a whole run" "checkpoint checkpoint_000001.h5 whole" "checkpoint checkpoin
   "scene scene.toml whole" "series series.csv whole" "snapshot snap_000000.hdf whole" "snapshot snap_000001.hdf whole" \
   "snapshot snap_000002.hdf whole" "summary summary.json whole"
 
-# damaged NAME WORDS FILE COMMAND: so that only this file is damaged, and said to be so, alone and with the others
+# damaged NAME WORDS FILE COMMAND: the command damages only this file, which is reported alone and among the others
 damaged() {
   rm -rf "$work/hurt"
   cp -r "$run" "$work/hurt"
@@ -76,7 +76,7 @@ sed -i 's/^tangential_restitution = .*/tangential_restitution = 0.9/' "$work/hur
 runs 4 info --verify "$work/hurt"
 prints "a scene of another run" "has other physics than scene.toml"
 
-# Lines that a tool of Windows ended are the same lines.
+# Line ends of Windows are accepted.
 rm -rf "$work/hurt"
 cp -r "$run" "$work/hurt"
 sed -i 's/$/\r/' "$work"/hurt/{series.csv,moonlets.csv,impact_speeds.csv,log.jsonl,scene.toml}
@@ -87,7 +87,7 @@ for command in "info --verify" info analyze "render --series" "resume --until 0.
 done
 grep -q $'\r' "$work"/hurt/*.csv && fail "lines of Windows beside others"
 
-# What another program changed has no seal; its numbers are looked at.
+# A file changed by another program has no seal; its numbers are checked.
 edited() { # NAME PYTHON: the open file is `f`
   cp "$run/snap_000002.hdf" "$work/edited.hdf"
   /usr/bin/python3 -c "import h5py
@@ -114,7 +114,7 @@ refused "an older version" "use the older Keeler"
 edited "a newer version" "f['Code'].attrs['format_version'] = 99"
 refused "a newer version" "use the newer Keeler"
 
-# docs/formats.md says of everything on which setting it depends.
+# docs/formats.md names for every entry the setting that it depends on.
 cat >"$work/minimal.toml" <<'END'
 planet.preset = "saturn-a-ring"
 box.size = [18, 18]

@@ -1,7 +1,6 @@
 """formats_page.py SOURCE_DIR MINIMAL FULL: docs/formats.md, and the table of summary.json in docs/manual/commands.md, against
-the folders of two runs: one of a scene that names as little as it can, one of a scene with all that adds output. What the
-pages say without "only" both runs have; what they say to be there only with a setting the full run has alone; and no run
-has what the pages do not know."""
+the folders of two runs: one of a minimal scene, one of a scene with all optional output. Entries without "only" are in both
+runs; entries that depend on a setting are in the full run alone; and no run has an entry that is not documented."""
 
 import json
 import re
@@ -16,7 +15,7 @@ faults = []
 
 
 def rows(page, heading, until="\n## "):
-    """(names in backticks of the first cell, the rest of the row) of the tables below a heading."""
+    """Yields (names in backticks of the first cell, rest of the row) of the tables below a heading."""
     section = page.split(heading, 1)[1].split(until, 1)[0]
     lines = [line for line in section.splitlines() if line.startswith("| `")]
     cells = (re.split(r" \| ", line.strip("| "), maxsplit=1) for line in lines)
@@ -24,7 +23,7 @@ def rows(page, heading, until="\n## "):
 
 
 def hold(what, documented, in_minimal, in_full):
-    """`documented`: {name: whether it is always there}."""
+    """`documented`: {name: True if it is always there}."""
     for name, always in documented.items():
         if name not in in_full:
             faults.append(f"{what}: the full run has no {name}")

@@ -1,6 +1,6 @@
 #!/bin/bash
-# hardening.sh KEELER SOURCE_DIR: what the world around a run or absurd input may do to it. Nothing of it may crash or
-# hang the program: each case ends with its exit code, and a run that is healthy goes on.
+# hardening.sh KEELER SOURCE_DIR: faults of the environment of a run, and absurd input. None may crash or hang the program:
+# each case ends with its exit code, and a healthy run continues.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
@@ -8,14 +8,14 @@ sed -i 's/^end .*/end = 0.3/' "$work/scene.toml"
 runs 0 run "$work/scene.toml" -o "$work/whole"
 expected=$(state_hash "$work/whole")
 
-# ended NAME FOLDER CODE EXPECTED-CODE: with this code, and the run in the folder is whole
+# ended NAME FOLDER CODE EXPECTED-CODE: the codes are equal, and the run in the folder is complete
 ended() {
   [ "$3" -eq "$4" ] || fail "$1: exit $3 instead of $4"
   [ "$(text finished "$2/summary.json")" = true ] || fail "$1: not finished"
   [ "$(state_hash "$2")" = "$expected" ] || fail "$1: another state"
 }
 
-# Standard error: nobody reads progress and notices. One notice is there: the end is not a whole number of kicks.
+# Standard error: no process reads progress and notices. There is one notice: the end is not a whole number of kicks.
 noisy=(run "$work/scene.toml" --set time.end=0.3001)
 "$keeler" "${noisy[@]}" -o "$work/err-closed" >"$work/out" 2>&-
 ended "closed standard error" "$work/err-closed" $? 0
@@ -29,7 +29,7 @@ ended "broken pipe on standard error" "$work/err-broken" $? 0
 code=$?
 [ $code -eq 2 ] || fail "an error that nobody reads: exit $code"
 
-# Standard output: the results in files are whole, the exit code says that those on the screen are not.
+# Standard output: the results in files are complete; the exit code shows that the printed ones are not.
 "$keeler" run "$work/scene.toml" -o "$work/out-closed" >&- 2>"$work/err"
 ended "closed standard output" "$work/out-closed" $? 4
 one_line "closed standard output" "cannot write to standard output: Bad file descriptor"
@@ -45,11 +45,11 @@ for arguments in --help "check --defaults" "run $work/scene.toml -o $work/out-fu
   one_line "$arguments into a full device" "cannot write to standard output: No space left on device"
 done
 
-# Threads without sense.
+# Invalid numbers of threads.
 refuses "too many threads" "a number of threads from 1 to 1024" run "$work/scene.toml" -o "$work/none" --threads 100000
 OMP_NUM_THREADS=99999999 refuses "too many threads in the environment" "OMP_NUM_THREADS" check "$work/scene.toml"
 
-# Scenes that are finite and absurd: each quantity has its range. Steps of these once never ended.
+# Scenes with finite but absurd values: each quantity has its range. Steps of these scenes once never ended.
 for absurd in planet.orbital_frequency=1e-12 particles.density=1e12 particles.velocity_dispersion=1e6 \
   particles.sizes.radius=1e-9 'box.size=[1e9,1e9]' 'box.size=[2,1e6]' time.step=1e-12; do
   refuses "$absurd" "${absurd%%=*}" run "$work/scene.toml" -o "$work/none" --set "$absurd"
@@ -57,12 +57,12 @@ done
 sed 's/^preset = .*/orbital_frequency = 1e-8/' "$work/scene.toml" >"$work/slow-orbit.toml"
 refuses_with 3 "a step in which all falls together" "in one step" run "$work/slow-orbit.toml" -o "$work/fast"
 
-# The same in a start file: a coordinate of 1e9 m, a mass of 1e18 kg.
+# Absurd values in a start file: a coordinate of 1e9 m, a mass of 1e18 kg.
 runs 0 generate "$work/scene.toml" -o "$work/packed.hdf"
 h5repack -f NONE -l CONTI "$work/packed.hdf" "$work/start.hdf"
 runs 0 run "$work/scene.toml" --from "$work/start.hdf" -o "$work/from" --set time.end=0.002
 
-# absurd_start NAME DATASET BYTES WORDS: with this as its first number a start is refused with the words
+# absurd_start NAME DATASET BYTES WORDS: a start with these bytes as first number of the dataset is refused with the words
 absurd_start() {
   local place
   place=$(h5dump -p -H -d "/PartType1/$2" "$work/start.hdf" | sed -nE 's/^ *OFFSET ([0-9]+)/\1/p')
@@ -81,8 +81,8 @@ slow=(run "$work/scene.toml" --set particles.velocity_dispersion=900 --set parti
   --set 'box.size=[300,300]' --set time.step=0.03 --set time.end=3 --set output.snapshot_every=0
   --set output.checkpoint_every=0)
 
-# signalled_after SECONDS SIGNALS FOLDER FILES: the slow run, with so many signals 0.3 s apart from so many seconds after one of
-# these files is there; leaves $code and $took
+# signalled_after SECONDS SIGNALS FOLDER FILES: starts the slow run and sends this number of signals, 0.3 s apart, SECONDS
+# after one of the files exists; sets $code and $took
 signalled_after() {
   "$keeler" "${slow[@]}" -o "$3" >"$work/out" 2>"$work/err" &
   local process=$! signals=$2
@@ -98,7 +98,7 @@ signalled_after() {
   took=$SECONDS
 }
 
-# gave_up NAME LEAST MOST: with exit code 1 after so many seconds
+# gave_up NAME MIN MAX: the run ended with exit code 1 after MIN to MAX seconds
 gave_up() {
   [ "$code" -eq 1 ] || fail "$1: exit $code"
   [ "$took" -ge "$2" ] || fail "$1: after $took s already"
@@ -111,7 +111,7 @@ signalled_after 1 2 "$work/slower" snap_000000.hdf
 gave_up "a second signal" 0 4
 one_line "a second signal" "before there was a checkpoint"
 
-# With a checkpoint: steps of a second, one checkpoint each, two signals at once. Again when these met no step.
+# With a checkpoint: steps of one second, one checkpoint each, two signals at once. Repeated if they came between steps.
 slow+=(--set particles.count=3500 --set 'box.size=[172,172]' --set time.step=0.01 --set output.checkpoint_every=0.01)
 for ((try = 0; try < 10; ++try)); do
   rm -rf "$work/kept"
@@ -125,7 +125,7 @@ runs 0 info "$(newest_checkpoint "$work/kept")" --json
   fail "the checkpoint of step '$step' is of orbit $(text time_orbits "$work/out")"
 runs 0 resume "$work/kept" --until "$(awk -v s="$step" 'BEGIN { print 0.01 * (s + 1) }')"
 
-# Little memory: one line, wherever it runs out, HDF5's own start and OpenMP's threads included.
+# Little memory: one line wherever it runs out, including the start of HDF5 and OpenMP's threads.
 limited() { # KIB ARGUMENT...: as runs, whatever the code is
   (
     ulimit -v "$1"
@@ -148,7 +148,7 @@ limited 400000 run "$work/scene.toml" -o "$work/tight" --force -q --threads 100 
 [ $code -eq 1 ] || fail "no memory for threads: exit $code: $(cat "$work/err")"
 one_line "no memory for threads" "the system cannot start 100 threads"
 
-# A start that is being made is given up at the first signal.
+# The first signal interrupts the making of an initial state.
 "$keeler" generate "$work/scene.toml" -o "$work/large.hdf" --set 'box.size=[4000,4000]' --set particles.count=2500000 \
   >"$work/out" 2>"$work/err" &
 process=$!

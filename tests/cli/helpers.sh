@@ -1,5 +1,5 @@
 #!/bin/bash
-# What the tests of the program from outside share: source it with KEELER and SOURCE_DIR, end with `report`.
+# Functions of the tests that run the program. Usage: source it with KEELER and SOURCE_DIR, end with `report`.
 # shellcheck disable=SC2034 # used by the tests
 set -u
 keeler=$1
@@ -18,7 +18,7 @@ report() {
   [ "$failures" -eq 0 ]
 }
 
-# runs CODE ARGUMENT...: the program ends with this code; output in $work/out and $work/err
+# runs CODE ARGUMENT...: the program ends with this code; its output is in $work/out and $work/err
 runs() {
   local expected=$1 code=0
   shift
@@ -26,7 +26,7 @@ runs() {
   [ "$code" -eq "$expected" ] || fail "$*: exit $code instead of $expected: $(tail -n 3 "$work/err")"
 }
 
-# accepts NAME ARGUMENT...: exit 0 and nothing on stderr
+# accepts NAME ARGUMENT...: the program ends with code 0 and prints nothing on stderr
 accepts() {
   local name=$1
   shift
@@ -39,7 +39,7 @@ prints() {
   grep -qF -- "$2" "$work/out" || fail "$1: no '$2' in: $(cat "$work/out")"
 }
 
-# one_line NAME WORDS: the last command said exactly one thing, progress and doubts aside, and it holds the words
+# one_line NAME WORDS: the last command printed exactly one message, besides progress and notes, and it contains the words
 one_line() {
   grep -vE '^[0-9.]+/[0-9.]+ orbits | % +[0-9:]+ left  |^ *[0-9]+ %  |^[0-9.]+ orbits .* contrast |^keeler: note: ' "$work/err" >"$work/said"
   [ "$(wc -l <"$work/said")" -eq 1 ] || fail "$1: not one line: $(cat "$work/said")"
@@ -47,7 +47,7 @@ one_line() {
   grep -qF -- "$2" "$work/said" || fail "$1: no '$2' in: $(cat "$work/said")"
 }
 
-# refuses_with CODE NAME WORDS ARGUMENT...: this exit code, nothing on stdout, one line on stderr with the words
+# refuses_with CODE NAME WORDS ARGUMENT...: the program ends with this code, nothing on stdout, and one message with the words
 refuses_with() {
   local code=$1 name=$2 words=$3
   shift 3
@@ -58,7 +58,7 @@ refuses_with() {
 
 refuses() { refuses_with 2 "$@"; }
 
-# small_scene: a self-gravitating patch that runs for an orbit in a fraction of a second
+# small_scene: writes a scene with self-gravity that runs for an orbit in a fraction of a second
 small_scene() {
   cat >"$work/scene.toml" <<END
 title = "Small patch"
@@ -82,25 +82,25 @@ checkpoint_every = 0.1
 END
 }
 
-# text KEY FILE: a text or number of a JSON file that has it once
+# text KEY FILE: prints a text or number of a JSON file that contains the key once
 text() { sed -nE "s/^ *\"$1\": *\"?([^\",]*)\"?,?\$/\1/p" "$2" | head -n 1; }
 
 newest_checkpoint() { find "$1" -name 'checkpoint_*.h5' | sort | tail -n 1; }
 
-# state_hash FOLDER: of its newest checkpoint
+# state_hash FOLDER: prints the hash of the newest checkpoint
 state_hash() {
   "$keeler" info "$(newest_checkpoint "$1")" --json >"$work/info.json" 2>&1 || fail "info: $(cat "$work/info.json")"
   text state_hash "$work/info.json"
 }
 
-# same_bytes NAME GROUP A B [A B]...: the datasets in this group of HDF5 files are the same, pair by pair
+# same_bytes NAME GROUP A B [A B]...: the datasets in this group of the HDF5 files are identical, pair by pair
 same_bytes() {
   local name=$1
   shift
   /usr/bin/python3 -B "$source_dir/tests/cli/same_bytes.py" "$@" >"$work/differs" || fail "$name: $(head -n 3 "$work/differs")"
 }
 
-# same_state NAME FOLDER FOLDER: equal in every field of the newest checkpoints but the numbers of files written
+# same_state NAME FOLDER FOLDER: the newest checkpoints are equal in every field except the numbers of written files
 same_state() {
   [ "$(state_hash "$2")" = "$(state_hash "$3")" ] || fail "$1: state_hash differs"
   same_bytes "$1" /fields "$(newest_checkpoint "$2")" "$(newest_checkpoint "$3")"
@@ -120,8 +120,8 @@ same_snapshots() {
   same_bytes "$1" /PartType1 "${pairs[@]}"
 }
 
-# signalled SIGNAL FOLDER ARGUMENT...: starts `keeler ARGUMENT...`, sends the signal when FOLDER has a checkpoint, and
-# leaves the exit code in $signalled
+# signalled SIGNAL FOLDER ARGUMENT...: starts `keeler ARGUMENT...`, sends the signal when FOLDER has a checkpoint, and sets
+# $signalled to the exit code
 signalled() {
   local signal=$1 folder=$2 process
   shift 2
@@ -135,8 +135,8 @@ signalled() {
   wait "$process" 2>/dev/null || signalled=$?
 }
 
-# interrupted SIGNAL CODE FOLDER ARGUMENT...: a run of the small scene that ended with this code between its first
-# checkpoint and orbit 1; tried again when the signal came too late
+# interrupted SIGNAL CODE FOLDER ARGUMENT...: makes a run of the small scene that ends with this code between its first
+# checkpoint and orbit 1; repeats it if the signal came too late
 interrupted() {
   local signal=$1 code=$2 folder=$3
   shift 3
@@ -148,5 +148,5 @@ interrupted() {
   fail "SIG$signal: exit $signalled instead of $code: $(tail -n 3 "$work/err")"
 }
 
-# commands_in FILE: the commands that a --help lists, under one heading or several
+# commands_in FILE: prints the commands in a text of --help
 commands_in() { sed '/^Examples:/,$d; /^Options:/,/^$/d' "$1" | sed -nE 's/^  ([a-z]+) +[a-z].*/\1/p' | sort; }

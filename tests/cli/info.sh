@@ -1,5 +1,5 @@
 #!/bin/bash
-# info.sh KEELER SOURCE_DIR: keeler info tells of the folder of a run, a sweep or a study what it is and what is in it.
+# info.sh KEELER SOURCE_DIR: keeler info describes the folder of a run, a sweep or a study.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
@@ -7,7 +7,7 @@ cp "$work/scene.toml" "$work/small.toml"
 sed -i 's/^end .*/end = 0.3/' "$work/scene.toml"
 echo '[output.collisions]' >>"$work/scene.toml"
 
-# number EXPRESSION VALUE: what Python finds in the JSON that was printed
+# number EXPRESSION VALUE: the Python expression has this value in the printed JSON
 number() {
   local found
   found=$(python3 -c "import json, sys; info = json.load(sys.stdin); print(($1))" <"$work/out")
@@ -36,14 +36,14 @@ prints "a run in words" "orbits      0.3 of 0.3"
 prints "a run in words" "snap_000001.hdf         orbit 0.25"
 prints "a run in words" "checkpoint_000002.h5    step 150"
 
-# A damaged file is said to be damaged.
+# A damaged file is reported.
 printf 'x' | dd of="$work/run/snap_000001.hdf" bs=1 seek=4000 conv=notrunc 2>/dev/null
 accepts "a damaged file" info "$work/run" --json
 number '[file["damaged"] for file in info["snapshots"]]' "[False, True, False]"
 accepts "a damaged file in words" info "$work/run"
 prints "a damaged file in words" "snap_000001.hdf         damaged"
 
-# A group of another tool beside the arrays, and a scene that is none any more.
+# A group of another tool beside the arrays, and an invalid scene.
 /usr/bin/python3 - "$work/run/snap_000000.hdf" "$work/grouped.hdf" <<'END'
 import shutil, sys
 import h5py
@@ -57,7 +57,7 @@ cp -r "$work/run" "$work/broken"
 echo 'end = = 3' >>"$work/broken/scene.toml"
 refuses_with 4 "a broken scene" "scene.toml' is damaged: it is no scene of Keeler any more" info "$work/broken"
 
-# At work, killed, stopped.
+# Running, killed and stopped runs.
 cp "$work/small.toml" "$work/scene.toml"
 "$keeler" run "$work/scene.toml" --set time.end=1e5 --set output.snapshot_every=0 \
   -o "$work/works" >/dev/null 2>&1 &
@@ -69,11 +69,11 @@ number 'info["state"], info["remaining_s"] > 0, info["wall_s"] >= 0' "('running'
 kill -KILL "$process"
 wait "$process" 2>/dev/null
 accepts "killed" info "$work/works"
-prints "killed" "state       not running; \"keeler resume $work/works\" goes on"
+prints "killed" "state       not running; \"keeler resume $work/works\" continues"
 prints "killed" "wall time   not known"
 interrupted TERM 75 "$work/stopped"
 accepts "stopped" info "$work/stopped"
-prints "stopped" "state       stopped; \"keeler resume $work/stopped\" goes on"
+prints "stopped" "state       stopped; \"keeler resume $work/stopped\" continues"
 
 printf 'scene = "scene.toml"\nseeds = [1, 2]\n[set]\n"time.end" = 0.004\n' >"$work/grid.toml"
 runs 0 sweep "$work/grid.toml" -o "$work/sweep"

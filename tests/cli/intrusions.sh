@@ -1,7 +1,7 @@
 #!/bin/bash
-# intrusions.sh KEELER SOURCE_DIR: somebody removes, replaces or changes files of a run while it works, or moves its
-# folder away. No row is lost in silence, and the output is never in two places; and a kill before checkpoints were
-# pruned leaves no third one for ever.
+# intrusions.sh KEELER SOURCE_DIR: files of a working run are removed, replaced or changed, or its folder is moved. No row is
+# lost without a message, and the output is never in two folders; and a kill before old checkpoints are removed leaves no
+# permanent third one.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
@@ -15,14 +15,14 @@ wait_for() { # FILE
   fail "no $1 after ten seconds"
 }
 
-# begin FOLDER OPTION...: a run that has written a checkpoint and would go on for hours; its process is in $process
+# begin FOLDER OPTION...: starts a run of hours and waits for its first checkpoint; sets $process
 begin() {
   "$keeler" "${long[@]}" -o "$1" "${@:2}" >"$work/out" 2>"$work/err" &
   process=$!
   wait_for "$1/checkpoint_000000.h5"
 }
 
-# ends CODE NAME: the run that was begun ends with this code, by itself within ten seconds
+# ends CODE NAME: the run of begin ends with this code within ten seconds
 ends() {
   local code=0
   for ((k = 0; k < 500; k++)); do
@@ -40,7 +40,7 @@ every_row() {
     fail "$1: rows are missing in $(cut -d , -f 1 "$2" | tr '\n' ' ')"
 }
 
-# Removed, renamed and replaced: the run writes the file anew with all its rows, and says so.
+# Removed, renamed and replaced files: the run rewrites the file with all its rows, with a message.
 for change in "rm series.csv" "mv series.csv elsewhere.csv" "echo of another hand >new; mv new series.csv"; do
   begin "$work/run"
   (cd "$work/run" && eval "$change")
@@ -56,7 +56,7 @@ for change in "rm series.csv" "mv series.csv elsewhere.csv" "echo of another han
   rm -rf "$work/run"
 done
 
-# The same of moonlets.csv.
+# Changes of moonlets.csv.
 begin "$work/run" --set 'moonlet=[{radius=3.0,density=900.0}]'
 rm "$work/run/moonlets.csv"
 wait_for "$work/run/moonlets.csv"
@@ -65,7 +65,7 @@ ends 75 "rm moonlets.csv"
 every_row "rm moonlets.csv" "$work/run/moonlets.csv"
 rm -rf "$work/run"
 
-# Cut or written to: what is lost cannot be had again, so the run ends.
+# Truncated or changed files: the lost rows cannot be restored, so the run ends.
 for change in ": >series.csv" "echo of another hand >>series.csv"; do
   begin "$work/run"
   (cd "$work/run" && eval "$change")
@@ -74,7 +74,7 @@ for change in ": >series.csv" "echo of another hand >>series.csv"; do
   rm -rf "$work/run"
 done
 
-# Resumed without rows that were there.
+# Resumed after rows were lost.
 runs 0 run "$work/scene.toml" -o "$work/whole" --set time.end=0.2
 runs 0 resume "$work/whole" --until 0.3
 grep -q missing "$work/err" && fail "nothing is missing: $(cat "$work/err")"
@@ -88,7 +88,7 @@ for change in "rm series.csv" "sed -i 4q series.csv"; do
   rm -rf "$work/run"
 done
 
-# What is no row of the table is refused.
+# Invalid rows are refused.
 for change in "sed -i '5s/,/;/' series.csv" "sed -i '6s/^[0-9]*/3/' series.csv" "sed -i '1s/^/x/' series.csv"; do
   cp -r "$work/whole" "$work/run"
   (cd "$work/run" && eval "$change")
@@ -117,7 +117,7 @@ for change in "mv run there" "mv run there; mkdir run" "until rm -r run; do :; d
   rm -rf "$work/run" "$work/there"
 done
 
-# A kill between a checkpoint and the pruning after it: here the last checkpoint of the run, and one on its way.
+# A kill between a checkpoint and the removal of older ones: at the last checkpoint of the run, and at an earlier one.
 runs 0 run "$work/scene.toml" -o "$work/early" --set time.end=0.2
 runs 0 run "$work/scene.toml" -o "$work/killed" --set time.end=0.4
 cp "$work/early/checkpoint_000001.h5" "$work/killed/"

@@ -1,17 +1,17 @@
 #!/bin/bash
-# invariants.sh KEELER SOURCE_DIR: what breaks ends a run with exit code 3, one line and a state that can be looked at;
-# `--check` looks at each step, and changes no bit.
+# invariants.sh KEELER SOURCE_DIR: a broken invariant ends a run with exit code 3, one line and a file with the broken state;
+# `--check` checks each step, and changes no bit.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
 
-# A sound run.
+# A run without faults.
 runs 0 run "$work/scene.toml" --set time.end=0.2 -o "$work/plain"
 runs 0 run "$work/scene.toml" --set time.end=0.1 -o "$work/sound" --check --threads 2
 runs 0 resume "$work/sound" --until 0.2 --check
 [ "$(state_hash "$work/sound")" = "$(state_hash "$work/plain")" ] || fail "--check changes the state"
 
-# looked_at NAME FOLDER: the folder has one broken state, which the last message names, and commands take it
+# looked_at NAME FOLDER: the folder has one broken state, which the last message names, and commands can read it
 looked_at() {
   local broken=("$2"/broken_*.hdf)
   if [ ! -f "${broken[0]}" ] || [ ${#broken[@]} -ne 1 ]; then
@@ -30,7 +30,7 @@ looked_at() {
   [ -e "$2/summary.json" ] && fail "$1: there is a summary"
 }
 
-# Long steps and a finder that then loses contacts: nothing is wrong with the numbers, but particles overlap.
+# Long steps, in which a finder loses contacts: all numbers are finite, but particles overlap.
 lossy=(--set collisions.finder=newton-cubic --set time.step=0.05)
 runs 3 run "$work/scene.toml" "${lossy[@]}" -o "$work/lossy" --check
 grep -qE 'no overlap: particles [0-9]+ and [0-9]+ overlap by .* of their radius sum' "$work/err" ||
@@ -41,7 +41,7 @@ refuses_with 4 "no checkpoint" "no checkpoint" resume "$work/lossy"
 runs 0 run "$work/scene.toml" --set time.end=0.02 -o "$work/lossy" --force
 ls "$work"/lossy/broken_*.hdf 2>/dev/null && fail "--force leaves the broken state of the run before"
 
-# An event storm: a closed row of elastic spheres without gaps. What hits it runs around it for ever in no time.
+# An event storm: a closed row of elastic spheres without gaps. An impact travels around it forever in zero time.
 cat >"$work/row.csv" <<END
 x y z vx vy vz r
 0 -3 0 0 2e-4 0 1
@@ -62,8 +62,8 @@ looked_at "an event storm" "$work/storm"
 [ -f "$work/storm/broken_000000.hdf" ] || fail "not in the first step: $(cd "$work/storm" && echo broken_*)"
 refuses_with 4 "no checkpoint of a storm" "no checkpoint" resume "$work/storm"
 
-# A resumed run, and what is always on: the energy budget, before each row. In a checkpoint whose books were changed, and
-# that was sealed again, nothing else is wrong.
+# A resumed run, and a check that is always on: the energy budget before each row. Only the energy sums of the checkpoint are
+# changed, and it is sealed again.
 runs 0 run "$work/scene.toml" --set time.end=0.1 -o "$work/books"
 /usr/bin/python3 -B "$source_dir/tests/cli/change_checkpoint.py" "$(newest_checkpoint "$work/books")" collision_energy_lost 1.001 ||
   fail "the checkpoint could not be changed"
@@ -72,7 +72,8 @@ runs 3 resume "$work/books" --until 0.2
 grep -q 'the energy budget leaves .* of its sums open' "$work/err" || fail "changed books: $(tail -n 1 "$work/err")"
 looked_at "changed books" "$work/books"
 
-# No room for the broken state: one line tells both, and no half file is left. A limit on file size stands for the disk.
+# No space for the broken state: one line reports both faults, and no partial file is left. A file-size limit simulates the
+# full disk.
 (
   ulimit -f 20
   exec "$keeler" resume "$work/full" --until 0.2 >"$work/out" 2>"$work/err"
@@ -84,7 +85,7 @@ one_line "no room for a broken state" "and the state could not be saved: cannot 
 compgen -G "$work/full/broken_*" && fail "no room for a broken state: a file was left"
 compgen -G "$work/full/*.tmp" && fail "no room for a broken state: a part of a file was left"
 
-# A state that is made by evolving it: the broken one is left beside the name that it was to have.
+# A broken state in generate --clumped: it is saved beside the requested output.
 clump=(generate "$work/scene.toml" --clumped -o "$work/wakes.hdf" --set time.step=0.1 --set particles.density=110
   --set 'box.size=[20,20]' --set particles.count=70 --set particles.velocity_dispersion=1000)
 runs 3 "${clump[@]}"

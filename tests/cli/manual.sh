@@ -1,5 +1,5 @@
 #!/bin/bash
-# manual.sh KEELER SOURCE_DIR: help, README and manual name the same commands; the manual has every option, exit code and
+# manual.sh KEELER SOURCE_DIR: help, README and manual list the same commands; the manual has every option, exit code and
 # JSON name.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
@@ -15,10 +15,10 @@ sed -nE 's/^\| `keeler ([a-z]+).*/\1/p' "$source_dir/README.md" | sort | diff "$
 sed -nE 's/^## keeler ([a-z]+)$/\1/p' "$manual" | sort | diff "$work/commands" - ||
   fail "the manual has other commands than --help"
 
-# section COMMAND: what the manual says of it
+# section COMMAND: prints the manual's section about it
 section() { sed -n "/^## keeler $1\$/,/^## /p" "$manual"; }
 
-# examples_are_understood NAME HELP: nothing of an example is refused but the option that is added to it
+# examples_are_understood NAME HELP: the program refuses only the option that is appended to each example
 examples_are_understood() {
   local example words count=0
   while read -r example; do
@@ -52,14 +52,14 @@ while read -r command; do
   [ -s "$work/unknown" ] && fail "the manual is ahead: $(cat "$work/unknown")"
 done <"$work/commands"
 
-# names COMMAND: every name at the top of the JSON that was printed, and one below, stands in the manual's section
+# names COMMAND: every name in the two upper levels of the printed JSON is in the manual's section
 names() {
   local name
   while read -r name; do
     section "$1" | grep -qE "[\`.]${name}[\`.]" || fail "the manual does not have the name $name of $1"
   done < <(sed -nE 's/^ {2,4}"([a-z_0-9]+)":.*/\1/p' "$work/out" | sort -u)
 }
-# explained: every such name, but that of a scatter, stands in the page on numbers
+# explained: every name in the printed JSON, except of a scatter, is in the page on numbers
 explained() {
   local name
   while read -r name; do

@@ -1,6 +1,6 @@
 #!/bin/bash
-# messages.sh KEELER SOURCE_DIR: whatever goes wrong, the user reads one line in Keeler's words: no text of a library, and
-# nothing that a terminal obeys.
+# messages.sh KEELER SOURCE_DIR: every fault gives one line in Keeler's words, without texts of libraries and without control
+# characters.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 libraries='json\.exception|type_error|parse_error|std::|filesystem error|H5[A-Z]|HDF5-DIAG|bad byte|doesn.t exist|unable to|toml::|toml\+\+|pybind|CLI::|basic_string|bad_alloc|length_error|vector|map::|stod|stoi|FFTW|[Cc]airo|what\(\)|terminate|fmt::|\[\]'
@@ -8,7 +8,7 @@ libraries='json\.exception|type_error|parse_error|std::|filesystem error|H5[A-Z]
 where=$work # the working folder
 gone=false  # it is removed before the program starts
 
-# speaks NAME ARGUMENT...: whether it works or not, it ends by itself, and all that it says is Keeler's
+# speaks NAME ARGUMENT...: the program ends by itself, with success or not, and prints only Keeler's messages
 speaks() {
   local name=$1 code=0
   shift
@@ -22,7 +22,7 @@ speaks() {
   LC_ALL=C grep -aq $'[\x01-\x08\x0b-\x1f\x7f]' "$work/out" "$work/err" && fail "$name: control characters: $(cat -v "$work/out" "$work/err")"
 }
 
-# refused CODE NAME WORDS ARGUMENT...: as speaks, and it ends with this code and says the words
+# refused CODE NAME WORDS ARGUMENT...: as speaks, and the program ends with this code and prints the words
 refused() {
   local expected=$1 name=$2 words=$3 code=0
   shift 3
@@ -56,7 +56,7 @@ snapshot=$work/run/snap_000000.hdf
 speaks "plots" render "$work/run" --series -o "$work/plots.svg"
 python3 -c 'import sys, xml.dom.minidom; xml.dom.minidom.parse(sys.argv[1])' "$work/plots.svg" || fail "plots are no XML"
 
-# Names that are no UTF-8: everything works, and JSON stays JSON.
+# Names that are not UTF-8: everything works, and JSON stays valid.
 odd=$work/$'caf\xe9\x1b[31m'
 accepts "a folder of any name" run "$scene" -o "$odd" -q
 grep -aq '"finished"' "$odd/log.jsonl" || fail "a run in a folder of any name did not end"
@@ -70,13 +70,13 @@ for words in "info $odd" "info $odd --json" "info --verify $odd" "info --verify 
     fail "$(cat -v <<<"$words"): no JSON"
 done
 
-# But a scene is TOML, and TOML is UTF-8: what no scene of a run could hold is refused at once.
+# A scene is TOML, which is UTF-8: other bytes in scenes are refused at once.
 refuses "a title" "title is 'a?', which is not UTF-8, and a scene must be; write it in UTF-8" check "$scene" --set $'title=a\xff'
 refuses "a state of any name" "start.from is '$work/caf??[31m/snap_000000.hdf', which is not UTF-8, and a scene must be; rename the file or the folder" \
   run "$scene" --from "$odd/snap_000000.hdf" -o "$work/never"
 [ -e "$work/never" ] && fail "a state of any name: a folder was made"
 
-# JSON of another type than Keeler writes, in what a run leaves.
+# Unexpected types in the JSON files of a run.
 cp -r "$work/run" "$work/kept"
 for json in '[]' '5' '"text"' '{}' '{"split": 3}' '{"split": {"drift_s": "x"}, "wall_s": []}' '{"finished": "yes", "state_hash": 7, "split": {}}' \
   '{"ns_per_particle_step": {"drift": "slow"}, "split": {}}' '{"threads": -1, "cpu_s": "x", "split": {}}'; do
@@ -104,7 +104,7 @@ for json in '{"study": 5}' '[]' '{"study": "kicks", "command": 7}'; do
   speaks "study.json is $json, study" study kicks "$scene" -o "$work/study"
 done
 
-# Names that cannot be looked at.
+# Names of files that cannot be opened.
 long=$work/$(printf 'n%.0s' {1..300})
 ln -s loop "$work/loop"
 where=$work/here
@@ -125,7 +125,7 @@ for name in "" "$long" "$work/loop"; do
   done
 done
 
-# A working folder that is gone.
+# A removed working folder.
 gone=true
 for words in "check $scene" "check scene.toml" "run $scene -o a" "new a-ring-wakes" "info ." "sweep grid.toml -o a" "convert $snapshot --to csv -o a" \
   "render $snapshot -o a.png" "generate $scene -o a.hdf" "analyze $snapshot --csv a.csv" "study kicks $scene -o a"; do
@@ -134,7 +134,7 @@ for words in "check $scene" "check scene.toml" "run $scene -o a" "new a-ring-wak
 done
 gone=false
 
-# Damaged structures without a seal, and values that no option takes.
+# Damaged structures without a seal, and invalid values of options.
 head -c -64 "$snapshot" >"$work/unsealed.hdf"
 size=$(stat -c %s "$work/unsealed.hdf")
 for ((k = 0; k < 12; k++)); do

@@ -1,11 +1,11 @@
 #!/bin/bash
-# new.sh KEELER SOURCE_DIR: shipped examples by their names, as files of one's own and as scenes to run.
+# new.sh KEELER SOURCE_DIR: shipped examples by name, copied to files and run directly.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 examples=$source_dir/examples
 cd "$work" || exit 1
 
-# Every folder with a scene is listed by its name, with what its first line says.
+# Every folder with a scene is listed with its name and its first line.
 accepts "list" new --list
 cp "$work/out" "$work/list"
 for folder in "$examples"/*/; do
@@ -17,7 +17,7 @@ done
 accepts "no name" new
 cmp -s "$work/out" "$work/list" || fail "without a name: $(cat "$work/out")"
 
-# What is written is what is shipped, tables too, and checks.
+# The written files equal the shipped ones, tables included, and pass keeler check.
 while read -r name _; do
   rm -rf own
   mkdir own
@@ -45,7 +45,7 @@ refuses "a misspelt example" "did you mean 'moonlet'?" new monlet
 refuses "no such example" "keeler new --list" new zzzzzz
 refuses "list and a name" "excludes" new moonlet --list
 
-# Scenes by their names; a file of the same name comes first.
+# Scenes by name; a file with this name takes precedence.
 short=(--set particles.count=60 --set 'box.size=[30,30]' --set time.end=0.002)
 runs 0 check equilibrium
 runs 0 run equilibrium "${short[@]}" -o by-name

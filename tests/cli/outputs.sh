@@ -1,12 +1,12 @@
 #!/bin/bash
-# outputs.sh KEELER SOURCE_DIR: the names and figures that programs read, states as starts, and pictures.
+# outputs.sh KEELER SOURCE_DIR: names and numbers for programs, states as starts, and pictures.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
 sed -i 's/^end .*/end = 0.3/; s/^\[output\]/&\nstress_every = 0.02/' "$work/scene.toml"
 number='-?[0-9.]+(e[-+]?[0-9]+)?'
 
-# has KEY PATTERN: the JSON that the last command printed, its spaces removed, has the key with such a value
+# has KEY PATTERN: the printed JSON, without spaces, has the key with a value of this pattern
 has() {
   tr -d ' \n' <"$work/out" | grep -qE "[{,]\"$1\":$2[,}]" || fail "no $1 like $2 in: $(cat "$work/out")"
 }
@@ -86,7 +86,7 @@ awk -F, 'NR > 1 { tau += $5 / 60 } END { exit !(tau > 0.5026 && tau < 0.5027) }'
 accepts "analyze as text" analyze "$work/run"
 prints "analyze as text" "optical depth                      0.5027"
 
-# Texts for people: what is not known is said, counts have their plural, and 1000 is not 1e+03.
+# Texts for users: unknown numbers are reported, counts have plurals, and 1000 is not printed as 1e+03.
 runs 0 generate "$work/scene.toml" -o "$work/one.hdf" --set particles.count=1
 prints "generate" "1 particle in 50 m x 50 m"
 accepts "analyze one particle" analyze "$work/one.hdf"
@@ -99,7 +99,7 @@ grep -qE '^collisions a particle and orbit +[0-9]{4,}$' "$work/out" || fail "mor
 grep -qE '[0-9]e\+' "$work/out" && fail "a summary with exponents: $(cat "$work/out")"
 grep -q "^keeler: note: 400 particles are few" "$work/err" || fail "a run does not say that its patch is small"
 
-# A state, and a run from it; the same from the same seed whatever the threads.
+# A state, and a run from it; a seed gives the same state for any number of threads.
 for threads in 1 2; do
   accepts "generate" generate "$work/scene.toml" -o "$work/state-$threads.hdf" --threads $threads
   accepts "analyze" analyze "$work/state-$threads.hdf" --json
@@ -136,7 +136,7 @@ for field in size speed cluster density; do
   [ "$(od -An -tu1 -j 16 -N 4 "$work/$field.png" | tr -s ' ')" = " 0 0 2 88" ] || fail "$field: not 600 pixels wide"
 done
 
-# Movies, with ffmpeg and without; both have a frame a snapshot.
+# Movies, with ffmpeg and without; both have one frame per snapshot.
 accepts "a movie" render "$work/run" --movie --width 400
 prints "a movie" "$work/run/movie.mp4"
 frames=$(ffprobe -v error -count_frames -show_entries stream=codec_name,width,nb_read_frames -of csv=p=0 "$work/run/movie.mp4")
@@ -149,7 +149,7 @@ PATH=$work "$keeler" render "$work/run" --movie --width 400 >"$work/out" 2>"$wor
 prints "a movie without ffmpeg" "$work/run/movie.png"
 compgen -G "$work/run/*.tmp" && fail "a part of a movie was left"
 
-# A full standard output is not success.
+# A standard output that cannot be written is a failure.
 if [ -e /dev/full ]; then
   for arguments in "check $work/scene.toml" "info $work/run/snap_000000.hdf" "analyze $work/run --json"; do
     code=0

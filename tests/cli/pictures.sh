@@ -1,13 +1,13 @@
 #!/bin/bash
-# pictures.sh KEELER SOURCE_DIR: pictures and movies that cannot be made, or are stopped, end with one line and leave no
-# part of a file; a long movie shows its progress on a terminal.
+# pictures.sh KEELER SOURCE_DIR: pictures and movies that fail or are stopped end with one line and leave no partial file; a
+# long movie shows its progress on a terminal.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
 runs 0 run "$work/scene.toml" -o "$work/run" --set time.end=0.02 --set output.snapshot_every=0.01
 mkdir "$work/empty" "$work/to" "$work/disk"
 
-# nothing_left NAME: no part of a result in $work/to, nor beside the run's files
+# nothing_left NAME: there are no partial results in $work/to or beside the run's files
 nothing_left() {
   [ -z "$(ls -A "$work/to")" ] || fail "$1: left $(ls -A "$work/to")"
   compgen -G "$work/run/*.tmp" && fail "$1: left a part of a file"
@@ -27,13 +27,13 @@ cp -r "$work/run" "$work/short"
 sed -i '3,$d' "$work/short/series.csv"
 refuses "plots of a row" "let it run longer" render "$work/short" --series
 
-# Nothing but a picture, a movie, a page or a table of the same columns is replaced.
+# Only a picture, a movie, a page or a table with equal columns is replaced.
 cp -r "$work/run" "$work/kept"
-# keeps FILE COMMAND...: the command does not write over this file
+# keeps FILE COMMAND...: the command does not overwrite this file
 keeps() {
   local file=$1
   shift
-  refuses "$* over $file" "exists already, and is not" "$@" "$work/run/$file"
+  refuses "$* over $file" "exists already and is not" "$@" "$work/run/$file"
   cmp -s "$work/run/$file" "$work/kept/$file" || fail "$*: $file is another one"
 }
 cp "$work/run/series.csv" "$work/run/series.png"
@@ -70,7 +70,7 @@ PATH=$work:$PATH "$keeler" render "$work/run" --movie -o "$work/to/a.mp4" >"$wor
 one_line "a broken ffmpeg" "ffmpeg says: this one is broken; choose a folder that is writable and has room, or name a .png"
 nothing_left "refused"
 
-# limited NAME FILE COMMAND OPTION...: writing the file meets a limit on the size of files
+# limited NAME FILE COMMAND OPTION...: writes the file under a limit on the size of files
 limited() {
   (
     ulimit -f 8
@@ -87,7 +87,7 @@ limited "no room for a movie" a.mp4 render --movie
 limited "no room for plots" a.svg render --series
 limited "no room for a page" a.html report
 
-# A long movie: many pictures of one instant.
+# A long movie: many copies of one snapshot.
 for number in $(seq 1000 1300); do ln "$work/run/snap_000000.hdf" "$work/run/snap_00$number.hdf"; done
 
 # Where mounting is permitted: a disk that fills in the middle.

@@ -1,12 +1,12 @@
 #!/bin/bash
-# restart.sh KEELER SOURCE_DIR: however a run was cut into pieces, and with any number of threads, it ends in the same
-# bits: the state, the time series and the snapshots.
+# restart.sh KEELER SOURCE_DIR: state, time series and snapshots of a run are bitwise identical for any interruptions and any
+# number of threads.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 command -v h5ls >/dev/null || { echo "'h5ls' is missing: scripts/setup test installs it"; exit 1; }
 small_scene
 
-# same NAME FOLDER: all that the run left equals what the uninterrupted run left
+# same NAME FOLDER: all files of the run equal those of the uninterrupted run
 same() {
   same_state "$1" "$work/whole" "$2"
   same_series "$1" "$work/whole" "$2"
@@ -32,7 +32,7 @@ runs 0 run "$work/scene.toml" -o "$work/threads" --set time.end=0.5 --threads 1
 runs 0 resume "$work/threads" --until 1 --threads 2
 same "half with one thread, half with two" "$work/threads"
 
-# A finished run: nothing is changed, not even the time of a file.
+# Resuming a finished run changes nothing, not even the time of a file.
 times() { stat -c '%n %Y %y %s' "$work/threads"/*; }
 times >"$work/before"
 cp -r "$work/threads" "$work/copy"
@@ -46,7 +46,7 @@ diff -r "$work/copy" "$work/threads" || fail "a finished run, resumed: files wer
 runs 0 resume "$work/copy" --until 1.1
 [ "$(text steps "$work/copy/summary.json")" -eq 550 ] || fail "a finished run did not go on to a later end"
 
-# A scene.toml that was edited is no part of the run: its text is kept, and the user hears the command for it.
+# An edited scene.toml does not affect the run: its text is saved, and a message gives the command to run it.
 runs 0 run "$work/scene.toml" -o "$work/edited" --set time.end=0.5
 cp "$work/edited/scene.toml" "$work/written.toml"
 sed -i 's/^end = .*/end = 1.0 # longer/' "$work/edited/scene.toml"
@@ -72,7 +72,7 @@ interrupted KILL 137 "$work/killed"
 runs 0 resume "$work/killed"
 same "kill -9" "$work/killed"
 
-# Killed in the middle of a line of the log: its part goes, and every line can be read.
+# Killed within a line of the log: the partial line is removed, and every line can be read.
 runs 0 run "$work/scene.toml" -o "$work/torn" --set time.end=0.5
 truncate -s -20 "$work/torn/log.jsonl"
 runs 0 resume "$work/torn" --until 1
@@ -93,12 +93,12 @@ interrupted TERM 75 "$work/stopped" --threads 2
 runs 0 resume "$work/stopped" --threads 1
 same "TERM" "$work/stopped"
 
-# Other schedules make other files, never another state; the rows of the series are at their own steps.
+# Other output intervals give other files but the same state; the rows of the series are at their own steps.
 runs 0 run "$work/scene.toml" -o "$work/schedules" --set output.checkpoint_every=0.034 --set output.snapshot_every=0.07
 same_state "other schedules" "$work/whole" "$work/schedules"
 same_series "other schedules" "$work/whole" "$work/schedules"
 
-# A moved folder goes on; what it was made from is not needed.
+# A run continues in a moved folder; the files that it was made from are not needed.
 sources() {
   seq 400 | sed 's/.*/1.0/' >"$work/radii.txt"
   cp "$work/whole/snap_000000.hdf" "$work/start.hdf"

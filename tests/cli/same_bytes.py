@@ -1,6 +1,7 @@
 """same_bytes.py GROUP A B [A B]...: the datasets in this group of HDF5 files have the same bytes in A as in B, pair by pair.
 GROUP may be one dataset.
-Counts of what a run has written are left out. Prints a line for each that differs, or is in one alone, and ends with 1."""
+Counts of written files are ignored. Prints a line for each dataset that differs or is missing in one file, and ends with
+1."""
 
 import sys
 

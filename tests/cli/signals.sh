@@ -1,12 +1,12 @@
 #!/bin/bash
 # signals.sh KEELER SOURCE_DIR: INT, TERM, USR1 and --wall-time stop a run with exit code 75 and a checkpoint; USR2
-# writes a snapshot and the run goes on. The runs here would last for hours, so no signal comes too late.
+# writes a snapshot and the run continues. The runs would last for hours, so no signal comes too late.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
 endless=(run "$work/scene.toml" --set time.end=1e5 --set output.snapshot_every=0 --set output.checkpoint_every=0.01)
 
-# stopped NAME FOLDER: what a stop leaves
+# stopped NAME FOLDER: the folder has the files of a stopped run
 stopped() {
   runs 0 info "$(newest_checkpoint "$2")" --json
   cp "$work/out" "$work/info.json"
@@ -24,7 +24,7 @@ for signal in INT TERM USR1; do
   stopped $signal "$work/$signal"
 done
 
-# One that waits when the program begins, as one does that comes before there are handlers.
+# A signal that is pending when the program begins, as one before the handlers are installed.
 pending='import os, signal, sys
 number = getattr(signal, sys.argv[1])
 signal.pthread_sigmask(signal.SIG_BLOCK, [number])
@@ -38,12 +38,12 @@ for signal in INT TERM HUP USR1; do
   grep -q 'stopped before the first step (on request)' "$work/err" || fail "early $signal: $(cat "$work/err")"
   [ ! -e "$work/early" ] || fail "early $signal: something was written"
 done
-# other commands end as any program
+# other commands end at once
 code=0
 { timeout 60 python3 -c "$pending" SIGUSR1 "$keeler" check "$work/scene.toml" >"$work/out" || code=$?; } 2>/dev/null
 [ "$code" -eq 138 ] || fail "early USR1, keeler check: exit $code"
 
-# What waits for a pipe hears them too: `timeout -k` has to kill what does not.
+# Signals also end waiting for a pipe; otherwise `timeout -k` kills the program.
 accepts "a run" run "$work/scene.toml" -o "$work/done" --set time.end=0.2 -q
 mkfifo "$work/pipe"
 fixed() { # NAME: a copy of the run with a pipe in the place of this file

@@ -1,13 +1,12 @@
 #!/bin/bash
-# sizes.sh KEELER SOURCE_DIR: numbers of a user that become sizes. What no memory could hold, and what a cast to a whole number
-# would turn into something else, is one line with exit code 2, at once: nothing is allocated before. Numbers that are absurd in
-# other ways are in absurd.sh.
+# sizes.sh KEELER SOURCE_DIR: numbers that determine sizes of arrays. Sizes beyond any memory, or beyond the range of integers,
+# give one line with exit code 2 before anything is allocated. Other absurd numbers are tested in absurd.sh.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
 sed -e 's/^solver = .*/solver = "axisymmetric"/' "$work/scene.toml" >"$work/radial.toml"
 
-# too_large NAME WORDS ARGUMENT...: exit 2 and one line in 4 GB of address space and 20 s
+# too_large NAME WORDS ARGUMENT...: the program ends with code 2 and one line, within 4 GB of address space and 20 s
 too_large() {
   local name=$1 words=$2 code=0
   shift 2
@@ -19,7 +18,7 @@ too_large() {
   one_line "$name" "$words"
 }
 
-# Meshes of radial waves: the scene's line, or the memory that they need.
+# Meshes of radial waves: the message has the scene's line, or the needed memory.
 for short in 1e-18 1e-6 1e-300; do
   too_large "waves of $short m, check" "gravity.shortest_wavelength = $short m is too short" check "$work/radial.toml" \
     --set "gravity.shortest_wavelength=$short"
@@ -31,7 +30,7 @@ too_large "a mesh without memory" "GB of memory" run "$work/radial.toml" -o "$wo
 accepts "the same, check" check "$work/radial.toml" --set gravity.shortest_wavelength=5e-6 --json
 [ "$(text memory_mb "$work/out" | cut -d . -f 1)" -gt 2000 ] || fail "a large mesh: check foretells $(text memory_mb "$work/out") MB"
 
-# What check foretells is what a run takes, where a mesh is most of it.
+# The memory estimated by check is what a run uses, if a mesh dominates it.
 foretells() { # SCENE ARGUMENT...
   local scene=$1 foretold taken
   shift

@@ -1,6 +1,6 @@
 #!/bin/bash
-# starts.sh KEELER SOURCE_DIR: fresh states: the same for any number of threads, flat-topped where a Gaussian layer would
-# be too dense, refused with the nearest scene that can be had, and stopped at once without leaving anything.
+# starts.sh KEELER SOURCE_DIR: initial states do not depend on the number of threads, are flat-topped where a Gaussian layer
+# would be too dense, are refused with the nearest possible scene, and are stopped at once without leaving files.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 cat >"$work/scene.toml" <<END
@@ -43,7 +43,7 @@ refuses "modes that make streamlines cross" "sum up to 1.1 (at 1 streamlines cro
 refuses "a mode that does not fit the box" "row 1 of particles.modes.outward has waves: 0" \
   generate "$work/scene.toml" --set 'particles.modes.outward=[[0,0.1,0]]' -o "$work/none.hdf"
 
-# Patterns of the density, and a share of a snapshot.
+# Density patterns, and a fraction of a snapshot's particles.
 runs 0 generate "$work/scene.toml" --set 'particles.wake={contrast=0.5, wavelength=30, pitch=25}' -o "$work/wake.hdf"
 one_line "a wake" "the wake has a wavelength of 26.83 m and a pitch of 26.57 degrees (2 x 1 waves fit the box)"
 refuses "a step beyond the box" "particles.step.between is [-10, 50] (two rising x within the box, from -30 to 30" \
@@ -70,7 +70,7 @@ refuses "an aggregate wider than the box" "across (more than one side of the box
 refuses "an aggregate in a moonlet" "particles.aggregate[1] and moonlet[1] overlap" generate "$work/scene.toml" \
   --set "$(aggregate 200 0.5)" --set 'moonlet=[{ radius = 11.0, density = 900.0 }]' -o "$work/none.hdf"
 
-# Whether contacts at rest are carried follows from the particles and the kick interval, wherever they come from.
+# The treatment of contacts at rest follows from the particles and the kick interval, whatever their source.
 cat >"$work/layer.toml" <<END
 [planet]
 preset = "saturn-a-ring"
@@ -121,7 +121,7 @@ same_bytes "a share of 1" /PartType1/ParticleIDs "$work/1.hdf" "$work/kept-1.0.h
 [ $((2 * $(cat "$work/kept-0.5"))) -gt $(($(cat "$work/kept-1.0") * 4 / 5)) ] || fail "half: $(cat "$work/kept-0.5")"
 refuses "no share" "start.keep is 0" generate "$work/share.toml" --set start.keep=0.0 -o "$work/none.hdf"
 
-# A stop, in a start that takes ten seconds and more. The program is ready for signals when it catches TERM (bit 14).
+# A stop while an initial state is made for more than ten seconds. The program handles signals once it catches TERM (bit 14).
 catches_signals() { ((0x$(sed -n 's/^SigCgt:[[:space:]]*//p' "/proc/$1/status" 2>/dev/null || echo 0) & 0x4000)); }
 stops() {
   local name=$1 signal=$2 process code=0

@@ -1,19 +1,19 @@
 #!/bin/bash
-# streams.sh KEELER SOURCE_DIR: results onto devices, pipes and standard output are written to what is there, which stays
-# what it is; names of results that others use (planted links, files of other programs, a second command) do no harm.
+# streams.sh KEELER SOURCE_DIR: results are written to devices, pipes and standard output without replacing them; names that
+# are in use (planted links, files of other programs, a second command) do no harm.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
 accepts "a run" run "$work/scene.toml" -o "$work/run" --set time.end=0.3 --set output.series_every=0.01 -q
 run=$work/run snapshot=$work/run/snap_000000.hdf
 
-# Each command that writes a file: its kind and its words, without -o FILE or its like.
+# Each command that writes a file: kind of the file, and the command without -o FILE or the like.
 commands=("csv convert $snapshot --to csv -o" "vtp convert $snapshot --to vtp -o" "csv analyze $run --csv"
   "csv analyze $run --profile" "png render $snapshot --width 400 -o" "png render $run --movie --width 400 -o"
   "svg render $run --series -o" "html report $run -o" "toml new equilibrium -o")
 refused=("hdf generate $work/scene.toml -o" "hdf tile $snapshot 2 1 -o")
 
-# A device that takes everything, if one may be made: never that of the machine.
+# A null device, if one may be made: never the machine's.
 null=$work/null
 device=false
 mknod "$null" c 1 3 2>/dev/null && (echo >"$null") 2>/dev/null && device=true
@@ -46,11 +46,11 @@ for command in "${commands[@]}" "${refused[@]}"; do
 done
 [ -h /dev/stdout ] || fail "/dev/stdout was replaced"
 
-# Standard output that is a file is written on where it is.
+# If standard output is a file, output is appended at its position.
 { echo before; "$keeler" convert "$snapshot" --to csv -o -; echo after; } >"$work/redirected"
 [ "$(head -n 1 "$work/redirected")/$(tail -n 1 "$work/redirected")" = before/after ] || fail "a redirected output was replaced"
 
-# What cannot be streamed, or not together.
+# Results that cannot be streamed, or not together.
 mkfifo "$work/movie.mp4"
 refuses "a movie by ffmpeg" "movie.mp4' cannot take MP4" render "$run" --movie -o "$work/movie.mp4"
 refuses "two results" "only one of --csv, --profile and --json" analyze "$run" --csv - --profile -
@@ -66,7 +66,7 @@ refuses_with 4 "a full device" "No space left on device" convert "$snapshot" --t
 "$keeler" convert "$snapshot" --to csv -o - 2>"$work/err" | true
 [ "${PIPESTATUS[0]}" -eq 0 ] || one_line "a reader that goes" "Broken pipe"
 
-# A snapshot that comes through a pipe is that of the file; no name for a result follows from that of the pipe.
+# A snapshot read through a pipe equals the file; the pipe gives no default name for a result.
 accepts "a table" convert "$snapshot" --to csv -o "$work/of-file.csv"
 runs 0 convert /dev/stdin --to csv -o "$work/of-pipe.csv" < <(cat "$snapshot")
 cmp -s "$work/of-file.csv" "$work/of-pipe.csv" || fail "a table of a snapshot from a pipe: $(cat "$work/err")"
@@ -91,7 +91,7 @@ wait "$process" || code=$?
 [ "$code" -eq 1 ] || fail "a pipe without a reader: exit $code: $(cat "$work/err")"
 one_line "a pipe without a reader" "stopped before all was written"
 
-# Planted links are not followed, files of other programs stay, and a file that is replaced keeps its permissions.
+# Planted links are not followed, files of other programs are kept, and a replaced file keeps its permissions.
 mkdir "$work/open"
 echo secret >"$work/secret"
 ln -s "$work/secret" "$work/open/a.toml.tmp"
@@ -107,7 +107,7 @@ done
 [ "$(cat "$work/open/b.toml.tmp")" = mine ] || fail "a file of another program is gone"
 [ "$(stat -c %a "$work/open/b.toml")" = 600 ] || fail "permissions: $(stat -c %a "$work/open/b.toml")"
 
-# Two commands onto one name: the whole result of one of them.
+# Two commands with one output name: the file is the complete result of one of them.
 for k in 0 1; do
   accepts "a table" convert "$run/snap_00000$k.hdf" --to csv -o "$work/whole.$k"
 done
@@ -119,7 +119,7 @@ for ((trial = 0; trial < 20; trial++)); do
   cmp -s "$work/one.csv" "$work/whole.0" || cmp -s "$work/one.csv" "$work/whole.1" || fail "two commands onto one name: a mixture"
 done
 
-# What a killed command left goes with the next one.
+# The next command removes the partial files of a killed one.
 echo torn >"$work/one.csv.keeler-0123456789abcdef.tmp"
 accepts "after a kill" convert "$snapshot" --to csv --force -o "$work/one.csv"
 compgen -G "$work/*.keeler-*.tmp" && fail "a part of a file was left"

@@ -1,5 +1,5 @@
 #!/bin/bash
-# study.sh KEELER SOURCE_DIR: studies from start to report; that of the finders interrupted and continued.
+# study.sh KEELER SOURCE_DIR: studies from start to report; the finder study is interrupted and continued.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 folder=$work/study
@@ -14,7 +14,7 @@ kill -TERM "$process"
 code=0
 wait "$process" || code=$?
 [ "$code" -eq 75 ] || fail "a stopped study: exit $code: $(tail -n 3 "$work/err")"
-grep -q "the same command goes on from here" "$work/err" || fail "a stopped study does not say how to go on"
+grep -q "the same command continues from here" "$work/err" || fail "a stopped study does not say how to continue"
 head -n 3 "$folder/measurements.jsonl" >"$work/kept"
 refuses "another count" "another count (100)" study finders --quick --count 101 -o "$folder"
 runs 0 study finders --quick --count 100 -o "$folder"
@@ -25,7 +25,7 @@ for name in report.md report.html finders.csv finders.json figures; do
 done
 mkdir "$work/full"
 touch "$work/full/mine"
-refuses "a folder with other things" "holds no study" study finders --quick -o "$work/full"
+refuses "a folder with other things" "is not the folder of a study" study finders --quick -o "$work/full"
 
 # Twelve finders, four states, three steps, two repeats.
 expected=state,step_orbits,finder,repeat,cpu_s,calls,hits,missed,false_hits,late,misordered,evaluations,ns_per_call
@@ -36,7 +36,7 @@ awk -F, '$3 == "certified" && $8 + $9 + $10 + $11 != 0 { wrong = 1 } END { exit 
 awk -F, 'NR > 1 && !($5 > 0 && $6 > 0 && $13 > 0) { wrong = 1 } END { exit wrong }' "$folder/finders.csv" ||
   fail "a row without time or calls"
 grep -q '"rows"' "$folder/finders.json" || fail "finders.json has no rows"
-for words in "The paper's claims" "Truth: what each finder missed" "Figure 4" "Does it pay to keep the cubics?" \
+for words in "The paper's claims" "Errors of each finder" "Figure 4" "Does it pay to store the cubics?" \
   "Where is the best step" "Particles at different local times" "A conservative rejection" "Straight paths drift"; do
   grep -qF "$words" "$folder/report.md" || fail "the report has no '$words'"
 done
@@ -51,7 +51,7 @@ if command -v gnuplot >/dev/null; then
 fi
 grep -q 'src="[^d]' "$folder/report.html" && fail "the page needs other files"
 
-# The gravity study, as small as it can be.
+# The smallest gravity study.
 folder=$work/gravity
 small=(study gravity --count 100 --repeats 1 --orbits 0.01 --seeds 2 -o "$folder")
 runs 0 "${small[@]}"

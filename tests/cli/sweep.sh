@@ -1,11 +1,11 @@
 #!/bin/bash
-# sweep.sh KEELER SOURCE_DIR: a sweep gives the same tables, bit for bit, however it was killed, stopped or shared by
-# several processes; a run that fails or is killed leaves the others alone; a wrong grid writes nothing.
+# sweep.sh KEELER SOURCE_DIR: the tables of a sweep are bitwise identical after kills and stops and with several processes; a
+# run that fails or is killed does not affect the others; an invalid grid writes nothing.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
 
-# small_grid [SEEDS]: two points with some seeds
+# small_grid [SEEDS]: writes a grid of two points with some seeds
 small_grid() {
   cat >"$work/grid.toml" <<END
 scene = "scene.toml"
@@ -32,7 +32,7 @@ finished() { grep -l '"finished": true' "$1"/runs/*/summary.json 2>/dev/null | w
 has_checkpoint() { compgen -G "$1/runs/*/checkpoint_*.h5" >/dev/null; }
 one_finished() { [ "$(finished "$1")" -ge 1 ]; }
 
-# swept_until CONDITION FOLDER ARGUMENT...: starts a sweep and waits for the condition; leaves $sweep and its $runs
+# swept_until CONDITION FOLDER ARGUMENT...: starts a sweep and waits for the condition; sets $sweep and its $runs
 swept_until() {
   local condition=$1 folder=$2
   shift 2
@@ -55,13 +55,13 @@ for name in sweep.csv points.csv report.md; do
   prints "sweep" "$work/whole/$name"
 done
 
-# column NAME ROW FILE
+# column NAME ROW FILE: prints one cell of a table
 column() {
   awk -F, -v name="$1" -v row="$2" 'NR == 1 { for (k = 1; k <= NF; ++k) if ($k == name) column = k }
     NR == row { print $column }' "$3"
 }
 
-# What a row says is what analyze says, and a run by hand is the same run.
+# A row equals the numbers of analyze, and a run by hand is identical.
 name=density-300_seed-1
 runs 0 analyze "$work/whole/runs/$name" --since 0.2 --json
 for number in total_viscosity_m2_s total_viscosity_error_m2_s translational_viscosity_r2_omega energy_balance \
@@ -93,7 +93,7 @@ runs 0 sweep "$work/grid.toml" -o "$work/killed" --tables
 runs 0 sweep "$work/grid.toml" -o "$work/killed"
 same_tables "killed twice" "$work/killed"
 
-# The program alone killed: its runs stop with a checkpoint, and the next one waits for them.
+# Only the sweep is killed: its runs stop with a checkpoint, and the next sweep waits for them.
 swept_until has_checkpoint "$work/orphans" --jobs 2
 kill -9 "$sweep"
 wait "$sweep" 2>/dev/null
@@ -107,7 +107,7 @@ kill -TERM "$sweep" "${runs[@]}" # as a queue does it: to all
 code=0
 wait "$sweep" || code=$?
 [ "$code" -eq 75 ] || fail "TERM: exit $code: $(cat "$work/err")"
-grep -q "the same command goes on" "$work/err" || fail "TERM: no advice: $(cat "$work/err")"
+grep -q "the same command continues" "$work/err" || fail "TERM: no advice: $(cat "$work/err")"
 for process in "${runs[@]}"; do
   kill -0 "$process" 2>/dev/null && fail "TERM: a run goes on"
 done
@@ -116,7 +116,7 @@ grep -q 'given up' "$work/stopped"/runs/*/log.jsonl && fail "TERM: a step was gi
 runs 0 sweep "$work/grid.toml" -o "$work/stopped"
 same_tables "TERM" "$work/stopped"
 
-# Three processes share a folder: each run is done once, and all are done.
+# Three processes in one folder: each run is carried out exactly once.
 processes=()
 for k in 1 2 3; do
   "$keeler" sweep "$work/grid.toml" -o "$work/shared" --jobs 1 >"$work/out.$k" 2>"$work/err.$k" &
@@ -129,7 +129,7 @@ same_tables "shared" "$work/shared"
 [ "$(cat "$work"/shared/runs/*/log.jsonl | grep -c '"started"')" -eq 4 ] || fail "shared: a run was begun twice"
 grep -q '"resumed"' "$work"/shared/runs/*/log.jsonl && fail "shared: a run was cut"
 
-# Programs that begin at one moment know the folder that the first of them makes.
+# Programs that start simultaneously accept the folder that the first of them makes.
 for try in 1 2 3 4 5 6 7 8 9 10; do
   processes=()
   for k in 1 2 3 4; do
@@ -141,7 +141,7 @@ for try in 1 2 3 4 5 6 7 8 9 10; do
   done
 done
 
-# One run is killed: the others go on, and the next call finishes it.
+# One run is killed: the others continue, and the next call finishes it.
 swept_until has_checkpoint "$work/one" --jobs 2
 kill -9 "${runs[0]}"
 code=0
@@ -171,7 +171,7 @@ small_grid 1
 runs 0 sweep "$work/grid.toml" -o "$work/whole"
 grep -q "4 runs in .* that this grid does not have" "$work/err" || fail "fewer seeds: $(cat "$work/err")"
 sed -i 's/0\.8$/3.0/' "$work/grid.toml"
-# A folder whose name begins with a dash is a folder to the runs too.
+# The name of the folder may begin with a dash.
 cat >"$work/small.toml" <<END
 scene = "scene.toml"
 seeds = [1, 2]
@@ -181,7 +181,7 @@ END
 (cd "$work" && "$keeler" sweep small.toml --output=-dash >"$work/out" 2>"$work/err") || fail "a dash: $(cat "$work/err")"
 [ -s "$work/-dash/sweep.csv" ] || fail "a dash: no table"
 
-# Values of a grid are texts to gnuplot, whatever is in them, and what gnuplot says is not heard.
+# Values of a grid are plain texts for gnuplot, and messages of gnuplot are not shown.
 cat >"$work/texts.toml" <<END
 scene = "scene.toml"
 since = 0.01
@@ -219,7 +219,7 @@ one_line "a figure that fails" "gnuplot failed on '$work/texts/figure.gp'"
 runs 0 sweep "$work/small.toml" -o "$work/damaged" -q
 sed -i 's/.*/x/' "$work/damaged/runs/seed-1/series.csv"
 runs 1 sweep "$work/small.toml" -o "$work/damaged" -q
-one_line "a damaged run" "1 finished run cannot be measured, sweep.csv has the reasons; remove what is damaged"
+one_line "a damaged run" "1 finished run cannot be measured, sweep.csv has the reasons; remove the damaged files"
 prints "a damaged run" "2 runs: 1 finished, 1 failed"
 [ "$(column finished_runs 2 "$work/damaged/points.csv")" = 1 ] || fail "a damaged run: $(cat "$work/damaged/points.csv")"
 grep -q "^seed-1,1,failed,.*series.csv" "$work/damaged/sweep.csv" || fail "a damaged run: $(cut -c 1-200 "$work/damaged/sweep.csv")"
@@ -229,7 +229,7 @@ runs 1 sweep "$work/small.toml" -o "$work/damaged" -q
 rm -r "$work/damaged/runs"/*
 runs 0 sweep "$work/small.toml" -o "$work/damaged" -q
 
-# Tables that are stopped start no run.
+# A stopped --tables starts no run.
 code=0
 timeout 60 python3 -c 'import os, signal, sys
 signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM])
@@ -238,7 +238,7 @@ os.execv(sys.argv[1], sys.argv[1:])' "$keeler" sweep "$work/small.toml" -o "$wor
 [ "$code" -eq 75 ] || fail "tables that are stopped: exit $code"
 one_line "tables that are stopped" "stopped before the tables were made"
 
-# A plan of many runs heeds a signal.
+# A signal stops the planning of many runs.
 { echo 'scene = "scene.toml"' && seq -s ', ' 1 100000 | sed 's/^/seeds = [/; s/$/]/'; } >"$work/many.toml"
 "$keeler" sweep "$work/many.toml" -o "$work/many" >"$work/out" 2>"$work/err" &
 many=$!

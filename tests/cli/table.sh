@@ -1,5 +1,5 @@
 #!/bin/bash
-# table.sh KEELER SOURCE_DIR: a start from a user's own table of particles, and everything that may be wrong with one.
+# table.sh KEELER SOURCE_DIR: a start from a user's table of particles, and all faults of such tables.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 cat >"$work/scene.toml" <<END
@@ -20,9 +20,9 @@ x,y,z,vx,vy,vz,r,m
 -20,15,0,0,5.85e-3,1e-4,1.5,13000
 END
 
-# made LINE...: a table of these lines
+# made LINE...: writes a table with these lines
 made() { printf '%s\n' "$@" >"$work/table.csv"; }
-# refused CODE NAME WORDS: that table
+# refused CODE NAME WORDS: the table is refused
 refused() {
   refuses_with "$1" "$2" "$3" generate "$work/scene.toml" --from-table "$work/table.csv" -o "$work/none.hdf"
   [ -e "$work/none.hdf" ] && fail "$2: wrote a state"
@@ -74,13 +74,13 @@ printf '\211HDF\r\n\032\nrubbish' >"$work/table.csv"
 refused 4 "damaged HDF5" "as HDF5"
 
 made x,y,z,r,m 0,0,0,1,4000 1.5,0,0,1,4000 10,10,0,1,4000 29.9,0,0,1,4000 -29.9,0,0,1,4000
-refused 3 "overlaps" "2 pairs of particles overlap, worst those of $work/table.csv:5 and $work/table.csv:6, by 0.9 of their radius sum; correct them, or move them apart by --relax"
+refused 3 "overlaps" "2 pairs of particles overlap, worst those of $work/table.csv:5 and $work/table.csv:6, by 0.9 of their radius sum; correct them, or move them apart with --relax"
 runs 0 generate "$work/scene.toml" --from-table "$work/table.csv" --relax -o "$work/relaxed.hdf"
 prints "relaxed" "2 pairs of particles overlap"
 prints "relaxed" "moved 4 particles apart, by "
 runs 0 run "$work/scene.toml" --from "$work/relaxed.hdf" -o "$work/relaxed"
 
-# A scene's own table, and what is far from any ring: velocities without the shear, in other units, lengths in km.
+# A table named in the scene, and tables unlike any ring: velocities without the shear or in other units, lengths in km.
 python3 - "$work" <<'END'
 import random, sys
 random.seed(3)

@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
-"""terminal.py COLUMNS KEELER ARGUMENT...: runs the program on a terminal so many columns wide and prints what it wrote.
+"""terminal.py COLUMNS KEELER ARGUMENT...: runs the program on a terminal of this width and prints its output.
 
-Ends with 1, and says so on standard error, when what was drawn between two returns, messages aside, is wider than
-the terminal.
+Ends with 1, and a message on standard error, if a line of progress is wider than the terminal.
 """
 import fcntl
 import os

@@ -1,7 +1,7 @@
 #!/bin/bash
 # terminals.sh KEELER SOURCE_DIR: every command of `keeler --help`, with its progress on terminals of 40 and 120 columns and
 # through a pipe: no line of progress is wider than the terminal, a pipe gets no control characters, exit codes are right;
-# and what -q and -v leave out and add.
+# and the effect of -q and -v.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
@@ -9,7 +9,7 @@ sed -i 's/^end .*/end = 0.1/' "$work/scene.toml"
 printf 'scene = "%s/scene.toml"\nseeds = [1, 2]\n' "$work" >"$work/grid.toml"
 runs 0 run "$work/scene.toml" -o "$work/done"
 
-# words_for COMMAND: an array `words` that makes the command work; false when it is not known here
+# words_for COMMAND: sets the array `words` to valid arguments of the command; false for an unknown command
 words_for() {
   case $1 in
   new) words=(moonlet -o "$work/new.toml" --force) ;;

@@ -1,6 +1,6 @@
 #!/bin/bash
-# tile.sh KEELER SOURCE_DIR: a snapshot repeated into a larger patch: one copy is the same state, many are one that runs,
-# and what cannot be repeated is refused.
+# tile.sh KEELER SOURCE_DIR: a snapshot repeated into a larger patch: one copy is the same state, many copies give a state
+# that runs, and an unsuitable snapshot is refused.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene

@@ -5,10 +5,10 @@ source "$(dirname "$0")/helpers.sh"
 small_scene
 scene=$work/scene.toml
 
-# number NAME: the last line "NAME": x of the JSON in $work/out
+# number NAME: prints x of the last line "NAME": x of the JSON in $work/out
 number() { sed -nE "s/.*\"$1\": ([-+0-9.e]+).*/\1/p" "$work/out" | tail -n 1; }
 
-# at_most NAME X Y
+# at_most NAME X Y: X is at most Y
 at_most() { awk -v x="$2" -v y="$3" 'BEGIN { exit !(x != "" && x + 0 <= y + 0) }' || fail "$1: $2 is more than $3"; }
 
 runs 0 tune "$scene" --orbits 0.3 --threads 2 --force-error 5e-3 --physics-error 0.2 --json

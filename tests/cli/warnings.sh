@@ -1,5 +1,5 @@
 #!/bin/bash
-# warnings.sh KEELER SOURCE_DIR: what `keeler check` and a run warn of, and that they do not print ratios of nothing.
+# warnings.sh KEELER SOURCE_DIR: the warnings of `keeler check` and of a run; neither prints ratios of zeros.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 
@@ -25,8 +25,8 @@ grep -q "note:" "$work/out" "$work/err" && fail "generate --quiet: $(cat "$work/
 runs 0 run "$work/scene.toml" "${elastic[@]}" --set time.end=0.01 -o "$work/elastic"
 grep -q '^keeler: note: the coefficient of restitution is at least 0.9' "$work/err" || fail "a run: $(cat "$work/err")"
 
-# A passage of a satellite that the cell cannot show. With `every` the fourth of Lewis & Stewart's ringlet is the first
-# such one; in the runs here a single one is far from the time when the cell stands upright.
+# A passage of a satellite that the sheared cell cannot represent. With `every` the fourth passage of Lewis & Stewart's
+# ringlet is the first such one; in the runs below a single passage is far from the time when the cell is upright.
 ringlet=$source_dir/examples/papers/lewis-stewart-2011/scene.toml
 accepts "one passage" check "$ringlet"
 grep -q "the satellite's passage" "$work/out" && fail "one passage: $(cat "$work/out")"
@@ -59,7 +59,7 @@ assert len(notes) == 1 and notes[0].startswith("the satellite's passage at orbit
 assert json.load(open(f"{work}/before/summary.json"))["notes"] == []
 END
 
-# One particle, and two that never meet: nothing is divided by nothing, and no error is of rounding.
+# One particle, and two that never collide: no 0/0, and no error estimate from rounding.
 for count in 1 2; do
   few=("$work/scene.toml" --set "particles.count=$count" --set output.series_every=0.05 --set output.stress_every=0.05)
   for more in "gravity.solver=tree" "gravity.solver=fft" "gravity.solver=direct" "collisions.friction.tangential_restitution=0.5"; do

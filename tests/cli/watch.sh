@@ -1,6 +1,6 @@
 #!/bin/bash
-# watch.sh KEELER SOURCE_DIR: progress fits the terminal, and keeler watch tells how a run stands: while it works, when
-# it has ended, in a pipe and on terminals of 40 and 120 columns.
+# watch.sh KEELER SOURCE_DIR: progress fits the terminal, and keeler watch shows the state of a run while it works and after
+# its end, in a pipe and on terminals of 40 and 120 columns.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
@@ -23,7 +23,7 @@ accepts "in a pipe" watch "$work/run40"
 prints "in a pipe" "finished"
 grep -q $'\033' "$work/out" && fail "a pipe got a terminal's codes"
 
-# While a run works, and when it was killed.
+# A working and a killed run.
 "$keeler" run "$work/scene.toml" --set time.end=1e5 --set output.snapshot_every=0 -o "$work/works" >/dev/null 2>&1 &
 process=$!
 until [ -s "$work/works/series.csv" ] && [ "$(wc -l <"$work/works/series.csv")" -gt 3 ]; do sleep 0.05; done
@@ -36,7 +36,7 @@ kill -KILL "$process"
 wait "$process" 2>/dev/null
 accepts "killed" watch "$work/works"
 prints "killed" "not running"
-# Half a line of the log, as a run may just be writing it.
+# A partial line of the log, as while a run writes it.
 printf '{"event":"fini' >>"$work/works/log.jsonl"
 accepts "half a line" watch "$work/works"
 prints "half a line" "not running"

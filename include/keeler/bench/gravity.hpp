@@ -1,5 +1,5 @@
-// What a gravity solve costs and how wrong it is, for every solver with every setting: a patch of Saturn's A ring, the
-// physics of examples/a-ring-wakes.
+// Time and error of a gravity solve, for every solver and setting: a patch of Saturn's A ring with the physics of
+// examples/a-ring-wakes.
 #pragma once
 
 #include <keeler/bench/gravity_choices.hpp>
@@ -15,39 +15,40 @@
 namespace keeler {
 
 struct GravityBenchSettings {
-  std::size_t count = 100000; ///< rounded to whole tiles, and up to what two λ_cr by two hold
-  bool clumped = true;        ///< wakes stand; else a fresh, uniform patch
-  std::string solver;         ///< empty: all, `direct` only where it takes seconds
+  std::size_t count = 100000; ///< rounded to whole tiles, at least a patch of 2 × 2 λ_cr
+  bool clumped = true;        ///< with wakes; otherwise a uniform initial state
+  std::string solver;         ///< empty: all, `direct` only up to 10000 particles
   bool dense = false;         ///< more settings of each solver
   int repeats = 5;
   std::function<void(const Progress&)> progress; ///< may be empty
 };
 
-/// One solver with one setting. The time is the median over the repeats: processor time on one thread, wall time on
-/// several; sorting and tree building included.
+/// Results of one solver with one setting. The time is the median over the repeats, including sorting and building the
+/// tree or mesh: processor time on one thread, wall time on several.
 struct GravityBenchRow {
   GravityChoice choice;
-  ForceErrors errors;     ///< against the sum over all pairs and images, on the sample
+  ForceErrors errors;     ///< relative to the sum over all pairs and images, on the sample
   double net_force = 0.0; ///< |Σ m a| / Σ m |a|, of all particles
   double ns_per_particle = 0.0;
 
-  /// All of these under the names that JSON and CSV have.
+  /// Returns all numbers with their names in JSON and CSV.
   std::vector<std::pair<std::string, double>> numbers() const;
 };
 
 struct GravityBench {
   std::vector<GravityBenchRow> rows;
-  std::size_t count = 0; ///< particles there are
+  std::size_t count = 0; ///< particles of the patch
   double size_x_m = 0.0, size_y_m = 0.0, offset_m = 0.0;
-  std::size_t sample = 0;      ///< particles drawn evenly, whose force was worked out exactly
-  std::size_t edge_sample = 0; ///< and those beside the edges
-  double edge_width_m = 0.0;   ///< how near these stand
+  std::size_t sample = 0;      ///< particles with exact forces, drawn evenly from the patch
+  std::size_t edge_sample = 0; ///< further ones near the edges
+  double edge_width_m = 0.0;   ///< largest distance of these from an edge
 };
 
+/// Makes the patch and measures each setting. Precondition: count and repeats are positive.
 /// Throws what make_gravity_solver() throws.
 GravityBench bench_gravity(const GravityBenchSettings& settings);
 
-/// The same of these choices in any patch.
+/// Measures these choices in the given patch. Precondition: the patch has particles, and `repeats` > 0.
 GravityBench bench_gravity_of(const Patch& state, const std::vector<GravityChoice>& choices, int repeats,
                               PhaseProgress& progress);
 

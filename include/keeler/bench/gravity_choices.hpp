@@ -1,4 +1,4 @@
-// The gravity solvers with all settings that benches and studies sweep: the one list of them.
+// The only list of the gravity solvers and settings that benches and studies compare.
 #pragma once
 
 #include <keeler/gravity/solver.hpp>
@@ -9,25 +9,25 @@
 
 namespace keeler {
 
-/// A solver with settings, and how they are called.
+/// A solver with settings, and their names in tables.
 struct GravityChoice {
-  std::string solver;    ///< as GravitySolver::name() and a scene have it
-  std::string text;      ///< of the settings
-  std::string parameter; ///< what the solver's error converges with, "opening angle"; empty: with nothing
+  std::string solver;    ///< name as in GravitySolver::name() and scenes
+  std::string text;      ///< the settings, "opening_angle 0.6"
+  std::string parameter; ///< convergence parameter of the error, "opening angle"; empty: none
   double value = 0.0;    ///< of that parameter
   GravitySettings settings;
 };
 
-/// Solver by solver, the most accurate settings first. `dense`: as many settings as a curve needs.
+/// Returns the choices by solver, the most accurate settings first; more settings per solver with `dense`, for curves.
 std::vector<GravityChoice> gravity_choices(bool dense);
 
-/// The solvers in that list.
+/// Returns the names of the solvers in that list.
 std::vector<std::string> gravity_solver_names();
 
-/// The choice of a solver by name, with what a scene that names it gets by default. The name must be in the list.
+/// Returns a solver with the default settings of a scene. Throws std::invalid_argument for a name not in the list.
 GravityChoice default_gravity_choice(const std::string& solver);
 
-/// What these settings are called; `automatic` is what it stands for with so many particles.
+/// Returns the choice with these settings; `automatic` is resolved for `count` particles.
 GravityChoice choice_of(const GravitySettings& settings, std::size_t count);
 
 } // namespace keeler

@@ -1,7 +1,7 @@
-// The states that benches of gravity time: a patch of Saturn's A ring, the physics of examples/a-ring-wakes.
+// The states of the gravity benches: patches of Saturn's A ring with the physics of examples/a-ring-wakes.
 //
-// Wakes are made in a patch of a few λ_cr and its copies stand side by side in a large state, which is exact
-// (bench_states.hpp): also their gravity is that of the one periodic patch.
+// Wakes form in a patch of a few λ_cr. A large state is tiled with copies of it (bench/states.hpp). Tiling is exact:
+// the gravity of the tiles equals that of the one periodic patch.
 #pragma once
 
 #include <keeler/bench/states.hpp>
@@ -11,17 +11,19 @@
 namespace keeler {
 
 enum class GravityState {
-  clumped, ///< wakes stand, 1.5 orbits after a uniform start
-  uniform  ///< a fresh patch
+  clumped, ///< with wakes, 1.5 orbits after a uniform initial state
+  uniform  ///< a uniform initial state
 };
 
-/// The physics of the example in a square patch of so many particles; at least two λ_cr wide, so there may be more.
+/// Returns the example's physics in a square patch of `count` particles, or more if the patch would be narrower than
+/// 2 λ_cr.
 Scene a_ring_scene(std::size_t count, std::uint64_t seed);
 
-/// A patch evolved for some orbits by a scene's physics, with a coarser step and a coarser tree: to get somewhere.
+/// Evolves a scene's initial state for some orbits, with a larger step and a less accurate tree than the scene's.
 Patch evolved_with_gravity(const Scene& scene, double orbits, PhaseProgress& progress);
 
-/// `count` is rounded to whole tiles, and up to what a patch of two λ_cr holds. The scene goes on from the patch.
+/// Makes a state of `count` particles, rounded to whole tiles and at least a patch of 2 × 2 λ_cr, and the scene that
+/// continues from it. Precondition: `count` > 0.
 BenchState gravity_state(std::size_t count, GravityState kind, PhaseProgress& progress);
 
 } // namespace keeler

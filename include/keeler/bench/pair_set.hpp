@@ -1,5 +1,5 @@
-// The pairs that a step's grid hands to the finder before anything has collided, kept so that any finder can be asked
-// about the very same pairs, in the same order, as often as wanted.
+// The pairs that a step passes to its finder before the first collision, recorded so that different finders can be
+// timed on identical queries in identical order.
 #pragma once
 
 #include <keeler/collision/drift.hpp>
@@ -10,12 +10,13 @@ namespace keeler {
 
 class PairSet {
 public:
-  /// The pairs of the step that the drift phase would carry out on these particles; they are not changed.
-  /// `every_candidate`: all that the grid's cells hold, else what the drift's own rejection leaves.
+  /// Records the pairs of a drift phase on a copy of these particles: all candidate pairs of the grid with
+  /// `every_candidate`, otherwise the pairs that remain after the drift's rejection. `step` is the length of the drift
+  /// (rad), `offset` the box's shear offset at mid-step.
   static PairSet of(Particles particles, const ShearingBox& box, double offset, const CollisionSettings& settings,
                     const Frequencies& frequencies, double step, bool every_candidate);
 
-  /// The step as finders see it; valid as long as this set stays where it is.
+  /// Returns the step for a finder. It refers to `bodies`, and is valid while this set lives and is not moved.
   DriftStep view() const;
 
   std::vector<Body> bodies;
@@ -26,16 +27,17 @@ private:
   DriftStep step_;
 };
 
-/// Processor time of one call, ns: the finder is asked about the whole set again and again for at least that long.
+/// Returns the processor time per call, ns. Repeats the queries of the whole set for at least `min_seconds`; 0 without
+/// queries. Precondition: `min_seconds` > 0.
 double ns_per_call(const PairSet& pairs, Finder& finder, double min_seconds);
 
-/// A contact by dense scan: both particles on their own epicycles at 512 times of the span, the first approach that
-/// crosses contact refined by bisection; a minimum between two times is looked for when the pair turns there.
-/// No bound is used and nothing of the finders: the cross-check of their truth.
+/// A contact by dense scan, the independent check of the certified finder: it uses no bounds and no code of the
+/// finders. It evaluates both epicycles at 512 times and refines the first crossing of contact by bisection; where the
+/// distance has a minimum between two times, it bisects for the minimum.
 struct ScanResult {
   bool contact = false;
   double time = 0.0;
-  double closest = 0.0; ///< the least |d| / R − 1 met while approaching
+  double closest = 0.0; ///< smallest |d| / R − 1 found while approaching
 };
 ScanResult dense_scan(const Pair& pair, const Frequencies& frequencies);
 

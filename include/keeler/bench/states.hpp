@@ -1,7 +1,7 @@
-// The states that benches time: patches near their collisional equilibrium without gravity, without overlaps.
+// The states of the drift benches: patches near their collisional equilibrium without gravity, free of overlaps.
 //
-// A large state is a small one side by side with copies of itself (states/tiled.hpp). Its particles meet as those of
-// the small one do, until rounding tells them apart.
+// A large state is tiled with copies of a small one (initial_conditions/tiled.hpp). Its collisions are copies of the
+// small state's, until rounding makes them differ.
 #pragma once
 
 #include <keeler/bench/drift.hpp>
@@ -11,18 +11,20 @@
 
 namespace keeler {
 
-/// A patch and the scene that goes on from it, with the finder and the step that are asked for. The scene's box and
-/// count are those of the tile; nothing but a fresh start uses them.
+/// A patch and the scene that continues from it, with the requested finder and step. The scene's box and count are the
+/// tile's; only a new initial state would use them.
 struct BenchState {
   Scene scene;
   Patch patch;
 };
 
+/// Makes the state. Precondition: count, step_orbits and optical_depth are positive.
 /// Throws UsageError for an unknown finder or an impossible patch.
 BenchState bench_state(const DriftBenchSettings& settings, PhaseProgress& progress);
 
-/// Puts a sphere of the same density at rest into the middle, in place of all particles that it touches; it gets the
-/// last id. The box must be wider than 2 (radius + the largest radius).
+/// Puts a sphere of the particles' density at rest into the centre, in place of all particles that it touches. It is
+/// the last particle and has the largest id. Precondition: the patch has particles, and the box is wider than 2 (radius
+/// + the largest radius).
 Patch with_moonlet(const Patch& patch, double radius);
 
 } // namespace keeler

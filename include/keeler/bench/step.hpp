@@ -1,4 +1,4 @@
-// What a whole step costs, gravity and collisions: in the clumped state of gravity_states.hpp, or in a snapshot.
+// Times whole steps with gravity and collisions: in the clumped state of gravity_states.hpp, or in a snapshot.
 #pragma once
 
 #include <keeler/bench/gravity_choices.hpp>
@@ -14,24 +14,25 @@
 namespace keeler {
 
 struct StepBenchSettings {
-  std::size_t count = 100000;        ///< rounded to whole tiles, and up to what two λ_cr by two hold
-  std::optional<std::string> from;   ///< a snapshot to time as it stands, with the scene in it; `count` is not read
-  std::optional<int> kick_every;     ///< none: 1, or what the snapshot's scene has
-  std::optional<std::string> solver; ///< with its default settings; none: tree, or what the snapshot's scene has
+  std::size_t count = 100000;        ///< rounded to whole tiles, at least a patch of 2 × 2 λ_cr
+  std::optional<std::string> from;   ///< a snapshot to time with its scene; `count` is then ignored
+  std::optional<int> kick_every;     ///< default: 1, or the value of the snapshot's scene
+  std::optional<std::string> solver; ///< with its default settings; default: tree, or the snapshot's solver
   int repeats = 5;
-  Communicator ranks;                            ///< that share the steps
+  Communicator ranks;                            ///< ranks of a distributed run
   std::function<void(const Progress&)> progress; ///< may be empty
 };
 
 struct StepBench {
   GravityChoice choice;
   double step_orbits = 0.0;
-  double dispersion_r_omega = 0.0; ///< c_x of the state that is timed, in ⟨r⟩ Ω
-  TimedSteps timed;                ///< in whole kick intervals
+  double dispersion_r_omega = 0.0; ///< c_x of the timed state, ⟨r⟩ Ω
+  TimedSteps timed;                ///< of whole kick intervals
 };
 
-/// Collective; the first rank's is the result. Throws UsageError for a snapshot whose scene has no gravity, and what
-/// read_snapshot(), patch_from_snapshot() and Simulation throw.
+/// Makes or reads the state and times it. Collective; the result is valid on rank 0. Precondition: count, repeats and
+/// kick_every are positive. Throws UsageError for a snapshot without gravity in its scene, and what read_snapshot(),
+/// patch_from_snapshot() and Simulation throw.
 StepBench bench_step(const StepBenchSettings& settings);
 
 } // namespace keeler

@@ -1,4 +1,4 @@
-// What this machine can do at best, to hold a bench's times against; and the clock of benches.
+// Upper limits of this machine's speed, for comparison with a bench's times; and the clocks of benches.
 #pragma once
 
 #include <keeler/particles/store.hpp>
@@ -7,24 +7,25 @@
 
 namespace keeler {
 
-/// Processor time on one thread, wall time on several, s since some moment.
+/// Returns processor time when threads() is 1, otherwise wall time; s since an arbitrary origin.
 double bench_seconds();
+/// Returns wall time, s since an arbitrary origin.
 double wall_seconds();
 
-/// Reads and writes back an array of lines of 64 bytes, in order, all threads together.
+/// Reads and writes an array of lines of 64 bytes in order, on all threads.
 class MemoryYardstick {
 public:
   explicit MemoryYardstick(std::size_t count) : lines_(count) {}
 
-  /// For one line, ns.
+  /// Returns the time per line, ns. Precondition: the array is not empty.
   double measure();
 
 private:
   std::vector<Body> lines_;
 };
 
-/// Evaluates |d|² and d·v of a pair from the elements of both, at one time for all pairs, on all threads, in portable
-/// double precision; everything stays in the fastest cache. For one pair, ns.
+/// Evaluates |d|² and d·v of pairs from their elements, at one common time, on all threads, in portable double
+/// precision; all data stay in the fastest cache. Returns the time per pair, ns.
 double pair_yardstick(double (*clock)() = bench_seconds);
 
 } // namespace keeler

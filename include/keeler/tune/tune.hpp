@@ -1,6 +1,6 @@
-// The cheapest settings of a scene that are as accurate as one asks for, found by short probes on the state that the
-// scene comes to: gravity's solver and its accuracy, the kick interval, the step, threads; and how long the run will
-// take with them. docs/dev/tune.md says how.
+// Finds the cheapest settings of a scene within given tolerances, by short probes on the state that the scene evolves
+// to: gravity's solver and its accuracy, the kick interval, the step, and the number of threads. It also predicts the
+// duration of the run with them. docs/dev/tune.md describes the method.
 #pragma once
 
 #include <keeler/bench/gravity.hpp>
@@ -14,63 +14,65 @@
 
 namespace keeler {
 
-/// The part of a tolerance that the probes are held to, since another seed has another error (docs/dev/tune.md).
+/// Fraction of a tolerance that the probes must meet, since the error varies between seeds (docs/dev/tune.md).
 inline constexpr double margin_for_seeds = 0.8;
 
 struct TuneSettings {
-  double force_error = 4e-3;         ///< rms error of the force that is allowed
-  double physics_error = 0.01;       ///< share of the loss of energy that kicks may make beyond the work of the shear
-  std::optional<double> orbits = {}; ///< the state's age when it is probed; none: 4, or 8 without self-gravity
+  double force_error = 4e-3;         ///< largest rms error of the force
+  double physics_error = 0.01;       ///< largest excess of the energy loss over the work of the shear, relative
+  std::optional<double> orbits = {}; ///< age of the probed state; default 4, 8 without self-gravity
   int max_threads = 1;
   std::function<void(const Progress&)> progress = {}; ///< may be empty
 };
 
-/// What a kick interval makes.
+/// Effect of a kick interval.
 struct KickProbe {
   double interval = 0.0;         ///< orbits
-  double unresolved = 0.0;       ///< share of the contacts that are slower than a kick of the pair's own gravity
-  double unresolved_error = 0.0; ///< standard error, by the scatter of the states that were probed
+  double unresolved = 0.0;       ///< fraction of the contacts that are slower than a kick by the pair's mutual gravity
+  double unresolved_error = 0.0; ///< standard error, from the scatter of the probed states
 
-  /// What the loss exceeds the work by, as measured in wakes (docs/dev/step.md).
+  /// Returns the relative excess of the loss over the work, as measured in wakes (docs/dev/step.md).
   double physics_error() const { return 1.25 * unresolved; }
 };
 
-/// What a step costs, with the kick interval and the solver that were chosen.
+/// Cost of a step with the chosen kick interval and solver.
 struct StepProbe {
   double step = 0.0;     ///< orbits
-  int drifts = 1;        ///< a kick
-  double contacts = 0.0; ///< a particle and drift
-  double seconds = 0.0;  ///< of the processor, an orbit: mean over the states, in turns with the others
+  int drifts = 1;        ///< per kick
+  double contacts = 0.0; ///< per particle and drift
+  double seconds = 0.0;  ///< processor time per orbit: mean over the states, measured in turn with the other steps
 };
 
 struct ThreadProbe {
   int threads = 1;
-  double speedup = 1.0; ///< wall time on one over wall time on so many
+  double speedup = 1.0; ///< wall time on one thread over wall time on `threads`
 };
 
 struct Tuning {
   std::size_t particles = 0;
-  double orbits = 0.0; ///< the age of the last of the states that were probed
+  double orbits = 0.0; ///< age of the last probed state
 
   std::vector<GravityBenchRow> gravity; ///< empty without self-gravity
   std::size_t chosen_gravity = 0;
-  bool meets_force_error = true; ///< with the margin; else the most accurate is chosen
+  bool meets_force_error = true; ///< with the margin; if false, the most accurate one is chosen
   std::vector<KickProbe> kicks;  ///< in the order of the probes; empty without self-gravity
   std::size_t chosen_kicks = 0;
-  bool meets_physics_error = true; ///< with the margin; else the shortest is chosen
+  bool meets_physics_error = true; ///< with the margin; if false, the shortest one is chosen
   std::vector<StepProbe> steps;
   std::size_t chosen_step = 0;
-  std::vector<ThreadProbe> threads; ///< one thread, and what the machine offers
+  std::vector<ThreadProbe> threads; ///< one thread, and numbers up to max_threads
   int chosen_threads = 1;
 
-  double processor_seconds = 0.0; ///< predicted, of the whole run on one thread
-  double wall_seconds = 0.0;      ///< the same on the threads that were chosen
+  double processor_seconds = 0.0; ///< prediction for the whole run on one thread
+  double wall_seconds = 0.0;      ///< prediction for the whole run on the chosen threads
 };
 
-/// Evolves the scene's state and probes it. Throws what initial_patch() and Simulation throw; Interrupted.
+/// Evolves the scene's state and probes it. Precondition: tolerances, `orbits` and `max_threads` are positive.
+/// Throws UsageError for axisymmetric gravity, what initial_patch() and Simulation throw, and Interrupted.
 Tuning tune(const Scene& scene, const TuneSettings& settings);
 
-/// The keys that say what was chosen, each with a comment on its price and error. `scene` is the one that was tuned.
+/// Returns the chosen settings as scene keys, each with a comment on its cost and error. Precondition: `tuning` is the
+/// result of tune() for `scene`.
 std::vector<KeyChange> chosen_keys(const Tuning& tuning, const TuneSettings& settings, const Scene& scene);
 
 } // namespace keeler

@@ -1,10 +1,10 @@
-# Completion of keeler for bash: the program itself says what can follow.
+# Completion of keeler for bash: "keeler complete" prints the candidates.
 _keeler() {
   local cur words cword
   _get_comp_words_by_ref -n =: cur words cword
   local program=${words[0]/#\~/$HOME} answer line
   mapfile -t answer < <("$program" complete "${words[@]:0:cword+1}" 2>/dev/null)
-  # bash completes what stands behind the last of its word breaks, '=' among them.
+  # bash completes only the text after the last word break, and '=' is one.
   local before=
   [[ $cur == *=* && $COMP_WORDBREAKS == *=* ]] && before=${cur%=*}=
   for line in "${answer[@]:1}"; do

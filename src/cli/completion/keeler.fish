@@ -1,4 +1,4 @@
-# Completion of keeler for fish: the program itself says what can follow.
+# Completion of keeler for fish: "keeler complete" prints the candidates.
 function __keeler_complete
     set -l words (commandline --tokenize --cut-at-cursor --current-process) (commandline --current-token --cut-at-cursor)
     set -l answer ($words[1] complete $words 2>/dev/null)

@@ -15,14 +15,14 @@ A ring in a few lines::
     print(sim.analyze()["toomre_q"])
     sim.plot("ring.png")
 
-What there is:
+Contents:
 
-- ``Simulation``: a patch that runs in memory. ``load``, ``resume``, ``from_arrays`` make one from what exists.
-- ``Snapshot``: a patch at one instant. ``generate``, ``tile``, ``start_from_arrays`` make one; ``read`` reads one.
+- ``Simulation``: a patch that runs in memory. ``load``, ``resume`` and ``from_arrays`` make one from existing data.
+- ``Snapshot``: a patch at one time. ``generate``, ``tile``, ``start_from_arrays`` make one; ``read`` reads one.
 - ``Run``: the folder of a run, from ``run`` or ``read(folder)``: series, snapshots, summary. ``sweep`` makes many runs.
-- ``analyze()`` of each of these: ``Numbers``; ``quantities`` says what each is, and in which unit.
-- ``render``: a picture of any of them. ``add_restitution_law``: a law of one's own.
-- ``set_threads``, ``threads``: results are the same, bit for bit, for any number.
+- ``analyze()`` of each of these returns ``Numbers``; ``quantities`` lists their units and meanings.
+- ``render``: a picture of any of them. ``add_restitution_law``: a user-defined law.
+- ``set_threads``, ``threads``: results are bitwise identical for any number of threads.
 - ``Error`` and its four kinds: ``UsageError``, ``InvariantError``, ``IoError``, ``RunError``.
 
 Lengths are in m, velocities in m/s, masses in kg, times in orbits. x points outward, y along the orbit, z up.
@@ -35,7 +35,7 @@ import os as _os
 import sys as _sys
 from importlib.util import find_spec as _find_spec
 
-# Threads that spin while they wait make a run ten times slower on a busy machine. OpenMP reads this when it is loaded.
+# Threads that spin while waiting make a run ten times slower on a busy machine. OpenMP reads this when it is loaded.
 if "GOMP_SPINCOUNT" not in _os.environ and "OMP_WAIT_POLICY" not in _os.environ:
     _os.environ["OMP_WAIT_POLICY"] = "passive"
     _os.environ["GOMP_SPINCOUNT"] = "6000"
@@ -68,7 +68,7 @@ from .snapshots import Picture, Snapshot, generate, start_from_arrays, tile
 
 __version__ = _core.version()
 
-_atexit.register(_core.end_other_threads)  # daemon threads that compute: the interpreter would end them inside C++
+_atexit.register(_core.end_other_threads)  # the interpreter would end computing daemon threads inside C++
 
 __all__ = [
     "ELEMENTS",
@@ -102,28 +102,29 @@ __all__ = [
 
 
 def threads():
-    """How many threads loops use. The default is that of OMP_NUM_THREADS, or all processors."""
+    """Returns the number of threads that loops use. The default is OMP_NUM_THREADS, or all processors."""
     return _core.threads()
 
 
 def set_threads(count):
-    """Sets how many threads, at least 1, loops of this Python thread use from now on. Raises UsageError."""
+    """Sets the number of threads, at least 1, for loops called from this Python thread. Raises UsageError."""
     _core.set_threads(scenes.whole_number(count, "count", 1, 1024))
 
 
-_own_laws = []  # functions that Keeler calls must live as long as it
+_own_laws = []  # keeps the functions alive that Keeler calls
 
 
 def add_restitution_law(name, function):
-    """A restitution law of your own, which scenes then name: ``collisions.restitution = {law = "own", name = NAME}``.
+    """Registers a restitution law for scenes with ``collisions.restitution = {law = "own", name = NAME}``.
 
-    ``function`` is compiled code, never Python (a call for each contact): a ctypes function or the address of one, of
-    the C type ``double law(double speed, double radius_low, double radius_high)``: normal approach speed in m/s, radii in
-    m of the particles with the lower and the higher id; it returns the coefficient, in [0, 1]. It is called from
-    several threads at once and must give the same value for the same impact. Of numba: ``cfunc(...).address``.
+    ``function`` is compiled code, not Python (it is called for each contact): a ctypes function or its address, of
+    the C type ``double law(double speed, double radius_low, double radius_high)``. Its arguments are the normal
+    approach speed in m/s and the radii in m of the particles with the lower and the higher id; it returns the
+    coefficient, in [0, 1]. It is called from several threads at once, and its result may depend on the arguments
+    only. With numba use ``cfunc(...).address``.
 
-    The name enters the scene and ``state_hash``: a program that has no law of that name refuses to go on with such a
-    run. Raises UsageError for a coefficient out of range, or a name that is taken.
+    The name enters the scene and ``state_hash``: a program without a law of that name refuses to continue such a run.
+    Raises UsageError for a coefficient out of range, or a name that is taken.
     """
     if isinstance(function, (_ctypes._CFuncPtr, _ctypes.c_void_p)):
         address = _ctypes.cast(function, _ctypes.c_void_p).value

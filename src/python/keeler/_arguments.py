@@ -1,4 +1,4 @@
-"""What many functions take: paths, the texts of files, arrays of numbers. What cannot be is refused in one line."""
+"""Checks of common arguments: paths, texts of files, arrays of numbers. Invalid ones raise errors of one line."""
 
 import errno
 import os
@@ -10,7 +10,7 @@ from .errors import IoError, UsageError
 
 _MOST_BYTES = 2**28
 
-#: How astropy, yt and pint call the units of SI, without blanks.
+#: The names of SI units in astropy, yt and pint, without blanks.
 _UNITS = {
     "positions": ("m", "meter"),
     "velocities": ("m/s", "meter/second"),
@@ -21,16 +21,16 @@ _UNITS = {
 
 
 def shown(value):
-    """A value in a message."""
+    """Returns a value for a message, shortened."""
     try:
         text = repr(value)
-    except ValueError:  # a number of more digits than Python writes
+    except ValueError:  # a number with more digits than Python converts
         text = "a number of very many digits"
     return text if len(text) <= 40 else text[:37] + "..."
 
 
 def path(value, function):
-    """The Path of a text or of a path object. It need not be there."""
+    """Returns the Path of a string or path object. It need not exist."""
     try:
         name = os.fspath(value)
         possible = isinstance(name, str) and name != "" and b"\0" not in os.fsencode(name)
@@ -42,7 +42,7 @@ def path(value, function):
 
 
 def content(file):
-    """The bytes of a file, which may be a pipe. Raises OSError."""
+    """Returns the bytes of a file, which may be a pipe. Raises OSError."""
     pieces, size = [], 0
     with open(file, "rb") as opened:
         while piece := opened.read(2**20):
@@ -54,7 +54,7 @@ def content(file):
 
 
 def text(file):
-    """The text of a file that a run or a sweep left. Raises IoError."""
+    """Returns the text of a file of a run or a sweep. Raises IoError."""
     try:
         return content(file).decode("utf-8")
     except UnicodeDecodeError:
@@ -64,7 +64,7 @@ def text(file):
 
 
 def whole_characters(value, name):
-    """A text, refused where it has half a character: no file can hold it."""
+    """Returns a string. Raises UsageError if it has a lone surrogate, which UTF-8 cannot encode."""
     try:
         value.encode("utf-8")
     except UnicodeEncodeError as error:
@@ -76,7 +76,8 @@ def whole_characters(value, name):
 
 
 def unmasked(value, name):
-    """An array as given, None, or a sequence of numbers; refused where entries are masked: the mask would be lost."""
+    """Returns an array, None, or a sequence of numbers unchanged. Raises UsageError for masked entries: the mask
+    would be lost."""
     rows = value if isinstance(value, (list, tuple)) else (value,)
     count = sum(int(np.ma.count_masked(row)) for row in rows if isinstance(row, np.ma.MaskedArray))
     if count:
@@ -88,7 +89,8 @@ def unmasked(value, name):
 
 
 def doubles(value, name):
-    """An array of doubles of what is given as positions, velocities, radii, masses or spins; None of None."""
+    """Converts positions, velocities, radii, masses or spins to an array of doubles; None to None. Raises
+    UsageError."""
     if value is None:
         return None
     unit = getattr(value, "unit", getattr(value, "units", None))

@@ -1,4 +1,4 @@
-"""The border to the compiled part: arguments that it cannot take are refused in one line."""
+"""Wrappers of the compiled part: invalid arguments raise errors of one line."""
 
 import functools
 import types
@@ -8,10 +8,10 @@ from .errors import UsageError
 
 
 def _refusal(owner, name, values):
-    """The line on arguments of types that do not fit."""
+    """Returns the message for arguments of wrong types."""
     shown = ", ".join(map(_arguments.shown, values))
     what = owner.lower() if name == "__init__" else name
-    return f"{what} cannot take {shown or 'no value'}; help() on what was called says what it takes"
+    return f"{what} cannot take {shown or 'no value'}; help() of the function lists its arguments"
 
 
 def _guarded(owner, name, function):
@@ -29,7 +29,7 @@ def _guarded(owner, name, function):
 
 
 def guard(module):
-    """Guards all functions of a compiled module, and all methods of its classes."""
+    """Wraps all functions of a compiled module, and all methods of its classes."""
     for name, thing in list(vars(module).items()):
         if isinstance(thing, type):
             for method, function in list(vars(thing).items()):

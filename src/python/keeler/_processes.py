@@ -1,5 +1,5 @@
-"""Processes of the program that this one waits for. They end with the interpreter, and so do their temporary folders:
-a daemon thread may wait for one when it ends."""
+"""Child processes that run the program. They and their temporary folders end with the interpreter, also when a daemon
+thread waits for one at that time."""
 
 import atexit
 import os
@@ -17,19 +17,19 @@ _ending = False
 
 @contextmanager
 def folder():
-    """A temporary folder, for what a process reads."""
-    with _begun(_folders, tempfile.TemporaryDirectory) as place:
-        with place:
+    """A temporary folder for the input of a process."""
+    with _registered(_folders, tempfile.TemporaryDirectory) as temporary:
+        with temporary:
             try:
-                yield Path(place.name)
+                yield Path(temporary.name)
             except BaseException:
-                _stand_still_at_the_end()
+                _block_at_the_end()
                 raise
 
 
-def said_by(command):
-    """(exit code, what it wrote to standard error) of a process. Ctrl-C reaches it from here alone, and it takes the
-    time it needs."""
+def run_process(command):
+    """Runs a process and returns (exit code, standard error). Ctrl-C is passed on to it, and it may finish
+    properly."""
 
     def start():
         return subprocess.Popen(
@@ -37,25 +37,25 @@ def said_by(command):
             start_new_session=True,
         )
 
-    with _begun(_running, start) as process, process:
+    with _registered(_running, start) as process, process:
         try:
-            said = process.communicate()[1]
+            messages = process.communicate()[1]
         except BaseException:
             process.send_signal(signal.SIGINT)
             process.communicate()
             raise
-        _stand_still_at_the_end()
-    return process.returncode, said
+        _block_at_the_end()
+    return process.returncode, messages
 
 
 @contextmanager
-def _begun(kind, make):
-    """What make() returns, known to the end of the interpreter meanwhile."""
+def _registered(kind, make):
+    """Gives make() to a block and registers it meanwhile, so that _end() can end it."""
     with _guard:
         if not _is_over():
             made = make()
             kind.add(made)
-    _stand_still_at_the_end()
+    _block_at_the_end()
     try:
         yield made
     finally:
@@ -63,12 +63,12 @@ def _begun(kind, make):
 
 
 def _is_over():
-    """For other threads than the one in which the interpreter ends."""
+    """True if the interpreter ends, in threads other than the one that ends it."""
     return _ending and threading.current_thread() is not threading.main_thread()
 
 
-def _stand_still_at_the_end():
-    """An exception of a daemon thread would be printed."""
+def _block_at_the_end():
+    """Blocks forever if the interpreter ends: an exception of a daemon thread would be printed."""
     if _is_over():
         threading.Event().wait()
 
@@ -81,12 +81,12 @@ def _end():
         process.send_signal(signal.SIGINT)
     for process in list(_running):
         process.wait()
-    for place in list(_folders):
-        place.cleanup()
+    for temporary in list(_folders):
+        temporary.cleanup()
 
 
 def _forget():
-    """In a fork: what runs is its parent's."""
+    """Clears the registers in a forked process: the running processes belong to its parent."""
     global _guard
     _guard = threading.Lock()
     _running.clear()

@@ -1,20 +1,20 @@
-"""Errors of Keeler: the one line that the program would print, as exceptions of four kinds."""
+"""Exceptions of four kinds, with the one-line error messages of the program."""
 
 
 class Error(Exception):
-    """What all errors of Keeler are; ``exit_code`` is the one that the program would end with."""
+    """Base class of all errors of Keeler; ``exit_code`` is the exit code of the program for this error."""
 
     exit_code = 1
 
 
 class UsageError(Error, ValueError):
-    """A scene, an argument or an array that cannot be: what, where, and what to do."""
+    """An invalid scene, argument or array. The message says what is wrong, where, and what to do."""
 
     exit_code = 2
 
 
 class InvariantError(Error, ArithmeticError):
-    """A state that physics does not allow: particles inside each other, an element that is not a number."""
+    """A state that physics does not allow: overlapping particles, an element that is not finite."""
 
     exit_code = 3
 
@@ -26,6 +26,6 @@ class IoError(Error, OSError):
 
 
 class RunError(Error, RuntimeError):
-    """Anything else that ends a computation: wakes that never settle, a simulation that cannot go on."""
+    """Any other end of a computation: wakes that never settle, a simulation that cannot continue."""
 
     exit_code = 1

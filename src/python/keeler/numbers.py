@@ -1,4 +1,4 @@
-"""What is measured, with names, units and meanings."""
+"""Measured numbers, with names, units and meanings."""
 
 from typing import NamedTuple
 
@@ -7,8 +7,8 @@ from .errors import UsageError
 
 
 class Quantity(NamedTuple):
-    """A number that ``analyze()`` gives: its name there, its unit, what it is, and the name of the number that stands
-    beside it, or beside the same in SI, as its standard error or its scatter (None without one)."""
+    """Description of a number of ``analyze()``: its name, unit and meaning, and the name of its standard error or
+    scatter, or of that in SI (None without one)."""
 
     name: str
     unit: str
@@ -17,26 +17,26 @@ class Quantity(NamedTuple):
 
 
 def quantities():
-    """All numbers that ``analyze()`` gives, in their order: a dictionary of names and Quantities."""
+    """Returns all numbers of ``analyze()``, in their order: a dictionary of names and Quantities."""
     return {name: Quantity(name, *about[:3]) for name, about in _core.quantities().items()}
 
 
 class Numbers(dict):
-    """Numbers by their names, which end in their units; what is not known is None. A name with a dot, "clusters.count",
-    is ``numbers["clusters"]["count"]``."""
+    """Numbers by name; the names end in their units, and unknown numbers are None. A name with a dot,
+    "clusters.count", is ``numbers["clusters"]["count"]``."""
 
     def __init__(self, values, about):
         super().__init__(values)
         self._about = about
 
     def quantity(self, name):
-        """The Quantity of that name: unit and meaning. Raises UsageError."""
+        """Returns the Quantity of that name: unit and meaning. Raises UsageError."""
         if name not in self._about:
             raise UsageError(f"there is no number '{name}' here; keeler.quantities() lists them with their units")
         return Quantity(name, *self._about[name][:3])
 
     def error(self, name):
-        """The standard error or the scatter of the number of that name, in its unit; None where none is known. Raises
+        """Returns the standard error or the scatter of a number, in the number's unit; None if unknown. Raises
         UsageError."""
         spread, si = self.quantity(name).spread, self._about[name][3]
         if spread is None or self.get(spread) is None or not self.get(si):

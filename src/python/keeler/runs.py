@@ -1,4 +1,4 @@
-"""Runs with a folder, sweeps, and what they leave."""
+"""Runs in folders, sweeps, and their results."""
 
 import csv
 import io
@@ -13,9 +13,9 @@ from .errors import Error, InvariantError, IoError, RunError, UsageError
 
 
 class Run:
-    """The folder of a run, read. ``series`` is a dictionary of arrays, one a column of series.csv, units in the names;
-    ``snapshots`` a list of Snapshots, each read when it is asked for; ``summary`` the Numbers of summary.json (None
-    while the run works); ``scene`` the resolved scene as text."""
+    """The results in the folder of a run. ``series`` is a dictionary of arrays, one per column of series.csv, with
+    units in the names; ``snapshots`` is a list of Snapshots, each read on access; ``summary`` the Numbers of
+    summary.json (None while the run works); ``scene`` the resolved scene as text."""
 
     def __init__(self, folder):
         self.folder = _arguments.path(folder, "Run")
@@ -36,7 +36,7 @@ class Run:
 
     @property
     def moonlets(self):
-        """The columns of moonlets.csv, as ``series``. Raises IoError where the scene has none."""
+        """The columns of moonlets.csv, as ``series``. Raises IoError if the scene has no moonlets."""
         return _core.read_series(self.folder / "moonlets.csv")
 
     @property
@@ -57,13 +57,13 @@ class Run:
         return _Snapshots(sorted(self.folder.glob("snap_*.hdf"), key=lambda file: (len(file.name), file.name)))
 
     def analyze(self, since=None, until=None):
-        """The Numbers of ``keeler analyze DIR --json``, a dictionary, from one orbit to another (default: from where
-        on the run is steady). Raises UsageError, IoError."""
+        """Returns the Numbers of ``keeler analyze DIR --json``, a dictionary, between two orbits (default: the steady
+        part of the run). Raises UsageError, IoError."""
         return numbers.Numbers(*_core.analyze(self.folder, since, until))
 
 
 class _Snapshots:
-    """Files that are read when one is asked for."""
+    """A sequence of snapshot files that are read on access."""
 
     def __init__(self, files):
         self.files = files
@@ -78,11 +78,11 @@ class _Snapshots:
 
 
 def _no_number(name):
-    raise ValueError(name)  # NaN and Infinity, which JSON has not
+    raise ValueError(name)  # NaN and Infinity are not JSON
 
 
 def read(path):
-    """A snapshot file as a Snapshot, the folder of a run as a Run. Raises IoError, UsageError."""
+    """Reads a snapshot file as a Snapshot, or the folder of a run as a Run. Raises IoError, UsageError."""
     path = _arguments.path(path, "read")
     if path.is_dir():
         return Run(path)
@@ -92,79 +92,80 @@ def read(path):
 
 
 def program():
-    """The path of the program ``keeler`` of this version. Raises RunError."""
-    package = Path(__file__).parent  # not resolved: in a build, links to the sources stand here
+    """Returns the path of the program ``keeler`` of this version. Raises RunError."""
+    package = Path(__file__).parent  # not resolved: a build has links to the sources here
     installed = [prefix / "bin" / "keeler" for prefix in list(package.parents)[3:4]]  # PREFIX/lib/python3/dist-packages
-    for place in (package / "bin" / "keeler", package.parent.parent / "keeler", *installed, shutil.which("keeler")):
-        if place and Path(place).is_file() and os.access(place, os.X_OK):
-            said = subprocess.run([place, "--version"], capture_output=True, check=False).stdout.split()
-            if said[-1:] == [_core.version().encode()]:
-                return str(place)
-    raise RunError(f"the program keeler {_core.version()} is not there; install it beside the package, or add it to PATH")
+    for file in (package / "bin" / "keeler", package.parent.parent / "keeler", *installed, shutil.which("keeler")):
+        if file and Path(file).is_file() and os.access(file, os.X_OK):
+            words = subprocess.run([file, "--version"], capture_output=True, check=False).stdout.split()
+            if words[-1:] == [_core.version().encode()]:
+                return str(file)
+    raise RunError(f"the program keeler {_core.version()} was not found; install it beside the package, or add it to PATH")
 
 
 def _call(arguments):
-    """Runs the program; its errors as exceptions."""
-    code, said = _processes.said_by([program(), *map(str, arguments)])
+    """Runs the program. Raises its errors as exceptions."""
+    code, messages = _processes.run_process([program(), *map(str, arguments)])
     if code == 0:
         return
     kind = {2: UsageError, 3: InvariantError, 4: IoError}.get(code, RunError)
-    lines = [line[len("keeler: ") :] for line in said.splitlines() if line.startswith("keeler: ")]
+    lines = [line[len("keeler: ") :] for line in messages.splitlines() if line.startswith("keeler: ")]
     raise kind(lines[-1] if lines else f"keeler ended with {code}")
 
 
 def run(scene, folder, *, start=None, force=False, **overrides):
-    """``keeler run SCENE -o FOLDER``: a run with series, snapshots and checkpoints, in a process of its own.
+    """Runs ``keeler run SCENE -o FOLDER`` in a separate process: a run with series, snapshots and checkpoints.
 
-    ``start`` is what to start from, as of a Simulation. Returns its Run: ``run.series``, ``run.analyze()`` with all
-    viscosities. A folder that holds a run is refused unless ``force``. Ctrl-C stops it with a checkpoint;
-    ``keeler resume FOLDER`` goes on. Raises as the program ends: UsageError, InvariantError, IoError, RunError.
+    ``start`` is the initial state, as of a Simulation. Returns the Run: ``run.series``, ``run.analyze()`` with all
+    viscosities. A folder with a run is refused unless ``force``. Ctrl-C stops the run with a checkpoint;
+    ``keeler resume FOLDER`` continues it. Raises the program's error: UsageError, InvariantError, IoError, RunError.
     """
     folder = _arguments.path(folder, "run")
-    with _processes.folder() as place:
-        file, source = place / "scene.toml", []
+    with _processes.folder() as temporary:
+        file, source = temporary / "scene.toml", []
         if start is not None:
             start = snapshots.as_snapshot(start)
-            start.save(place / "start.hdf")
-            source = ["--from", place / "start.hdf"]
+            start.save(temporary / "start.hdf")
+            source = ["--from", temporary / "start.hdf"]
         file.write_text(scenes.read(scene, overrides, start and start._name).text, encoding="utf-8")
         _call(["run", file, "-o", folder, *source, *(["--force"] if force else [])])
     return Run(folder)
 
 
 def sweep(grid, folder, *, jobs=None, quantities=()):
-    """``keeler sweep GRID -o FOLDER``: many runs, each a process. What is finished already is not run again.
+    """Runs ``keeler sweep GRID -o FOLDER``: many runs, each a process. Finished runs are not repeated.
 
-    ``grid`` is the path of a grid's file, or a dictionary of what it holds, whose ``"scene"`` may be a dictionary too.
-    Paths in a dictionary are relative to the current folder.
+    ``grid`` is the path of a grid file, or a dictionary with its content, in which ``"scene"`` may be a dictionary
+    too. Paths in a dictionary are relative to the current folder.
 
-    ``quantities`` are names of numbers of ``analyze()`` that the tables have besides those of every sweep.
+    ``quantities`` are names of numbers of ``analyze()``, as further columns of the tables.
 
-    Returns {"runs": rows of sweep.csv, "points": rows of points.csv} as lists of dictionaries, numbers as floats, what is not known as None. Raises
-    UsageError for a grid that cannot be, RunError when runs failed (sweep.csv says which).
+    Returns {"runs": rows of sweep.csv, "points": rows of points.csv} as lists of dictionaries, with numbers as floats
+    and unknown values as None. Raises UsageError for an invalid grid, RunError when runs failed (sweep.csv lists
+    them).
     """
     folder = _arguments.path(folder, "sweep")
-    with _processes.folder() as place:
-        grid = _written(grid, place) if isinstance(grid, dict) else _arguments.path(grid, "sweep")
+    with _processes.folder() as temporary:
+        grid = _written(grid, temporary) if isinstance(grid, dict) else _arguments.path(grid, "sweep")
         try:
             names = [quantities] if isinstance(quantities, str) else [str(name) for name in quantities]
             more = ["--quantities", ",".join(names)] if names else []
             _call(["sweep", grid, "-o", folder, *(["--jobs", jobs] if jobs else []), *more])
         except Error as error:
-            raise type(error)(str(error).replace(f"{place}{os.sep}", "")) from None
+            raise type(error)(str(error).replace(f"{temporary}{os.sep}", "")) from None
     return {name: _rows(folder / file) for name, file in (("runs", "sweep.csv"), ("points", "points.csv"))}
 
 
-def _written(grid, place):
-    """The file of a grid that is a dictionary."""
+def _written(grid, target):
+    """Writes a grid that is a dictionary into the folder ``target``, and returns its file."""
     scene = grid.get("scene")
     if isinstance(scene, dict):
-        (place / "scene.toml").write_text(scenes.source(scene)[0], encoding="utf-8")
+        (target / "scene.toml").write_text(scenes.source(scene)[0], encoding="utf-8")
         grid = {**grid, "scene": "scene.toml"}
     elif scene is not None:
         grid = {**grid, "scene": os.path.abspath(_arguments.path(scene, "sweep"))}
-    (place / "grid.toml").write_text(scenes.source(grid)[0], encoding="utf-8")
-    return place / "grid.toml"
+    (target / "grid.toml").write_text(scenes.source(grid)[0], encoding="utf-8")
+    return target / "grid.toml"
 
 
 def _rows(file):
@@ -187,14 +188,14 @@ def _rows(file):
     return [dict(zip(names, map(value, row))) for row in rows]
 
 
-def render(what, file=None, **look):
-    """The picture of a Snapshot, a Simulation, a snapshot file or the last state of a run's folder: see
+def render(what, file=None, **options):
+    """Returns the picture of a Snapshot, a Simulation, a snapshot file or the last state in a run's folder: see
     Snapshot.plot()."""
     if not hasattr(what, "plot"):
         if not isinstance(what, Run):
             what = read(what)
         if isinstance(what, Run):
             what = what.snapshots[-1]
-    return what.plot(file, **look)
+    return what.plot(file, **options)
 
 

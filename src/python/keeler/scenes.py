@@ -1,4 +1,4 @@
-"""Scenes as Python gives them: a file, a text, a dictionary, and overrides."""
+"""Scenes from Python: a file, a text or a dictionary, and overrides."""
 
 import json
 import math
@@ -16,7 +16,7 @@ def _text(value, place):
 
 
 def _toml(value, place):
-    """A value as TOML, in one line."""
+    """Returns a value as TOML, in one line."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (str, os.PathLike)):
@@ -26,7 +26,7 @@ def _toml(value, place):
     if hasattr(value, "tolist"):  # arrays and numbers of numpy
         return _toml(_arguments.unmasked(value, place).tolist(), place)
     if isinstance(value, int):
-        if value.bit_length() > 1000:  # Python refuses to write it
+        if value.bit_length() > 1000:  # Python refuses to convert it
             raise UsageError(f"{place} is a number of more than 300 digits; lower it")
         return str(value)
     if isinstance(value, float):
@@ -43,12 +43,12 @@ def _overrides(tables, place):
     for name, value in tables.items():
         path = place + _arguments.whole_characters(str(name), "the name of a key")
         below = _overrides(value, path + ".") if isinstance(value, dict) else None
-        lines += below or [f"{path}={_toml(value, path)}"]  # an empty table says something: {"gravity": {}}
+        lines += below or [f"{path}={_toml(value, path)}"]  # an empty table has a meaning: {"gravity": {}}
     return lines
 
 
 def _not_too_deep(make):
-    """What make() returns. A table may hold itself."""
+    """Returns make(). Raises UsageError for a table that contains itself."""
     try:
         return make()
     except RecursionError:
@@ -56,13 +56,13 @@ def _not_too_deep(make):
 
 
 def overrides_of(tables):
-    """{"time": {"end": 2}} and {"time.end": 2} as ["time.end=2"]."""
+    """Converts {"time": {"end": 2}} or {"time.end": 2} to ["time.end=2"]."""
     return _not_too_deep(lambda: _overrides(tables, ""))
 
 
 def source(scene):
-    """(text, name) of a scene: a path, a text with a line break, a dictionary, or a snapshot's. Its files are found by the
-    name; that of a path is bytes, which need not be UTF-8."""
+    """Returns (text, name) of a scene: a path, a text with a line break, a dictionary, or a snapshot's scene. Paths
+    in the scene are relative to the name; the name of a path is bytes, which need not be UTF-8."""
     if isinstance(scene, dict):
         lines = _not_too_deep(lambda: [f"{_text(str(k), 'a key')} = {_toml(v, str(k))}" for k, v in scene.items()])
         return "\n".join(lines) + "\n", "scene"
@@ -82,26 +82,26 @@ def source(scene):
         raise UsageError(f"cannot read the scene '{path}': {error.strerror}; name a scene file") from None
 
 
-def whole_number(value, name, least, most):
-    """An int of anything that is a whole number."""
+def whole_number(value, name, low, high):
+    """Converts a whole number of any type to int. Raises UsageError unless it is from ``low`` to ``high``."""
     try:
         number = operator.index(value)
     except TypeError:
         number = None
-    if number is None or not least <= number <= most:
-        raise UsageError(f"{name} is {_arguments.shown(value)}; give a whole number from {least} to {most}")
+    if number is None or not low <= number <= high:
+        raise UsageError(f"{name} is {_arguments.shown(value)}; give a whole number from {low} to {high}")
     return number
 
 
 def read(scene, overrides, start_from=None):
-    """The checked scene."""
+    """Returns the validated scene."""
     text, name = source(scene)
     start_from = None if start_from is None else os.fsencode(start_from)
     return as_arguments(lambda: _core.Scene(text, name, overrides_of(overrides), start_from))
 
 
 def as_arguments(make):
-    """What make() returns; what it says of an override is said of an argument."""
+    """Returns make(). Messages about overrides are reworded for arguments."""
     try:
         return make()
     except UsageError as error:

@@ -17,24 +17,24 @@ ELEMENTS = ("X", "Y", "e cos phi", "e sin phi", "i sin zeta", "i cos zeta")
 
 
 class Simulation:
-    """A patch of ring that runs in memory; nothing is written unless asked.
+    """A patch of ring that runs in memory; files are written on request only.
 
     ::
 
         sim = keeler.Simulation("scene.toml", time={"end": 5.0})
         sim.run(5.0, every=0.5, callback=lambda sim: print(sim.orbits, sim.analyze()["toomre_q"]))
 
-    ``scene`` is the path of a scene file, the text of one, or a dictionary of its tables. ``start`` is what to start
-    from: a Snapshot, the file of one, or a Simulation as it stands. Other arguments override keys of the scene:
-    ``time={"end": 5.0}``, or ``**{"time.end": 5.0}``. Raises UsageError for a scene that cannot be.
+    ``scene`` is the path of a scene file, its text, or a dictionary of its tables. ``start`` is the initial state: a
+    Snapshot, the file of one, or the present state of a Simulation. Other arguments override keys of the scene:
+    ``time={"end": 5.0}``, or ``**{"time.end": 5.0}``. Raises UsageError for an invalid scene.
 
-    The state's bits are those of ``keeler run`` with the same scene, for any number of threads.
+    The state is bitwise identical to that of ``keeler run`` with this scene, for any number of threads.
 
-    **Arrays** have one row a particle, in the order in which the program keeps them: neighbours in space are neighbours
-    in memory. That order changes as they move; ``ids`` tells who is who, and ``by_id(array)`` puts rows into the order
-    of the ids. They may only be read. ``elements``, ``radii``, ``masses`` and ``ids`` look at the state itself, without a
-    copy; ``positions`` and ``velocities`` are computed when they are first asked for after a step. An array that is kept
-    stays as it was when the simulation moves on (which costs a copy of the state, once).
+    **Arrays** are read-only and have one row per particle, in memory order: neighbours in space are neighbours in
+    memory. The order changes as particles move; ``ids`` identifies the particles, and ``by_id(array)`` sorts rows by
+    id. ``elements``, ``radii``, ``masses`` and ``ids`` are views of the state, without a copy; ``positions`` and
+    ``velocities`` are computed at the first access after a step. An existing array does not change when the
+    simulation continues (which then costs one copy of the state).
     """
 
     __slots__ = ("_core", "_scene", "_motion", "_recording", "_changes", "__weakref__")
@@ -49,7 +49,7 @@ class Simulation:
 
     def _begin(self, core):
         self._core = core
-        self._scene = core.scene  # once: to make it may need memory that a step then has not
+        self._scene = core.scene  # kept: making it later could fail for lack of memory
         self._motion = None
         self._recording = False
         self._changes = 0
@@ -75,17 +75,17 @@ class Simulation:
 
     @property
     def state_hash(self):
-        """32 hexadecimal digits: two states with the same hash are the same, to the bit, and go on alike."""
+        """32 hexadecimal digits: states with equal hashes are bitwise identical, and evolve identically."""
         return self._core.state_hash
 
     @property
     def scene(self):
-        """The resolved scene as text: every key, with what was filled in."""
+        """The resolved scene as text: every key, defaults included."""
         return self._scene.text
 
     @property
     def remarks(self):
-        """What the program would remark about the scene, a line each."""
+        """The notices and warnings of the program about the scene, one line each."""
         return self._scene.remarks
 
     @property
@@ -100,7 +100,7 @@ class Simulation:
 
     @property
     def shear_offset(self):
-        """m: the image in the box (n, m) stands now at x + n L_x, y + m L_y - n shear_offset."""
+        """m: the image in the box (n, m) is now at x + n L_x, y + m L_y - n shear_offset."""
         return self._core.shear_offset
 
     @property
@@ -110,12 +110,12 @@ class Simulation:
 
     @property
     def epoch(self):
-        """The time, in orbits, at which ``elements`` stand: the middle of the step to come."""
+        """The epoch of ``elements``, in orbits: the middle of the next step."""
         return self._core.epoch
 
     @property
     def ids(self):
-        """(N,) who is who; they never change. A view."""
+        """(N,) identifiers of the particles, which never change. A view."""
         return self._core.ids()
 
     @property
@@ -135,12 +135,12 @@ class Simulation:
 
     @property
     def velocities(self):
-        """(N, 3) m/s, Hill's frame, the shear included."""
+        """(N, 3) m/s, Hill's frame, including the shear."""
         return self._moving()[1]
 
     @property
     def spins(self):
-        """(N, 3) rad/s against the stars, in Hill's frame; None of smooth particles."""
+        """(N, 3) rad/s, inertial spins in components of Hill's frame; None for smooth particles."""
         return self._core.spins()
 
     def _moving(self):
@@ -149,49 +149,51 @@ class Simulation:
         return self._motion
 
     def by_id(self, array):
-        """A copy of an array, its rows in the order of the ids; of a masked array with its mask."""
+        """Returns a copy of an array with its rows sorted by id; of a masked array with its mask."""
         array = np.asanyarray(array)
         if array.shape[:1] != (len(self),):
-            raise UsageError(f"the array has {array.shape[0] if array.ndim else 'no'} rows; give one a particle ({len(self)})")
+            raise UsageError(f"the array has {array.shape[0] if array.ndim else 'no'} rows; give one per particle ({len(self)})")
         return array[np.argsort(self.ids)]
 
     def snapshot(self):
-        """The state as a Snapshot: a copy in SI, in the order of the ids. After an InvariantError without the particles that
-        no snapshot may have: of numbers that are not finite, or out of all bounds."""
+        """Returns the state as a Snapshot: a copy in SI, sorted by id. After an InvariantError it lacks the particles
+        that a snapshot cannot hold, with numbers that are not finite or far out of bounds."""
         return Snapshot(self._core.snapshot(), f"the simulation at orbit {self.orbits:g}")
 
     def analyze(self):
-        """The numbers of ``keeler analyze --json`` on a snapshot, as a dictionary: names with units."""
+        """Returns the numbers of ``keeler analyze --json`` on a snapshot, as a dictionary: names with units."""
         return self.snapshot().analyze()
 
     @property
     def collisions_so_far(self):
-        """{"collisions": faster than v_cut, "slow_contacts": bounced elastically, "steps": done} since the start."""
+        """Counts since the start: {"collisions": faster than v_cut, "slow_contacts": elastic, "steps": steps}."""
         return self._core.counts()
 
-    # --- its course
+    # --- steps
 
     def run(self, until=None, *, every=None, callback=None, progress=False):
-        """Runs until that time (orbits; default: the scene's end).
+        """Runs until a time (orbits; default: the scene's end).
 
-        ``callback(sim)`` is called every so many orbits, and at the end; what it raises ends the run. Times are rounded
-        to whole kick intervals, where kicks and drifts meet. ``progress`` shows a line on standard error.
+        ``callback(sim)`` is called at multiples of ``every`` (orbits) and at the end; an exception in it ends the
+        run. Times are rounded to whole kick intervals, at which kicks and drifts are synchronized. ``progress`` shows
+        a line on standard error.
 
-        Ctrl-C is heeded at the next such time, with KeyboardInterrupt, and the run can go on. A second one gives up the
-        step at hand, and the state is one of before it: of the last 0.2 s of computing, or of the step before. So it is
-        after a MemoryError, or when a restitution law of your own gives no coefficient (UsageError); the run can go on.
+        Ctrl-C raises KeyboardInterrupt at the next such time, and the run can continue. A second Ctrl-C abandons the
+        current step: the state is then an earlier one, of the last 0.2 s of computing or of the previous step. The
+        same holds after a MemoryError, or after an invalid coefficient of a user-defined restitution law
+        (UsageError); the run can continue.
 
-        Raises InvariantError when a step comes to what cannot be. The simulation then does not go on, but its arrays and
-        snapshot() can be looked at: they are of the last contact in the step, or of the step's end.
+        Raises InvariantError when a step breaks an invariant. The simulation then cannot continue, but its arrays and
+        snapshot() can be read: they are of the last contact in the step, or of the end of the step.
         """
         core, scene = self._core, self._scene
         interval = scene.kick_interval
         end = _ticks(scene.end if until is None else until, "until", scene)
         if end < core.tick:
-            asked = scene.end if until is None else until
-            raise UsageError(f"until is orbit {asked:g}, and the simulation is at orbit {self.orbits:g}; give a later time")
+            requested = scene.end if until is None else until
+            raise UsageError(f"until is orbit {requested:g}, and the simulation is at orbit {self.orbits:g}; give a later time")
         if (every is None) != (callback is None):
-            raise UsageError("every and callback go together: every so many orbits, the callback is called")
+            raise UsageError("every and callback go together: the callback is called at multiples of every")
         between = max(interval, _ticks(every, "every", scene)) if every is not None else None
         line = _ProgressLine(core.tick, end) if progress else None
         piece = between or end
@@ -214,7 +216,7 @@ class Simulation:
         return self
 
     def step(self, count=1):
-        """``count`` kick intervals: the shortest time after which a state can be looked at."""
+        """Advances by ``count`` kick intervals, the shortest time after which the state can be read."""
         count = scenes.whole_number(count, "count", 0, 10**12)
         self._motion = None
         self._core.advance(self._core.tick + count * self._scene.kick_interval)
@@ -222,25 +224,25 @@ class Simulation:
 
     @contextmanager
     def collisions(self, minimum_speed=0.0):
-        """Records contacts whose normal speed is at least that (m/s)::
+        """Records contacts with at least this normal speed (m/s)::
 
             with sim.collisions(minimum_speed=0.002) as contacts:
                 sim.run(sim.orbits + 1.0)
                 rows = contacts()
 
-        ``contacts()`` gives those since it was last called, as an array with the fields time_orbits, low_id, high_id,
-        x_m, y_m, z_m (where the spheres touch, beside the particle with the lower id), normal_speed_m_s,
-        tangential_speed_m_s, energy_lost_j. After the block it gives the last ones.
+        ``contacts()`` returns the contacts since its last call, as an array with the fields time_orbits, low_id,
+        high_id, x_m, y_m, z_m (the point of contact, at the image of the particle with the lower id),
+        normal_speed_m_s, tangential_speed_m_s, energy_lost_j. After the block it returns the remaining ones.
         """
         if self._recording:
             raise UsageError("contacts are recorded already; end that block first")
         try:
-            least = float(minimum_speed)
+            speed = float(minimum_speed)
         except (TypeError, ValueError, OverflowError):
-            least = -1.0
-        if not least >= 0.0:
+            speed = -1.0
+        if not speed >= 0.0:
             raise UsageError(f"minimum_speed is {_arguments.shown(minimum_speed)}; give a speed in m/s, 0 or more")
-        self._core.record_contacts(least)
+        self._core.record_contacts(speed)
         self._recording = True
         contacts = _Contacts(self._core)
         try:
@@ -256,38 +258,38 @@ class Simulation:
 
     @contextmanager
     def edit(self):
-        """Changes the state: within, ``positions``, ``velocities``, ``radii``, ``masses`` and ``spins`` are copies to
-        write to, rows in the order of ``sim.ids``::
+        """Changes the state. Within the block, ``positions``, ``velocities``, ``radii``, ``masses`` and ``spins`` are
+        writable copies with rows in the order of ``sim.ids``::
 
             with sim.edit() as state:
                 state.velocities[:, 2] += 1e-4
 
         At the end they become the state, unless the block raises. Raises InvariantError, and changes nothing, when a
-        particle is not possible in a start (a number that is not finite, a radius or a density out of all bounds, a
-        place that was moved far out of the box) or particles overlap; UsageError for arrays of another shape or with
-        masked entries, or when the simulation has moved on within the block. The energy that a change brings counts as
-        part of the start.
+        particle is invalid (a number that is not finite, a radius or a density out of bounds, a position far outside
+        the box) or particles overlap; UsageError for arrays of another shape or with masked entries, or when the
+        simulation has continued within the block. The energy of a change counts as part of the initial energy.
         """
         state, begun = _Edited(self), (self._core.tick, self._changes)
         yield state
         if begun != (self._core.tick, self._changes):
-            raise UsageError("the simulation has moved on, or was changed, within edit(); its rows may be others now")
+            raise UsageError("the simulation has moved on, or was changed, within edit(); the order of its rows may have changed")
         self._core.replace(*state.arrays())
         self._changes += 1
         self._motion = None
 
     def save(self, file):
-        """Writes the whole state to a checkpoint, from which load() goes on to the bit. As checkpoint_000000.h5 in a
-        folder of its own, ``keeler resume FOLDER`` goes on from it too. Raises IoError."""
+        """Writes the state to a checkpoint, from which load() continues with bitwise identical results. As
+        checkpoint_000000.h5 in a separate folder it can also be continued by ``keeler resume FOLDER``. Raises
+        IoError."""
         self._core.save(_arguments.path(file, "save"))
 
-    def plot(self, file=None, **look):
-        """The picture of the state, as Snapshot.plot()."""
-        return self.snapshot().plot(file, **look)
+    def plot(self, file=None, **options):
+        """Returns the picture of the state, as Snapshot.plot()."""
+        return self.snapshot().plot(file, **options)
 
-    def show(self, **look):
+    def show(self, **options):
         """Shows the picture in a notebook (and returns None); elsewhere returns it."""
-        picture = self.plot(**look)
+        picture = self.plot(**options)
         if "IPython" in sys.modules:
             from IPython.display import display
 
@@ -298,7 +300,7 @@ class Simulation:
     def _repr_png_(self):
         return self.plot(width=1000)._repr_png_()
 
-    # --- to other processes, and copies
+    # --- pickling and copies
 
     def __reduce__(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -322,7 +324,7 @@ class _Contacts:
 
 
 class _Edited:
-    """What edit() gives to write to; a name that it has not is an error."""
+    """The writable copies of edit(); any other attribute is an error."""
 
     __slots__ = ("positions", "velocities", "radii", "masses", "spins", "_ids")
 
@@ -369,22 +371,23 @@ class _ProgressLine:
         if now - self.shown < 0.2 and tick < self.end_tick:
             return
         self.shown = now
-        share = (tick - self.first) / (self.end_tick - self.first)
-        left = (now - self.begin) * (1.0 - share) / share if share > 0.0 else float("nan")
-        print(f"\r{100.0 * share:3.0f} %  orbit {orbits:.4g}  {left:.0f} s left ", end="", file=sys.stderr, flush=True)
+        done = (tick - self.first) / (self.end_tick - self.first)
+        left = (now - self.begin) * (1.0 - done) / done if done > 0.0 else float("nan")
+        print(f"\r{100.0 * done:3.0f} %  orbit {orbits:.4g}  {left:.0f} s left ", end="", file=sys.stderr, flush=True)
 
     def end(self):
         print(file=sys.stderr)
 
 
 def load(file):
-    """The simulation that Simulation.save() wrote, or that a checkpoint of a run holds. Raises IoError."""
+    """Reads a simulation from a file of Simulation.save() or a checkpoint of a run. Raises IoError."""
     return Simulation._of(_core.Simulation.load(_arguments.path(file, "load")))
 
 
 def resume(folder):
-    """The newest checkpoint of a run's folder, as a simulation in memory; the folder stays as it is. Warns (UserWarning)
-    of a scene.toml that was edited after the run began, and of damaged checkpoints passed over. Raises IoError."""
+    """Reads the newest checkpoint in a run's folder as a simulation in memory; the folder is not changed. Warns
+    (UserWarning) of a scene.toml that was edited after the start of the run, and of damaged checkpoints, which it
+    skips. Raises IoError."""
     lines = []
     core = _core.Simulation.resume(_arguments.path(folder, "resume"), lines.append)
     snapshots.warn(lines)
@@ -392,7 +395,7 @@ def resume(folder):
 
 
 def from_arrays(scene, positions, radii, velocities=None, masses=None, spins=None, *, relax=False, **overrides):
-    """A simulation of your own particles in the scene's box: see start_from_arrays()."""
+    """Returns a simulation of given particles in the scene's box: see start_from_arrays()."""
     start = snapshots.start_from_arrays(scene, positions, radii, velocities, masses, spins, relax=relax, **overrides)
     return Simulation(start.scene, start=start)
 

@@ -1,4 +1,4 @@
-"""Snapshots: a patch of ring at one instant."""
+"""Snapshots: a patch of ring at one time."""
 
 import functools
 import sys
@@ -11,7 +11,7 @@ from .errors import UsageError
 
 
 class Picture:
-    """A picture; a notebook shows it. ``data`` is the PNG."""
+    """A picture, which a notebook shows. ``data`` is the PNG."""
 
     def __init__(self, data):
         self.data = data
@@ -25,13 +25,13 @@ class Picture:
 
 
 class Snapshot:
-    """A patch of ring at one instant, in SI units, N particles in the order of their ids.
+    """A patch of ring at one time, in SI units, with N particles sorted by id.
 
-    ``positions`` (N, 3) m and ``velocities`` (N, 3) m/s in Hill's frame (x outward, y along the orbit, z up; the shear
-    is in the velocities), ``radii`` (N,) m, ``masses`` (N,) kg, ``ids`` (N,), ``spins`` (N, 3) rad/s against the stars
-    or None. All arrays may only be read. ``box`` is (L_x, L_y) in m; at this instant the neighbour boxes at larger x are
-    shifted along y by -``shear_offset`` m a box: the image
-    in the box (n, m) stands at x + n L_x, y + m L_y - n shear_offset. ``scene`` is the resolved scene as text.
+    ``positions`` (N, 3) m and ``velocities`` (N, 3) m/s in Hill's frame (x outward, y along the orbit, z up; the
+    shear is in the velocities), ``radii`` (N,) m, ``masses`` (N,) kg, ``ids`` (N,), inertial ``spins`` (N, 3) rad/s
+    or None. All arrays are read-only. ``box`` is (L_x, L_y) in m. The neighbour boxes at larger x are shifted along y
+    by -``shear_offset`` m per box: the image in the box (n, m) is at x + n L_x, y + m L_y - n shear_offset. ``scene``
+    is the resolved scene as text.
     """
 
     def __init__(self, core, name="snapshot"):
@@ -54,7 +54,7 @@ class Snapshot:
     box = property(lambda self: self._core.box)
     shear_offset = property(lambda self: self._core.shear_offset)
     orbital_frequency = property(lambda self: self._core.orbital_frequency, doc="Omega, rad/s.")
-    orbits = property(lambda self: self._core.time_orbits, doc="Its time in orbits.")
+    orbits = property(lambda self: self._core.time_orbits, doc="The time in orbits.")
     scene = property(lambda self: self._core.scene)
 
     @property
@@ -64,7 +64,7 @@ class Snapshot:
         return self._velocities
 
     def analyze(self):
-        """The Numbers of ``keeler analyze --json``: a dictionary of names with units."""
+        """Returns the Numbers of ``keeler analyze --json``: a dictionary of names with units."""
         return numbers.Numbers(*self._core.analyze())
 
     def save(self, file):
@@ -72,13 +72,13 @@ class Snapshot:
         self._core.save(_arguments.path(file, "save"))
 
     def tile(self, nx, ny):
-        """The snapshot repeated nx times along the radius and ny times along the orbit. Raises UsageError."""
+        """Returns the snapshot repeated nx times along the radius and ny times along the orbit. Raises UsageError."""
         nx, ny = (scenes.whole_number(n, name, 1, 10000) for n, name in ((nx, "nx"), (ny, "ny")))
         return Snapshot(self._core.tile(nx, ny, self._name), self._name)
 
     def plot(self, file=None, *, title="Ring patch", width=1600):
-        """The picture of ``keeler render``: from above, and edge-on. Written to a PNG where a file is named. ``width``
-        is in pixels, from 200 to 8000. Raises UsageError, IoError."""
+        """Returns the picture of ``keeler render``: from above, and edge-on. Writes it as PNG if a file is given.
+        ``width`` is in pixels, from 200 to 8000. Raises UsageError, IoError."""
         width = scenes.whole_number(width, "width", 200, 8000)
         file = None if file is None else _arguments.path(file, "plot")
         if file is not None and not _core.is_stream(file) and file.suffix != ".png":
@@ -102,29 +102,29 @@ class Snapshot:
 
 
 def generate(scene, *, clumped=False, **overrides):
-    """The state that a scene starts from, as a Snapshot.
+    """Returns the initial state of a scene as a Snapshot.
 
-    ``clumped``: evolved under its own gravity until its wakes have settled, as ``keeler generate --clumped`` (minutes).
-    Raises UsageError for a scene that cannot be, RunError when wakes do not settle.
+    ``clumped``: evolved under self-gravity until its wakes have settled, as ``keeler generate --clumped`` (minutes).
+    Raises UsageError for an invalid scene, RunError when wakes do not settle.
     """
     return Snapshot(_core.generate(scenes.read(scene, overrides), clumped))
 
 
 def tile(snapshot, nx, ny):
-    """A snapshot, or the file of one, repeated into a larger patch. Raises UsageError, IoError."""
+    """Returns a snapshot, or the file of one, repeated into a larger patch. Raises UsageError, IoError."""
     if not isinstance(snapshot, Snapshot):
         snapshot = read(snapshot)
     return snapshot.tile(nx, ny)
 
 
 def start_from_arrays(scene, positions, radii, velocities=None, masses=None, spins=None, *, relax=False, **overrides):
-    """A start of your own particles, as a Snapshot in the scene's box.
+    """Returns an initial state with given particles, as a Snapshot in the scene's box.
 
     positions (N, 3) m, velocities (N, 3) m/s or None (circular orbits), radii (N,) m or one number, masses (N,) kg or
-    one number or None (of the scene's density), spins (N, 3) rad/s against the stars where the scene has friction.
-    Particle k gets the id k. ``relax`` moves particles that overlap apart. Warns (UserWarning) of a start that is far from
-    any ring: velocities without the shear, tables in km.
-    Raises UsageError, naming the row, for particles that no ring has, and for masked entries; InvariantError for overlaps.
+    one number or None (from the scene's density), inertial spins (N, 3) rad/s if the scene has friction. Particle k
+    gets the id k. ``relax`` moves overlapping particles apart. Warns (UserWarning) of a state unlike any ring:
+    velocities without the shear, tables in km. Raises UsageError, naming the row, for invalid particles and for
+    masked entries; InvariantError for overlaps.
     """
     if "ids" in overrides:
         raise UsageError("ids cannot be given: particle k gets the id k; leave them out, or sort the arrays by them")
@@ -138,7 +138,7 @@ def start_from_arrays(scene, positions, radii, velocities=None, masses=None, spi
 
 
 def warn(lines):
-    """Warns of each line, at the place outside of the package from where it was called."""
+    """Warns of each line, at the line outside the package that called it."""
     frame, level = sys._getframe(1), 2
     while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == __package__:
         frame, level = frame.f_back, level + 1
@@ -147,15 +147,15 @@ def warn(lines):
 
 
 def read(file):
-    """The snapshot in a file. Raises IoError; InvariantError for what no ring has."""
+    """Reads a snapshot file. Raises IoError, and InvariantError for invalid particles."""
     file = _arguments.path(file, "read")
     if not file.is_file():
-        raise UsageError(f"'{file}' is no file; name a snapshot, snap_NNNNNN.hdf")
+        raise UsageError(f"'{file}' is not a file; name a snapshot, snap_NNNNNN.hdf")
     return Snapshot(_core.read_snapshot(file), str(file))
 
 
 def as_snapshot(start):
-    """A Snapshot of what a user may start from: a Snapshot, the file of one, or a Simulation."""
+    """Converts an initial state to a Snapshot: a Snapshot, the file of one, or a Simulation."""
     if isinstance(start, Snapshot):
         return start
     return start.snapshot() if hasattr(start, "snapshot") else read(start)

@@ -3,20 +3,26 @@
 #include <keeler/finders/finders.hpp>
 #include <keeler/finders/motion/relative.hpp>
 
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
 namespace keeler {
 namespace {
 
 constexpr double noticeable = 1e-6; // of the radius sum: two hundred times the published convergence, 1e-8 in d²
 
-// How deep inside each other the spheres of a query are at a time, in R; negative: apart.
+// Returns the overlap of a query's two spheres at a time, in radius sums R; negative when they are apart.
 double depth(const Query& query, const DriftStep& step, double time) {
+  assert(query.low < step.bodies.size() && query.high < step.bodies.size());
   const Pair pair = pair_of(query, step);
   return 1.0 - RelativeMotion(pair, step).at(time).d.norm() / pair.radius_sum;
 }
 
-// The deepest between two times: a contact that was passed counts, though the spheres may be apart again. Sampled: what
-// lies between two of the times is a graze.
+// Returns the largest overlap between two times, so that a contact that the search stepped over counts although the
+// spheres have parted again. It samples 64 times: an overlap between two samples is a graze.
 double deepest(const Query& query, const DriftStep& step, double from, double to) {
+  assert(std::isfinite(from) && std::isfinite(to));
   constexpr int samples = 64;
   double depth_so_far = depth(query, step, to);
   for (int k = 0; k < samples && from < to; ++k)
@@ -41,6 +47,7 @@ void FinderAudit::begins(const DriftStep& step) {
 }
 
 void FinderAudit::searched(const Query& query, const FinderResult& result) {
+  assert(step_ && "begins() was called");
   verdict_.counts.add(result);
   const FinderResult truth = certified_->find(query);
   verdict_.true_hits += truth.contact();

@@ -1,4 +1,4 @@
-// What a finder did in a run, call by call, against the certified finder's answer to the same call.
+// Compares every answer of a run's finder with the certified finder's answer to the same query.
 #pragma once
 
 #include <keeler/collision/drift.hpp>
@@ -9,32 +9,34 @@
 
 namespace keeler {
 
-/// Sums over the calls of a run. The truth of each call is the certified finder's.
+/// Sums over the calls of a run. The certified finder's answer to a call counts as true.
 struct FinderVerdict {
-  FinderCounts counts;          ///< of the finder
-  std::uint64_t true_hits = 0;  ///< calls that have a contact
-  std::uint64_t missed = 0;     ///< it has a contact, the finder found none
-  std::uint64_t false_hits = 0; ///< it has none, the finder called one; or called it more than 1e-6 R apart
-  std::uint64_t late = 0;       ///< called after the spheres had been inside each other by more than 1e-6 R
-  std::uint64_t misordered = 0; ///< particles whose first contact of a step, by the finder's times, is not the first
-  double deepest = 0.0;         ///< how deep spheres were at most until their contact was called, in R
+  FinderCounts counts;          ///< calls, iterations and evaluations of the audited finder
+  std::uint64_t true_hits = 0;  ///< calls with a contact
+  std::uint64_t missed = 0;     ///< there is a contact, the finder reported none
+  std::uint64_t false_hits = 0; ///< reported without a contact, or while the surfaces are more than 1e-6 R apart
+  std::uint64_t late = 0;       ///< reported after the spheres had overlapped by more than 1e-6 R
+  std::uint64_t misordered = 0; ///< particles with a wrong first contact in a step, by the finder's times
+  double deepest = 0.0;         ///< largest overlap before a contact was reported, in R
 
   std::uint64_t calls() const { return counts.total().count; }
   /// Calls that reported a contact.
   std::uint64_t hits() const { return counts.of(FinderExit::hit).count + counts.of(FinderExit::overlapping).count; }
 };
 
+/// Observes a drift and audits each of its finder's calls.
 class FinderAudit : public DriftObserver {
 public:
   FinderAudit();
 
   bool wants_every_candidate() const override { return true; }
 
-  void begins(const DriftStep& step) override;
+  void begins(const DriftStep& step) override; ///< `step` must live until the next call or the last verdict()
+  /// Precondition: begins() was called.
   void searched(const Query& query, const FinderResult& result) override;
   void changed(std::size_t particle) override { certified_->changed(particle); }
 
-  /// Everything up to the last step.
+  /// Returns the sums up to and including the last step.
   FinderVerdict verdict();
 
 private:
@@ -48,7 +50,7 @@ private:
   std::unique_ptr<Finder> certified_;
   const DriftStep* step_ = nullptr;
   FinderVerdict verdict_;
-  std::vector<First> found_, true_; // of each particle in this step, among contacts that both found
+  std::vector<First> found_, true_; // per particle in this step, of the contacts that both finders found
 };
 
 } // namespace keeler

@@ -4,22 +4,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 
 namespace keeler {
 namespace {
 
-constexpr double tie = 1.02; // a difference that six repeats do not settle
+constexpr double tie = 1.02; // ratio of times that six repeats do not resolve
 
-// How many of several cases speak for a claim.
+// Returns the verdict on a claim that holds in `in_favour` of `cases` cases.
 std::string verdict(int in_favour, int cases) {
+  assert(0 <= in_favour && in_favour <= cases);
   if (in_favour == cases)
     return "confirmed";
   return in_favour == 0 ? "refuted" : 2 * in_favour > cases ? "confirmed in most cases" : "refuted in most cases";
 }
 
-template<class Counts> std::string pluralize(const Counts& counts, const char* between) {
+// Lists the entries of a map of counts: "name<between>count, …".
+template<class Counts> std::string list_counts(const Counts& counts, const char* between) {
   std::string text;
   for (const auto& [name, count] : counts)
     text += fmt::format("{}{}{}{}", text.empty() ? "" : ", ", name, between, count);
@@ -27,24 +30,26 @@ template<class Counts> std::string pluralize(const Counts& counts, const char* b
 }
 
 void time_in_finder(const FinderNumbers& n, Rows& rows) {
-  double least = 1.0, most = 0.0;
+  double smallest = 1.0, largest = 0.0;
   for (const StudyState& state : n.data.states)
     for (const std::string& finder : paper_finders) {
-      least = std::min(least, n.finder_fraction(state.name, finder));
-      most = std::max(most, n.finder_fraction(state.name, finder));
+      smallest = std::min(smallest, n.finder_fraction(state.name, finder));
+      largest = std::max(largest, n.finder_fraction(state.name, finder));
     }
   rows.push_back(
       {"Over 90 % of the run time is often spent in the finder.",
        fmt::format("{} to {} at step {}, over the states and the paper's five (a run against the same run on "
                    "recorded answers)",
-                   percent(least), percent(most), n.data.shown_step),
-       least > 0.9  ? "confirmed"
-       : most > 0.9 ? "confirmed for the slowest finders"
-                    : "refuted for this code"});
+                   percent(smallest), percent(largest), n.data.shown_step),
+       smallest > 0.9  ? "confirmed"
+       : largest > 0.9 ? "confirmed for the slowest finders"
+                       : "refuted for this code"});
 }
 
-// Who is first and last of five finders, the fourth of which is the linear one on the full motion.
+// Adds the claims on the fastest and the slowest of five finders.
+// Precondition: five[3] is the linear search on the full motion.
 void ranking(const FinderNumbers& n, Rows& rows, const std::string& forms, const std::vector<std::string>& five) {
+  assert(five.size() == 5 && five[3].starts_with("linear-full"));
   int first = 0, last = 0;
   double worst_ratio = 0.0;
   std::map<std::string, int> fastest, slowest;
@@ -64,11 +69,11 @@ void ranking(const FinderNumbers& n, Rows& rows, const std::string& forms, const
       {forms + "linear-full is the fastest across the board.",
        fmt::format("fastest of the five, or within 2 %, in {} of {} panels (state × step), at worst {:.2f} times "
                    "the fastest (first: {})",
-                   first, n.panels(), worst_ratio, pluralize(fastest, " ")),
+                   first, n.panels(), worst_ratio, list_counts(fastest, " ")),
        verdict(first, n.panels())});
   rows.push_back(
       {forms + "original and newton-cubic compete for the last place.",
-       fmt::format("one of them is last in {} of {} panels (last: {})", last, n.panels(), pluralize(slowest, " ")),
+       fmt::format("one of them is last in {} of {} panels (last: {})", last, n.panels(), list_counts(slowest, " ")),
        verdict(last, n.panels())});
 }
 
@@ -83,20 +88,21 @@ void slower(const FinderNumbers& n, Rows& rows, const std::string& claim, const 
 
 void cubics(const FinderNumbers& n, Rows& rows) {
   slower(n, rows, "Newton on cubics is slower than on the full motion.", "newton-cubic", "newton-full");
-  slower(n, rows, "The same against newton-full as its code stood.", "newton-cubic", "newton-full-as-coded");
+  slower(n, rows, "newton-cubic is slower than newton-full as the paper's code has it.", "newton-cubic",
+         "newton-full-as-coded");
   slower(n, rows, "The linear search on cubics is slower than on the full motion.", "linear-cubic", "linear-full");
-  slower(n, rows, "It is the fits that cost: kept for each particle, cubics would do better (Newton).", "newton-cubic",
+  slower(n, rows, "It is the fits that cost: with cubics stored per particle, newton-cubic is faster.", "newton-cubic",
          "newton-cubic-cached");
-  slower(n, rows, "The same for the linear search.", "linear-cubic", "linear-cubic-cached");
+  slower(n, rows, "With cubics stored per particle, linear-cubic is faster.", "linear-cubic", "linear-cubic-cached");
 }
 
 void early_exits(const FinderNumbers& n, Rows& rows) {
   std::string ended;
   int in_favour = 0;
   for (const std::string& finder : paper_finders) {
-    const double share = calls_ended(n.early(finder), {"receding", "overlapping"}) / of(n.early(finder), "calls");
-    in_favour += share > 0.5;
-    ended += fmt::format("{}{} {}", ended.empty() ? "" : ", ", finder, percent(share));
+    const double fraction = calls_ended(n.early(finder), {"receding", "overlapping"}) / of(n.early(finder), "calls");
+    in_favour += fraction > 0.5;
+    ended += fmt::format("{}{} {}", ended.empty() ? "" : ", ", finder, percent(fraction));
   }
   rows.push_back(
       {"Most calls end at once, because the particles recede.",
@@ -105,11 +111,11 @@ void early_exits(const FinderNumbers& n, Rows& rows) {
 }
 
 void iterations(const FinderNumbers& n, Rows& rows) {
-  const double original = share_from(n.early("original"), {"hit"}, 20);
+  const double original = fraction_from(n.early("original"), {"hit"}, 20);
   double others = 1.0;
   for (const std::string& finder : paper_finders)
     if (finder != "original")
-      others = std::min(others, 1.0 - share_from(n.early(finder), {"hit"}, 6));
+      others = std::min(others, 1.0 - fraction_from(n.early(finder), {"hit"}, 6));
   rows.push_back(
       {"The original method needs some twenty iterations for a collision, the others five or fewer.",
        fmt::format("original: {} of its hits take 20 or more (mean {:.1f}); the others: at least {} take five "
@@ -117,7 +123,7 @@ void iterations(const FinderNumbers& n, Rows& rows) {
                    percent(original), mean_over(n.early("original"), "hit", "iterations"), percent(others)),
        original > 0.5 && others > 0.9 ? "confirmed" : "refuted"});
 
-  const auto tail = [&](const char* finder) { return share_from(n.early(finder), {"missed", "gave up"}, 6); };
+  const auto tail = [&](const char* finder) { return fraction_from(n.early(finder), {"missed", "gave up"}, 6); };
   rows.push_back(
       {"Linear methods have a low tail of many iterations where there is no collision.",
        fmt::format("of the calls that enter the loop and find nothing, more than five iterations: linear-full "
@@ -129,7 +135,7 @@ void iterations(const FinderNumbers& n, Rows& rows) {
     return of(n.early(finder), "halvings") / std::max(1.0, of(n.early(finder), "iterations"));
   };
   rows.push_back({"Newton's method on the full motion spends its time scaling steps back, the linear one does not.",
-                  fmt::format("steps halved, an iteration: newton-full {:.2f}, as coded {:.3f}, linear-full {:.3f}",
+                  fmt::format("steps halved per iteration: newton-full {:.2f}, as coded {:.3f}, linear-full {:.3f}",
                               halvings("newton-full"), halvings("newton-full-as-coded"), halvings("linear-full")),
                   halvings("newton-full") > 0.5 && halvings("newton-full") > 2.0 * halvings("linear-full")
                       ? "confirmed"
@@ -150,18 +156,18 @@ void steps(const FinderNumbers& n, Rows& rows) {
     }
   rows.push_back({"The best step is often 1/1000 orbit, in some cases 3/1000 or 1/100.",
                   fmt::format("best step and number of curves, of {} (state × the paper's five): {}", curves,
-                              pluralize(best, " × ")),
+                              list_counts(best, " × ")),
                   verdict(best["0.001"], curves)});
   rows.push_back({"Time against step has a minimum within the range.",
-                  fmt::format("{} of {} curves have their least time inside it", inside, curves),
+                  fmt::format("{} of {} curves have their minimum inside the range", inside, curves),
                   verdict(inside, curves)});
   if (n.data.steps.size() >= 4)
-    rows.push_back(
-        {"Time scales roughly as A/h + B h^d.",
-         fmt::format("fitted to each of the {} curves it is at worst {} off a measured time", curves, percent(worst)),
-         worst < 0.1   ? "confirmed"
-         : worst < 0.3 ? "confirmed, roughly"
-                       : "refuted"});
+    rows.push_back({"Time scales roughly as A/h + B h^d.",
+                    fmt::format("the fit to each of the {} curves differs by {} at most from a measured time", curves,
+                                percent(worst)),
+                    worst < 0.1   ? "confirmed"
+                    : worst < 0.3 ? "confirmed, roughly"
+                                  : "refuted"});
 }
 
 void straight_paths(const FinderNumbers& n, Rows& rows) {
@@ -191,7 +197,7 @@ Rows paper_claims(const FinderNumbers& n) {
   Rows rows = {{"claim", "measured", "verdict"}};
   time_in_finder(n, rows);
   ranking(n, rows, "", paper_finders);
-  ranking(n, rows, "With newton-full as its code stood and linear-full without its stored start: ",
+  ranking(n, rows, "With newton-full as the paper's code has it and linear-full without its stored start: ",
           {"original", "newton-full-as-coded", "newton-cubic", "linear-full-no-start", "linear-cubic"});
   cubics(n, rows);
   early_exits(n, rows);

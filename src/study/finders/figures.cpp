@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
+
 namespace keeler {
 namespace {
 
@@ -22,13 +24,13 @@ std::string style(std::size_t k) {
   return fmt::format("lc rgb '{}' lw 2 pt {}", finder_colours[k % finder_colours.size()], 5 + k);
 }
 
-// One curve of Figure 1: a block of figure1.dat, and how it is drawn.
+// One curve of Figure 1: a block of figure1.dat and its gnuplot style.
 struct DriftCurve {
-  std::string title, look;
+  std::string title, line_style;
   const Json* result;
 };
 
-// The straight paths by step, then all finders in grey, with one entry in the key.
+// Returns the curves in drawing order: all finders in grey with one entry in the key, then the straight paths by step.
 std::vector<DriftCurve> drift_curves(const FinderStudyData& data) {
   std::vector<DriftCurve> curves;
   for (const auto& [name, result] : data.results)
@@ -58,7 +60,7 @@ bool figure1(const FinderStudyData& data, const fs::path& folder) {
     blocks += "\n\n";
     const auto curve = [&](int column) {
       return fmt::format("{}'figure1.dat' index {} using 1:{} with lines {} title {}", k ? ", " : "", k, column,
-                         curves[k].look, gnuplot_string(curves[k].title));
+                         curves[k].line_style, gnuplot_string(curves[k].title));
     };
     in_x += curve(2);
     in_z += curve(3);
@@ -75,7 +77,7 @@ bool figure1(const FinderStudyData& data, const fs::path& folder) {
       1100, 560);
 }
 
-// A hit, a graze and a miss: relative epicycles that pass at different distances.
+// Draws the surface distance in a hit, a graze and a miss: relative epicycles with different closest distances.
 bool figure2(const fs::path& folder) {
   std::string blocks;
   const Frequencies f{1.0, 1.0};
@@ -124,9 +126,10 @@ bool figure4(const FinderStudyData& data, const fs::path& folder) {
   return plot(folder, "figure4", script + "unset multiplot\n", 1100, 900);
 }
 
-// Counts of calls by `field`, those with a contact and those without; calls that ended before the loop are left out, as
-// in the paper.
+// Returns a table of the numbers of calls by `field` (iterations or evaluations): calls with a contact, calls without.
+// Calls that end before the loop are left out, as in the paper. Bin `last` collects all larger values.
 std::string histogram(const Json& audit, const char* field, std::size_t first, std::size_t last) {
+  assert(first <= last);
   std::vector<std::uint64_t> contact(last + 1, 0), none(last + 1, 0);
   for (const auto& [exit, calls] : audit.at("exits").items()) {
     const bool hit = exit == "hit" || exit == "outside";
@@ -162,18 +165,19 @@ bool histograms(const FinderStudyData& data, const fs::path& folder, const std::
 bool local_times_figure(const FinderStudyData& data, const fs::path& folder) {
   const std::string& state = data.states.front().name;
   std::string table;
-  for (const double share : data.shares) {
-    table += fmt::format("{}", share);
+  for (const double fraction : data.moved_fractions) {
+    table += fmt::format("{}", fraction);
     for (const std::string& finder : shown_finders())
-      table += fmt::format(" {}", data.result(fmt::format("local/{}/{:.6g}/{}", state, data.shown_step, share))
+      table += fmt::format(" {}", data.result(fmt::format("local/{}/{:.6g}/{}", state, data.shown_step, fraction))
                                       .at("ns_per_call")
                                       .at(finder)
                                       .get<double>());
     table += "\n";
   }
   write_text(folder / "local-times.dat", table);
-  std::string script = "set xlabel 'share of particles moved earlier in the step'\nset ylabel 'ns per call'\nset grid\n"
-                       "set key outside right\nset yrange [0:*]\nplot ";
+  std::string script =
+      "set xlabel 'fraction of particles with an earlier collision in the step'\nset ylabel 'ns per call'\nset grid\n"
+      "set key outside right\nset yrange [0:*]\nplot ";
   for (std::size_t k = 0; k < shown_finders().size(); ++k)
     script += fmt::format("{}'local-times.dat' using 1:{} with linespoints {} title '{}'", k ? ", " : "", k + 2,
                           style(k), shown_finders()[k]);
@@ -185,10 +189,11 @@ bool local_times_figure(const FinderStudyData& data, const fs::path& folder) {
 bool draw_finder_figures(const FinderStudyData& data) {
   const fs::path folder = data.folder / "figures";
   fs::create_directories(folder);
-  PictureOptions look;
-  look.title = "Clumped by self-gravity, equal sizes";
-  look.width = 700;
-  render_patch(data.states[1].patch, (folder / "figure3.png").string(), look);
+  PictureOptions options;
+  options.title = "Clumped by self-gravity, equal sizes";
+  options.width = 700;
+  assert(data.states.size() == 4 && "equal-early, equal-clumped, power-early, power-clumped");
+  render_patch(data.states[1].patch, (folder / "figure3.png").string(), options);
   bool drawn = figure1(data, folder);
   drawn &= figure2(folder);
   drawn &= figure4(data, folder);

@@ -13,12 +13,13 @@
 #include <keeler/statistics/median.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-constexpr double min_seconds = 0.02; // of finder calls, for the time of one
+constexpr double min_seconds = 0.02; // of calls that one measurement of the time per call averages over
 
 PairSet first_pairs(const StudyState& state, const Scene& scene, bool every_candidate) {
   const Simulation simulation(scene, state.patch);
@@ -28,9 +29,11 @@ PairSet first_pairs(const StudyState& state, const Scene& scene, bool every_cand
 }
 
 int steps_of(double step) {
+  assert(step > 0.0);
   return static_cast<int>(std::lround(study_orbits / step));
 }
 
+// Returns the bins without the empty ones at the end.
 Json trimmed(const FinderCounts::Histogram& histogram) {
   std::size_t length = histogram.size();
   while (length > 0 && histogram[length - 1] == 0)
@@ -57,7 +60,7 @@ double run_seconds(Simulation& simulation, double step) {
   return cpu_seconds() - start;
 }
 
-// Hands everything in the cells to the finder, or to what stands in for it.
+// Passes every candidate pair of the grid to the run's finder, or to `finder` in its place.
 struct EveryCandidate final : DriftObserver {
   explicit EveryCandidate(std::unique_ptr<Finder> finder = nullptr) : finder_(std::move(finder)) {}
   bool wants_every_candidate() const override { return true; }
@@ -75,14 +78,14 @@ double run_seconds(const StudyState& state, const Scene& scene, bool every_candi
   return run_seconds(simulation, scene.time.step);
 }
 
-// The certified finder's motion without the rejection that spares most calls the search.
+// The certified finder's motion without its early rejection, so that every call performs the search.
 struct UnrejectedMotion : BoundedMotion {
   using BoundedMotion::BoundedMotion;
   static bool surely_apart(const Query&, const Body&, const Body&, const DriftStep&) { return false; }
 };
 
-// A finder whose answers are kept in the order of the calls. An observer would see them in another order than a
-// run without one makes them in.
+// Wraps a finder and appends its answers to `answers` in the order of the calls. (With an observer the calls of a run
+// come in another order than without one.)
 class TapeRecorder final : public Finder {
 public:
   TapeRecorder(std::unique_ptr<Finder> finder, std::vector<FinderResult>& answers)
@@ -100,7 +103,7 @@ private:
   std::vector<FinderResult>& answers_;
 };
 
-// Gives recorded answers again, for a run of the same calls: what such a run costs is everything but the finder.
+// Replays recorded answers to a run with identical calls: the cost of such a run is everything except the finder.
 class Tape final : public Finder {
 public:
   explicit Tape(const std::vector<FinderResult>& answers) : answers_(answers) {}
@@ -114,8 +117,9 @@ private:
   mutable std::size_t next_ = 0;
 };
 
-// Every finder on the same pairs, in turn, several times: medians of the time of a call.
+// Returns the median time per call (ns) of every finder on the same pairs, measured in turn.
 Json times_per_call(const PairSet& pairs, int repeats) {
+  assert(repeats > 0);
   std::vector<std::unique_ptr<Finder>> finders;
   for (const FinderEntry& entry : finder_table())
     finders.push_back(entry.make());
@@ -139,7 +143,7 @@ FinderVerdict verdict_on(const PairSet& pairs, Finder& finder) {
   return audit.verdict();
 }
 
-// Leaves out pairs that are in contact when their search begins: their contact would have been carried out before.
+// Removes pairs that overlap when their search begins: a run would have resolved their contact earlier.
 void drop_overlapping(PairSet& pairs) {
   const DriftStep step = pairs.view();
   const auto overlapping = [&](const Query& query) {
@@ -149,13 +153,14 @@ void drop_overlapping(PairSet& pairs) {
   pairs.queries.erase(std::remove_if(pairs.queries.begin(), pairs.queries.end(), overlapping), pairs.queries.end());
 }
 
-// Gives a share of the particles a small velocity change at a time of its own within the step.
-void move_some(PairSet& pairs, double share, double kick_speed) {
+// Gives a fraction of the particles a small velocity change, each at a random time within the step.
+void move_some(PairSet& pairs, double fraction, double kick_speed) {
+  assert(0.0 <= fraction && fraction <= 1.0);
   const DriftStep step = pairs.view();
   std::vector<double> changed(pairs.bodies.size(), step.begin);
   for (std::size_t k = 0; k < pairs.bodies.size(); ++k) {
     RandomStream random(1, RandomPurpose::relaxation, k);
-    if (random.uniform() >= share)
+    if (random.uniform() >= fraction)
       continue;
     changed[k] = step.begin + (step.end - step.begin) * random.uniform();
     const Vec3 dv = kick_speed * Vec3(random.normal(), random.normal(), random.normal());
@@ -214,6 +219,7 @@ Json audited_run(const StudyState& state, double step, const std::string& finder
 }
 
 Json finder_fraction(const StudyState& state, double step, const std::string& finder, int repeats) {
+  assert(repeats > 0);
   const Scene scene = state.timed(step, finder);
   std::vector<FinderResult> answers;
   {
@@ -303,12 +309,12 @@ Json rejection(const StudyState& state, double step, int repeats) {
           {"ns_per_call_after_rejection", times_per_call(left, repeats)}};
 }
 
-Json local_times(const StudyState& state, double step, double share, int repeats) {
+Json local_times(const StudyState& state, double step, double moved_fraction, int repeats) {
   PairSet pairs = first_pairs(state, state.timed(step, "certified"), true);
   double mean_radius = 0.0;
   for (const Body& body : pairs.bodies)
     mean_radius += body.radius / static_cast<double>(pairs.bodies.size());
-  move_some(pairs, share, 0.2 * mean_radius);
+  move_some(pairs, moved_fraction, 0.2 * mean_radius);
   Json missed, false_hits, late, evaluations;
   std::uint64_t true_hits = 0;
   for (const std::string& name : all_finders()) {

@@ -1,4 +1,4 @@
-// The single measurements of the finder study, each a JSON object.
+// The single measurements of the finder study. Each returns one JSON object.
 #pragma once
 
 #include "job_list.hpp"
@@ -11,37 +11,37 @@ namespace keeler {
 inline const std::vector<std::string> paper_finders = {"original", "newton-full", "newton-cubic", "linear-full",
                                                        "linear-cubic"};
 
-/// Those and the certified one, which the graphs show.
+/// Returns the finders that the graphs show: the paper's five and the certified one.
 std::vector<std::string> shown_finders();
 
-/// All names of finder_table().
+/// Returns all names of finder_table().
 std::vector<std::string> all_finders();
 
 constexpr double study_orbits = 0.1; // length of a run, as in the paper
 
-/// A run with every grid candidate handed to the finder: cpu_s, and ns_per_call on the pairs of its first step.
+/// Times a run with every grid candidate passed to the finder: cpu_s, and ns_per_call on the pairs of its first step.
 Json timed_run(const StudyState& state, double step, const std::string& finder);
 
-/// The same run, each call held against the certified finder: counts, verdict, histograms, the overlap at the end.
+/// Repeats that run untimed with a FinderAudit: counts, verdict, histograms, and the overlap at the end.
 Json audited_run(const StudyState& state, double step, const std::string& finder);
 
-/// Runs with the finder and, on recorded answers, without: what share of the time is the finder's.
+/// Times runs with the finder (cpu_s) and with its recorded answers replayed (cpu_s_without_finder).
 Json finder_fraction(const StudyState& state, double step, const std::string& finder, int repeats);
 
-/// What the time of a call leaves out: the start of a step for finders that keep something (ns a particle); and the
-/// certified search without its rejection (ns a call).
+/// Measures costs that the time per call leaves out: the start of a step for finders that store data per particle (ns
+/// per particle), and the certified search without its rejection (ns per call).
 Json call_details(const StudyState& state, double step, int repeats);
 
-/// The first step's pairs: the certified finder against a dense scan.
+/// Compares the certified finder with a dense scan on the pairs of the first step.
 Json scan_check(const StudyState& state, double step);
 
-/// Runs with the drift's own rejection in front of every finder, interleaved, and what it leaves of the pairs.
+/// Times interleaved runs without and with the drift's rejection before every finder, and counts the pairs that remain.
 Json rejection(const StudyState& state, double step, int repeats);
 
-/// Cost and truth of each finder when a share of the particles has changed its velocity earlier in the step.
-Json local_times(const StudyState& state, double step, double share, int repeats);
+/// Measures cost and errors of each finder after a fraction of the particles has changed velocity within the step.
+Json local_times(const StudyState& state, double step, double moved_fraction, int repeats);
 
-/// Figure 1: how far the means of a perturbed ring drift on a path.
+/// Measures how far the means of a perturbed ring drift on a path (Figure 1).
 Json drift_of_means(const PerturbedRing& ring, const std::string& path);
 
 } // namespace keeler

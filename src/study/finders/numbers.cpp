@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
 
 namespace keeler {
 
@@ -14,9 +16,9 @@ std::string number(double value) {
   return fmt::format("{:.3g}", value);
 }
 
-std::string percent(double share) {
-  return share != 0.0 && std::fabs(share) < 0.001 ? fmt::format("{:.2g} %", 100.0 * share)
-                                                  : fmt::format("{:.1f} %", 100.0 * share);
+std::string percent(double fraction) {
+  return fraction != 0.0 && std::fabs(fraction) < 0.001 ? fmt::format("{:.2g} %", 100.0 * fraction)
+                                                        : fmt::format("{:.1f} %", 100.0 * fraction);
 }
 
 double calls_ended(const Json& audit, const std::vector<std::string>& exits) {
@@ -27,12 +29,12 @@ double calls_ended(const Json& audit, const std::vector<std::string>& exits) {
   return sum;
 }
 
-double share_from(const Json& audit, const std::vector<std::string>& exits, std::size_t least) {
+double fraction_from(const Json& audit, const std::vector<std::string>& exits, std::size_t min_iterations) {
   double sum = 0.0;
   for (const std::string& exit : exits)
     if (audit.at("exits").contains(exit)) {
       const Json& bins = audit.at("exits").at(exit).at("iterations");
-      for (std::size_t k = least; k < bins.size(); ++k)
+      for (std::size_t k = min_iterations; k < bins.size(); ++k)
         sum += bins[k].get<double>();
     }
   return sum / std::max(1.0, calls_ended(audit, exits));
@@ -49,8 +51,8 @@ double mean_over(const Json& audit, const std::string& exit, const char* field) 
 }
 
 double FinderNumbers::finder_fraction(const std::string& state, const std::string& finder) const {
-  const Json& share = data.result(job_name("share", state, data.shown_step, finder));
-  return 1.0 - of(share, "cpu_s_without_finder") / of(share, "cpu_s");
+  const Json& times = data.result(job_name("share", state, data.shown_step, finder));
+  return 1.0 - of(times, "cpu_s_without_finder") / of(times, "cpu_s");
 }
 
 double FinderNumbers::scatter() const {
@@ -64,11 +66,12 @@ double FinderNumbers::scatter() const {
   return median(all);
 }
 
-const Json& FinderNumbers::local(double step, double share) const {
-  return data.result(fmt::format("local/{}/{:.6g}/{}", data.states.front().name, step, share));
+const Json& FinderNumbers::local(double step, double moved_fraction) const {
+  return data.result(fmt::format("local/{}/{:.6g}/{}", data.states.front().name, step, moved_fraction));
 }
 
 std::size_t FinderNumbers::best_step(const std::string& state, const std::string& finder) const {
+  assert(!data.steps.empty());
   std::size_t best = 0;
   for (std::size_t k = 1; k < data.steps.size(); ++k)
     if (cpu(state, data.steps[k], finder) < cpu(state, data.steps[best], finder))

@@ -1,4 +1,4 @@
-// The numbers that the finder study's report and figures are made of, taken from the measurements.
+// The numbers of the finder study's report and figures, computed from the measurements.
 #pragma once
 
 #include "json_value.hpp"
@@ -11,18 +11,18 @@
 namespace keeler {
 
 using Row = std::vector<std::string>;
-using Rows = std::vector<Row>; ///< a table, its head first
+using Rows = std::vector<Row>; ///< a table with its header row first
 
-std::string number(double value);  ///< three digits
-std::string percent(double share); ///< of one
+std::string number(double value);     ///< formats with three digits
+std::string percent(double fraction); ///< formats 1 as "100.0 %"
 
-/// Calls of an audited run that ended for these reasons.
+/// Returns the number of calls of an audited run that ended with one of these exits.
 double calls_ended(const Json& audit, const std::vector<std::string>& exits);
 
-/// Share of those calls that took `least` iterations or more.
-double share_from(const Json& audit, const std::vector<std::string>& exits, std::size_t least);
+/// Returns the fraction of the calls with these exits that took at least `min_iterations`.
+double fraction_from(const Json& audit, const std::vector<std::string>& exits, std::size_t min_iterations);
 
-/// Mean of "iterations" or "evaluations" over the calls with one exit.
+/// Returns the mean of "iterations" or "evaluations" over the calls with one exit.
 double mean_over(const Json& audit, const std::string& exit, const char* field);
 
 class FinderNumbers {
@@ -34,14 +34,15 @@ public:
   double cpu(const std::string& state, double step, const std::string& finder) const {
     return data.timed(state, step, finder, "cpu_s");
   }
-  double per_call(const std::string& state, const std::string& finder) const { // at the step that is shown
+  /// Returns the time per call at the shown step, ns.
+  double per_call(const std::string& state, const std::string& finder) const {
     return data.timed(state, data.shown_step, finder, "ns_per_call");
   }
-  /// Of a run's time, what a run on recorded answers does not need.
+  /// Returns the fraction of a run's time that a replay of recorded answers saves.
   double finder_fraction(const std::string& state, const std::string& finder) const;
-  /// Half the range of the repeats over their median; its median over all timed runs.
+  /// Returns the scatter of the times: half the range of the repeats over their median, as median over all timed runs.
   double scatter() const;
-  /// The audited run of the first state, equal sizes and early, at the step that is shown.
+  /// Returns the audited run of the first state (equal sizes, early) at the shown step.
   const Json& early(const std::string& finder) const {
     return data.audit(data.states.front().name, data.shown_step, finder);
   }
@@ -51,19 +52,20 @@ public:
   const Json& rejection(const std::string& state) const {
     return data.result(job_name("rejection", state, data.shown_step));
   }
-  const Json& local(double step, double share) const;
-  std::size_t best_step(const std::string& state, const std::string& finder) const; ///< place among the steps
+  const Json& local(double step, double moved_fraction) const;
+  std::size_t best_step(const std::string& state, const std::string& finder) const; ///< index of the fastest step
   StepLaw law_of(const std::string& state, const std::string& finder) const;
 
   int panels() const { return static_cast<int>(data.states.size() * data.steps.size()); }
-  template<class Visit> void each_panel(const Visit& visit) const { // state × step
+  /// Calls visit(state, step) for each panel: state × step.
+  template<class Visit> void each_panel(const Visit& visit) const {
     for (const StudyState& state : data.states)
       for (const double step : data.steps)
         visit(state.name, step);
   }
 };
 
-/// Each claim of the paper, what was measured, and a verdict.
+/// Returns a table of the paper's claims, the measurements, and the verdicts.
 Rows paper_claims(const FinderNumbers& numbers);
 
 } // namespace keeler

@@ -68,25 +68,24 @@ void Report::introduction() {
   const auto made = [&](const char* key) { return data_.made.at(key); };
   document_.paragraph(fmt::format(
       "M. C. Lewis, \"Collision Finding for Particles on Non-linear Paths\" (draft), compares five ways to find the "
-      "time "
-      "at which two ring particles touch: {}. This is its experiment, with {} finders: {} states × {} time steps × {} "
-      "repeats, each {} orbit, one thread, processor time, medians. All runs of a state start from the same particles.",
+      "time at which two ring particles touch: {}. This is its experiment, with {} finders: {} states × {} time "
+      "steps × {} repeats, each {} orbit, one thread, processor time, medians. All runs of a state start from the "
+      "same particles.",
       fmt::join(paper_finders, ", "), all_finders().size(), data_.states.size(), data_.steps.size(), data_.repeats,
       study_orbits));
   document_.paragraph(
-      "In the timed runs every pair that the grid's cells hold goes to the finder, as in the paper, and self-gravity "
-      "is "
-      "off: it made the clumped states, and its cost is given with them. Sines and cosines come from the program's own "
-      "polynomials and take the time since mid-step; the paper's code takes full phases and the C library's, so "
-      "trigonometry is cheaper here than there.");
+      "In the timed runs every candidate pair of the grid is passed to the finder, as in the paper, and self-gravity "
+      "is off: it made the clumped states, and its cost is given with them. Sines and cosines are polynomials in the "
+      "time since mid-step; the paper's code evaluates full phases with the C library, so trigonometry is cheaper "
+      "here.");
   document_.paragraph(
       fmt::format("Made by `{}` on {} ({}), {}, flags `{}`, commit {}. Half the range of the repeats is {} "
-                  "of their median (the median of that over all timed runs): smaller differences mean "
-                  "nothing.",
+                  "of their median (median over all timed runs): smaller differences are not significant.",
                   made("command"), made("processor"), made("host"), made("compiler"), made("flags"), made("commit"),
                   percent(n_.scatter())));
   if (data_.states.front().patch.size() < 5000)
-    document_.paragraph("**This is a small study**: fine to see that it works, too small for verdicts.");
+    document_.paragraph(
+        "**This is a small study**: it shows that the measurements work, and is too small for verdicts.");
   Rows rows = {{"state", "how it was made"}};
   for (const StudyState& state : data_.states)
     rows.push_back({state.name, state.made});
@@ -99,35 +98,31 @@ void Report::claims() {
   document_.table(paper_claims(n_));
   double full = HUGE_VAL, cubic = HUGE_VAL, missed = 0.0, others_missed = 0.0;
   for (const StudyState& state : data_.states) {
-    const double own = n_.per_call(state.name, "certified");
-    full = std::min(full, n_.per_call(state.name, "linear-full") / own);
-    cubic = std::min(cubic, n_.per_call(state.name, "linear-cubic") / own);
+    const double certified = n_.per_call(state.name, "certified");
+    full = std::min(full, n_.per_call(state.name, "linear-full") / certified);
+    cubic = std::min(cubic, n_.per_call(state.name, "linear-cubic") / certified);
   }
   n_.each_panel([&](const std::string& state, double step) {
     missed += of(data_.audit(state, step, "certified"), "missed");
     others_missed += of(data_.audit(state, step, "linear-full"), "missed");
   });
   document_.paragraph(fmt::format(
-      "**The certified finder** beside them: on the same pairs, at step {}, a call of linear-full takes at least "
-      "{:.1f} times "
-      "and one of linear-cubic at least {:.1f} times as long, in every state. It missed {:.0f} contacts in all runs, "
-      "linear-full {:.0f}.",
+      "**The certified finder** in comparison: on identical pairs, at step {}, a call of linear-full takes at least "
+      "{:.1f} times and a call of linear-cubic at least {:.1f} times as long, in every state. It missed {:.0f} "
+      "contacts in all runs, linear-full {:.0f}.",
       data_.shown_step, full, cubic, missed, others_missed));
 }
 
 void Report::truth() {
-  document_.heading("Truth: what each finder missed");
+  document_.heading("Errors of each finder");
   document_.paragraph(
       "Every call of an untimed run of each kind was also answered by the certified finder. **missed**: there is a "
-      "contact, the finder found none. **false**: there is none, or it was called while the spheres were apart by more "
-      "than 1e-6 of the radius sum R. **late**: called after they had been inside each other by more than 1e-6 R, also "
-      "when they had parted again. **misordered**: particles whose first contact of a step, by the finder's times, is "
-      "not "
-      "the first. **deepest**: how deep spheres had been when their contact was called. **overlap**: the deepest at "
-      "the "
-      "end of the run; both in R. Sums, or the worst, of the four states. A run's own misses change its later calls, "
-      "so "
-      "the numbers of calls differ a little.");
+      "contact, the finder found none. **false**: there is no contact, or the finder reported it while the spheres "
+      "were apart by more than 1e-6 of the radius sum R. **late**: reported after the spheres had overlapped by more "
+      "than 1e-6 R, even if they had parted again. **misordered**: particles with a wrong first contact in a step, "
+      "by the finder's times. **deepest**: the largest overlap before a contact was reported. **overlap**: the "
+      "largest at the end of the run; both in R. Sums over the four states, or the worst of them. The misses of a "
+      "run change its later calls, so the numbers of calls differ slightly.");
   for (const double step : data_.steps) {
     Rows rows = {{fmt::format("step {:.3g}", step), "calls", "true contacts", "missed", "false", "late", "misordered",
                   "deepest", "overlap"}};
@@ -156,17 +151,16 @@ void Report::truth() {
     only_certified += of(scan, "only_certified"), other_time += of(scan, "other_time");
   });
   document_.paragraph(fmt::format(
-      "The truth was itself held against a dense scan of the paths (512 times a pair and step, bisection) on the pairs "
-      "of "
-      "the first step of each state and step: {:.0f} pairs, {:.0f} contacts by the certified finder; {:.0f} found by "
-      "the "
-      "scan alone, {:.0f} by the certified finder alone, {:.0f} with times that differ by more than 1e-6 of the step.",
+      "The certified finder was itself compared with a dense scan of the paths (512 times per pair and step, "
+      "bisection) on the pairs of the first step of each state and step: {:.0f} pairs, {:.0f} contacts by the "
+      "certified finder; {:.0f} found by the scan alone, {:.0f} by the certified finder alone, {:.0f} with times "
+      "that differ by more than 1e-6 of the step.",
       pairs, contacts, only_scan, only_certified, other_time));
 }
 
 void Report::times() {
   document_.heading("Time against time step (Figure 4)");
-  figure("figure4", "Figure 4: processor time for a tenth of an orbit against the time step, one panel a state: the "
+  figure("figure4", "Figure 4: processor time for a tenth of an orbit against the time step, one panel per state: the "
                     "paper's five and the certified finder.");
   for (const StudyState& state : data_.states) {
     Row head = {state.name};
@@ -186,18 +180,16 @@ void Report::times() {
 void Report::calls() {
   document_.heading(fmt::format("The time of a call, step {}", data_.shown_step));
   document_.paragraph(
-      "Every finder asked about the very same pairs: those that the grid hands out at the start of the first step. In "
-      "brackets, how many times the certified finder's time that is. Its calls include its rejection by straight "
-      "lines, "
-      "which spares nearly all of them the search; the last row is its search alone. What a finder does once a step "
-      "for "
-      "each particle is not in these times; it stands below, with the memory.");
-  Rows rows = {head_of_states("ns a call")};
+      "All finders are timed on identical pairs: the grid's candidates at the start of the first step. In brackets, "
+      "the ratio to the certified finder's time. Its calls include its rejection by straight lines, which ends "
+      "nearly all of them before the search; the last row is its search alone. The work of a finder per particle at "
+      "the start of a step is not in these times; the table of the memory below has it.");
+  Rows rows = {head_of_states("ns per call")};
   for (const std::string& finder : all_finders()) {
     Row row = {finder};
     for (const StudyState& state : data_.states) {
-      const double own = n_.per_call(state.name, finder);
-      row.push_back(fmt::format("{:.1f} ({:.1f})", own, own / n_.per_call(state.name, "certified")));
+      const double time = n_.per_call(state.name, finder);
+      row.push_back(fmt::format("{:.1f} ({:.1f})", time, time / n_.per_call(state.name, "certified")));
     }
     rows.push_back(row);
   }
@@ -217,9 +209,9 @@ void Report::iterations() {
   figure("figure6",
          "Figure 6: calls by number of evaluations of the motion, for the finders on the full motion; the last "
          "bar holds 51 and more.");
-  document_.paragraph("\"Gave up\" is seldom a miss: mostly the search was right that there was nothing.");
+  document_.paragraph("\"Gave up\" is rarely a miss: in most of these calls there is no contact.");
   Rows rows = {{"finder", "calls", "receding or overlapping", "hit", "root outside the step", "missed", "gave up",
-                "iterations a hit", "evaluations a hit", "evaluations a call"}};
+                "iterations per hit", "evaluations per hit", "evaluations per call"}};
   for (const std::string& finder : all_finders()) {
     const Json& audit = n_.early(finder);
     const double calls = of(audit, "calls");
@@ -235,7 +227,7 @@ void Report::iterations() {
 }
 
 void Report::caching() {
-  document_.heading("Does it pay to keep the cubics?");
+  document_.heading("Does it pay to store the cubics?");
   Rows rows = {{"state", "step", "newton-cubic: run, cached / fitted", "call, cached / fitted",
                 "linear-cubic: run, cached / fitted", "call, cached / fitted",
                 "linear-cubic-cached / linear-full, run"}};
@@ -250,7 +242,7 @@ void Report::caching() {
                     ratio("linear-cubic-cached", "linear-full", "cpu_s")});
   });
   document_.table(rows);
-  Rows memory = {{"finder", "bytes kept for each particle", "made anew each step, ns a particle"}};
+  Rows memory = {{"finder", "bytes stored per particle", "rebuilt every step, ns per particle"}};
   const Json& begin = n_.details(data_.states.front().name).at("begin_ns_per_particle");
   for (const auto& [finder, time] : begin.items())
     memory.push_back({finder, fmt::format("{:.0f}", of(n_.early(finder), "bytes_per_particle")),
@@ -261,12 +253,12 @@ void Report::caching() {
 void Report::best_steps() {
   document_.heading("Where is the best step, and does A/h + B h^d hold?");
   if (data_.steps.size() < 4) {
-    document_.paragraph("The law has three free numbers; it takes more steps than this study has to test it.");
+    document_.paragraph("The law has three free parameters: a test needs more steps than this study has.");
     return;
   }
   document_.paragraph(
-      fmt::format("Steps in orbits. The law is fitted to the {} measured steps with d between 0.25 and 4; its "
-                  "largest error is that at any of them, of the measured time.",
+      fmt::format("Steps in orbits. The law is fitted to the {} measured steps with d between 0.25 and 4; the largest "
+                  "error is relative to the measured time.",
                   data_.steps.size()));
   Rows rows = {{"state", "finder", "best measured step", "d", "best step of the law", "largest error"}};
   for (const StudyState& state : data_.states)
@@ -287,24 +279,23 @@ void Report::best_steps() {
 void Report::local_times() {
   document_.heading("Particles at different local times");
   document_.paragraph(
-      "The paper's unfinished question. On the grid's pairs of the early state of equal particles, a share of the "
-      "particles "
-      "was given a velocity change of 0.2 rΩ a component at a random time of the step, as earlier collisions would; a "
-      "search then begins at the later of two such times, and pairs in contact by then are left out. Here all elements "
-      "stand at one epoch whatever happened, so nothing needs to be brought to a common time; what a finder loses is "
-      "what "
-      "it kept for the step's start. Wrong answers: missed / false / late.");
+      "The paper's unfinished question. On the grid's pairs of the early state of equal particles, a fraction of the "
+      "particles received a velocity change of 0.2 rΩ per component at a random time of the step, as by an earlier "
+      "collision; a search then begins at the later of the pair's two times, and pairs that overlap at that time are "
+      "left out. In Keeler all elements refer to one epoch at any time, so no particle must be brought to a common "
+      "time; a finder loses only the data that it stored for the start of the step. Wrong answers: missed / false / "
+      "late.");
   for (const double step : {1e-3, 1e-2}) {
-    Row head = {fmt::format("step {}: ns a call; wrong", step)}, contacts = {"true contacts"};
-    for (const double share : data_.shares) {
-      head.push_back(fmt::format("{:.0f} % moved", 100.0 * share));
-      contacts.push_back(fmt::format("{:.0f}", of(n_.local(step, share), "true_hits")));
+    Row head = {fmt::format("step {}: ns per call; wrong", step)}, contacts = {"true contacts"};
+    for (const double fraction : data_.moved_fractions) {
+      head.push_back(fmt::format("{:.0f} % moved", 100.0 * fraction));
+      contacts.push_back(fmt::format("{:.0f}", of(n_.local(step, fraction), "true_hits")));
     }
     Rows rows = {head, contacts};
     for (const std::string& finder : all_finders()) {
       Row row = {finder};
-      for (const double share : data_.shares) {
-        const auto value = [&](const char* key) { return of(n_.local(step, share).at(key), finder); };
+      for (const double fraction : data_.moved_fractions) {
+        const auto value = [&](const char* key) { return of(n_.local(step, fraction).at(key), finder); };
         row.push_back(fmt::format("{:.1f}; {:.0f}/{:.0f}/{:.0f}", value("ns_per_call"), value("missed"),
                                   value("false_hits"), value("late")));
       }
@@ -312,17 +303,17 @@ void Report::local_times() {
     }
     document_.table(rows);
   }
-  figure("local-times", "Time of a call against the share of particles that have already moved, step 1/1000 orbit.");
+  figure("local-times",
+         "Time per call against the fraction of particles with an earlier velocity change, step 1/1000 orbit.");
 }
 
 void Report::rejection() {
   document_.heading("A conservative rejection before any finder");
   document_.paragraph(
-      "Straight lines from the middle of the step, with all that curvature can add, prove most misses. What it "
-      "leaves, and the runs of step 1/1000 orbit with every candidate in the finder's hands and with the "
-      "rejection first: processor time, and in brackets the rank, where differences below 2 % count as "
-      "none.");
-  Rows left = {{"state", "grid candidates, first step", "left", "share", "with a contact"}};
+      "Straight lines from the middle of the step, with a bound on the curvature, prove most misses. The tables show "
+      "the pairs that remain, and the runs of step 1/1000 orbit with every candidate passed to the finder and with the "
+      "rejection first: processor time, and in brackets the rank, where differences below 2 % count as none.");
+  Rows left = {{"state", "grid candidates, first step", "left", "fraction", "with a contact"}};
   for (const StudyState& state : data_.states) {
     const Json& r = n_.rejection(state.name);
     left.push_back({state.name, fmt::format("{:.0f}", of(r, "candidates")), fmt::format("{:.0f}", of(r, "left")),
@@ -330,10 +321,10 @@ void Report::rejection() {
   }
   document_.table(left);
   const auto rank = [](const Json& times, const std::string& finder) {
-    int place = 1;
+    int position = 1;
     for (const auto& [other, time] : times.items())
-      place += 1.02 * time.get<double>() < of(times, finder);
-    return place;
+      position += 1.02 * time.get<double>() < of(times, finder);
+    return position;
   };
   Rows rows = {head_of_states("finder", ", before → after")};
   for (const std::string& finder : all_finders()) {
@@ -351,11 +342,11 @@ void Report::rejection() {
 
 void Report::straight_lines() {
   document_.heading("Straight paths drift, curved ones do not (Figures 1 and 2)");
-  document_.paragraph(
-      "A ring of 1000 spheres (τ = 0.3) whose streamlines bunch once an orbit, q = 0.6; Keeler's "
-      "`docs/theory/straight-lines.md` has its set-up. The drift of the mean guiding centre and of the mean "
-      "vertical motion, in particle radii; exact collisions keep both.");
-  Rows rows = {{"path", "step", "orbits", "drift in x", "vertical drift", "collisions a particle"}};
+  document_.paragraph("A ring of 1000 spheres (τ = 0.3) with streamlines that bunch once per orbit, q = 0.6; "
+                      "Keeler's `docs/theory/straight-lines.md` describes it. The table has the drift of the mean "
+                      "guiding centre and of the mean vertical motion, in particle radii; exact collisions conserve "
+                      "both.");
+  Rows rows = {{"path", "step", "orbits", "drift in x", "vertical drift", "collisions per particle"}};
   for (const auto& [name, result] : data_.results) {
     if (!name.starts_with("drift/"))
       continue;

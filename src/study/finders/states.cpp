@@ -13,21 +13,24 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
+#include <cmath>
+
 namespace keeler {
 namespace {
 
-constexpr double early_orbits = 0.25;  // long enough for the start's own features to go, too short for clumps
-constexpr double clumped_orbits = 3.0; // in a box below four λ_cr, which holds too few wakes to settle soon
+constexpr double early_orbits = 0.25;  // erases the features of the initial state; too short for clumps
+constexpr double clumped_orbits = 3.0; // in a box below four λ_cr, with too few wakes to settle soon
 
 struct Recipe {
   const char* name;
   SizeLaw sizes;
-  const char* table; // of the scene: the same sizes
+  const char* table; // `sizes` as in a scene file
   double optical_depth;
-  double dispersion; // c_x in ⟨r⟩ Ω at the start
+  double dispersion; // initial c_x, ⟨r⟩ Ω
 };
 
-// Both make λ_cr 61–62 m: four wavelengths and more in a box of 10⁴ equal particles or 5000 of the power law.
+// λ_cr is 61–62 m with both: a box of 10⁴ equal particles, or of 5000 with the power law, is at least 4 λ_cr wide.
 const Recipe recipes[] = {
     {"equal", equal_sizes(1.0), "{ law = \"equal\", radius = 1.0 }", 0.5, 3.5},
     {"power", power_sizes(2.9, 0.5, 5.0), "{ law = \"power\", exponent = 2.9, min = 0.5, max = 5.0 }", 0.25, 3.7}};
@@ -60,7 +63,7 @@ end = 1.0
 
 struct Made {
   Patch patch;
-  std::string how;
+  std::string how; // one sentence for the report
 };
 
 Made evolve(const Scene& scene, double orbits) {
@@ -103,6 +106,7 @@ Made make(const Scene& scene, bool clumped, const std::function<void(const std::
 } // namespace
 
 Scene StudyState::timed(double step_orbits, const std::string& finder) const {
+  assert(step_orbits > 0.0 && !finder.empty());
   Scene timed_scene = scene;
   timed_scene.gravity.reset();
   timed_scene.time.step = step_orbits;
@@ -124,7 +128,7 @@ std::vector<StudyState> study_states(const std::filesystem::path& folder, std::s
         say(fmt::format("making the state {}", state.name));
         const Made made = make(state.scene, clumped, say);
         write_snapshot(file, made.patch, {state.scene.resolved, collect_provenance({}), {}});
-        write_text(note, made.how); // last: a state is complete when it has its note
+        write_text(note, made.how); // written last: it marks the state as complete
       }
       state.patch = read_snapshot(file).patch;
       state.made = read_text(note);

@@ -1,5 +1,6 @@
 // The four states of the paper's experiment: equal sizes or a power law, early (nearly uniform) or clumped by
-// self-gravity. Made once, kept as snapshots, and always used as read back, so that a continued study sees the same.
+// self-gravity. They are made once and stored as snapshots; a study always uses the stored particles, so that a
+// continued study measures identical ones.
 #pragma once
 
 #include <keeler/particles/patch.hpp>
@@ -16,13 +17,14 @@ struct StudyState {
   std::string name; ///< equal-early, equal-clumped, power-early, power-clumped
   Scene scene;      ///< with self-gravity
   Patch patch;
-  std::string made; ///< how it came about, in words
+  std::string made; ///< how it was made, one sentence for the report
 
-  /// The scene of a measurement: no gravity, this step and finder.
+  /// Returns the scene of a measurement: without gravity, with this step (orbits) and finder.
   Scene timed(double step_orbits, const std::string& finder) const;
 };
 
-/// `count` particles of equal size, half as many with a size distribution. Throws Interrupted.
+/// Reads the four states from `folder` and makes the missing ones: `count` particles of equal size, half that number
+/// with a size distribution. Throws Interrupted.
 std::vector<StudyState> study_states(const std::filesystem::path& folder, std::size_t count,
                                      const std::function<void(const std::string&)>& say);
 

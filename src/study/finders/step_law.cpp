@@ -1,12 +1,13 @@
 #include "step_law.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-// For a given d, A and B by linear least squares of (A/h + B h^d)/T − 1, and the sum of squares.
+// Fits A and B for a given d by linear least squares of (A/h + B h^d)/T − 1. Returns the sum of squares.
 double fit_at(double d, std::span<const double> h, std::span<const double> t, double& a, double& b) {
   double uu = 0.0, uv = 0.0, vv = 0.0, u1 = 0.0, v1 = 0.0;
   for (std::size_t k = 0; k < h.size(); ++k) {
@@ -31,14 +32,15 @@ double fit_at(double d, std::span<const double> h, std::span<const double> t, do
 } // namespace
 
 StepLaw fit_step_law(std::span<const double> steps, std::span<const double> times) {
+  assert(steps.size() == times.size() && steps.size() >= 3);
   StepLaw law;
-  double least = HUGE_VAL;
+  double smallest = HUGE_VAL;
   for (int k = 0; k <= 375; ++k) {
     const double d = 0.25 + 0.01 * k;
     double a = 0.0, b = 0.0;
     const double squares = fit_at(d, steps, times, a, b);
-    if (squares < least) {
-      least = squares;
+    if (squares < smallest) {
+      smallest = squares;
       law.a = a, law.b = b, law.d = d;
     }
   }

@@ -13,6 +13,8 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
+#include <cmath>
 #include <optional>
 
 namespace keeler {
@@ -22,10 +24,10 @@ namespace fs = std::filesystem;
 
 struct Plan {
   std::size_t count;
-  std::vector<double> steps; // orbits; each divides a tenth
+  std::vector<double> steps; // orbits; a whole number of each makes up study_orbits
   int repeats;
   double drift_orbits;
-  std::vector<double> shares = {0.0, 0.25, 0.5, 0.75, 1.0};
+  std::vector<double> moved_fractions = {0.0, 0.25, 0.5, 0.75, 1.0};
 };
 
 Plan plan_of(const FinderStudySettings& settings) {
@@ -42,8 +44,9 @@ Json options_of(const Plan& plan) {
           {"finders", all_finders()}};
 }
 
-// Times of different builds or machines do not compare. Whatever else is missing may be measured by a newer program:
-// each such measurement compares only with itself, or is no time.
+// Throws UsageError when timed runs are missing and the others were measured with another build or on another machine:
+// such times are not comparable. Other measurements may come from a newer program: each is compared only with itself,
+// or is not a time.
 void require_same_build(const Json& begun, const std::map<std::string, std::string>& made, const std::vector<Job>& jobs,
                         const JobList& list, const fs::path& folder) {
   std::size_t missing_runs = 0, runs = 0;
@@ -56,9 +59,9 @@ void require_same_build(const Json& begun, const std::map<std::string, std::stri
     return;
   for (const char* key : {"commit", "host", "compiler", "flags"})
     if (begun.value(key, "") != made.at(key))
-      throw UsageError(fmt::format("the timed runs of '{}' were begun with another {} ({}), and such times do not "
-                                   "compare; go on there with that one or name another folder",
-                                   folder.string(), key, begun.value(key, "")));
+      throw UsageError(fmt::format("the timed runs of '{}' were started with another {} ({}), and such times are not "
+                                   "comparable; continue with that {}, or name another folder",
+                                   folder.string(), key, begun.value(key, ""), key));
 }
 
 std::size_t missing(const std::vector<Job>& jobs, const JobList& list) {
@@ -68,12 +71,13 @@ std::size_t missing(const std::vector<Job>& jobs, const JobList& list) {
   return count;
 }
 
-// Nanoseconds of a run, roughly, with every candidate in a finder's hands: of the study in docs/paper-reproduction.md,
-// means over its finders.
+// Estimates the time of a run (ns) with every candidate passed to the finder: fits to the means over the finders in
+// docs/paper-reproduction.md.
 double expected_cost(const StudyState& state, double step) {
   struct Cost {
-    double base, linear, square; // ns a particle and step: base (1 + linear h + square h²)
+    double base, linear, square; // ns per particle and step: base (1 + linear h + square h²)
   };
+  assert(step > 0.0);
   const bool power = state.name.starts_with("power");
   const Cost c = state.name.ends_with("early") ? Cost{power ? 1500.0 : 500.0, 150.0, 4e4}
                                                : Cost{power ? 1700.0 : 1100.0, 300.0, power ? 2.6e5 : 6e5};
@@ -90,12 +94,12 @@ public:
       for (const double step : plan_.steps)
         add_truth(state, step);
     for (const StudyState& state : states_) {
-      add_shares(state);
+      add_finder_fractions(state);
       add_rejection(state);
     }
     for (const double step : {1e-3, 1e-2})
-      for (const double share : plan_.shares)
-        add_local_times(step, share);
+      for (const double fraction : plan_.moved_fractions)
+        add_local_times(step, fraction);
     add_drifts();
     for (int repeat = 0; repeat < plan_.repeats; ++repeat)
       for (const StudyState& state : states_)
@@ -123,7 +127,7 @@ private:
         [&state, repeats] { return rejection(state, 1e-3, repeats); });
   }
 
-  void add_shares(const StudyState& state) {
+  void add_finder_fractions(const StudyState& state) {
     const int repeats = std::min(plan_.repeats, 3);
     add(job_name("details", state.name, 1e-3), 1e9, [&state, repeats] { return call_details(state, 1e-3, repeats); });
     for (const std::string& finder : paper_finders)
@@ -131,14 +135,14 @@ private:
           [&state, finder, repeats] { return finder_fraction(state, 1e-3, finder, repeats); });
   }
 
-  void add_local_times(double step, double share) {
+  void add_local_times(double step, double moved_fraction) {
     const StudyState& state = states_.front();
     const int repeats = std::min(plan_.repeats, 5);
-    add(fmt::format("local/{}/{:.6g}/{}", state.name, step, share), 2e9,
-        [&state, step, share, repeats] { return local_times(state, step, share, repeats); });
+    add(fmt::format("local/{}/{:.6g}/{}", state.name, step, moved_fraction), 2e9,
+        [&state, step, moved_fraction, repeats] { return local_times(state, step, moved_fraction, repeats); });
   }
 
-  // Figure 1. The finders at one step: they differ from zero by rounding at any.
+  // Adds the runs of Figure 1. The finders need one step only: at any step their drift is rounding.
   void add_drifts() {
     for (const double step : {1e-3, 3e-3, 1e-2})
       for (const char* path : {straight_path, control_path})
@@ -155,7 +159,8 @@ private:
         [ring, path] { return drift_of_means(ring, path); });
   }
 
-  // In another order in each repeat, so that a machine that drifts favours no finder.
+  // Adds the timed runs, in another order in each repeat, so that a slow change of the machine's speed favours no
+  // finder.
   void add_runs(const StudyState& state, double step, int repeat) {
     const std::vector<std::string> finders = all_finders();
     const std::size_t count = finders.size();
@@ -180,7 +185,7 @@ void announce(const std::vector<Job>& jobs, std::size_t left, const std::functio
                   jobs.size() - left, std::ceil(cost / 60e9)));
 }
 
-// A state that is half made is of no use: its making is interrupted at once.
+// Returns the states, or nothing after a stop. A stop interrupts the evolution at once: a partial state is useless.
 std::optional<std::vector<StudyState>> states_unless_stopped(const FinderStudySettings& settings, const Plan& plan,
                                                              const std::atomic<bool>& stop) {
   try {
@@ -221,12 +226,12 @@ double FinderStudyData::timed(const std::string& state, double step, const std::
 }
 
 bool study_finders(const FinderStudySettings& settings, const std::atomic<bool>& stop) {
-  constexpr std::size_t fewest = 100, most = 10000000;
-  if (settings.count < fewest || settings.count > most)
-    throw UsageError(
-        fmt::format("a study of {} particles is not possible; --count takes {} to {}", settings.count, fewest, most));
+  constexpr std::size_t min_particles = 100, max_particles = 10000000;
+  if (settings.count < min_particles || settings.count > max_particles)
+    throw UsageError(fmt::format("a study of {} particles is not possible; --count takes {} to {}", settings.count,
+                                 min_particles, max_particles));
   const Plan plan = plan_of(settings);
-  const std::map<std::string, std::string> made = study_builder(settings.arguments);
+  const std::map<std::string, std::string> made = study_provenance(settings.arguments);
   const Json begun = open_study_folder(settings.folder, options_of(plan), made);
   const FolderLock lock(settings.folder);
   const std::optional<std::vector<StudyState>> states = states_unless_stopped(settings, plan, stop);
@@ -240,20 +245,21 @@ bool study_finders(const FinderStudySettings& settings, const std::atomic<bool>&
     announce(jobs, left, settings.notice);
 
   const int threads_before = threads();
-  set_threads(1); // what follows is timed
+  set_threads(1); // the measurements are timed
   const bool finished = list.run(jobs, settings.progress, stop);
   set_threads(threads_before);
   if (!finished)
     return false;
 
-  FinderStudyData data{settings.folder, *states, plan.steps, 1e-3, plan.repeats, plan.shares, list.results(), made};
+  FinderStudyData data{settings.folder,      *states,        plan.steps, 1e-3, plan.repeats,
+                       plan.moved_fractions, list.results(), made};
   for (auto& [key, value] : data.made)
     value = begun.value(key, value);
   write_finder_tables(data);
   const auto draw = [&] {
     const bool drawn = draw_finder_figures(data);
     if (!drawn)
-      settings.notice("gnuplot is not there, so only the data of the graphs are written (Debian: gnuplot-nox)");
+      settings.notice("gnuplot was not found, so only the data of the graphs are written (Debian: gnuplot-nox)");
     return drawn;
   };
   draw_and_report(draw, [&](bool drawn) { write_finder_report(data, drawn); });

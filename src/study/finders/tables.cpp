@@ -33,7 +33,7 @@ void write_finder_tables(const FinderStudyData& data) {
           rows.push_back(row_of(data, state, step, finder, repeat));
   write_text(data.folder / "finders.csv", csv_of(rows));
 
-  Json other = Json::object(); // everything that is no timed run, by its name
+  Json other = Json::object(); // all other measurements, by job name
   for (const auto& [name, result] : data.results)
     if (!name.starts_with("run/"))
       other[name] = result;

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 const std::vector<std::string> solver_colours = {"#444444", "#c0392b", "#1f77b4", "#2e8b57", "#e67e22"};
 
-// One block of a data file, with the columns asked for.
+// Returns one block of a gnuplot data file with these columns.
 std::string data_block(const std::vector<Json>& rows, const std::vector<const char*>& keys) {
   std::string text;
   for (const Json& row : rows) {
@@ -48,7 +48,7 @@ bool pareto_figure(const GravityStudyData& data, const fs::path& folder) {
               800, 560);
 }
 
-// The solvers whose error converges with something, and what that is.
+// Draws error against parameter, one panel per solver with a convergence parameter.
 bool convergence_figure(const GravityStudyData& data, const fs::path& folder) {
   std::string blocks, panels;
   int count = 0;
@@ -71,7 +71,7 @@ bool convergence_figure(const GravityStudyData& data, const fs::path& folder) {
   write_text(folder / "convergence.dat", blocks);
   return plot(folder, "convergence",
               fmt::format("set multiplot layout 1,{}\nset logscale xy\nset format y '10^{{%L}}'\nset grid\n"
-                          "set ylabel 'share of the rms acceleration'\nset key bottom right\n{}unset multiplot\n",
+                          "set ylabel 'fraction of the rms acceleration'\nset key bottom right\n{}unset multiplot\n",
                           std::max(1, count), panels),
               600 * std::max(1, count), 480);
 }

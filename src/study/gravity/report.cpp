@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
@@ -29,30 +30,29 @@ void introduce(const GravityStudyData& data, Document& document) {
   const auto made = [&](const char* key) { return data.made.at(key); };
   const Json& b = data.bench;
   document.paragraph(fmt::format(
-      "{:.0f} particles in a patch of Saturn's A ring, the physics of `examples/a-ring-wakes`, in which self-gravity "
-      "wakes stand; {:.4g} m by {:.4g} m, shear offset {:.4g} m. Every solver with every setting works out the "
-      "accelerations of all of them. The error is that of {:.0f} of them, drawn at random, against the sum over all "
-      "pairs and periodic images in double precision, as a share of the rms acceleration; that near the edges is of "
-      "{:.0f} within {:g} m of the cell's edges. **Edge pull** is the mean error along the plane near the worst of the "
-      "four edges, over the rms acceleration along the plane; as neighbours err alike, such means are up to half of "
-      "the rms "
-      "error anywhere in the cell. **Net force** is the size of Σ m a over Σ m |a|. Times are processor time on one "
-      "thread, sorting "
-      "and building included, medians of {:.0f}.",
+      "{:.0f} particles in a patch of Saturn's A ring with self-gravity wakes, the physics of "
+      "`examples/a-ring-wakes`; {:.4g} m by {:.4g} m, shear offset {:.4g} m. Every solver computes all accelerations "
+      "with each of its settings. The error is measured on {:.0f} particles, drawn at random, against the sum over "
+      "all pairs and periodic images in double precision, relative to the rms acceleration; the error near the edges "
+      "on {:.0f} particles within {:g} m of the cell's edges. **Edge pull** is the mean error in the plane near the "
+      "worst of the four edges, relative to the rms acceleration in the plane; as the errors of neighbours are "
+      "correlated, such means reach half of the rms error anywhere in the cell. **Net force** is |Σ m a| / Σ m |a|. "
+      "Times are processor time on one thread, including sorting and tree or mesh building, medians of {:.0f}.",
       of(b, "count"), b.at("box_m")[0].get<double>(), b.at("box_m")[1].get<double>(), of(b, "offset_m"),
       of(b, "sample"), of(b, "edge_sample"), of(b, "edge_width_m"), of(b, "repeats")));
   document.paragraph(fmt::format("Made by `{}` on {} ({}), {}, flags `{}`, commit {}.", made("command"),
                                  made("processor"), made("host"), made("compiler"), made("flags"), made("commit")));
   if (of(b, "count") < 20000)
-    document.paragraph("**This is a small study**: fine to see that it works, too small for times that matter.");
+    document.paragraph("**This is a small study**: it shows that the measurements work; its times are not typical.");
 }
 
 void show_front(const GravityStudyData& data, bool with_figures, Document& document) {
   document.heading("Error against cost");
   if (with_figures)
-    document.figure(data.folder / "figures", "pareto",
-                    "Error against processor time, a curve a solver. Circles mark the front: no other setting of any "
-                    "solver is both faster and more accurate.");
+    document.figure(
+        data.folder / "figures", "pareto",
+        "Error against processor time, one curve per solver. Circles mark the front: no other setting of any "
+        "solver is both faster and more accurate.");
   Rows rows = {{"rms error at most", "the fastest setting", "ns per particle", "its rms error", "its 99.9 percentile"}};
   for (const double bound : {1e-2, 5e-3, 2.5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4}) {
     const Json* best = nullptr;
@@ -84,7 +84,7 @@ void show_settings(const GravityStudyData& data, Document& document) {
 void show_convergence(const GravityStudyData& data, bool with_figures, Document& document) {
   document.heading("Convergence");
   if (with_figures)
-    document.figure(data.folder / "figures", "convergence", "Errors against what they converge with.");
+    document.figure(data.folder / "figures", "convergence", "Errors against the convergence parameter.");
   for (const std::string& solver : data.solvers()) {
     const std::vector<Json> rows = data.rows_of(solver);
     if (!text_of(rows.front(), "parameter").empty())
@@ -107,7 +107,7 @@ std::string with_scatter(const Scatter& s) {
   return s.count == 1 ? fmt::format("{:.3g}", s.mean) : fmt::format("{:.3g} ± {:.2g}", s.mean, s.deviation);
 }
 
-Row heads(const std::string& first) {
+Row table_head(const std::string& first) {
   Row head = {first};
   for (const RunQuantity& q : run_quantities())
     head.push_back(q.title);
@@ -115,7 +115,7 @@ Row heads(const std::string& first) {
 }
 
 void show_run_means(const GravityStudyData& data, Document& document) {
-  Rows rows = {heads("mean ± standard deviation of one run")};
+  Rows rows = {table_head("mean ± standard deviation of one run")};
   rows.front().push_back("largest energy residual");
   for (const GravityChoice& choice : gravity_run_choices()) {
     const std::vector<Json>& runs = data.runs.at(run_label(choice));
@@ -132,7 +132,7 @@ void show_run_means(const GravityStudyData& data, Document& document) {
 }
 
 void show_verdicts(const GravityStudyData& data, Document& document) {
-  Rows rows = {heads("difference of the means (what scatter explains)")};
+  Rows rows = {table_head("difference of the means (95 % bound of the scatter)")};
   std::vector<std::string> beyond;
   int compared = 0;
   for (const auto& [label, reference] : gravity_run_comparisons()) {
@@ -152,27 +152,27 @@ void show_verdicts(const GravityStudyData& data, Document& document) {
     rows.push_back(row);
   }
   document.table(rows);
-  std::string verdict = fmt::format("**Verdict**: {} of {} differences are within the scatter. A difference is called "
-                                    "beyond it when Student's t says "
-                                    "so at 95 %, so of as many about {:.0f} are expected beyond by chance alone.",
+  std::string verdict = fmt::format("**Verdict**: {} of {} differences are within the scatter. A difference is beyond "
+                                    "it by Student's t at 95 %, so about {:.0f} of them are expected by chance alone.",
                                     compared - static_cast<int>(beyond.size()), compared, 0.05 * compared);
   for (const std::string& name : beyond)
     verdict += " Beyond: " + name + ".";
   document.paragraph(verdict);
 }
 
-// The least difference that the runs could have shown, of each quantity, over its mean.
+// Shows the smallest difference that the runs could have detected, per quantity and relative to its mean.
 void show_sensitivity(const GravityStudyData& data, Document& document) {
-  std::string text = "How much these runs could have missed, as a share of the mean (the largest bound in a column):";
+  std::string text =
+      "Smaller differences these runs could not detect, in per cent of the mean (the largest bound in a column):";
   for (const RunQuantity& q : run_quantities()) {
-    double least = 0.0;
+    double bound = 0.0;
     for (const auto& [label, reference] : gravity_run_comparisons()) {
       const Scatter first = scatter_in(data.runs.at(reference), q.name);
       const MeanDifference d = mean_difference(first, scatter_in(data.runs.at(label), q.name));
       if (d.known())
-        least = std::max(least, d.bound / std::fabs(first.mean));
+        bound = std::max(bound, d.bound / std::fabs(first.mean));
     }
-    text += least > 0.0 ? fmt::format(" {} {:.0f} %;", q.title, 100.0 * least) : fmt::format(" {} unknown;", q.title);
+    text += bound > 0.0 ? fmt::format(" {} {:.0f} %;", q.title, 100.0 * bound) : fmt::format(" {} unknown;", q.title);
   }
   text.back() = '.';
   document.paragraph(text);
@@ -180,19 +180,17 @@ void show_sensitivity(const GravityStudyData& data, Document& document) {
 
 void show_runs(const GravityStudyData& data, Document& document) {
   document.heading("The same physics");
+  assert(!data.runs.empty());
   const std::size_t seeds = data.runs.begin()->second.size();
   document.paragraph(fmt::format(
-      "Runs of {} particles of the same physics in a square of 2.5 λ_cr, step 1/1000 orbit, with {} seeds each. All "
-      "runs "
-      "of a seed start from one state in which wakes stand, go on to forget it (orbits: {:g}), and are measured over "
-      "{:g} more, ten snapshots an orbit. Wakes are those of the mean autocorrelation. Solvers are compared at the "
-      "same "
-      "kick interval, with their default settings. Collisions count when faster than v_cut. The energy residual is "
-      "what "
-      "the budget of kicks, edges and collisions leaves unexplained, over the energy lost in collisions.",
+      "Runs of {} particles with identical physics in a square of 2.5 λ_cr, step 1/1000 orbit, with {} seeds each. All "
+      "runs of a seed start from one state with wakes, forget it during {:g} orbits, and are measured over {:g} more, "
+      "with ten snapshots per orbit. Wakes are measured in the mean autocorrelation. Solvers are compared at one kick "
+      "interval, with their default settings. Collisions count when faster than v_cut. The energy residual is the part "
+      "of the energy change that kicks, edges and collisions do not explain, over the energy lost in collisions.",
       gravity_run_count(), seeds, 0.25 * data.orbits, data.orbits));
   if (data.orbits < 2.0)
-    document.paragraph("**These runs are short**: fine to see that it works, too short for wakes.");
+    document.paragraph("**These runs are short**: they show that the measurements work, and are too short for wakes.");
   show_run_means(data, document);
   show_verdicts(data, document);
   show_sensitivity(data, document);
@@ -230,8 +228,10 @@ std::vector<Json> pareto_front(const Json& rows) {
 }
 
 double convergence_order(const std::vector<Json>& rows) {
+  assert(rows.size() >= 2);
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
   for (const Json& row : rows) {
+    assert(of(row, "value") > 0.0 && of(row, "error_rms") > 0.0);
     const double u = std::log(of(row, "value")), v = std::log(of(row, "error_rms"));
     n += 1.0, x += u, y += v, xx += u * u, xy += u * v;
   }
@@ -252,7 +252,7 @@ void write_gravity_tables(const GravityStudyData& data) {
 }
 
 void write_gravity_report(const GravityStudyData& data, bool with_figures) {
-  Document document("The gravity solvers: error, cost, and what comes of it");
+  Document document("The gravity solvers: error, cost and effect on the physics");
   introduce(data, document);
   show_front(data, with_figures, document);
   show_convergence(data, with_figures, document);

@@ -1,4 +1,4 @@
-// From the measurements of the gravity study to tables, figures and the report.
+// Output of the gravity study: tables, figures and the report, made from its measurements.
 #pragma once
 
 #include "job_list.hpp"
@@ -10,34 +10,34 @@
 
 namespace keeler {
 
-/// All that the report is made of.
+/// The data of tables, figures and report.
 struct GravityStudyData {
   std::filesystem::path folder;
-  Json bench;                                    ///< `rows`, and the numbers of the state
-  std::map<std::string, std::vector<Json>> runs; ///< a result a seed, by run_label()
-  double orbits = 0.0;                           ///< that runs were measured over
+  Json bench;                                    ///< `rows`, one per setting, and the numbers of the state
+  std::map<std::string, std::vector<Json>> runs; ///< one result per seed, by run_label()
+  double orbits = 0.0;                           ///< measured part of each run
   std::map<std::string, std::string> made;       ///< command, host, processor, compiler, flags, commit
 
-  /// The rows of one solver, in the order measured.
+  /// Returns the rows of one solver, in the order of measurement.
   std::vector<Json> rows_of(const std::string& solver) const;
   std::vector<std::string> solvers() const;
 };
 
-/// The rows that no other row beats both in error and in cost, by rising cost.
+/// Returns the rows that no other row beats in both error and cost, by rising cost.
 std::vector<Json> pareto_front(const Json& rows);
 
-/// p of error ~ parameter^p: the slope of a straight line through the logarithms, least squares; at least two rows
-/// with different parameters.
+/// Returns p of error ~ parameter^p, the least-squares slope of the logarithms.
+/// Precondition: at least two rows with different parameters; parameters and errors are positive.
 double convergence_order(const std::vector<Json>& rows);
 
-/// figures/pareto and figures/convergence, as PNG and SVG; returns false, and leaves only their data, when there is no
-/// gnuplot.
+/// Draws figures/pareto and figures/convergence, as PNG and SVG. Without gnuplot it writes only their data and returns
+/// false.
 bool draw_gravity_figures(const GravityStudyData& data);
 
-/// gravity.csv, gravity_runs.csv and gravity.json.
+/// Writes gravity.csv, gravity_runs.csv and gravity.json.
 void write_gravity_tables(const GravityStudyData& data);
 
-/// report.md and report.html.
+/// Writes report.md and report.html.
 void write_gravity_report(const GravityStudyData& data, bool with_figures);
 
 } // namespace keeler

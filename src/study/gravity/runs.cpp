@@ -8,16 +8,17 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
 constexpr std::size_t run_particles = 3750; // 2.5 λ_cr square
-constexpr int common_interval = 5;          // of all solvers: the sum over all pairs is dear
+constexpr int common_interval = 5;          // steps, for all solvers: the sum over all pairs is expensive
 constexpr int kick_intervals[] = {1, 2, 5, 10};
-constexpr long block_steps = 10;                         // steps: whole kick intervals of all
-constexpr double start_share = 0.375, forgetting = 0.25; // of the orbits measured
+constexpr long block_steps = 10;                            // a common multiple of all kick intervals
+constexpr double start_fraction = 0.375, forgetting = 0.25; // of the measured orbits
 constexpr double snapshots_per_orbit = 10.0;
 
 GravityChoice with_interval(GravityChoice choice, int kick_every) {
@@ -25,8 +26,9 @@ GravityChoice with_interval(GravityChoice choice, int kick_every) {
   return choice;
 }
 
-// Whole blocks, at least one.
+// Returns the steps in `orbits`, rounded to whole blocks, at least one.
 long steps_of(double orbits, const Scene& scene) {
+  assert(scene.time.step > 0.0);
   return block_steps * std::max(1L, std::lround(orbits / (scene.time.step * block_steps)));
 }
 
@@ -85,7 +87,7 @@ const std::vector<RunQuantity>& run_quantities() {
 RunStart gravity_run_start(std::uint64_t seed, double orbits) {
   PhaseProgress silent({});
   RunStart start{a_ring_scene(run_particles, seed), {}};
-  start.patch = evolved_with_gravity(start.scene, start_share * orbits, silent);
+  start.patch = evolved_with_gravity(start.scene, start_fraction * orbits, silent);
   return start;
 }
 
@@ -94,6 +96,7 @@ std::size_t gravity_run_count() {
 }
 
 Json gravity_run(const RunStart& start, const GravityChoice& choice, double orbits) {
+  assert(orbits > 0.0 && block_steps % choice.settings.kick_every == 0);
   Scene scene = start.scene;
   scene.gravity = choice.settings;
   Simulation simulation(scene, start.patch);
@@ -130,7 +133,7 @@ Json gravity_run(const RunStart& start, const GravityChoice& choice, double orbi
 
 double gravity_run_cost(const GravityChoice& choice, double orbits) {
   const double count = run_particles, drift = 0.4e-6;
-  const double gravity = choice.solver == "direct" ? 9.0 * count / 1e9 : 1e-6; // a particle
+  const double gravity = choice.solver == "direct" ? 9.0 * count / 1e9 : 1e-6; // s per particle and solve
   const double steps = (1.0 + forgetting) * orbits * 1e3;
   return steps * count * (drift + gravity / choice.settings.kick_every) / threads();
 }

@@ -1,5 +1,5 @@
-// Whether the physics depends on the solver or on the kick interval: runs of a small patch of Saturn's A ring with
-// standing wakes, several seeds each, and the means of what one would publish.
+// Runs that test whether the physics depends on the gravity solver or on the kick interval: a small patch of Saturn's A
+// ring with wakes, several seeds each, and the means of the quantities that papers publish.
 #pragma once
 
 #include "job_list.hpp"
@@ -14,39 +14,39 @@
 
 namespace keeler {
 
-/// Ways to work out gravity, kick interval included: every solver at the same interval, then intervals with the tree.
+/// Returns the compared settings: every solver at one kick interval, then the tree at the other intervals.
 std::vector<GravityChoice> gravity_run_choices();
 
-/// "tree, opening_angle 0.6, a kick every 5 steps"
+/// Returns a name such as "tree, opening_angle 0.6, a kick every 5 steps".
 std::string run_label(const GravityChoice& choice);
 
-/// Which run another one is compared with, by label; empty for those that others are compared with. Each solver is
-/// held against direct, each interval against a kick every step.
+/// Returns the compared pairs of labels (run, reference): each solver with direct, each kick interval with a kick every
+/// step.
 std::vector<std::pair<std::string, std::string>> gravity_run_comparisons();
 
-/// What is measured, by its name in a result, and as the report calls it.
+/// A measured quantity.
 struct RunQuantity {
-  const char* name;
-  const char* title;
+  const char* name;  ///< key in a result
+  const char* title; ///< in the report
 };
 const std::vector<RunQuantity>& run_quantities();
 
-/// The state that all runs of a seed start from: evolved from a uniform patch for three eighths of `orbits`.
+/// The common state of all runs of a seed: a uniform patch, evolved for three eighths of `orbits`.
 struct RunStart {
   Scene scene;
   Patch patch;
 };
 RunStart gravity_run_start(std::uint64_t seed, double orbits);
 
-/// Particles there are in such a run.
+/// Returns the number of particles in such a run.
 std::size_t gravity_run_count();
 
-/// Goes on for a quarter of `orbits`, so that runs forget the common start, then measures over `orbits`. The result has
-/// the quantities (null where there are no wakes), solver, settings, kick_every, seed, and energy_residual: what the
-/// energy budget leaves unexplained over what collisions took.
+/// Evolves `start` for a quarter of `orbits`, so that runs forget the common state, then measures over `orbits`. The
+/// result has the quantities (null without wakes), solver, settings, kick_every, seed, and energy_residual: the
+/// unexplained part of the energy budget over the energy lost in collisions. Precondition: `orbits` > 0.
 Json gravity_run(const RunStart& start, const GravityChoice& choice, double orbits);
 
-/// Seconds that such a run takes, roughly.
+/// Estimates the duration of such a run, s.
 double gravity_run_cost(const GravityChoice& choice, double orbits);
 
 } // namespace keeler

@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* bench_job = "bench";
 
-// Solvers and settings count among the options: a folder that was begun with others does not go on.
+// Returns the options that identify a study. They include solvers and settings: a folder with others cannot continue.
 Json options_of(const GravityStudySettings& settings) {
   Json texts = Json::array();
   for (const GravityChoice& choice : gravity_choices(true))
@@ -36,7 +36,7 @@ Json options_of(const GravityStudySettings& settings) {
           {"runs", runs}};
 }
 
-// On one thread, as the times of bench gravity.
+// Measures errors and times of all settings on one thread, as bench gravity does.
 Json measure_forces(const GravityStudySettings& settings) {
   GravityBenchSettings bench;
   bench.count = settings.count;
@@ -66,7 +66,7 @@ Json measure_forces(const GravityStudySettings& settings) {
           {"repeats", settings.repeats}};
 }
 
-// Seconds, roughly: the state, the exact forces, and the timing.
+// Estimates the duration of measure_forces() (s): the state, the exact forces, and the timing.
 double expected_cost(const GravityStudySettings& settings) {
   const auto count = static_cast<double>(settings.count);
   return 15.0 + 1e-4 * count +
@@ -77,7 +77,7 @@ std::string run_job(const GravityChoice& choice, int seed) {
   return fmt::format("run/{}/{}", run_label(choice), seed);
 }
 
-// Starts are made when the first run of a seed needs them.
+// Common states by seed. The first run of a seed makes its state.
 using Starts = std::map<int, RunStart>;
 
 std::vector<Job> jobs_of(const GravityStudySettings& settings, Starts& starts) {
@@ -109,8 +109,8 @@ void announce(const std::vector<Job>& jobs, const JobList& list, const std::func
 
 bool study_gravity(const GravityStudySettings& settings, const std::atomic<bool>& stop) {
   if (settings.seeds < 2)
-    throw UsageError("a study of one seed knows no scatter; --seeds takes 2 or more");
-  const std::map<std::string, std::string> made = study_builder(settings.arguments);
+    throw UsageError("a study with one seed cannot measure the scatter; --seeds takes 2 or more");
+  const std::map<std::string, std::string> made = study_provenance(settings.arguments);
   const Json begun = open_study_folder(settings.folder, options_of(settings), made);
   const FolderLock lock(settings.folder);
   Starts starts;
@@ -130,7 +130,7 @@ bool study_gravity(const GravityStudySettings& settings, const std::atomic<bool>
   const auto draw = [&] {
     const bool drawn = draw_gravity_figures(data);
     if (!drawn)
-      settings.notice("gnuplot is not there, so only the data of the graphs are written (Debian: gnuplot-nox)");
+      settings.notice("gnuplot was not found, so only the data of the graphs are written (Debian: gnuplot-nox)");
     return drawn;
   };
   draw_and_report(draw, [&](bool drawn) { write_gravity_report(data, drawn); });

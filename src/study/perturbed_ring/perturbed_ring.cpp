@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cmath>
 #include <complex>
 #include <optional>
@@ -16,7 +17,7 @@ namespace keeler {
 namespace {
 
 constexpr Frequencies unit_frequencies{1.0, 1.0};
-constexpr double ring_frequency = 1.95e-4; // rad/s; a constant restitution does not see it
+constexpr double ring_frequency = 1.95e-4; // rad/s; without effect at a constant restitution
 
 struct Ring {
   Particles particles;
@@ -25,6 +26,7 @@ struct Ring {
 };
 
 Ring make_ring(const PerturbedRing& settings, double step) {
+  assert(settings.count > 0 && settings.optical_depth > 0.0);
   const double side = std::sqrt(pi * static_cast<double>(settings.count) / settings.optical_depth);
   UniformRequest request;
   request.box = {side, side, unit_frequencies.shear(), 0.0};
@@ -38,7 +40,7 @@ Ring make_ring(const PerturbedRing& settings, double step) {
   return {particles_from(uniform_patch(request), 0.5 * step), request.box, request.streamlines.waves.front()};
 }
 
-// The pattern's amplitude: the mean of the eccentricity vectors, each turned back by its phase Ωt + kX at the epoch.
+// Returns the pattern's amplitude: the mean eccentricity vector, each turned back by its phase Ωt + kX at the epoch.
 std::complex<double> pattern_amplitude(const Ring& ring, double epoch) {
   std::complex<double> sum = 0.0;
   for (const Body& body : ring.particles.bodies)
@@ -47,8 +49,8 @@ std::complex<double> pattern_amplitude(const Ring& ring, double epoch) {
   return sum / static_cast<double>(ring.particles.size());
 }
 
-// A radial impulse 2 Im(m exp i(Ωt + kX)) brings what is missing, m, back to the mean pattern: half of it works on the
-// pattern, the other half turns against it and comes to nothing in the mean over X.
+// Restores the mean pattern by a radial impulse 2 Im(m exp i(Ωt + kX)) on each particle, where m is the missing
+// amplitude: half of the impulse acts on the pattern, the other half counter-rotates and averages to zero over X.
 void drive(Ring& ring, double epoch, double step) {
   const std::complex<double> missing = ring.pattern.eccentricity - pattern_amplitude(ring, epoch);
   const Rotation start(unit_frequencies, -0.5 * step);
@@ -59,11 +61,12 @@ void drive(Ring& ring, double epoch, double step) {
   }
 }
 
-// At each collision as it happens, how far a straight line from the start of the step, or from the particle's collision
-// before, would have led beside the orbit. A displacement δx changes X by 4 δx, δz the height by itself.
+// Predicts, from a run with exact collisions, the drift that straight paths would cause: at each collision it adds the
+// displacement from the orbit of a straight line that began at the start of the step or at the particle's previous
+// collision. A displacement δx changes X by 4 δx, and δz the height by δz.
 class StraightForecast final : public DriftObserver {
 public:
-  double epoch = 0.0; // of the step at hand, rad since the start
+  double epoch = 0.0; // of the current step, rad since the start of the run
   double guiding_x = 0.0, vertical = 0.0;
 
   void begins(const DriftStep& step) override {
@@ -77,6 +80,7 @@ public:
   void collided(const CollisionRecord& record) override { time_ = record.time; }
 
   void changed(std::size_t k) override {
+    assert(k < orbits_.size() && time_ >= since_[k]);
     const State first = state_at(orbits_[k], unit_frequencies, Rotation(unit_frequencies, since_[k]));
     const State now = state_at(orbits_[k], unit_frequencies, Rotation(unit_frequencies, time_));
     const Vec3 beside = first.position + (time_ - since_[k]) * first.velocity - now.position;
@@ -93,7 +97,7 @@ private:
   double time_ = 0.0;
 };
 
-// Either kind of path; the other part stays empty.
+// Moves the particles on straight or curved paths; exactly one of `straight_` and `curved_` is set.
 class Mover {
 public:
   Mover(const PerturbedRing& ring, const std::string& path, double step) {
@@ -128,7 +132,8 @@ private:
   CollisionTally tally_;
 };
 
-// To the next epoch and back into the cell; returns by how many boxes inward guiding centres were wrapped, in all.
+// Advances the elements to the next epoch and wraps them into the cell. Returns the net number of box widths by which
+// guiding centres were wrapped inward, summed over the particles.
 std::int64_t move_on(Ring& ring, const Rebase& rebase, double offset) {
   std::int64_t wraps = 0;
   for (Body& body : ring.particles.bodies) {
@@ -144,7 +149,8 @@ struct Means {
   double guiding_x = 0.0, vertical = 0.0;
 };
 
-// The mean of X over the cell, and of the inclination vectors along sin ζ = sin Ωt, where all stood at first.
+// Returns the mean of X over the cell, and the mean of the inclination vectors along their common initial direction,
+// sin ζ = sin Ωt.
 Means means_of(const Ring& ring, double epoch) {
   Means means;
   for (const Body& body : ring.particles.bodies) {
@@ -158,6 +164,7 @@ Means means_of(const Ring& ring, double epoch) {
 } // namespace
 
 Drift perturbed_ring_drift(const PerturbedRing& request, const std::string& path) {
+  assert(request.step_orbits > 0.0 && request.samples > 0);
   PerturbedRing settings = request;
   if (path == control_path)
     settings.bunching = settings.inclination = 0.0;

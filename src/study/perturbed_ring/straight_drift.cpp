@@ -3,20 +3,21 @@
 #include <keeler/core/error.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-constexpr std::uint32_t max_collisions = 100000; // of one particle in one step
-constexpr double wider = 1.0 + 1e-9;             // windows must hold after their own rounding
+constexpr std::uint32_t max_collisions = 100000; // per particle and step
+constexpr double wider = 1.0 + 1e-9;             // covers the rounding of the search ranges
 
-// How fast a line leaves the shear that holds at its mid-step place.
-double own_speed(const Vec3& mid_place, const Vec3& velocity, double shear) {
-  return (velocity + Vec3(0.0, shear * mid_place.x(), 0.0)).norm();
+// Returns a line's speed relative to the shear flow at its mid-step position.
+double peculiar_speed(const Vec3& mid_position, const Vec3& velocity, double shear) {
+  return (velocity + Vec3(0.0, shear * mid_position.x(), 0.0)).norm();
 }
 
-// The time after which two straight lines touch, approaching; infinite when they do not.
+// Returns the time until two approaching straight lines touch, infinite when they never do.
 double time_to_contact(const State& relative, double radius_sum) {
   const double slope = relative.position.dot(relative.velocity);
   const double gap = relative.position.squaredNorm() - radius_sum * radius_sum;
@@ -30,9 +31,12 @@ double time_to_contact(const State& relative, double radius_sum) {
 
 StraightDrift::StraightDrift(const CollisionSettings& settings, const Frequencies& frequencies,
                              double orbital_frequency, double step)
-    : settings_(settings), frequencies_(frequencies), orbital_frequency_(orbital_frequency), step_(step) {}
+    : settings_(settings), frequencies_(frequencies), orbital_frequency_(orbital_frequency), step_(step) {
+  assert(step > 0.0);
+}
 
 std::uint64_t StraightDrift::collide(Particles& particles, const ShearingBox& box, double offset) {
+  assert(particles.ids.size() == particles.size());
   particles_ = &particles;
   box_ = box;
   offset_ = offset;
@@ -68,37 +72,37 @@ void StraightDrift::prepare() {
   grid_.build(binned_, box_, offset_, 2.0 * largest_radius_ + step_ * largest_speed_);
 }
 
-// A new line for particle i; the windows of later searches cover where it leads.
+// Starts a new line for particle i and widens the ranges of later searches to cover it.
 void StraightDrift::follow(std::size_t i, const State& state, double since) {
   lines_[i] = {state.position, state.velocity, since};
-  const Vec3 mid_place = lines_[i].at(0.0);
-  largest_speed_ = std::max(largest_speed_, own_speed(mid_place, state.velocity, box_.shear));
-  largest_stray_ = std::max(largest_stray_, (mid_place - binned_[i]).cwiseAbs().maxCoeff());
+  const Vec3 mid_position = lines_[i].at(0.0);
+  largest_speed_ = std::max(largest_speed_, peculiar_speed(mid_position, state.velocity, box_.shear));
+  largest_stray_ = std::max(largest_stray_, (mid_position - binned_[i]).cwiseAbs().maxCoeff());
 }
 
-// Calls visit(j, image) for every particle image whose line particle i could meet: seen from mid-step, coordinates
-// change by no more than the relative speed over half a step, the shear between the two included.
+// Calls visit(j, image) for every particle image that particle i could touch within the step: relative to mid-step,
+// coordinates change by at most half a step times the relative speed, the shear between the two included.
 template<class Visit> void StraightDrift::visit_candidates(std::size_t i, const Visit& visit) const {
   const double half = 0.5 * step_;
-  const Vec3 place = lines_[i].at(0.0);
-  const double speed = own_speed(place, lines_[i].velocity, box_.shear) + largest_speed_;
+  const Vec3 position = lines_[i].at(0.0);
+  const double speed = peculiar_speed(position, lines_[i].velocity, box_.shear) + largest_speed_;
   const double contact = particles_->bodies[i].radius + largest_radius_;
   const double reach_x = contact + half * speed;
   const double reach_y = contact + half * (speed + box_.shear * reach_x);
   const double stray = largest_stray_ + 1e-12 * (box_.size_x + box_.size_y);
-  grid_.visit_near(place, wider * reach_x + stray, wider * reach_y + stray, [&](std::size_t j, const Image& image) {
+  grid_.visit_near(position, wider * reach_x + stray, wider * reach_y + stray, [&](std::size_t j, const Image& image) {
     if (j != i)
       visit(j, image);
   });
 }
 
-// Where an image stands relative to its particle, and how it moves: columns slide past each other.
+// Returns displacement and velocity of an image relative to its particle: columns of images slide with the shear.
 State StraightDrift::image_state(const Image& image, double time) const {
   const double slide = image.nx * box_.shear * box_.size_x;
   return {box_.displacement(image, offset_) - Vec3(0.0, slide * time, 0.0), Vec3(0.0, -slide, 0.0)};
 }
 
-// `image` is that of particle j.
+// Adds the contact of particle i with this image of particle j, if they touch within the step.
 void StraightDrift::predict(std::size_t i, std::size_t j, const Image& image) {
   const bool ordered = particles_->ids[i] < particles_->ids[j];
   const std::size_t low = ordered ? i : j, high = ordered ? j : i;
@@ -114,7 +118,8 @@ void StraightDrift::predict(std::size_t i, std::size_t j, const Image& image) {
                  static_cast<std::uint32_t>(high), stamps_[low], stamps_[high]});
 }
 
-// Places from the lines, velocities from the epicycles; the new epicycles pass through both.
+// Carries out a contact with positions from the lines and velocities from the epicycles; the new epicycles match both.
+// Returns false if the particles do not approach.
 bool StraightDrift::carry_out(const Event& event) {
   Body &a = particles_->bodies[event.low], &b = particles_->bodies[event.high];
   const Rotation rotation(frequencies_, event.time);
@@ -138,7 +143,7 @@ bool StraightDrift::carry_out(const Event& event) {
 
   visit_candidates(event.low, [&](std::size_t k, const Image& image) { predict(event.low, k, image); });
   visit_candidates(event.high, [&](std::size_t k, const Image& image) {
-    if (k != event.low) // the pair itself, in all its images, has been searched
+    if (k != event.low) // the search of event.low covered this pair with all images
       predict(event.high, k, image);
   });
   return true;

@@ -1,10 +1,10 @@
-// A drift as a code would make it that takes paths within a step for straight lines: what the paper's Figure 1 warns
-// of. It stands here to be measured against, and is no part of a run.
+// The drift of a code with straight paths within a step, against which the paper's Figure 1 warns. The study measures
+// it; no run uses it.
 //
 // Each particle follows the tangent of its epicycle from the start of the step, or from its last collision in the step.
-// Contacts are found on these lines and carried out at their places; there the epicycle is begun anew, from that place
-// and the new velocity. A particle without a collision stays on its epicycle. So a collision a time t after the start
-// of its line displaces a particle by −a t²/2, a its acceleration, and nothing else is wrong: velocities are those of
+// Contacts are found on these lines and resolved at the positions there; the new epicycle begins at this position with
+// the new velocity. A particle without a collision stays on its epicycle. A collision at time t after the start of a
+// line therefore displaces a particle of acceleration a by −a t²/2. This is the only error: velocities are taken from
 // the epicycle.
 #pragma once
 
@@ -18,20 +18,20 @@ namespace keeler {
 
 class StraightDrift {
 public:
-  /// `step` is the length h of a drift (rad).
+  /// `step` is the length h of a drift (rad). Precondition: h > 0.
   StraightDrift(const CollisionSettings& settings, const Frequencies& frequencies, double orbital_frequency,
                 double step);
 
-  /// Carries out the collisions in [−h/2, h/2) around the epoch of the elements, in the order of events.hpp; `offset`
-  /// is the box's shear offset at the epoch. Returns their number. Throws InvariantError when a particle collides more
-  /// than 100,000 times in the step.
+  /// Carries out the collisions in [−h/2, h/2) around the epoch of the elements, in the order of events.hpp, and
+  /// returns their number. `offset` is the box's shear offset at the epoch. Throws InvariantError when a particle
+  /// collides more than 100,000 times in the step.
   std::uint64_t collide(Particles& particles, const ShearingBox& box, double offset);
 
 private:
   struct Line {
-    Vec3 place, velocity;
+    Vec3 position, velocity; // at `since`
     double since;
-    Vec3 at(double time) const { return place + (time - since) * velocity; }
+    Vec3 at(double time) const { return position + (time - since) * velocity; }
   };
 
   void prepare();
@@ -45,16 +45,16 @@ private:
   Frequencies frequencies_;
   double orbital_frequency_, step_;
 
-  // the step at hand
+  // state of the current step
   Particles* particles_ = nullptr;
   ShearingBox box_;
   double offset_ = 0.0;
   PeriodicGrid grid_;
   EventQueue events_;
   std::vector<Line> lines_;
-  std::vector<Vec3> binned_; // mid-step places as the grid knows them
+  std::vector<Vec3> binned_; // mid-step positions in the grid
   std::vector<std::uint32_t> stamps_;
-  double largest_radius_ = 0.0, largest_speed_ = 0.0, largest_stray_ = 0.0; // speeds beyond the shear
+  double largest_radius_ = 0.0, largest_speed_ = 0.0, largest_stray_ = 0.0; // peculiar speed; distance from binned_
 };
 
 } // namespace keeler

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 
@@ -15,8 +16,8 @@ namespace {
 using Solver = GravitySettings::Solver;
 
 constexpr double thousandth = 1e-3;     // of an orbit
-constexpr int max_steps_a_kick = 1000;  // as gravity.kick_every allows
-constexpr double automatic_kick = 4e-3; // orbits, about what an automatic step has in wakes
+constexpr int max_kick_every = 1000;    // upper limit of gravity.kick_every
+constexpr double automatic_kick = 4e-3; // orbits, typical of an automatic step in wakes
 
 std::vector<std::string> step_overrides(const Scene& scene, const Kicks& kicks) {
   std::vector<std::string> overrides = {fmt::format("time.step={}", kicks.step)};
@@ -32,11 +33,12 @@ StudyChoice automatic_step(const Scene& scene, const std::string& name) {
   return choice;
 }
 
-// The scene's own value among those of the study, in their order.
-void add_own(std::vector<double>& values, double own) {
-  const auto same = [&](double value) { return std::fabs(value - own) < 1e-6 * own; };
+// Inserts the scene's value into the sorted values of the study, unless they contain it.
+void add_scene_value(std::vector<double>& values, double of_scene) {
+  assert(std::is_sorted(values.begin(), values.end()) && of_scene > 0.0);
+  const auto same = [&](double value) { return std::fabs(value - of_scene) < 1e-6 * of_scene; };
   if (std::none_of(values.begin(), values.end(), same))
-    values.insert(std::upper_bound(values.begin(), values.end(), own), own);
+    values.insert(std::upper_bound(values.begin(), values.end(), of_scene), of_scene);
 }
 
 StudyChoices step_choices(const Scene& scene, bool quick) {
@@ -46,7 +48,7 @@ StudyChoices step_choices(const Scene& scene, bool quick) {
   StudyChoices all{{}, 0};
   std::vector<double> steps = quick ? std::vector{1e-3, 4e-3} : std::vector{0.25e-3, 0.5e-3, 1e-3, 2e-3, 4e-3, 8e-3};
   if (!scene.time.automatic)
-    add_own(steps, scene.time.step);
+    add_scene_value(steps, scene.time.step);
   for (const double step : steps)
     all.choices.push_back({fmt::format("step-{:g}", step), step_overrides(scene, kicks_of(step, interval))});
   all.choices.push_back(automatic_step(scene, "step-auto"));
@@ -55,15 +57,16 @@ StudyChoices step_choices(const Scene& scene, bool quick) {
 
 StudyChoices kick_choices(const Scene& scene, bool quick) {
   if (!scene.gravity)
-    throw UsageError("the scene has no self-gravity, so nothing kicks; add [gravity] to it, or study its step with "
-                     "\"keeler study step\"");
-  const double longest = scene.time.automatic ? thousandth : scene.time.step;
+    throw UsageError(
+        "the scene has no self-gravity, so it has no kick interval; add [gravity] to it, or study its step "
+        "with \"keeler study step\"");
+  const double max_step = scene.time.automatic ? thousandth : scene.time.step;
   StudyChoices all{{}, 0};
   std::vector<double> intervals = quick ? std::vector{1e-3, 8e-3} : std::vector{1e-3, 2e-3, 4e-3, 8e-3, 16e-3};
   if (!scene.time.automatic)
-    add_own(intervals, scene.time.step * scene.gravity->kick_every);
+    add_scene_value(intervals, scene.time.step * scene.gravity->kick_every);
   for (const double interval : intervals)
-    all.choices.push_back({fmt::format("kick-{:g}", interval), step_overrides(scene, steps_in(interval, longest))});
+    all.choices.push_back({fmt::format("kick-{:g}", interval), step_overrides(scene, steps_in(interval, max_step))});
   all.choices.push_back(automatic_step(scene, "kick-auto"));
   return all;
 }
@@ -74,7 +77,7 @@ StudyChoices mesh_choices(const Scene& scene, bool quick) {
   if (!scene.gravity->by_pairs())
     throw UsageError("the scene's gravity is axisymmetric, which no other solver computes; study its step or kicks");
   StudyChoices all;
-  if (scene.gravity->images.far) // the mesh is periodic: with some rings of images alone it is another force
+  if (scene.gravity->images.far) // the mesh is periodic: a finite number of image rings is a different force
     for (const double error : quick ? std::vector{1e-3, 1e-2} : std::vector{3e-4, 1e-3, 2e-3, 5e-3, 1e-2})
       all.choices.push_back(
           {fmt::format("fft-{:g}", error), {"gravity.solver=\"fft\"", fmt::format("gravity.force_error={}", error)}});
@@ -97,7 +100,7 @@ StudyChoices box_choices(const Scene& scene, bool quick) {
   return all;
 }
 
-// What gravity and collisions see of a ring stays: its surface density, without gravity its optical depth.
+// Returns the choice with other sizes in a box of unchanged size and surface density, without gravity optical depth.
 StudyChoice with_sizes(const Scene& scene, const std::string& name, const std::string& sizes) {
   return {name,
           {sizes,
@@ -106,7 +109,7 @@ StudyChoice with_sizes(const Scene& scene, const std::string& name, const std::s
            fmt::format("box.size=[{}, {}]", scene.size_x, scene.size_y)}};
 }
 
-// The scene's particles from a radius up: how many there are of each.
+// Returns the override for a table of the radii ≥ `cut` and their numbers.
 std::string table_from(const std::map<double, std::size_t>& counts, double cut) {
   std::vector<std::string> rows;
   for (const auto& [radius, count] : counts)
@@ -119,7 +122,8 @@ std::string from_name(double radius) {
   return fmt::format("from-{:.3g}", radius);
 }
 
-// Of a law with a density by its keys; of listed sizes as a table of those that are left.
+// Returns the choice without the particles smaller than `cut`: by the key `min` of a law with a density, by a table of
+// the remaining radii for listed sizes.
 StudyChoice cut_from(const Scene& scene, double cut) {
   const SizeLaw& law = scene.particles.sizes;
   if (law.listed == 0)
@@ -128,7 +132,8 @@ StudyChoice cut_from(const Scene& scene, double cut) {
   for (const double radius : draw_radii(law, scene.particles.count, scene.particles.seed))
     ++counts[radius];
   auto first = counts.lower_bound(cut);
-  if (first == counts.end()) // the largest sizes are so rare that none is drawn
+  assert(!counts.empty());
+  if (first == counts.end()) // the largest sizes are so rare that none was drawn
     --first;
   return with_sizes(scene, from_name(first->first), table_from(counts, first->first));
 }
@@ -136,16 +141,16 @@ StudyChoice cut_from(const Scene& scene, double cut) {
 StudyChoices size_choices(const Scene& scene, bool quick) {
   const SizeLaw& law = scene.particles.sizes;
   if (law.smallest == law.largest)
-    throw UsageError(fmt::format("all particles of the scene have one size, {:g} m, so there is nothing to cut; give "
+    throw UsageError(fmt::format("all particles of the scene have one size, {:g} m, so no sizes can be cut; give "
                                  "it a distribution, for example --set 'particles.sizes={{ law = \"power\", exponent = "
                                  "3, min = {:g}, max = {:g} }}'",
                                  law.smallest, 0.5 * law.smallest, 2.0 * law.smallest));
   StudyChoices all{{{"whole", {}}}, 0};
   for (const double part : quick ? std::vector{0.4} : std::vector{0.2, 0.4, 0.6})
     if (StudyChoice cut = cut_from(scene, law.smallest * std::pow(law.largest / law.smallest, part));
-        cut.name != all.choices.back().name) // as many sizes of a list can be left by two cuts
+        cut.name != all.choices.back().name) // two cuts of a short list can leave equal sizes
       all.choices.push_back(std::move(cut));
-  const double radius = law.mean_power(3) / law.mean_power(2); // with it both densities stay
+  const double radius = law.mean_power(3) / law.mean_power(2); // keeps surface density and optical depth
   all.choices.push_back(
       with_sizes(scene, "equal", fmt::format("particles.sizes={{ law = \"equal\", radius = {} }}", radius)));
   return all;
@@ -155,20 +160,23 @@ StudyChoices size_choices(const Scene& scene, bool quick) {
 
 std::string name_of(SceneStudyKind kind) {
   constexpr const char* names[] = {"step", "kicks", "mesh", "box", "sizes"};
+  assert(static_cast<std::size_t>(kind) < std::size(names));
   return names[static_cast<std::size_t>(kind)];
 }
 
-bool shares_start(SceneStudyKind kind) {
+bool has_common_start(SceneStudyKind kind) {
   return kind != SceneStudyKind::box && kind != SceneStudyKind::sizes;
 }
 
-Kicks steps_in(double interval, double longest) {
-  const int every = std::clamp(static_cast<int>(std::ceil(interval / longest * (1.0 - 1e-12))), 1, max_steps_a_kick);
+Kicks steps_in(double interval, double max_step) {
+  assert(interval > 0.0 && max_step > 0.0);
+  const int every = std::clamp(static_cast<int>(std::ceil(interval / max_step * (1.0 - 1e-12))), 1, max_kick_every);
   return {interval / every, every};
 }
 
 Kicks kicks_of(double step, double interval) {
-  return {step, static_cast<int>(std::clamp(std::round(interval / step), 1.0, double{max_steps_a_kick}))};
+  assert(step > 0.0);
+  return {step, static_cast<int>(std::clamp(std::round(interval / step), 1.0, double{max_kick_every}))};
 }
 
 StudyChoices study_choices(SceneStudyKind kind, const Scene& scene, bool quick) {

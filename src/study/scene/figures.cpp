@@ -8,12 +8,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-// A point of the picture: a setting's cost, its error or difference, and the interval of that.
+// Returns a point of the figure: a setting's cost, its error or difference y, and half the width of y's interval.
 std::string line_of(const SettingMeans& setting, double y, double bound) {
   const double cost = setting.scatter[number_at("cpu_s_per_orbit")].mean;
   if (std::isnan(cost) || std::isnan(y))
@@ -30,10 +31,11 @@ std::string force_errors(const StudyMeans& means) {
   return data;
 }
 
-// What the picture of such a study shows: boxes and sizes change the state, and its balance holds whatever they are.
+// Returns the number that the figure shows. Boxes and sizes change the state, and the energy balance of any state
+// holds.
 std::size_t drawn_number(const StudyPlan& plan) {
   return number_at(plan.kind == SceneStudyKind::mesh ? "force_error"
-                   : shares_start(plan.kind)         ? "energy_balance"
+                   : has_common_start(plan.kind)     ? "energy_balance"
                                                      : "translational_viscosity_m2_s");
 }
 
@@ -50,16 +52,17 @@ std::string differences(const StudyMeans& means, std::size_t number) {
   return data;
 }
 
-// Wider than the points, so that their names have room.
+// Returns the range of the cost axis, wider than the points by the space for their labels.
 std::string range_of_costs(const StudyMeans& means) {
   constexpr double left = 1.2, right = 1.6;
-  double least = HUGE_VAL, most = 0.0;
+  double min_cost = HUGE_VAL, max_cost = 0.0;
   for (const SettingMeans& setting : means.settings)
     if (const double cost = setting.scatter[number_at("cpu_s_per_orbit")].mean; !std::isnan(cost)) {
-      least = std::min(least, cost);
-      most = std::max(most, cost);
+      min_cost = std::min(min_cost, cost);
+      max_cost = std::max(max_cost, cost);
     }
-  return fmt::format("set xrange [{}:{}]\n", least / left, most * right);
+  assert(min_cost <= max_cost && "at least one setting has a cost");
+  return fmt::format("set xrange [{}:{}]\n", min_cost / left, max_cost * right);
 }
 
 constexpr const char* points = "'pareto.dat' using 1:2:3 with yerrorbars lw 2 pt 7 lc rgb '#1f77b4' notitle, '' using "
@@ -90,9 +93,9 @@ bool draw_study_figure(const StudyPlan& plan, const StudyMeans& means, const std
   if (of_forces)
     script += fmt::format("set logscale y\nset format y '10^{{%L}}'\nset ylabel 'rms force error'\nplot {}", points);
   else
-    script +=
-        fmt::format("set ylabel '{} (% from the reference)'\nplot {}{}", shown.title,
-                    shares_start(plan.kind) ? tolerance_lines() : "0 with lines lc rgb '#999999' notitle, ", points);
+    script += fmt::format("set ylabel '{} (% from the reference)'\nplot {}{}", shown.title,
+                          has_common_start(plan.kind) ? tolerance_lines() : "0 with lines lc rgb '#999999' notitle, ",
+                          points);
   return plot(figures, "pareto", script, 720, 480);
 }
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
@@ -21,22 +22,22 @@ std::string what_changes(const StudyPlan& plan) {
   switch (plan.kind) {
   case SceneStudyKind::step:
     return plan.scene.gravity
-               ? "`time.step` changes, and the kick interval stays the scene's as far as whole steps divide it. A step "
-                 "longer than that interval makes the interval as long. `step-auto` chooses both by itself."
-               : "`time.step` changes. `step-auto` chooses it by itself.";
+               ? "`time.step` varies at the scene's kick interval, rounded to whole steps. A step longer than this "
+                 "interval becomes the kick interval. `step-auto` has `time.step = \"auto\"`, which chooses both."
+               : "`time.step` varies. `step-auto` has `time.step = \"auto\"`.";
   case SceneStudyKind::kicks:
-    return "The kick interval changes, by `gravity.kick_every`; steps are those of the scene, or shorter where they "
-           "must divide it. `kick-auto` has `time.step = \"auto\"`.";
+    return "The kick interval varies, by `gravity.kick_every`, at the scene's step, which is shortened where it does "
+           "not divide the interval. `kick-auto` has `time.step = \"auto\"`.";
   case SceneStudyKind::mesh:
-    return "Solver and accuracy of self-gravity change: `fft` with `gravity.force_error`, `tree` with "
+    return "Solver and accuracy of self-gravity vary: `fft` with `gravity.force_error`, `tree` with "
            "`gravity.opening_angle`.";
   case SceneStudyKind::box:
     return "Both sides of the box are multiplied by a factor, and the number of particles by its square. Streamlines "
-           "and modes, where the scene has them, keep their number of waves.";
+           "and modes of the scene keep their number of waves.";
   case SceneStudyKind::sizes:
     return fmt::format(
-        "The small end of the distribution of sizes is cut off at several radii (m), and `equal` has one "
-        "radius, ⟨r³⟩/⟨r²⟩ of the scene. The {} and the box stay.",
+        "The size distribution is cut from below at several radii (m), and `equal` has one radius, ⟨r³⟩/⟨r²⟩ of the "
+        "scene. The {} and the box do not change.",
         plan.scene.gravity ? "surface density" : "optical depth");
   }
   return {};
@@ -47,23 +48,25 @@ std::string in_orbits(double orbits) {
 }
 
 std::string how_started(const StudyPlan& plan) {
-  if (shares_start(plan.kind))
+  if (has_common_start(plan.kind))
     return fmt::format(
-        "Each of {} grows one state, {} from the scene's own start. All settings go on from the "
-        "state of their seed for {} and are measured from orbit {:g} of these on. Runs of a seed are "
-        "compared as if they were independent. Contacts make them so in dense rings; where these are few, "
-        "runs stay alike and the intervals of differences are wider than they need be.",
+        "For each of {} one state evolves during {} from the scene's initial state. All settings continue from the "
+        "state of their seed for {} and are measured from orbit {:g} of these. Runs of a seed are compared as if they "
+        "were independent. In dense rings collisions make them so; with few collisions runs remain correlated and the "
+        "intervals of the differences are wider than necessary.",
         pluralize(plan.seeds, "seed"), in_orbits(plan.grow_orbits), in_orbits(plan.orbits), plan.since());
-  return fmt::format("The setting changes the state itself, so there is no common one: each run has the scene's own "
-                     "start and ends at orbit {:g}, measured from orbit {:g} on. There are {} of each.",
-                     plan.end(), plan.since(), pluralize(plan.seeds, "seed"));
+  return fmt::format(
+      "The setting changes the state itself, so there is no common state: each run begins with the scene's "
+      "initial state and ends at orbit {:g}; it is measured from orbit {:g}. There are {} per setting.",
+      plan.end(), plan.since(), pluralize(plan.seeds, "seed"));
 }
 
 void introduce(const StudyPlan& plan, const std::map<std::string, std::string>& made, Document& document) {
   document.paragraph(what_changes(plan));
   document.paragraph(how_started(plan));
-  document.paragraph("Numbers are means over the seeds, ± half the width of the interval that holds the true mean in "
-                     "95 % of all cases (Student's t). Processor time and memory are those of a run on one thread.");
+  document.paragraph(
+      "Numbers are means over the seeds, ± half the width of their 95 % confidence interval (Student's t). "
+      "Processor time and memory are those of a run on one thread.");
   document.paragraph(fmt::format("Made by `{}` on {} ({}), {}, flags `{}`, commit {}.", made.at("command"),
                                  made.at("processor"), made.at("host"), made.at("compiler"), made.at("flags"),
                                  made.at("commit")));
@@ -78,13 +81,13 @@ std::string with_bound(const Scatter& scatter) {
              : fmt::format("{} ± {}", format_number(scatter.mean, 4), format_number(bound, 2));
 }
 
-// Whether any setting has it.
+// True if at least one setting has this number.
 bool is_known(const StudyMeans& means, std::size_t number) {
   return std::any_of(means.settings.begin(), means.settings.end(),
                      [&](const SettingMeans& setting) { return setting.scatter[number].count > 0; });
 }
 
-// The numbers that the report shows, of cost and health or of physics.
+// Returns the numbers that the report shows: of physics, or of cost and health.
 std::vector<std::size_t> shown(const StudyMeans& means, bool physics) {
   std::vector<std::size_t> numbers;
   for (std::size_t n = 0; n < means.numbers.size(); ++n)
@@ -93,6 +96,7 @@ std::vector<std::size_t> shown(const StudyMeans& means, bool physics) {
   return numbers;
 }
 
+// Returns a table with titles and names of settings, to which the caller adds the cells.
 Table table_of(const StudyMeans& means, const std::vector<std::size_t>& numbers, const std::string& corner) {
   Table table = {{corner}};
   for (const std::size_t n : numbers)
@@ -111,8 +115,9 @@ Table table_of_means(const StudyMeans& means, bool physics) {
   return table;
 }
 
-// "+0.3 ± 1.2", bold when it is beyond the scatter.
+// Returns a difference such as "+0.3 ± 1.2", bold when it is beyond the scatter.
 std::string in_percent(const MeanDifference& d, double reference) {
+  assert(reference > 0.0);
   const double difference = 100.0 * d.difference / reference, bound = 100.0 * d.bound / reference;
   return fmt::format("{0}{1:+.{3}f} ± {2:.{3}f}{0}", d.within() ? "" : "**", difference, bound, bound < 0.1 ? 2 : 1);
 }
@@ -132,20 +137,20 @@ Table table_of_differences(const StudyMeans& means) {
 
 void show_lost_contacts(const StudyPlan& plan, Document& document) {
   if (plan.scene.collisions.finder != "certified")
-    document.paragraph(fmt::format("The scene's finder is `{}`. A run does not know which contacts it missed; "
-                                   "`finder_gave_up` and `largest_overlap` of `study.csv` show what came of it, and "
-                                   "`keeler study finders` counts.",
+    document.paragraph(fmt::format("The scene's finder is `{}`. A run cannot count the contacts that it missed; "
+                                   "`finder_gave_up` and `largest_overlap` of `study.csv` show the consequences, and "
+                                   "`keeler study finders` counts them.",
                                    plan.scene.collisions.finder));
 }
 
 void show_failed(const std::vector<SettingRun>& runs, Document& document) {
-  Table table = {{"run", "why"}};
+  Table table = {{"run", "reason"}};
   for (const SettingRun& run : runs)
     if (!run.reason.empty())
       table.push_back({run.run->name, run.reason});
   if (table.size() == 1)
     return;
-  document.heading("Runs that are missing");
+  document.heading("Missing runs");
   document.table(table);
 }
 
@@ -165,8 +170,8 @@ void write_study_report(const StudyPlan& plan, const std::vector<SettingRun>& ru
   document.heading("Verdict");
   if (plan.quick)
     document.paragraph(
-        "**This was a quick look**: few settings, few seeds, short runs. It shows what is plainly wrong; to "
-        "choose by it, leave `--quick` out.");
+        "**This is a quick study**: few settings, few seeds, short runs. It shows large errors only; for a choice of "
+        "settings, leave out `--quick`.");
   document.paragraph(verdict_text(means));
   if (const std::string missed = sensitivity_text(means); !missed.empty())
     document.paragraph(missed);
@@ -174,16 +179,16 @@ void write_study_report(const StudyPlan& plan, const std::vector<SettingRun>& ru
     document.figure(
         folder / "figures", "pareto",
         plan.kind == SceneStudyKind::mesh
-            ? "Force error against processor time, a point a setting."
-            : "Difference from the reference against processor time, a point a setting. The reference has the "
-              "interval of its own mean.");
+            ? "Force error against processor time, one point per setting."
+            : "Difference from the reference against processor time, one point per setting. At the reference the "
+              "interval is that of the mean.");
   document.heading("Cost and health");
   document.table(table_of_means(means, false));
   show_lost_contacts(plan, document);
   document.heading("Physics");
   document.table(table_of_means(means, true));
   document.heading("Differences");
-  document.paragraph("Bold ones are beyond the scatter.");
+  document.paragraph("Bold differences are beyond the scatter.");
   document.table(table_of_differences(means));
   show_failed(runs, document);
   document.paragraph("`study.csv` has all numbers of each run, `settings.csv` those of each setting.");

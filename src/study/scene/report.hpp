@@ -1,4 +1,4 @@
-// What a study of a scene writes: tables, the picture of error against cost, report.md and report.html.
+// Output of a study of a scene: tables, the figure of error against cost, report.md and report.html.
 #pragma once
 
 #include "results.hpp"
@@ -10,14 +10,14 @@
 
 namespace keeler {
 
-/// Writes study.csv, a row a run, and settings.csv, a row a setting.
+/// Writes study.csv, one row per run, and settings.csv, one row per setting.
 void write_study_tables(const StudyPlan& plan, const std::vector<SettingRun>& runs, const StudyMeans& means,
                         const std::filesystem::path& folder);
 
-/// Draws figures/pareto. Returns false when there is no gnuplot; its data are then written alone.
+/// Draws figures/pareto. Without gnuplot, or without data, it writes only the data file and returns false.
 bool draw_study_figure(const StudyPlan& plan, const StudyMeans& means, const std::filesystem::path& folder);
 
-/// Writes report.md and report.html. `made`: who measures, as study_builder() says.
+/// Writes report.md and report.html. `made` is study_provenance().
 void write_study_report(const StudyPlan& plan, const std::vector<SettingRun>& runs, const StudyMeans& means,
                         const std::map<std::string, std::string>& made, const std::filesystem::path& folder,
                         bool with_figure);

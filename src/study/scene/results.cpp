@@ -11,6 +11,7 @@
 #include <keeler/runs/summary.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -21,11 +22,11 @@ namespace {
 namespace fs = std::filesystem;
 using Maybe = std::optional<double>;
 
-constexpr std::size_t rays = 200000; // of each snapshot
-constexpr double footprint = 10.0;   // m; of no account for the mean
-constexpr double last_orbits = 1.0;  // whose snapshots the rays cross
+constexpr std::size_t rays = 200000; // per snapshot
+constexpr double footprint = 10.0;   // m; does not change the mean
+constexpr double last_orbits = 1.0;  // interval of the snapshots that the rays cross
 
-// What the report shows of the numbers that sweeps measure; in SI, since a study of sizes changes r.
+// The sweep quantities that the report shows, with their titles; in SI, since a study of sizes changes r.
 const std::map<std::string, std::string> compared_quantities = {
     {"energy_balance", "loss over stress"},
     {"translational_viscosity_m2_s", "translational viscosity (m²/s)"},
@@ -39,7 +40,7 @@ const std::map<std::string, std::string> compared_quantities = {
 
 std::vector<StudyNumber> make_numbers(const RunQuantities& quantities) {
   std::vector<StudyNumber> all = {
-      {"cpu_s_per_orbit", "processor time of an orbit, s", "processor s per orbit", false},
+      {"cpu_s_per_orbit", "processor time per orbit, s", "processor s per orbit", false},
       {"peak_memory_mb", "the most memory in use, 10⁶ bytes", "memory (MB)", false},
       {"step_orbits", "length of a step, orbits; of an automatic one the mean", "step (orbits)", false},
       {"kick_interval_orbits", "from kick to kick, orbits; of an automatic step the mean; only with self-gravity",
@@ -57,12 +58,13 @@ std::vector<StudyNumber> make_numbers(const RunQuantities& quantities) {
   return all;
 }
 
-// Over the measured rows of series.csv; none without the column.
+// Returns a column's mean over the measured rows of series.csv, nothing without the column or without such rows.
 Maybe series_mean(const SeriesTable& series, const std::string& column, double since) {
   const std::vector<double>* const values = series.find(column);
   if (!values)
     return std::nullopt;
   const std::vector<double>& orbits = series.of("time_orbits");
+  assert(orbits.size() == values->size());
   double sum = 0.0, count = 0.0;
   for (std::size_t k = 0; k < values->size(); ++k)
     if (orbits[k] >= since)
@@ -72,6 +74,7 @@ Maybe series_mean(const SeriesTable& series, const std::string& column, double s
 
 Maybe transmission_of(const fs::path& folder) {
   const std::vector<Patch> patches = load_patches(folder, last_orbits).patches;
+  assert(!patches.empty());
   return occultation(patches, RayLattice(patches.front().box, rays, footprint), {pi / 2.0, 0.0}).transmission.value;
 }
 
@@ -108,6 +111,7 @@ std::vector<Maybe> values_of(const StudyPlan& plan, const PlannedRun& run, const
 
 std::size_t smallest_force_error(const std::vector<SettingMeans>& settings) {
   const std::size_t error = number_at("force_error");
+  assert(!settings.empty());
   std::size_t best = 0;
   for (std::size_t k = 0; k < settings.size(); ++k)
     if (const double mean = settings[k].scatter[error].mean;
@@ -130,6 +134,7 @@ std::vector<StudyNumber> study_numbers(const RunQuantities& quantities) {
 std::size_t number_at(const std::string& column) {
   const std::vector<StudyNumber>& all = study_numbers();
   const auto found = std::find_if(all.begin(), all.end(), [&](const StudyNumber& n) { return n.column == column; });
+  assert(found != all.end());
   return static_cast<std::size_t>(found - all.begin());
 }
 
@@ -146,7 +151,7 @@ std::vector<SettingRun> measure_runs(const StudyPlan& plan, const std::vector<Pl
       } else {
         row.reason = folders.failure_of(run.name).value_or("not finished");
       }
-    } catch (const Error& error) { // a damaged file must not take the other runs from the table
+    } catch (const Error& error) { // a damaged file affects only its run
       row.reason = error.what();
       row.measurable = false;
     }
@@ -166,6 +171,7 @@ StudyMeans means_of(const StudyChoices& choices, const std::vector<SettingRun>& 
     std::vector<std::vector<double>> values(count);
     for (const SettingRun& run : runs)
       if (run.run->point == s && !run.values.empty()) {
+        assert(run.values.size() == count);
         ++setting.finished;
         for (std::size_t n = 0; n < count; ++n)
           if (run.values[n])
@@ -175,10 +181,11 @@ StudyMeans means_of(const StudyChoices& choices, const std::vector<SettingRun>& 
       setting.scatter.push_back(scatter_of(of_number));
   }
   means.reference = choices.reference.value_or(smallest_force_error(means.settings));
+  assert(means.reference < means.settings.size());
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   const std::vector<Scatter>& reference = means.settings[means.reference].scatter;
   for (std::size_t s = 0; s < means.settings.size(); ++s)
-    for (std::size_t n = 0; n < count; ++n) // what is 0, as gravity's stress where there is none, has no per cent
+    for (std::size_t n = 0; n < count; ++n) // a reference of 0, as a stress without gravity, has no relative difference
       means.settings[s].from_reference.push_back(s != means.reference && numbers[n].compared && reference[n].mean != 0.0
                                                      ? mean_difference(reference[n], means.settings[s].scatter[n])
                                                      : MeanDifference{unknown, unknown});

@@ -1,4 +1,4 @@
-// What came of the runs of a study of a scene: numbers a run, and their means a setting.
+// Results of a study of a scene: the numbers of each run, and the means of each setting.
 #pragma once
 
 #include "runs.hpp"
@@ -15,42 +15,43 @@ namespace keeler {
 
 using Json = nlohmann::ordered_json;
 
-/// A number of a run: a column of the tables.
+/// A number that is measured in each run: a column of the tables.
 struct StudyNumber {
   std::string column;
   std::string meaning; ///< with its unit
-  std::string title;   ///< in the report; empty: it stands in the tables alone
-  bool compared;       ///< physics: its means are held against the reference's
+  std::string title;   ///< in the report; empty: only in the tables
+  bool compared;       ///< true for physics: its means are compared with the reference's
 };
 
-/// In the order of the columns. Cost and health first, then transmission and what sweeps measure.
+/// Returns the numbers of every study in the order of the columns: cost and health, transmission, sweep quantities.
 const std::vector<StudyNumber>& study_numbers();
 
-/// With others behind them.
+/// Returns these numbers with further quantities after them.
 std::vector<StudyNumber> study_numbers(const RunQuantities& quantities);
 
-/// The place of a column.
+/// Returns the index of a column in study_numbers(). Precondition: there is such a column.
 std::size_t number_at(const std::string& column);
 
-/// A run with a setting, and what is known of it.
+/// A run with one setting, and its measured numbers.
 struct SettingRun {
   const PlannedRun* run = nullptr;
   bool finished = false;                     ///< and measured
-  bool measurable = true;                    ///< false: it came to its end, but its files cannot be read
-  std::string reason;                        ///< why it failed, or could not be measured
-  std::vector<std::optional<double>> values; ///< in the order of study_numbers(plan.quantities); empty: none is known
+  bool measurable = true;                    ///< false: it finished, but its files cannot be read
+  std::string reason;                        ///< of the failure, or of why it could not be measured
+  std::vector<std::optional<double>> values; ///< in the order of study_numbers(plan.quantities), or empty
 };
 
-/// Measures the finished runs. They belong to the list.
+/// Measures the finished runs. The results point into `runs`, which must outlive them.
 std::vector<SettingRun> measure_runs(const StudyPlan& plan, const std::vector<PlannedRun>& runs,
                                      const RunFolders& folders);
 
-/// A setting: its numbers over the seeds, in the order of StudyMeans::numbers, and held against the reference.
+/// A setting: its numbers over the seeds, in the order of StudyMeans::numbers, and their differences from the
+/// reference.
 struct SettingMeans {
   std::string name;
   std::size_t finished = 0;
   std::vector<Scatter> scatter;
-  std::vector<MeanDifference> from_reference; ///< not known where it is not compared, and of the reference itself
+  std::vector<MeanDifference> from_reference; ///< known() is false if not compared, and for the reference
 };
 
 struct StudyMeans {
@@ -59,11 +60,12 @@ struct StudyMeans {
   std::size_t reference = 0;
 };
 
-/// The reference is the given setting; none: the one with the smallest force error.
+/// Computes means and differences. Without choices.reference the setting with the smallest force error is the
+/// reference. Precondition: there is at least one choice; the values of a run are empty or in the order of `numbers`.
 StudyMeans means_of(const StudyChoices& choices, const std::vector<SettingRun>& runs,
                     const std::vector<StudyNumber>& numbers = study_numbers());
 
-/// As objects, a column a name; what is not known is null.
+/// Return the rows as objects keyed by column; unknown values are null.
 Json runs_as_json(const StudyPlan& plan, const std::vector<SettingRun>& runs);
 Json means_as_json(const StudyMeans& means);
 

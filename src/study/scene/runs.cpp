@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <filesystem>
 
 namespace keeler {
@@ -13,11 +14,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double least_forgetting = 1.0, forgetting = 0.25; // orbits, and share of the orbits asked for
+constexpr double min_forgetting = 1.0, forgetting = 0.25; // orbits; fraction of the requested orbits
 constexpr double min_orbits = 1.5;
-constexpr std::size_t min_count = 100; // particles of a state whose means are worth comparing
+constexpr std::size_t min_count = 100; // particles; the means of smaller states are too noisy to compare
 
-// How often the runs write what is measured, in orbits.
+// Output intervals of the runs, in orbits.
 const std::vector<std::string> output = {"output.series_every=0.02", "output.stress_every=0.1",
                                          "output.snapshot_every=0.25"};
 
@@ -30,17 +31,19 @@ std::string growth_name(const StudyPlan& plan, std::size_t k) {
   return fmt::format("grow_seed-{}", plan.scene.particles.seed + k);
 }
 
-// The snapshot that a finished run ended with.
+// Returns the last snapshot of a finished run.
 std::string last_snapshot(const fs::path& folder) {
   std::vector<std::string> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
     if (entry.path().filename().string().starts_with("snap_") && entry.path().extension() == ".hdf")
       files.push_back(fs::absolute(entry.path()).lexically_normal().string());
+  assert(!files.empty() && "a finished run has a snapshot");
   return *std::max_element(files.begin(), files.end());
 }
 
 PlannedRun setting_run(const StudyPlan& plan, std::size_t choice, std::size_t k,
                        const std::optional<std::string>& from) {
+  assert(choice < plan.choices.choices.size() && k < plan.seeds);
   const std::uint64_t seed = plan.scene.particles.seed + k;
   std::vector<std::string> overrides = plan.choices.choices[choice].overrides;
   overrides.insert(overrides.end(), output.begin(), output.end());
@@ -51,19 +54,19 @@ PlannedRun setting_run(const StudyPlan& plan, std::size_t choice, std::size_t k,
   return {fmt::format("{}_seed-{}", name, seed), choice, seed, varied(plan, overrides, from)};
 }
 
-// Before anything runs; the start of the runs is the scene's own here.
+// Parses every choice before anything runs, with the scene's initial state, and drops choices with too few particles.
 void check_choices(StudyPlan& plan, const std::function<void(const std::string&)>& notice) {
   std::vector<StudyChoice> kept;
   for (std::size_t k = 0; k < plan.choices.choices.size(); ++k) {
     const StudyChoice& choice = plan.choices.choices[k];
     const std::size_t count = setting_run(plan, k, 0, std::nullopt).scene.particles.count;
-    if (count >= min_count || shares_start(plan.kind))
+    if (count >= min_count || has_common_start(plan.kind))
       kept.push_back(choice);
     else
-      notice(fmt::format("note: {} is left out, since it would have {} particles only", choice.name, count));
+      notice(fmt::format("note: {} is left out, since it would have only {} particles", choice.name, count));
   }
   if (kept.size() < 2)
-    throw UsageError(fmt::format("{}:1:1: too few particles to compare anything (a setting needs {}); enlarge the box",
+    throw UsageError(fmt::format("{}:1:1: too few particles for a comparison (a setting needs {}); enlarge the box",
                                  plan.scene_name, min_count));
   if (plan.choices.reference)
     plan.choices.reference = plan.kind == SceneStudyKind::box ? kept.size() - 1 : 0;
@@ -81,7 +84,7 @@ StudyChoices choices_of(const SceneStudySettings& settings, const Scene& scene) 
 } // namespace
 
 double StudyPlan::since() const {
-  return std::max(least_forgetting, forgetting * orbits) + (shares_start(kind) ? 0.0 : grow_orbits);
+  return std::max(min_forgetting, forgetting * orbits) + (has_common_start(kind) ? 0.0 : grow_orbits);
 }
 
 StudyPlan plan_study(const SceneStudySettings& settings) {
@@ -90,8 +93,8 @@ StudyPlan plan_study(const SceneStudySettings& settings) {
   plan.scene_name = settings.scene;
   plan.scene = load_scene(settings.scene, settings.overrides);
   if (plan.scene.start_from)
-    throw UsageError(fmt::format("{}:1:1: the scene starts from a snapshot (start.from), so all seeds would be one and "
-                                 "the same run; give it a [box] and [particles] of its own",
+    throw UsageError(fmt::format("{}:1:1: the scene starts from a snapshot (start.from), so all seeds would give one "
+                                 "run; replace [start] by [box] and [particles]",
                                  settings.scene));
   plan.choices = choices_of(settings, plan.scene);
   plan.quick = settings.quick;
@@ -100,18 +103,18 @@ StudyPlan plan_study(const SceneStudySettings& settings) {
   plan.grow_orbits = settings.grow_orbits.value_or(settings.quick ? 1.0 : plan.scene.gravity ? 6.0 : 10.0);
   plan.orbits = settings.orbits.value_or(settings.quick ? 2.0 : 6.0);
   if (plan.seeds < 2)
-    throw UsageError("a study of one seed knows no scatter; --seeds takes 2 or more");
+    throw UsageError("a study with one seed cannot measure the scatter; --seeds takes 2 or more");
   if (plan.orbits < min_orbits)
-    throw UsageError(fmt::format("--orbits {:g} leaves too little to measure (the first orbit of a run is left out); "
-                                 "give {:g} or more",
-                                 plan.orbits, min_orbits));
+    throw UsageError(
+        fmt::format("--orbits {:g} is too short (the first orbit of a run is not measured); give {:g} or more",
+                    plan.orbits, min_orbits));
   check_choices(plan, settings.notice);
   return plan;
 }
 
 std::vector<PlannedRun> growth_runs(const StudyPlan& plan) {
   std::vector<PlannedRun> runs;
-  for (std::size_t k = 0; shares_start(plan.kind) && k < plan.seeds; ++k) {
+  for (std::size_t k = 0; has_common_start(plan.kind) && k < plan.seeds; ++k) {
     const std::uint64_t seed = plan.scene.particles.seed + k;
     runs.push_back({growth_name(plan, k), 0, seed,
                     varied(plan, {fmt::format("particles.seed={}", seed), fmt::format("time.end={}", plan.grow_orbits),
@@ -124,7 +127,7 @@ std::vector<PlannedRun> setting_runs(const StudyPlan& plan, const RunFolders& fo
   std::vector<PlannedRun> runs;
   for (std::size_t k = 0; k < plan.seeds; ++k) {
     std::optional<std::string> from;
-    if (shares_start(plan.kind))
+    if (has_common_start(plan.kind))
       from = last_snapshot(folders.run(growth_name(plan, k)));
     for (std::size_t choice = 0; choice < plan.choices.choices.size(); ++choice)
       runs.push_back(setting_run(plan, choice, k, from));

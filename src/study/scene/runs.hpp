@@ -1,4 +1,4 @@
-// The runs of a study of a scene: the growth of each seed's common state, and the runs with each setting.
+// The runs of a study of a scene: one per seed that evolves the common state, then one per setting and seed.
 #pragma once
 
 #include "choices.hpp"
@@ -13,7 +13,7 @@
 
 namespace keeler {
 
-/// What a study is of, complete and checked.
+/// A study's validated settings, with all defaults filled in.
 struct StudyPlan {
   SceneStudyKind kind = SceneStudyKind::step;
   std::string scene_name; ///< for messages
@@ -22,22 +22,23 @@ struct StudyPlan {
   bool quick = false;
   std::size_t seeds = 3;
   double grow_orbits = 0.0, orbits = 0.0;
-  RunQuantities quantities; ///< that are measured in each run
+  RunQuantities quantities; ///< measured in each run
 
-  /// Orbit of a run from which on it is measured: a quarter of its orbits, at least one, are left out, with those in
-  /// which its own start grew.
+  /// Returns the orbit at which measuring begins: a quarter of `orbits`, at least one orbit, is left out, and without a
+  /// common state also `grow_orbits`.
   double since() const;
-  /// Orbit at which the runs with each setting end.
-  double end() const { return orbits + (shares_start(kind) ? 0.0 : grow_orbits); }
+  /// Returns the orbit at which the runs with each setting end.
+  double end() const { return orbits + (has_common_start(kind) ? 0.0 : grow_orbits); }
 };
 
-/// Throws UsageError. Settings that leave too few particles to measure are left out, with a notice.
+/// Validates the settings. Drops choices with too few particles, with a notice. Throws UsageError.
 StudyPlan plan_study(const SceneStudySettings& settings);
 
-/// One a seed; none where settings have starts of their own.
+/// Returns one run per seed that evolves the common state; none if the settings have no common state.
 std::vector<PlannedRun> growth_runs(const StudyPlan& plan);
 
-/// Each setting with each seed, from the states that have been grown. The point of a run is its setting.
+/// Returns the runs of each setting with each seed, from the common states. PlannedRun::point is the setting's index.
+/// Precondition: the runs of growth_runs() are finished in `folders`.
 std::vector<PlannedRun> setting_runs(const StudyPlan& plan, const RunFolders& folders);
 
 } // namespace keeler

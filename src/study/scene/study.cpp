@@ -16,7 +16,8 @@
 namespace keeler {
 namespace {
 
-// A folder that was begun with others does not go on. What the scene says is compared with the runs that are there.
+// Returns the options that identify a study: a folder with others cannot continue. The scene is compared separately,
+// with the scenes of the existing runs.
 Json options_of(const StudyPlan& plan) {
   Json choices = Json::array();
   for (const StudyChoice& choice : plan.choices.choices)
@@ -28,14 +29,14 @@ Json options_of(const StudyPlan& plan) {
           {"settings", choices}};
 }
 
-void tell_doubts(const StudyPlan& plan, const SceneStudySettings& settings) {
+void report_warnings(const StudyPlan& plan, const SceneStudySettings& settings) {
   for (const std::string& text : plan.scene.notices)
     settings.notice("note: " + text);
   for (const std::string& text : warnings(plan.scene))
     settings.notice("note: " + text);
 }
 
-// The runs of one stage; false: stopped on request. `watch`: since the study began.
+// Carries out the runs of one stage; returns false after a stop request. `watch` runs since the start of the study.
 bool carry_out(const std::vector<PlannedRun>& runs, const std::string& stage, const RunFolders& folders, Claims& claims,
                const Stopwatch& watch, const SceneStudySettings& settings, const RunRequests& requests) {
   folders.refuse_changed(runs, settings.scene + ":1:1");
@@ -56,7 +57,7 @@ void require_states(const std::vector<PlannedRun>& runs, const RunFolders& folde
     if (const std::optional<std::string> reason = folders.failure_of(run.name))
       throw Error(
           ExitCode::run_time,
-          fmt::format("the state of seed {} could not be grown: {}; correct that, then the same command goes on",
+          fmt::format("the state of seed {} could not be evolved: {}; correct that, then run the same command again",
                       run.seed, *reason));
 }
 
@@ -68,8 +69,8 @@ SceneStudyResult write_results(const StudyPlan& plan, const std::vector<PlannedR
   const auto draw = [&] {
     const bool drawn = draw_study_figure(plan, means, folders.path());
     if (!drawn)
-      settings.notice("there is no figure, only its data: gnuplot is not there (Debian: gnuplot-nox), or no setting "
-                      "has what it shows");
+      settings.notice("only the data of the figure are written: gnuplot was not found (Debian: gnuplot-nox), or no "
+                      "setting has the number that it shows");
     return drawn;
   };
   draw_and_report(draw, [&](bool drawn) { write_study_report(plan, measured, means, made, folders.path(), drawn); });
@@ -85,7 +86,7 @@ SceneStudyResult write_results(const StudyPlan& plan, const std::vector<PlannedR
 
 SceneStudyResult study_scene(const SceneStudySettings& settings, const RunRequests& requests) {
   const StudyPlan plan = plan_study(settings);
-  std::map<std::string, std::string> made = study_builder(settings.arguments);
+  std::map<std::string, std::string> made = study_provenance(settings.arguments);
   made["scene"] = settings.scene;
   const Json begun = open_study_folder(settings.folder, options_of(plan), made);
   for (auto& [key, value] : made)
@@ -94,7 +95,7 @@ SceneStudyResult study_scene(const SceneStudySettings& settings, const RunReques
   const RunFolders folders(settings.folder);
   folders.make();
   Claims claims(folders.claims());
-  tell_doubts(plan, settings);
+  report_warnings(plan, settings);
   double elapsed = 0.0;
   const Stopwatch watch(elapsed);
 

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
@@ -27,12 +28,12 @@ std::string balance_words(const SettingVerdict& verdict) {
   return verdict.balance_shown()
              ? found + fmt::format(", so it is within {:g} %.", 100.0 * balance_tolerance)
              : found + fmt::format(": within {:g} % by its mean, but a difference of up to {:.1f} % is not excluded; "
-                                   "more seeds or orbits would tell.",
+                                   "more seeds or orbits would decide.",
                                    100.0 * balance_tolerance,
                                    100.0 * (std::fabs(*verdict.balance_off) + *verdict.balance_bound));
 }
 
-// What keeps each setting that is cheaper than the chosen one from being chosen.
+// Lists the settings that are cheaper than the chosen one but not acceptable, with their deviations.
 std::string refused_words(const StudyMeans& means, std::size_t chosen) {
   std::string text;
   for (std::size_t s = 0; s < means.settings.size(); ++s) {
@@ -48,7 +49,7 @@ std::string refused_words(const StudyMeans& means, std::size_t chosen) {
   return text;
 }
 
-// Comparisons within the scatter of all settings, and how many are beyond it by chance.
+// Returns the number of differences beyond the scatter, and the number expected by chance.
 std::string chance_words(const StudyMeans& means) {
   int compared = 0, beyond = 0;
   for (const SettingMeans& setting : means.settings)
@@ -57,10 +58,9 @@ std::string chance_words(const StudyMeans& means) {
         ++compared;
         beyond += difference.within() ? 0 : 1;
       }
-  return fmt::format(
-      " Of {} differences {} are beyond the scatter (Student's t at 95 %), where chance alone makes about "
-      "{:.0f}.",
-      compared, beyond, 0.05 * compared);
+  return fmt::format(" Of {} differences {} are beyond the scatter (Student's t at 95 %); about {:.0f} are expected by "
+                     "chance alone.",
+                     compared, beyond, 0.05 * compared);
 }
 
 } // namespace
@@ -74,6 +74,7 @@ bool SettingVerdict::balance_shown() const {
 }
 
 SettingVerdict verdict_on(const StudyMeans& means, std::size_t setting) {
+  assert(setting < means.settings.size() && means.settings[setting].from_reference.size() == means.numbers.size());
   SettingVerdict verdict;
   for (std::size_t n = 0; n < means.numbers.size(); ++n) {
     const MeanDifference& difference = means.settings[setting].from_reference[n];
@@ -102,21 +103,22 @@ std::optional<std::size_t> cheapest_acceptable(const StudyMeans& means) {
 std::string verdict_text(const StudyMeans& means) {
   const std::optional<std::size_t> best = cheapest_acceptable(means);
   if (!best)
-    return "**Verdict**: no run was finished, so nothing can be said.";
+    return "**Verdict**: no run is finished, so there is no verdict.";
   const std::string& reference = means.settings[means.reference].name;
   const std::string cost = fmt::format("{} s of processor time per orbit", format_number(cost_of(means, *best), 3));
   std::string text;
   if (*best == means.reference)
-    text = fmt::format("**Verdict**: no setting that is cheaper than the most accurate one, `{}` ({}), has the same "
-                       "physics within the scatter.",
+    text = fmt::format("**Verdict**: no setting that is cheaper than the most accurate one, `{}` ({}), agrees with it "
+                       "within the scatter.",
                        reference, cost);
   else
-    text = fmt::format(
-               "**Verdict**: the cheapest setting whose loss over stress is within {:g} % of that of the most accurate "
-               "one, `{}`, and whose other means cannot be told from its, is `{}`: {}, {} times the speed.",
-               100.0 * balance_tolerance, reference, means.settings[*best].name, cost,
-               format_number(cost_of(means, means.reference) / cost_of(means, *best), 3)) +
-           balance_words(verdict_on(means, *best));
+    text =
+        fmt::format(
+            "**Verdict**: the cheapest setting that agrees with the most accurate one, `{1}`, in loss over stress to "
+            "{0:g} % and in the other means within the scatter, is `{2}`: {3}, {4} times the speed.",
+            100.0 * balance_tolerance, reference, means.settings[*best].name, cost,
+            format_number(cost_of(means, means.reference) / cost_of(means, *best), 3)) +
+        balance_words(verdict_on(means, *best));
   return text + refused_words(means, *best) + chance_words(means);
 }
 
@@ -130,10 +132,11 @@ std::string sensitivity_text(const StudyMeans& means) {
     if (largest > 0.0)
       list += fmt::format("{}{} {:.1f} %", list.empty() ? "" : ", ", means.numbers[n].title, 100.0 * largest);
   }
-  return list.empty() ? list
-                      : "**What these runs could not have seen**: differences smaller than these, in per cent of the "
-                        "reference (the largest of all settings): " +
-                            list + ". Not told apart is not the same.";
+  return list.empty()
+             ? list
+             : "**Sensitivity**: these runs could not detect smaller differences than the following, in per cent of "
+               "the reference (the largest of all settings): " +
+                   list + ". Agreement within the scatter is not equality.";
 }
 
 } // namespace keeler

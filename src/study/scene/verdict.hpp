@@ -1,4 +1,4 @@
-// Which setting of a study is good enough, and what the study could not have seen.
+// The cheapest acceptable setting of a study, and the smallest differences that the study could detect.
 #pragma once
 
 #include "results.hpp"
@@ -9,30 +9,32 @@
 
 namespace keeler {
 
-/// How far the loss over the stress, which is 1, may be from the reference's: 2 %.
+/// Tolerated relative difference of the loss over stress (1 in a steady state) from the reference.
 inline constexpr double balance_tolerance = 0.02;
 
-/// A setting against the reference. "Within" means that the runs do not show a difference, not that there is none.
+/// Comparison of a setting with the reference. "Within" means that the runs show no difference, not that there is none.
 struct SettingVerdict {
-  std::optional<double> balance_off, balance_bound; ///< over the reference's; none: not measured
+  std::optional<double> balance_off, balance_bound; ///< relative to the reference; none: not measured
   std::vector<std::string> beyond;                  ///< titles of the numbers that differ by more than the scatter
-  bool compared = false;                            ///< at least one number of both has a scatter
+  bool compared = false;                            ///< true if at least one number has a known difference
 
-  /// The balance differs by at most the tolerance, as far as its mean tells, and nothing else by more than the scatter.
+  /// True if the mean balance differs by at most the tolerance and no other number by more than the scatter.
   bool acceptable() const;
-  /// The balance differs by at most the tolerance even at the end of its interval.
+  /// True if the whole interval of the balance's difference is within the tolerance.
   bool balance_shown() const;
 };
 
+/// Compares one setting with the reference. Precondition: `setting` is an index of means.settings.
 SettingVerdict verdict_on(const StudyMeans& means, std::size_t setting);
 
-/// The acceptable setting with the least processor time, the reference among them; none when no time is known.
+/// Returns the acceptable setting, or the reference, with the smallest processor time; none when no time is known.
 std::optional<std::size_t> cheapest_acceptable(const StudyMeans& means);
 
-/// The verdict in words, a sentence after the other.
+/// Returns the verdict as a paragraph.
 std::string verdict_text(const StudyMeans& means);
 
-/// The largest difference that could have escaped, a number each, in per cent of the reference; empty: nothing known.
+/// Returns a paragraph with the smallest detectable difference of each number, in per cent of the reference; empty when
+/// none is known.
 std::string sensitivity_text(const StudyMeans& means);
 
 } // namespace keeler

@@ -36,8 +36,8 @@ double rms_difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 TEST_CASE("the bench's patch is the example's, two critical wavelengths wide or more") {
   const Scene example = load_scene(KEELER_EXAMPLES "/a-ring-wakes/scene.toml");
   const Scene same = a_ring_scene(example.particles.count, 1), small = a_ring_scene(10, 1);
-  CHECK(static_cast<double>(same.particles.count) ==
-        doctest::Approx(static_cast<double>(example.particles.count)).epsilon(1e-3)); // of whole particles at τ = 0.5
+  CHECK(static_cast<double>(same.particles.count) == doctest::Approx(static_cast<double>(example.particles.count))
+                                                         .epsilon(1e-3)); // rounding to whole particles at τ = 0.5
   CHECK(same.size_x == doctest::Approx(example.size_x).epsilon(1e-3));
   CHECK(small.size_x == doctest::Approx(0.5 * example.size_x).epsilon(1e-12));
   for (const Scene* scene : {&same, &small}) {
@@ -46,11 +46,11 @@ TEST_CASE("the bench's patch is the example's, two critical wavelengths wide or 
     CHECK(scene->particles.velocity_dispersion == example.particles.velocity_dispersion);
     CHECK(scene->collisions.restitution({.speed = 0.02}) == example.collisions.restitution({.speed = 0.02}));
     CHECK(scene->gravity->opening_angle == example.gravity->opening_angle);
-    CHECK(scene->time.step == 1e-3); // what a step costs is said of this one, whatever an example takes
+    CHECK(scene->time.step == 1e-3); // published costs refer to this step, independent of the example
   }
 }
 
-TEST_CASE("wakes stand in the clumped state, and its tiles feel what the patch feels") {
+TEST_CASE("the clumped state has wakes, and the forces in its tiles equal those in the patch") {
   PhaseProgress silent({});
   const Patch tile = gravity_state(2400, GravityState::clumped, silent).patch;
   REQUIRE(tile.offset > 1.0); // else the tiling tests little

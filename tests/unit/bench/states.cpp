@@ -14,7 +14,7 @@ using namespace keeler;
 
 namespace {
 
-// Spheres in contact, moved by a thousand metres and back: places are rounded to 1e-13 m.
+// Rounding of spheres in contact after a translation by 1000 m and back: positions have units of 1e-13 m.
 constexpr double rounding = 1e-12;
 
 BenchState state_of(BenchSizes sizes, std::size_t count, double optical_depth) {
@@ -35,7 +35,7 @@ TEST_CASE("a large state is made of tiles") {
   CHECK(largest_overlap(patch).depth < rounding);
 }
 
-TEST_CASE("a moonlet takes the place of what it touches") {
+TEST_CASE("a moonlet replaces the particles that it touches") {
   const Patch before = state_of(BenchSizes::equal, 1000, 0.5).patch;
   const Patch after = with_moonlet(before, 10.0);
   CHECK(largest_overlap(after).depth < rounding);
@@ -53,14 +53,14 @@ TEST_CASE("sizes of a bench") {
     CHECK(patch.size() == 300);
     CHECK(*std::min_element(patch.radii.begin(), patch.radii.end()) < 1.01);
     CHECK(*std::max_element(patch.radii.begin(), patch.radii.end()) > 17.0);
-    // ⟨r²⟩ of so small a sample hangs on its largest particle: a tenth at 50 m, 30 % at 90 m
+    // ⟨r²⟩ of so small a sample depends on its largest particle: 10 % at 50 m, 30 % at 90 m
     CHECK(optical_depth(patch) == doctest::Approx(0.1).epsilon(0.3));
     CHECK(largest_overlap(patch).depth < rounding);
   }
   SUBCASE("a moonlet") {
     const Patch patch = state_of(BenchSizes::moonlet, 400, 0.02).patch;
     CHECK(patch.radii.back() == 100.0);
-    CHECK(static_cast<double>(patch.size()) == doctest::Approx(400.0).epsilon(0.1)); // 200 ± 14 were in its place
+    CHECK(static_cast<double>(patch.size()) == doctest::Approx(400.0).epsilon(0.1)); // it displaces 200 ± 14
     CHECK(largest_overlap(patch).depth < rounding);
     CHECK_THROWS_AS(state_of(BenchSizes::moonlet, 1000, 5.0), UsageError);
   }

@@ -33,7 +33,7 @@ opening_angle = 0.5
 kick_every = 3
 )";
 
-// The start of a scene as a snapshot.
+// Stores the initial state of a scene as a snapshot.
 struct StoredState {
   test::TemporaryFolder folder;
   std::string file = (folder / "start.hdf").string();
@@ -86,7 +86,7 @@ TEST_CASE("the bench times a snapshot with the scene that it holds") {
   CHECK(t.speedup.step == 1.0);
 }
 
-TEST_CASE("solver and kick interval of a snapshot's scene can be others") {
+TEST_CASE("solver and kick interval of a snapshot's scene can be replaced") {
   const StoredState stored(small_scene);
   StepBenchSettings settings = stored.settings(1);
   settings.kick_every = 7;
@@ -94,7 +94,7 @@ TEST_CASE("solver and kick interval of a snapshot's scene can be others") {
   const StepBench bench = bench_on_threads(1, settings);
   CHECK(bench.choice.solver == "fft");
   CHECK(bench.choice.settings.kick_every == 7);
-  CHECK(bench.choice.settings.mesh_cut == 0.0); // as in a run: by the masses that there are
+  CHECK(bench.choice.settings.mesh_cut == 0.0); // as in a run: derived from the masses
   CHECK(bench.timed.steps == 105);
 }
 

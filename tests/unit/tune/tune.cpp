@@ -1,4 +1,4 @@
-// What tune chooses meets the tolerances and is the cheapest of what does; its keys are a scene's.
+// The settings that tune chooses meet the tolerances and are the cheapest to do so; its keys are valid in a scene.
 #include <keeler/config/edit.hpp>
 #include <keeler/scene/keys.hpp>
 #include <keeler/scene/load.hpp>
@@ -33,7 +33,7 @@ Tuning tuned(const TuneSettings& settings) {
 
 } // namespace
 
-TEST_CASE("the choices meet the tolerances, and nothing that was measured and meets them is cheaper") {
+TEST_CASE("the choices meet the tolerances, and no other measured setting that meets them is cheaper") {
   const TuneSettings settings{.force_error = 2e-3, .physics_error = 0.05, .orbits = 0.3};
   const Tuning t = tuned(settings);
   CHECK(t.particles == 400);
@@ -59,7 +59,7 @@ TEST_CASE("the choices meet the tolerances, and nothing that was measured and me
   CHECK(t.chosen_threads == 1);
 }
 
-TEST_CASE("tolerances that nothing meets are said, and the most accurate is chosen") {
+TEST_CASE("tolerances that no setting meets are reported, and the most accurate setting is chosen") {
   const Tuning t = tuned({.force_error = 1e-5, .physics_error = 1e-9, .orbits = 0.05});
   if (!t.meets_force_error)
     for (const GravityBenchRow& row : t.gravity)
@@ -68,7 +68,7 @@ TEST_CASE("tolerances that nothing meets are said, and the most accurate is chos
     CHECK(t.kicks[t.chosen_kicks].interval == 1e-3);
 }
 
-TEST_CASE("the keys say the choices, in the text of the scene") {
+TEST_CASE("the keys set the choices in the text of the scene") {
   Tuning t;
   t.orbits = 4.0;
   GravityBenchRow row;

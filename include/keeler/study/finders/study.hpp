@@ -1,10 +1,10 @@
-// The paper's experiment (M. C. Lewis, "Collision Finding for Particles on Non-linear Paths", draft), in full: four
-// states × finders × time steps × repeats, each a tenth of an orbit, with the truth of every call beside the times, and
-// the questions that the paper left open.
+// The complete experiment of M. C. Lewis, "Collision Finding for Particles on Non-linear Paths" (draft): four states ×
+// finders × time steps × repeats, each run a tenth of an orbit. The study times every run, compares every answer with
+// the certified finder's, and measures the questions that the paper left open.
 //
-// The folder holds states/ (the four states), measurements.jsonl (one line a measurement, kept at once: the same
-// command goes on where it was stopped), finders.csv and finders.json (a row a timed run), figures/, report.md and
-// report.html.
+// The folder holds states/ (the four states), measurements.jsonl (one line per measurement, written at once, so that
+// the same command continues after a stop), finders.csv and finders.json (one row per timed run), figures/, report.md
+// and report.html.
 #pragma once
 
 #include <keeler/core/progress.hpp>
@@ -26,8 +26,8 @@ struct FinderStudySettings {
   std::function<void(const Progress&)> progress;
 };
 
-/// Carries out what is missing and writes the report. Returns false when `stop` was set: the folder can be continued.
-/// Throws UsageError when the folder holds a study of other settings, IoError.
+/// Carries out the missing measurements and writes the report. Returns false if `stop` was set; a later call with the
+/// same settings continues. Throws UsageError when the folder holds a study with other settings, and IoError.
 bool study_finders(const FinderStudySettings& settings, const std::atomic<bool>& stop);
 
 } // namespace keeler

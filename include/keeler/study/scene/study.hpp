@@ -1,10 +1,10 @@
-// Studies of a user's scene: what one kind of setting costs and changes. A study runs the scene with several values of
-// that setting and several seeds, and holds the means against those of the most accurate value.
+// Studies of a user's scene: the cost and the effect of one kind of setting. A study runs the scene with several values
+// of that setting and several seeds, and compares the means with the means at the most accurate value.
 //
-// For step, kicks and mesh each seed first grows one common state, from which all settings of that seed go on; box and
-// sizes change the state itself, so each of their runs has the scene's own start.
+// For step, kicks and mesh each seed first evolves one common state, from which all settings of that seed continue. Box
+// and sizes change the state itself, so each of their runs begins with the scene's initial state.
 //
-// docs/manual/commands.md has the settings, docs/formats.md the folder.
+// docs/manual/commands.md lists the settings, docs/formats.md the files of the folder.
 #pragma once
 
 #include <keeler/core/progress.hpp>
@@ -20,7 +20,7 @@ namespace keeler {
 
 /// The setting that a study changes.
 enum class SceneStudyKind {
-  step,  ///< time.step, the kick interval held
+  step,  ///< time.step at a fixed kick interval
   kicks, ///< the kick interval
   mesh,  ///< solver and accuracy of self-gravity
   box,   ///< the size of the patch
@@ -29,29 +29,29 @@ enum class SceneStudyKind {
 
 struct SceneStudySettings {
   SceneStudyKind kind = SceneStudyKind::step;
-  std::string scene;                  ///< a file
-  std::vector<std::string> overrides; ///< "KEY=VALUE", of the scene
+  std::string scene;                  ///< path of the scene file
+  std::vector<std::string> overrides; ///< "KEY=VALUE", applied to the scene
   std::filesystem::path folder;
-  std::optional<std::size_t> seeds;      ///< at least 2; none: 3, quick 2
-  std::optional<double> grow_orbits;     ///< until the common state; none: 6 with self-gravity, 10 without, quick 1
-  std::optional<double> orbits;          ///< of each run from then on, at least 1.5; none: 6, quick 2
-  std::vector<std::string> quantities{}; ///< of keeler analyze, as columns besides those of every study
-  bool quick = false;                    ///< few settings
-  std::size_t jobs = 1;                  ///< runs at once, each a process of one thread
+  std::optional<std::size_t> seeds;      ///< at least 2; default 3, quick 2
+  std::optional<double> grow_orbits;     ///< to the common state; default 6 with self-gravity, 10 without, quick 1
+  std::optional<double> orbits;          ///< of each run after that, at least 1.5; default 6, quick 2
+  std::vector<std::string> quantities{}; ///< further columns, by their names in keeler analyze
+  bool quick = false;                    ///< few settings, seeds and orbits
+  std::size_t jobs = 1;                  ///< concurrent runs, each a process with one thread
   std::vector<std::string> arguments;    ///< the command line, for provenance
   std::function<void(const Progress&)> progress;
   std::function<void(const std::string&)> notice;
 };
 
-/// How the folder stands.
+/// The state of the study's folder when study_scene() returns.
 struct SceneStudyResult {
-  bool stopped = false;         ///< on request; the same settings go on
-  std::size_t failed = 0;       ///< runs that the tables do not have
-  std::size_t unmeasurable = 0; ///< those of them that came to their end, but whose files cannot be read
+  bool stopped = false;         ///< on request; a call with the same settings continues
+  std::size_t failed = 0;       ///< runs that are missing from the tables
+  std::size_t unmeasurable = 0; ///< of `failed`: finished runs with unreadable files
 };
 
-/// Carries out the runs that are missing and writes tables, figure and report. Throws UsageError when the scene has
-/// nothing of this kind to change or the folder holds something else; Error when no state could be grown; IoError.
+/// Carries out the missing runs and writes tables, figure and report. Throws UsageError when the scene has no setting
+/// of this kind or the folder holds another study, Error when a common state could not be evolved, and IoError.
 SceneStudyResult study_scene(const SceneStudySettings& settings, const RunRequests& requests);
 
 } // namespace keeler

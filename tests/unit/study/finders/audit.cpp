@@ -18,8 +18,8 @@ namespace {
 
 const Frequencies kepler{1.0, 1.0};
 
-// A particle in the middle, one that hits it from the left at 0.2 of the step and one from the right at 0.6; the fourth
-// passes far away.
+// A particle at rest, a second that hits it from the left at 0.2 of the step, a third from the right at 0.6, and a
+// fourth that passes far away.
 struct Trio {
   std::vector<Body> bodies;
   DriftStep step{kepler, -0.5e-3, 0.5e-3, 100.0};
@@ -31,10 +31,10 @@ struct Trio {
     add({20.0, 20.0, 0.0}, {-50.0, 0.0, 0.0}, at(0.5));
     step.bodies = bodies;
   }
-  void add(const Vec3& place, const Vec3& velocity, double time) {
-    bodies.push_back({elements_from({place, velocity}, kepler, Rotation(kepler, time)), 1.0, 1.0});
+  void add(const Vec3& position, const Vec3& velocity, double time) {
+    bodies.push_back({elements_from({position, velocity}, kepler, Rotation(kepler, time)), 1.0, 1.0});
   }
-  double at(double share) const { return step.begin + share * (step.end - step.begin); }
+  double at(double fraction) const { return step.begin + fraction * (step.end - step.begin); }
   Query query(std::uint32_t other) const { return {0, other, 0.0, 0.0, step.begin}; }
 };
 

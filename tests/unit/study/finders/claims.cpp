@@ -10,7 +10,7 @@ using namespace keeler;
 
 namespace {
 
-// Measurements of a study, made up: every claim of the paper holds in them unless a test spoils it.
+// Made-up measurements of a study in which every claim of the paper holds, unless a test changes them.
 struct MadeUp {
   FinderStudyData data;
 
@@ -73,7 +73,7 @@ struct MadeUp {
         {"rows", {{{"orbits", 100.0}, {"mean_guiding_x_r", drift}}}}};
   }
 
-  // The verdicts on the claims that hold these words.
+  // Returns the verdicts on the claims that contain these words.
   std::vector<std::string> on(const std::string& words) const {
     std::vector<std::string> verdicts;
     for (const Row& row : paper_claims(FinderNumbers(data)))

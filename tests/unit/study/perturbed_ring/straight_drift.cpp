@@ -22,7 +22,7 @@ CollisionSettings half_elastic() {
   return settings;
 }
 
-// The same drift by looking at every pair and image again after every event.
+// Brute-force twin: searches every pair and image again after every event.
 class Twin {
 public:
   Twin(std::vector<Body>& bodies, const ShearingBox& box, double offset, double step)
@@ -46,7 +46,7 @@ public:
 
 private:
   struct Leg {
-    Vec3 place, velocity;
+    Vec3 position, velocity;
     double since;
   };
   struct Contact {
@@ -58,7 +58,7 @@ private:
   State relative(std::size_t i, std::size_t j, const Image& image, double time) const {
     const Leg &a = legs_[i], &b = legs_[j];
     const double slide = image.nx * box_.shear * box_.size_x;
-    Vec3 d = b.place + (time - b.since) * b.velocity - a.place - (time - a.since) * a.velocity;
+    Vec3 d = b.position + (time - b.since) * b.velocity - a.position - (time - a.since) * a.velocity;
     d += Vec3(image.nx * box_.size_x, image.ny * box_.size_y - image.nx * offset_ - slide * time, 0.0);
     return {d, b.velocity - a.velocity - Vec3(0.0, slide, 0.0)};
   }
@@ -82,14 +82,14 @@ private:
     return first;
   }
 
-  // False when the lines approach but the particles, with the velocities of their epicycles, do not.
+  // Returns false when the lines approach but the particles, with the velocities of their epicycles, do not.
   bool bounce(const Contact& c) {
     const Rotation rotation(f, c.time);
     const Vec3 normal = relative(c.i, c.j, c.image, c.time).position.normalized();
     const Vec3 slide(0.0, c.image.nx * box_.shear * box_.size_x, 0.0);
     State states[2];
     for (const std::size_t k : {c.i, c.j})
-      states[k == c.j] = {legs_[k].place + (c.time - legs_[k].since) * legs_[k].velocity,
+      states[k == c.j] = {legs_[k].position + (c.time - legs_[k].since) * legs_[k].velocity,
                           state_at(bodies_[k].elements, f, rotation).velocity};
     const double speed = -(states[1].velocity - slide - states[0].velocity).dot(normal);
     const Rebound after = rebound(half_elastic(), speed, bodies_[c.i].radius, bodies_[c.j].radius, omega);
@@ -112,7 +112,7 @@ private:
 
 } // namespace
 
-TEST_CASE("two particles: straight to the contact, and from its place on with velocities of the epicycle") {
+TEST_CASE("two particles move straight to the contact, and continue from there with velocities of the epicycle") {
   // 4 m apart they close at 8 m/rad on their tangents at −h/2: contact after t = 1/4 rad, by hand
   constexpr double h = 0.6;
   const Rotation start(f, -0.5 * h), contact(f, -0.5 * h + 0.25);
@@ -138,7 +138,7 @@ TEST_CASE("two particles: straight to the contact, and from its place on with ve
   CHECK(std::fabs(drifted) > 0.01);
 }
 
-TEST_CASE("a particle that meets nobody stays on its epicycle, to the bit") {
+TEST_CASE("a particle without contacts stays on its epicycle, to the bit") {
   Particles particles;
   particles.bodies = {{{1.0, 2.0, 3.0, 4.0, 5.0, 6.0}, 1.0, 1.0}, {{40.0, 2.0, 1.0, 4.0, 5.0, 6.0}, 1.0, 1.0}};
   particles.ids = {0, 1};
@@ -148,7 +148,7 @@ TEST_CASE("a particle that meets nobody stays on its epicycle, to the bit") {
   CHECK(std::memcmp(particles.bodies.data(), before.bodies.data(), 2 * sizeof(Body)) == 0);
 }
 
-TEST_CASE("the same as looking at every pair and image after every event") {
+TEST_CASE("the drift equals a search of every pair and image after every event") {
   int collisions = 0;
   for (const double step : {two_pi * 1e-3, two_pi * 1e-2, two_pi * 3e-2})
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {

@@ -30,7 +30,7 @@ end = 1.0
                      "scene.toml", overrides);
 }
 
-// The scene with the overrides of a choice, as a run of the study has it.
+// Returns the scene of a run of the study: with the overrides of a choice.
 Scene with(const Scene& scene, const StudyChoice& choice) {
   return parse_scene(scene.resolved, "scene.toml", choice.overrides);
 }

@@ -13,7 +13,7 @@ using namespace keeler::test;
 
 namespace {
 
-// A scene in a folder of its own.
+// A scene file in a temporary folder.
 class SceneFile {
 public:
   SceneFile() {
@@ -52,7 +52,7 @@ private:
 
 } // namespace
 
-TEST_CASE("each seed grows one state, and what comes first is left out of the means") {
+TEST_CASE("each seed evolves one common state, and the first orbits of a run are left out of the means") {
   SceneFile file;
   const StudyPlan plan = file.plan(SceneStudyKind::kicks);
   const std::vector<PlannedRun> growth = growth_runs(plan);
@@ -65,7 +65,7 @@ TEST_CASE("each seed grows one state, and what comes first is left out of the me
   CHECK(file.plan(SceneStudyKind::kicks, true).since() == 1.0);
 }
 
-TEST_CASE("boxes have starts of their own, and those with too few particles are left out") {
+TEST_CASE("boxes have no common state, and boxes with too few particles are left out") {
   SceneFile file;
   const StudyPlan plan = file.plan(SceneStudyKind::box);
   CHECK(growth_runs(plan).empty());

@@ -11,10 +11,10 @@ using namespace keeler;
 
 namespace {
 
-// Made-up runs of some settings with three seeds: the reference first.
+// Made-up runs of some settings with three seeds; the reference is the first setting.
 class MadeUp {
 public:
-  // Values of the three seeds are the mean, and that ± the deviation.
+  // Adds three seeds with the values mean − deviation, mean, mean + deviation.
   void add(const std::string& name, double cpu, double balance, double balance_deviation, double dispersion,
            double force_error = 1e-3) {
     choices_.choices.push_back({name, {}});
@@ -86,7 +86,7 @@ TEST_CASE("the cheapest setting that cannot be told from the reference is chosen
   CHECK(text.find("`cheapest` is cheaper and differs in c_x (m/s)") != text.npos);
 }
 
-TEST_CASE("not told apart is not called the same") {
+TEST_CASE("agreement within the scatter is not reported as equality") {
   MadeUp study;
   study.add("fine", 8.0, 1.0, 0.02, 5.0);
   study.add("coarse", 2.0, 1.01, 0.02, 5.0);
@@ -97,8 +97,7 @@ TEST_CASE("not told apart is not called the same") {
   CHECK(sensitivity_text(means).find("loss over stress 4.5 %") != std::string::npos);
 }
 
-TEST_CASE(
-    "without a reference of the study it is the setting with the smallest force error; failed runs do not count") {
+TEST_CASE("without a given reference the setting with the smallest force error is it; failed runs do not count") {
   MadeUp study;
   study.add("a", 1.0, 1.0, 0.01, 5.0, 3e-3);
   study.add("b", 2.0, 1.0, 0.01, 5.0, 1e-4);
@@ -109,11 +108,11 @@ TEST_CASE(
   CHECK(means.settings[2].finished == 2);
 }
 
-TEST_CASE("where nothing was finished nothing is said") {
+TEST_CASE("without finished runs there is no verdict") {
   StudyChoices none;
   none.choices = {{"a", {}}, {"b", {}}};
   const StudyMeans means = means_of(none, {});
-  CHECK(verdict_text(means).find("nothing can be said") != std::string::npos);
+  CHECK(verdict_text(means).find("there is no verdict") != std::string::npos);
   CHECK(sensitivity_text(means).empty());
 }
 
