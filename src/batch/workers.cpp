@@ -200,7 +200,7 @@ private:
     for (std::size_t k = 0; k < states_.size(); ++k)
       if (State& state = states_[k]; !state.finished) {
         state.finished = !state.child && run_stage(path(k)) == RunStage::finished;
-        state.share = static_cast<double>(steps_on_record(path(k))) /
+        state.share = static_cast<double>(last_recorded_step(path(k))) /
                       static_cast<double>(std::max<std::int64_t>(1, run(k).scene.time.end_step));
       }
   }

@@ -206,7 +206,7 @@ std::string RunPage::plots(const TransportReport& report) const {
                     format_number(steady->since_orbit, 3), format_number(steady->until_orbit, 4),
                     steady->steady ? "where the run is steady" : "the best there is, though the run is not steady yet");
   if (steady && steady->waves)
-    words += fmt::format(" Axisymmetric waves as long as the box hold {}.", words_of(*steady->waves));
+    words += fmt::format(" Axisymmetric waves as long as the box hold {}.", describe(*steady->waves));
   words +=
       " A curve is the mean of rows that follow each other, the band its standard error where a mean is of several "
       "rows. Drag along an axis to zoom, double-click to see all.";

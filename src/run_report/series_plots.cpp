@@ -21,7 +21,7 @@ constexpr std::size_t max_points = 200; // of a curve
 
 struct Curve {
   std::string column, name;
-  Course course = Course::value;
+  ColumnKind kind = ColumnKind::value;
 };
 
 struct Plot {
@@ -32,7 +32,10 @@ struct Plot {
 // Sums are drawn as they are, events as their number an orbit, fluxes as viscosities.
 std::string drawn_unit(const SeriesColumn& column) {
   const std::string unit = column.unit;
-  return column.course == Course::count ? "an orbit" : column.course == Course::flux ? "m²/s" : unit == "1" ? "" : unit;
+  return column.kind == ColumnKind::count  ? "an orbit"
+         : column.kind == ColumnKind::flux ? "m²/s"
+         : unit == "1"                     ? ""
+                                           : unit;
 }
 
 // Columns that this program does not know have a plot by their own names.
@@ -50,7 +53,7 @@ std::vector<Plot> plots_of(const SeriesTable& series) {
     const std::string plot = column.plot;
     const std::size_t colon = plot.find(": ");
     if (known.insert(column.name).second)
-      curve_of(plot.substr(0, colon), drawn_unit(column), {column.name, plot.substr(colon + 2), column.course});
+      curve_of(plot.substr(0, colon), drawn_unit(column), {column.name, plot.substr(colon + 2), column.kind});
   }
   for (const std::string& name : series.names)
     if (!known.contains(name))
@@ -66,9 +69,10 @@ struct Points {
 Points points_of(const SeriesTable& series, const Curve& curve, const RingScale& scale) {
   const std::vector<double>&times = series.of("time_orbits"), &column = series.of(curve.column);
   const double orbit_s = 2.0 * std::numbers::pi / scale.orbital_frequency;
-  const double unit = curve.course == Course::flux ? orbit_s * scale.mass * scale.shear * scale.orbital_frequency : 1.0;
+  const double unit =
+      curve.kind == ColumnKind::flux ? orbit_s * scale.mass * scale.shear * scale.orbital_frequency : 1.0;
   Points points;
-  const bool itself = curve.course == Course::value || curve.course == Course::sum;
+  const bool itself = curve.kind == ColumnKind::value || curve.kind == ColumnKind::sum;
   for (std::size_t k = itself ? 0 : 1; k < column.size(); ++k) {
     const double time = itself ? times[k] : 0.5 * (times[k - 1] + times[k]);
     const double value = itself ? column[k] : (column[k] - column[k - 1]) / ((times[k] - times[k - 1]) * unit);
@@ -112,7 +116,7 @@ Json steady_mean(const Curve& curve, const Points& points, const Transport& stea
   for (std::size_t k = 0; k < points.times.size(); ++k)
     if (points.times[k] >= steady.since_orbit && points.times[k] <= steady.until_orbit)
       values.push_back(points.values[k]);
-  return values.empty() || curve.course == Course::sum ? Json(nullptr) : numbers_of_estimate(block_mean(values));
+  return values.empty() || curve.kind == ColumnKind::sum ? Json(nullptr) : numbers_of_estimate(block_mean(values));
 }
 
 } // namespace

@@ -125,7 +125,7 @@ TEST_CASE("a bin holds the speeds from its lower edge to below its upper one") {
   for (std::size_t bin = 0; bin < speeds.bins(); ++bin) {
     count += speeds.count(bin);
     CHECK(speeds.energy_lost(bin) == 2.0 * static_cast<double>(speeds.count(bin)));
-    CHECK((bin == 0 || speeds.from(bin) == speeds.to(bin - 1)));
+    CHECK((bin == 0 || speeds.lower_edge(bin) == speeds.upper_edge(bin - 1)));
   }
   CHECK(count == 6);
   CHECK(speeds.count(0) == 1);
@@ -227,7 +227,7 @@ TEST_CASE("files of a log are cut back to the rows of a checkpoint, wherever tha
 
     Simulation second(scene, state);
     ContactLog after = new_log(cut, scene, file_rows, checkpoint);
-    CHECK(after.lost() == 0);
+    CHECK(after.lost_rows() == 0);
     evolve(after, second, 30);
     after.write_all();
     const std::vector<ContactRow> rows = table_in(whole, file_rows);

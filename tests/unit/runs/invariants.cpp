@@ -78,7 +78,7 @@ TEST_CASE("all invariants hold at each step of sound runs, and to look at them c
     const SimulationState& state = checked.state();
     contacts += state.collisions.fast + state.collisions.slow;
     CHECK(state_hash(state, scene) == state_hash(plain.state(), scene));
-    CHECK(fault_of_books(state, checked.means(), scene.planet.frequencies).empty());
+    CHECK(fault_of_budget(state, checked.means(), scene.planet.frequencies).empty());
   }
   CHECK(contacts > 100);
 }
@@ -93,7 +93,7 @@ TEST_CASE("a number that is not finite is told, with its particle") {
   state = run.simulation.state();
   state.particles.spins[40].y() = not_a_number;
   CHECK(fault_of_numbers(state) == "particle " + id + " has a spin that is not finite");
-  CHECK(fault_of_books(state, run.means_of(state), run.frequencies()) == fault_of_numbers(state));
+  CHECK(fault_of_budget(state, run.means_of(state), run.frequencies()) == fault_of_numbers(state));
   state = run.simulation.state();
   state.forces[0].accelerations[40].z() = 1.0 / 0.0;
   CHECK(fault_of_numbers(state) == "particle " + id + " has an acceleration by gravity that is not finite");
@@ -146,7 +146,7 @@ TEST_CASE("a contact whose energy is booked twice, or never, is told by the ener
   CHECK_FALSE(run.energy(state).empty());
   CHECK(run.energy(run.simulation.state()).empty());
   state.collisions.energy_lost *= 1.001;
-  CHECK(fault_of_books(state, run.means_of(state), run.frequencies()).find("the energy budget leaves ") == 0);
+  CHECK(fault_of_budget(state, run.means_of(state), run.frequencies()).find("the energy budget does not close") == 0);
 }
 
 TEST_CASE("wraps with a wrong shift, and kicks of half the size, are told by the sums") {
