@@ -233,13 +233,13 @@ std::vector<SummaryRow> cost_rows() {
        [](From s) -> Value { return s.cost.force_checks.seconds; }},
       {{"ns_per_particle_step.drift", nanoseconds, "drift, per particle and step", "wall time per particle and step",
         Spread::none, Forms::si, 3},
-       [](From s) -> Value { return s.simulation.time_split().drift / passes(s); }},
+       [](From s) -> Value { return s.simulation.time_split().drift / giga_particle_steps(s); }},
       {{"ns_per_particle_step.gravity", nanoseconds, "gravity, per particle and step",
         "wall time per particle and step", Spread::none, Forms::si, 3},
-       [](From s) -> Value { return s.simulation.time_split().force("gravity") / passes(s); }},
+       [](From s) -> Value { return s.simulation.time_split().force("gravity") / giga_particle_steps(s); }},
       {{"ns_per_particle_step.series", nanoseconds, "series, per particle and step", "wall time per particle and step",
         Spread::none, Forms::si, 2},
-       [](From s) -> Value { return s.cost.output.series / passes(s); }}};
+       [](From s) -> Value { return s.cost.output.series / giga_particle_steps(s); }}};
 }
 
 std::vector<SummaryRow> all_rows() {
