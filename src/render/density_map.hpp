@@ -23,7 +23,7 @@ public:
 private:
   double& node(int i, int j) { return values_[static_cast<std::size_t>(j * (columns_ + 2) + i)]; }
   double node(int i, int j) const { return values_[static_cast<std::size_t>(j * (columns_ + 2) + i)]; }
-  // In units of cells from the first node, which is half a cell outside the box.
+  // Coordinates in cells from the first node, which is half a cell outside the box.
   double column_of(double x) const { return (x + 0.5 * size_x_) / spacing_x_ + 0.5; }
   double row_of(double y) const { return (y + 0.5 * size_y_) / spacing_y_ + 0.5; }
 

@@ -2,8 +2,8 @@
 // histogram of the impact speeds of all contacts.
 //
 // The table is split into files of `rows_per_file` rows. The last file is rewritten before each checkpoint, so a
-// checkpoint stores only the number of rows: on resume the rows beyond it are cut off, and the files equal those of an
-// uninterrupted run, whatever its checkpoints. Invariant: files before the last are full and never change.
+// checkpoint stores only the number of rows: on resume the rows beyond it are cut off, and the files equal the files
+// of an uninterrupted run, whatever its checkpoints. Invariant: files before the last are full and never change.
 #pragma once
 
 #include "impact_speeds.hpp"

@@ -29,8 +29,7 @@ const SimulationState& state(Sample s) {
   return s.simulation.state();
 }
 
-// With an exact finder no overlap exceeds the initial one, and the search for it would cost more than all other
-// columns.
+// An exact finder lets no overlap exceed the initial one, and the search for it would cost more than all other columns.
 bool may_overlap(const Scene& scene) {
   return !make_finder(scene.collisions.finder)->exact();
 }

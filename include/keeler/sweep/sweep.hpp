@@ -1,6 +1,6 @@
 // Parameter sweeps: runs of one scene on a grid of keys times seeds, several at once, each in a separate folder, with
-// tables and a figure of the measured quantities. The same call continues a sweep that was stopped or killed; programs
-// on any number of machines may work in one folder.
+// tables and a figure of the measured quantities. Repeating the call continues a sweep that was stopped or killed;
+// programs on any number of machines may work in one folder.
 //
 // docs/manual/commands.md describes the grid file, docs/formats.md the folder.
 #pragma once

@@ -19,7 +19,7 @@ using namespace keeler::test;
 
 namespace {
 
-/// All that happened, one call a contact.
+/// Records all contacts, one call per contact.
 struct Onlooker final : DriftObserver {
   std::vector<CollisionRecord> records;
   void collided(const CollisionRecord& record) override { records.push_back(record); }
@@ -54,7 +54,7 @@ ContactLog new_log(const RunFolder& folder, const Scene& scene, std::int64_t fil
   return {folder, scene, {}, resume, file_rows};
 }
 
-// All rows of a log of small files.
+// Returns all rows of a log of small files.
 std::vector<ContactRow> table_in(const RunFolder& folder, std::int64_t file_rows) {
   std::vector<ContactRow> all;
   for (std::int64_t number = 0; std::filesystem::exists(folder.contacts(number)); ++number) {
