@@ -56,6 +56,7 @@ Maybe column_mean(const Source& run, const std::string& column) {
   const std::vector<double>* const all = run.series.find(column);
   if (!all)
     return std::nullopt;
+  assert(run.rows.empty() || run.rows.back() < all->size());
   std::vector<double> values;
   for (const std::size_t row : run.rows)
     values.push_back((*all)[row]);
@@ -65,6 +66,7 @@ Maybe column_mean(const Source& run, const std::string& column) {
 // Returns collisions per particle and orbit; each collision counts for both particles.
 Maybe collision_rate(const Source& run) {
   const std::vector<double>&orbits = run.series.of("time_orbits"), &collisions = run.series.of("collisions");
+  assert(run.rows.size() >= 2 && run.last.size() > 0);
   std::vector<double> rates;
   for (std::size_t k = 0; k + 1 < run.rows.size(); ++k) {
     const std::size_t a = run.rows[k], b = run.rows[k + 1];

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <map>
 #include <set>
 #include <sstream>
@@ -48,6 +49,7 @@ std::string difference(const Keys& old_keys, const Keys& new_keys) {
 }
 
 void refuse_changed_run(const PlannedRun& run, const fs::path& folder, const std::string& location) {
+  assert(!run.name.empty());
   const fs::path file = folder / "scene.toml";
   std::error_code unknown;
   if (!fs::exists(file, unknown))

@@ -177,6 +177,7 @@ private:
   }
 
   void record_end(std::size_t k, const ChildEnd& end) {
+    assert(!states_[k].child);
     State& state = states_[k];
     state.finished = run_stage(path(k)) == RunStage::finished;
     if (state.finished || is_stop(end) || requests_.stop)

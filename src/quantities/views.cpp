@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <set>
 
@@ -118,6 +119,7 @@ void add_others(Record& record, const Json& json, const std::string& object, con
 }
 
 std::string text_of(const Value& value, int digits) {
+  assert(digits > 0);
   return std::visit(
       Overloaded{[](const Unknown& unknown) {
                    return unknown.reason.empty() ? std::string("none") : "not known because " + unknown.reason;
@@ -303,6 +305,7 @@ std::string markdown_of(std::span<const Quantity> quantities) {
       if (system == UnitSystem::si && quantity.spread != Spread::none)
         names += fmt::format(", `{}`", quantity.spread_name());
     }
+    assert(quantity.meaning.find('|') == std::string::npos);
     table += fmt::format("| {} | {} | {} |\n", names, quantity.unit.text, quantity.meaning);
   }
   return table;

@@ -51,6 +51,7 @@ std::uint32_t number_at(std::span<const std::byte> bytes, std::size_t at) {
 }
 
 void put_chunk(Bytes& to, std::string_view name, std::span<const std::byte> content) {
+  assert(name.size() == 4);
   put(to, static_cast<std::uint32_t>(content.size()));
   const std::size_t begin = to.size();
   for (const char letter : name)

@@ -72,6 +72,7 @@ ColourField colour_field_named(const std::string& name) {
 }
 
 double ColourRange::position(double value) const {
+  assert(!logarithmic || low > 0.0);
   if (!(high > low))
     return 0.5;
   return std::clamp(logarithmic ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low), 0.0,

@@ -34,6 +34,7 @@ void require_drawn(cairo_status_t status) {
 
 Page::Page(int width, int height, const Colour& background)
     : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height)), cairo_(cairo_create(surface_)) {
+  assert(width > 0 && height > 0);
   if (const cairo_status_t status = cairo_status(cairo_); status != CAIRO_STATUS_SUCCESS) {
     cairo_destroy(cairo_);
     cairo_surface_destroy(surface_);

@@ -144,6 +144,7 @@ PictureScale picture_scale(const Patch& patch, ColourField field) {
 }
 
 PictureLayout layout_of(const Patch& patch, const PictureOptions& options) {
+  assert(options.width > 0);
   const double u = options.width / 1600.0;
   const ShearingBox& box = patch.box;
   PictureLayout layout;

@@ -88,6 +88,7 @@ Points points_of(const SeriesTable& series, const Curve& curve, const RingScale&
 
 // Returns bins of consecutive rows: [time, mean, standard error of the mean or null].
 Json binned(const Points& points) {
+  assert(points.times.size() == points.values.size());
   const std::size_t bins = std::min(max_points, points.times.size());
   Json all = Json::array();
   for (std::size_t b = 0; b < bins; ++b) {

@@ -5,6 +5,7 @@
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/simulation.hpp>
 
+#include <cassert>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,7 +19,10 @@ struct MoonletSample {
   std::size_t k; ///< index of the moonlet
 
   Body body() const { return simulation.moonlet(k); }
-  const MoonletTrack& track() const { return simulation.state().moonlets[k]; }
+  const MoonletTrack& track() const {
+    assert(k < simulation.state().moonlets.size());
+    return simulation.state().moonlets[k];
+  }
 };
 
 struct MoonletColumn {

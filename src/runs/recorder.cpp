@@ -20,6 +20,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 #include <utility>
 
@@ -212,6 +213,7 @@ void Recorder::checkpoint(const Simulation& simulation) {
   ++counters.checkpoints;
   FieldTable table = simulation.state().fields();
   counters.list_fields(table, scene_);
+  assert(counters.checkpoints > 0 && counters.snapshots >= 0);
   const std::filesystem::path file = checkpoint_path(folder_.path(), counters_.checkpoints);
   write_checkpoint(file, table, {scene_.resolved, provenance_}, ranks_);
   ranks_.on_root([&] {

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace keeler {
 namespace fs = std::filesystem;
@@ -63,6 +64,7 @@ StoredPatches load_newest_patch(const fs::path& path) {
 }
 
 StoredPatches load_patches(const fs::path& path, double orbits) {
+  assert(orbits >= 0.0);
   const std::vector<fs::path> files = fs::is_directory(path) ? snapshots_in(path) : std::vector<fs::path>{path};
   StoredPatches stored;
   for (auto file = files.rbegin(); file != files.rend(); ++file) {

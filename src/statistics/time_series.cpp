@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t batches = 256; // maximum number of bins of a series in steady_start()
 
 double mean_of(std::span<const double> values) {
+  assert(!values.empty());
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 

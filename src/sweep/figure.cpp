@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 
@@ -104,6 +105,7 @@ std::vector<PlotLine> plot_lines(const Grid& grid, const Plan& plan, const std::
     if (!row.values[y])
       continue;
     const GridPoint& point = *row.point;
+    assert(x.key < point.settings.size() && x.axis < point.on_axis.size());
     const std::string title = title_of(grid, plan, point, x.axis);
     const auto [entry, is_new] = line_of.try_emplace(title, lines.size());
     if (is_new)

@@ -7,6 +7,7 @@
 #include <keeler/statistics/measured.hpp>
 #include <keeler/statistics/time_series.hpp>
 
+#include <cassert>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -101,9 +102,11 @@ template<class Source> struct QuantityRow {
 template<class Source>
 std::vector<Entry> entries_of(const std::vector<QuantityRow<Source>>& rows, const Source& source) {
   std::vector<Entry> entries;
-  for (const QuantityRow<Source>& row : rows)
+  for (const QuantityRow<Source>& row : rows) {
+    assert(row.value != nullptr);
     if (!row.present || row.present(source))
       entries.push_back({row.quantity, row.value(source)});
+  }
   return entries;
 }
 
