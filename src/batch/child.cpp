@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -18,7 +19,7 @@ namespace {
 
 constexpr const char* program = "/proc/self/exe";
 
-// A stop that comes before the program has handlers: it lets them come when it has (src/cli/signals.hpp).
+// Signals blocked until the new program has installed its handlers (src/cli/signals.hpp).
 sigset_t stop_signals() {
   sigset_t set;
   sigemptyset(&set);
@@ -26,8 +27,8 @@ sigset_t stop_signals() {
   return set;
 }
 
-// In the child, between fork and exec: system calls alone are allowed here.
-[[noreturn]] void become(char* const* arguments, int messages, pid_t parent, const sigset_t& held) {
+// Runs in the child between fork and exec, where only async-signal-safe calls are allowed.
+[[noreturn]] void exec_program(char* const* arguments, int messages, pid_t parent, const sigset_t& held) {
   const int nothing = open("/dev/null", O_RDWR);
   dup2(nothing, STDIN_FILENO);
   dup2(nothing, STDOUT_FILENO);
@@ -35,12 +36,12 @@ sigset_t stop_signals() {
   setpgid(0, 0);
   sigprocmask(SIG_BLOCK, &held, nullptr);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (getppid() == parent) // else it died before the line above
+  if (getppid() == parent) // otherwise the parent died before prctl()
     execv(program, arguments);
   _exit(127);
 }
 
-std::string all_of(std::FILE* file) {
+std::string text_of(std::FILE* file) {
   std::string text;
   char buffer[4096];
   std::rewind(file);
@@ -49,7 +50,7 @@ std::string all_of(std::FILE* file) {
   return text;
 }
 
-// The last line that names the program, without the name.
+// Returns the last line that begins with the name of the program, without the name.
 std::string last_message(const std::string& text) {
   const std::string mark = "keeler: ";
   const std::size_t last = text.rfind("\n" + mark);
@@ -66,6 +67,7 @@ Child::Child(const std::vector<std::string>& arguments) : messages_(std::tmpfile
   if (!messages_)
     throw IoError(fmt::format("cannot make a temporary file for the messages of a run: {}", std::strerror(errno)));
   fcntl(fileno(messages_.get()), F_SETFD, FD_CLOEXEC);
+  assert(!arguments.empty());
   std::vector<std::string> words = {"keeler"};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
@@ -76,7 +78,7 @@ Child::Child(const std::vector<std::string>& arguments) : messages_(std::tmpfile
   const sigset_t held = stop_signals();
   process_ = fork();
   if (process_ == 0)
-    become(pointers.data(), fileno(messages_.get()), parent, held);
+    exec_program(pointers.data(), fileno(messages_.get()), parent, held);
   if (process_ < 0)
     throw Error(ExitCode::run_time, fmt::format("cannot start a process for a run: {}; lower --jobs, or end other "
                                                 "programs",
@@ -99,7 +101,7 @@ ChildEnd Child::ended_with(int status) const {
   if (WIFSIGNALED(status))
     return {128 + WTERMSIG(status),
             fmt::format("the run was ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))};
-  return {WEXITSTATUS(status), last_message(all_of(messages_.get()))};
+  return {WEXITSTATUS(status), last_message(text_of(messages_.get()))};
 }
 
 void Child::stop() {

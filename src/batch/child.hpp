@@ -1,5 +1,5 @@
-// A run as a process of its own: this program, with the arguments of `keeler run` or `keeler resume`. When the process
-// that started it dies, it stops as on TERM, with a checkpoint.
+// A run in a separate process: this program, with the arguments of `keeler run` or `keeler resume`. When its parent
+// dies, it receives SIGTERM and stops with a checkpoint.
 #pragma once
 
 #include <cstdio>
@@ -12,27 +12,27 @@
 
 namespace keeler {
 
-/// How a child ended.
+/// The end of a child process.
 struct ChildEnd {
-  int code = 0;        ///< exit code; 128 + the signal when a signal ended it
+  int code = 0;        ///< exit code; 128 + the number of the signal that ended it
   std::string message; ///< its last message to the user, without the name of the program; empty: none
 };
 
 class Child {
 public:
-  /// Starts it in a process group of its own, so that the keyboard's signals reach its parent alone. Throws Error when
-  /// the system has no process left.
+  /// Starts the process in a new process group, so that signals from the keyboard reach only the parent. Throws Error
+  /// when no process can be started.
   explicit Child(const std::vector<std::string>& arguments);
 
-  /// A child that is still alive is asked to stop.
+  /// Sends SIGTERM to a child that is still running.
   ~Child();
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// None while it lives, and once it was told.
+  /// Returns how the child ended, once; none while it runs and after its end was returned.
   std::optional<ChildEnd> end();
 
-  /// Asks it to stop: the first time with a checkpoint after its step, the second time at once.
+  /// Sends SIGTERM. The child stops with a checkpoint after its step; after a second signal, at once.
   void stop();
 
 private:
@@ -41,7 +41,7 @@ private:
   };
   ChildEnd ended_with(int status) const;
 
-  std::unique_ptr<std::FILE, Close> messages_; // its standard error, a file without a name
+  std::unique_ptr<std::FILE, Close> messages_; // standard error of the child, an unnamed file
   pid_t process_ = -1;                         // -1: it has ended
 };
 

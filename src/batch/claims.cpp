@@ -14,7 +14,7 @@
 namespace keeler {
 namespace {
 
-// FNV-1a, cut to what a lock's place may be. Two names on one byte would only keep each other waiting.
+// FNV-1a hash, shifted to the range of lock offsets. If two names have one offset, one merely waits for the other.
 off_t byte_of(const std::string& name) {
   std::uint64_t hash = 14695981039346656037ULL;
   for (const char c : name)
@@ -53,7 +53,7 @@ bool Claims::take(const std::string& name) {
 }
 
 void Claims::wait_for(const std::string& name) {
-  set_lock(descriptor_, F_OFD_SETLKW, F_WRLCK, name); // a failure is that of a file system without locks
+  set_lock(descriptor_, F_OFD_SETLKW, F_WRLCK, name); // fails only on a file system without locks
 }
 
 void Claims::release(const std::string& name) {

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <span>
 
@@ -19,12 +20,12 @@ namespace keeler {
 
 struct RunQuantities::Source {
   SeriesTable series;
-  std::vector<std::size_t> rows; ///< of the part that is measured
+  std::vector<std::size_t> rows; ///< indices in the measured part
   Patch last;
   PatchUnits units;
   Record transport;
   Record wakes;    ///< empty without self-gravity
-  Record analysis; ///< all that keeler analyze measures; empty where nothing of it is asked for
+  Record analysis; ///< all quantities of keeler analyze; empty if none was requested
 };
 
 namespace {
@@ -35,7 +36,7 @@ using Source = RunQuantities::Source;
 
 constexpr double no_error = std::numeric_limits<double>::quiet_NaN();
 
-// A plain number of a record. Only an error is one: a scatter of snapshots is none of their mean.
+// Returns a plain number of a record. The scatter of snapshots is not used as the error of the mean.
 Maybe estimate_in(const Record& record, const Quantity& quantity) {
   const std::optional<double> number = number_in(record, quantity.name);
   if (!number)
@@ -55,15 +56,17 @@ Maybe column_mean(const Source& run, const std::string& column) {
   const std::vector<double>* const all = run.series.find(column);
   if (!all)
     return std::nullopt;
+  assert(run.rows.empty() || run.rows.back() < all->size());
   std::vector<double> values;
   for (const std::size_t row : run.rows)
     values.push_back((*all)[row]);
   return block_mean(values);
 }
 
-// Of each particle and in each orbit: a collision is one of two particles.
+// Returns collisions per particle and orbit; each collision counts for both particles.
 Maybe collision_rate(const Source& run) {
   const std::vector<double>&orbits = run.series.of("time_orbits"), &collisions = run.series.of("collisions");
+  assert(run.rows.size() >= 2 && run.last.size() > 0);
   std::vector<double> rates;
   for (std::size_t k = 0; k + 1 < run.rows.size(); ++k) {
     const std::size_t a = run.rows[k], b = run.rows[k + 1];
@@ -73,7 +76,7 @@ Maybe collision_rate(const Source& run) {
   return block_mean(rates);
 }
 
-// At one instant: how far it is off is not known.
+// Measures the last snapshot only, so the error is unknown.
 Maybe largest_cluster(const Source& run) {
   if (run.wakes.entries.empty())
     return std::nullopt;
@@ -104,7 +107,7 @@ std::vector<std::size_t> rows_between(const std::vector<double>& orbits, double 
 
 } // namespace
 
-RunQuantities::RunQuantities(const std::vector<std::string>& more) {
+RunQuantities::RunQuantities(const std::vector<std::string>& extra) {
   const std::vector<Quantity> measured = measured_quantities();
   const auto known = [&](const char* name) { return *find_quantity(measured, name); };
   for (const char* const name : {"translational_viscosity", "collisional_viscosity", "gravitational_viscosity",
@@ -121,11 +124,14 @@ RunQuantities::RunQuantities(const std::vector<std::string>& more) {
   add({"collisions_per_particle_orbit", unit::none, {}, "collisions faster than v_cut"}, collision_rate);
   for (const char* const name : {"wake_amplitude", "wake_wavelength", "wake_angle"})
     add_measured(known(name), wakes_in);
-  add({"largest_cluster_mass_share", unit::none, {}, "of touching spheres, in the last snapshot; with self-gravity"},
+  add({"largest_cluster_mass_share",
+       unit::none,
+       {},
+       "mass fraction of the largest cluster of touching spheres, in the last snapshot; with self-gravity"},
       largest_cluster);
   add_measured(known("wake_contrast"), wakes_in);
-  require_names(measured, more);
-  for (const std::string& name : more) {
+  require_names(measured, extra);
+  for (const std::string& name : extra) {
     bool has_column = false;
     for (const Quantity& quantity : measured) {
       if (!quantity.is_called(name) || quantity.shape == Shape::other)
@@ -138,17 +144,17 @@ RunQuantities::RunQuantities(const std::vector<std::string>& more) {
     }
     if (!has_column)
       throw UsageError(
-          fmt::format("'{}' is no plain number, so no table of runs has a column for it; leave it out", name));
+          fmt::format("'{}' is not a plain number, so it cannot be a column of a table; leave it out", name));
   }
 }
 
 void RunQuantities::add(const Quantity& quantity, const Reading& number) {
   for (const UnitSystem system : quantity.systems()) {
     const Unit in = unit_in(quantity.unit, system);
-    Quantity with_error = quantity; // whatever is measured has a column for its error
+    Quantity with_error = quantity; // every column has a column for its error
     with_error.spread = Spread::error;
     columns_.push_back({quantity.full_name(system), with_error.spread_name(system),
-                        system != UnitSystem::si ? fmt::format("the same in {}", in.text)
+                        system != UnitSystem::si ? fmt::format("as above, in {}", in.text)
                         : in.text.empty()        ? quantity.meaning
                                                  : fmt::format("{}; {}", quantity.meaning, in.text)});
     readings_.push_back([number, system, unit = quantity.unit](const Source& run) -> Maybe {
@@ -182,6 +188,7 @@ std::optional<std::size_t> RunQuantities::find(const std::string& name) const {
 
 RunNumbers RunQuantities::measure(const fs::path& folder, const Scene& scene, std::optional<double> since) const {
   RunNumbers numbers;
+  assert(readings_.size() == columns_.size());
   numbers.values.resize(columns_.size());
   Source run;
   run.series = read_series(folder / "series.csv");

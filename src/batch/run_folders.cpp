@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <map>
 #include <set>
 #include <sstream>
@@ -18,7 +19,7 @@ namespace fs = std::filesystem;
 
 using Keys = std::map<std::string, std::string>;
 
-// The keys of a resolved scene, which has one on a line.
+// Returns the keys of a resolved scene, which has one per line.
 Keys keys_of(const std::string& resolved) {
   Keys keys;
   std::istringstream lines(resolved);
@@ -33,7 +34,7 @@ Keys keys_of(const std::string& resolved) {
   return keys;
 }
 
-// "time.end = 20.0 and now has time.end = 30.0"; empty: none.
+// Returns "time.end = 20.0 and now has time.end = 30.0"; empty if the keys are equal.
 std::string difference(const Keys& old_keys, const Keys& new_keys) {
   const auto words = [](const Keys& keys, const std::string& key) {
     const auto found = keys.find(key);
@@ -47,20 +48,21 @@ std::string difference(const Keys& old_keys, const Keys& new_keys) {
   return {};
 }
 
-void refuse_changed_run(const PlannedRun& run, const fs::path& folder, const std::string& place) {
+void refuse_changed_run(const PlannedRun& run, const fs::path& folder, const std::string& location) {
+  assert(!run.name.empty());
   const fs::path file = folder / "scene.toml";
   std::error_code unknown;
   if (!fs::exists(file, unknown))
     return;
-  // Both as this version of the program reads them: keys that it has learned since have their defaults.
+  // Both are resolved by this version of the program: keys that are newer than the run have their defaults.
   Keys old_keys = keys_of(load_stored_scene(file).resolved);
   Keys new_keys = keys_of(parse_stored_scene(run.scene.resolved, file.string()).resolved);
-  if (leaves_resting_open(run.scene)) // until its start is read
+  if (leaves_resting_open(run.scene)) // decided only when its start is read
     new_keys["gravity.resting_contacts"] = old_keys["gravity.resting_contacts"];
   if (const std::string change = difference(old_keys, new_keys); !change.empty())
-    throw UsageError(fmt::format("{}: the run {} was made with {} (runs of other settings cannot stand in one table); "
-                                 "change the setting back, name another folder, or remove '{}' to make it anew",
-                                 place, run.name, change, folder.string()));
+    throw UsageError(fmt::format("{}: the run {} was made with {} (runs with other settings cannot be in one table); "
+                                 "change the setting back, name another folder, or remove '{}' to run it again",
+                                 location, run.name, change, folder.string()));
 }
 
 void make_folder(const fs::path& folder) {
@@ -72,12 +74,12 @@ void make_folder(const fs::path& folder) {
 
 } // namespace
 
-void RunFolders::refuse_changed(std::span<const PlannedRun> runs, const std::string& place) const {
+void RunFolders::refuse_changed(std::span<const PlannedRun> runs, const std::string& location) const {
   for (const PlannedRun& planned : runs)
-    refuse_changed_run(planned, run(planned.name), place);
+    refuse_changed_run(planned, run(planned.name), location);
 }
 
-std::size_t RunFolders::runs_beside(std::span<const PlannedRun> runs) const {
+std::size_t RunFolders::count_other_runs(std::span<const PlannedRun> runs) const {
   std::set<std::string> planned;
   for (const PlannedRun& run : runs)
     planned.insert(run.name);
@@ -90,7 +92,7 @@ std::size_t RunFolders::runs_beside(std::span<const PlannedRun> runs) const {
 
 void RunFolders::make() const {
   make_folder(path_);
-  const Claims first(claims()); // by this file another program knows what the folder is
+  const Claims first(claims()); // first: this file identifies the folder to other programs
   for (const char* const name : {"runs", "scenes", "failed"})
     make_folder(path_ / name);
 }

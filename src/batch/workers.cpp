@@ -27,29 +27,30 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds pause(20);
-constexpr double look_interval_s = 1.0; // at files, for runs that became free and for how far the others are
-constexpr double stop_interval_s = 0.5; // between one request to stop at once and the next
+constexpr double refresh_interval_s = 1.0; // between reads of the files of runs
+constexpr double stop_interval_s = 0.5;    // between repeated requests to stop at once
 
-// Stops of children are no failures when they were asked for, by anyone.
+// Returns true if the child stopped on request, which is not a failure.
 bool is_stop(const ChildEnd& end) {
   return end.code == static_cast<int>(ExitCode::stopped);
 }
 
-// A path as an argument: one that begins with a dash must not be taken for an option.
+// Returns a path as an argument; one that begins with a dash must not refresh like an option.
 std::string argument_of(const fs::path& path) {
   const std::string text = path.string();
   return text.starts_with('-') ? "./" + text : text;
 }
 
-// The first run of each point, then the second of each: a figure of all points is there early.
+// Returns the order of execution: first one run of each point, then the second of each, so that all points have a
+// result early.
 std::vector<std::size_t> seed_by_seed(std::span<const PlannedRun> runs) {
-  std::map<std::size_t, std::size_t> before; // of the same point
-  std::vector<std::pair<std::size_t, std::size_t>> places;
+  std::map<std::size_t, std::size_t> earlier; // number of earlier runs of each point
+  std::vector<std::pair<std::size_t, std::size_t>> ranked;
   for (std::size_t k = 0; k < runs.size(); ++k)
-    places.emplace_back(before[runs[k].point]++, k);
-  std::sort(places.begin(), places.end());
+    ranked.emplace_back(earlier[runs[k].point]++, k);
+  std::sort(ranked.begin(), ranked.end());
   std::vector<std::size_t> order;
-  for (const auto& [rank, run] : places)
+  for (const auto& [rank, run] : ranked)
     order.push_back(run);
   return order;
 }
@@ -60,9 +61,10 @@ public:
           const RunRequests& requests)
       : runs_(runs), order_(seed_by_seed(runs)), folders_(folders), claims_(claims), options_(options),
         requests_(requests), states_(runs.size()) {
+    assert(options.jobs > 0 && options.threads > 0 && options.progress && options.notice);
     for (std::size_t k = 0; k < states_.size(); ++k)
-      states_[k].former_failure = failure_time(k);
-    look();
+      states_[k].previous_failure = failure_time(k);
+    refresh();
     done_at_start_ = done();
   }
 
@@ -73,8 +75,8 @@ public:
         stop_children();
       else if (free_slots() && due(next_start_))
         start_some();
-      if (due(next_look_))
-        look();
+      if (due(next_refresh_))
+        refresh();
       report();
       if (running() == 0 && (requests_.stop || nothing_to_wait_for_))
         return;
@@ -86,8 +88,8 @@ private:
   struct State {
     std::unique_ptr<Child> child;
     bool finished = false, failed = false;
-    double share = 0.0;                               // of its steps
-    std::optional<fs::file_time_type> former_failure; // of the record that was there at the beginning
+    double completed = 0.0;                             // fraction of its steps
+    std::optional<fs::file_time_type> previous_failure; // time of a failure recorded before this call
   };
 
   const PlannedRun& run(std::size_t k) const { return runs_[k]; }
@@ -105,11 +107,11 @@ private:
   }
   bool free_slots() const { return running() < options_.jobs; }
 
-  // Whether a moment has come; the next one is an interval later.
-  bool due(double& moment) {
-    if (watch_.elapsed() < moment)
+  // Returns true if a time has come, and then moves it to one interval from now.
+  bool due(double& time) {
+    if (watch_.elapsed() < time)
       return false;
-    moment = watch_.elapsed() + look_interval_s;
+    time = watch_.elapsed() + refresh_interval_s;
     return true;
   }
 
@@ -117,21 +119,21 @@ private:
     nothing_to_wait_for_ = true;
     for (const std::size_t k : order_)
       if (free_slots())
-        consider(k);
+        try_start(k);
       else
         nothing_to_wait_for_ = false;
   }
 
-  // Takes a run that is free. What another program holds is that program's; what is held without a claim (by what a
-  // dead program left, or by hand) will be free soon.
-  void consider(std::size_t k) {
+  // Starts a run if it is free. A run claimed by another program is left to it; one that is locked without a claim (by
+  // a process of a dead program, or by hand) will be free soon.
+  void try_start(std::size_t k) {
     State& state = states_[k];
     if (state.child || state.finished || state.failed || !claims_.take(run(k).name))
       return;
     const RunStage stage = run_stage(path(k));
     state.finished = stage == RunStage::finished;
     const std::optional<fs::file_time_type> failure = failure_time(k);
-    state.failed = !state.finished && failure && failure != state.former_failure;
+    state.failed = !state.finished && failure && failure != state.previous_failure;
     const bool held = folder_is_held(path(k));
     if (held)
       nothing_to_wait_for_ = false;
@@ -142,10 +144,11 @@ private:
   }
 
   void start(std::size_t k, RunStage stage) {
+    assert(!states_[k].child && stage != RunStage::finished);
     nothing_to_wait_for_ = false;
-    std::error_code ignored; // it was not there, or is written anew
+    std::error_code ignored; // it may not exist
     fs::remove(folders_.failure(run(k).name), ignored);
-    states_[k].former_failure.reset();
+    states_[k].previous_failure.reset();
     std::vector<std::string> words;
     if (stage == RunStage::resumable) {
       words = {"resume", argument_of(path(k))};
@@ -166,14 +169,15 @@ private:
         continue;
       if (const std::optional<ChildEnd> end = states_[k].child->end()) {
         states_[k].child.reset();
-        conclude(k, *end);
+        record_end(k, *end);
         claims_.release(run(k).name);
         next_start_ = 0.0;
       }
     }
   }
 
-  void conclude(std::size_t k, const ChildEnd& end) {
+  void record_end(std::size_t k, const ChildEnd& end) {
+    assert(!states_[k].child);
     State& state = states_[k];
     state.finished = run_stage(path(k)) == RunStage::finished;
     if (state.finished || is_stop(end) || requests_.stop)
@@ -185,7 +189,7 @@ private:
     options_.notice(fmt::format("the run {} failed: {}", run(k).name, reason));
   }
 
-  // Once, and again and again when the requests ask to give up.
+  // Asks the children to stop: once, and repeatedly after a request to give up.
   void stop_children() {
     if (asked_to_stop_ && !(requests_.give_up && watch_.elapsed() >= next_stop_))
       return;
@@ -196,16 +200,16 @@ private:
     next_stop_ = watch_.elapsed() + stop_interval_s;
   }
 
-  void look() {
+  void refresh() {
     for (std::size_t k = 0; k < states_.size(); ++k)
       if (State& state = states_[k]; !state.finished) {
         state.finished = !state.child && run_stage(path(k)) == RunStage::finished;
-        state.share = static_cast<double>(steps_on_record(path(k))) /
-                      static_cast<double>(std::max<std::int64_t>(1, run(k).scene.time.end_step));
+        state.completed = static_cast<double>(last_recorded_step(path(k))) /
+                          static_cast<double>(std::max<std::int64_t>(1, run(k).scene.time.end_step));
       }
   }
 
-  // Work in particles and steps, of all runs in the grid, whoever does it.
+  // Returns the work of a run, in particle steps.
   double weight(std::size_t k) const {
     return static_cast<double>(std::max<std::size_t>(1, run(k).scene.particles.count)) *
            static_cast<double>(std::max<std::int64_t>(1, run(k).scene.time.end_step));
@@ -213,7 +217,7 @@ private:
   double done() const {
     double sum = 0.0;
     for (std::size_t k = 0; k < states_.size(); ++k)
-      sum += weight(k) * (states_[k].finished ? 1.0 : states_[k].share);
+      sum += weight(k) * (states_[k].finished ? 1.0 : states_[k].completed);
     return sum;
   }
 
@@ -237,10 +241,10 @@ private:
   Claims& claims_;
   const WorkOptions& options_;
   const RunRequests& requests_;
-  std::vector<State> states_; // a run each
+  std::vector<State> states_; // one per run
   double elapsed_ = 0.0;
   Stopwatch watch_{elapsed_};
-  double next_start_ = 0.0, next_look_ = 0.0, next_stop_ = 0.0;
+  double next_start_ = 0.0, next_refresh_ = 0.0, next_stop_ = 0.0;
   double done_at_start_ = 0.0;
   bool nothing_to_wait_for_ = false, asked_to_stop_ = false;
 };

@@ -33,7 +33,7 @@ void ask_to_stop(int signal) {
     give_up(signal);
     std::signal(signal, SIG_DFL); // a further one ends the program
   }
-  alarm(requests.patience_s);
+  alarm(requests.stop_timeout_s);
 }
 
 void ask_for_snapshot(int) {

@@ -31,7 +31,7 @@ struct Line {
   bool counts() const {
     const auto columns = series_columns();
     const auto same = [&](const SeriesColumn& known) { return std::string_view(known.name) == column; };
-    return std::find_if(columns.begin(), columns.end(), same)->course != Course::value;
+    return std::find_if(columns.begin(), columns.end(), same)->kind != ColumnKind::value;
   }
 };
 
@@ -100,7 +100,7 @@ std::string text_of(const RunView& view, const std::string& folder, int width) {
   std::vector<std::string> text = {
       folder, state_and_time_left(view),
       fmt::format("orbit {} of {}", format_number(view.orbits, 4), format_number(view.end_orbits, 4)),
-      progress_bar(view.share(), std::clamp(width, 10, 60))};
+      progress_bar(view.completed_fraction(), std::clamp(width, 10, 60))};
   for (const auto& [what, name] : {std::pair{"snapshot", view.snapshot}, std::pair{"checkpoint", view.checkpoint},
                                    std::pair{"picture", view.picture}})
     if (!name.empty())

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
@@ -20,6 +21,7 @@ constexpr UnitSystem all_systems[] = {UnitSystem::si, UnitSystem::radius, UnitSy
 } // namespace
 
 Quantity Quantity::along(std::size_t axis) const {
+  assert(axis < 3);
   Quantity component = of_shape(*this, Shape::number);
   component.name += fmt::format("_{}", "xyz"[axis]);
   return component;
@@ -77,10 +79,10 @@ void require_names(std::span<const Quantity> quantities, std::span<const std::st
     for (const Quantity& quantity : quantities)
       known.insert(known.end(), {quantity.name, quantity.full_name()});
     const std::string near = closest(name, known);
-    throw UsageError(fmt::format("there is no number '{}' here; {}", name,
-                                 near.empty()
-                                     ? "\"keeler help numbers\" lists them, and says which need something of the scene"
-                                     : fmt::format("did you mean '{}'?", near)));
+    throw UsageError(
+        fmt::format("there is no number '{}' here; {}", name,
+                    near.empty() ? "\"keeler help numbers\" lists them, and says which depend on settings of the scene"
+                                 : fmt::format("did you mean '{}'?", near)));
   }
 }
 

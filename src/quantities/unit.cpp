@@ -1,14 +1,17 @@
 #include <keeler/quantities/unit.hpp>
 
+#include <cassert>
 #include <utility>
 
 namespace keeler {
 
 double PatchUnits::speed(UnitSystem system) const {
+  assert(frequency > 0.0);
   return system == UnitSystem::radius ? radius * frequency : system == UnitSystem::gravity ? pull / frequency : 1.0;
 }
 
 double PatchUnits::viscosity(UnitSystem system) const {
+  assert(frequency > 0.0);
   return system == UnitSystem::radius    ? radius * radius * frequency
          : system == UnitSystem::gravity ? pull * pull / (frequency * frequency * frequency)
                                          : 1.0;

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <set>
 
@@ -20,7 +21,7 @@ constexpr std::size_t label_width = 34;
 template<class... Cases> struct Overloaded : Cases... { using Cases::operator()...; };
 template<class... Cases> Overloaded(Cases...) -> Overloaded<Cases...>;
 
-// In a unit of this size.
+// Returns the value in a unit of this size.
 Value in_units(const Value& value, double size) {
   return std::visit(Overloaded{[&](double number) { return Value(number / size); },
                                [&](const Uncertain& number) {
@@ -57,18 +58,18 @@ Json json_of(const Value& value) {
                     value);
 }
 
-// json["clusters"]["count"] of "clusters.count".
-Json& place_of(Json& json, const std::string& name) {
+// Returns json["clusters"]["count"] for "clusters.count".
+Json& element_at(Json& json, const std::string& name) {
   const std::size_t dot = name.find('.');
-  return dot == std::string::npos ? json[name] : place_of(json[name.substr(0, dot)], name.substr(dot + 1));
+  return dot == std::string::npos ? json[name] : element_at(json[name.substr(0, dot)], name.substr(dot + 1));
 }
 
-// The part of that name; null where there is none.
+// Returns the element with a dotted name; null if there is none.
 const Json* find_part(const Json& json, const std::string& name) {
   if (json.is_null())
     return nullptr;
   if (!json.is_object())
-    throw UsageError(fmt::format("a part '{}' is asked of what is no object", name));
+    throw UsageError(fmt::format("'{}' cannot be read from a value that is not an object", name));
   const std::size_t dot = name.find('.');
   const auto part = json.find(name.substr(0, dot));
   if (part == json.end())
@@ -89,7 +90,7 @@ Value read_value(const Json& json, const Quantity& quantity) {
   if (json.is_number())
     return json.get<double>();
   if (quantity.shape == Shape::number)
-    throw UsageError(fmt::format("'{}' is no number", quantity.full_name()));
+    throw UsageError(fmt::format("'{}' is not a number", quantity.full_name()));
   if (json.is_boolean())
     return json.get<bool>();
   if (json.is_string())
@@ -104,7 +105,7 @@ Value read_value(const Json& json, const Quantity& quantity) {
   return json.is_array() ? Value(texts) : Value(numbers);
 }
 
-// What no quantity is known of, under its name.
+// Adds elements that match no known quantity, under their names.
 void add_others(Record& record, const Json& json, const std::string& object, const std::set<std::string>& known) {
   for (const auto& [name, value] : json.items()) {
     const std::string path = object + name;
@@ -118,6 +119,7 @@ void add_others(Record& record, const Json& json, const std::string& object, con
 }
 
 std::string text_of(const Value& value, int digits) {
+  assert(digits > 0);
   return std::visit(
       Overloaded{[](const Unknown& unknown) {
                    return unknown.reason.empty() ? std::string("none") : "not known because " + unknown.reason;
@@ -165,7 +167,7 @@ struct TextRow {
   bool is_sentence = false;
 };
 
-// A row for each record or sentence of a list.
+// Returns one row per entry, or per record or sentence of a list.
 std::vector<TextRow> rows_of(const Record& record, std::optional<UnitSystem> system) {
   std::vector<TextRow> rows;
   for (const auto& [quantity, value] : record.entries) {
@@ -188,7 +190,7 @@ std::vector<TextRow> rows_of(const Record& record, std::optional<UnitSystem> sys
   return rows;
 }
 
-// " = 7.2 min": nobody divides by 60 as quickly.
+// Returns a long time also in minutes or hours: " = 7.2 min".
 std::string in_hours(const Value& value, const Unit& unit) {
   const auto* const seconds = std::get_if<double>(&value);
   if (unit != unit::seconds || !seconds || *seconds < 120.0)
@@ -197,7 +199,7 @@ std::string in_hours(const Value& value, const Unit& unit) {
                            : fmt::format(" = {} h", format_number(*seconds / 3600.0, 2));
 }
 
-// A number under each of its names: in each of its systems of units, and its error or scatter once.
+// A number under one of its names: one per system of units, and its error or scatter once.
 struct NamedValue {
   std::string name;
   Value value; // never Uncertain
@@ -206,7 +208,7 @@ struct NamedValue {
 std::vector<NamedValue> named_values(const Entry& entry, const PatchUnits& units, std::optional<UnitSystem> system) {
   const Quantity& quantity = entry.quantity;
   std::vector<NamedValue> all;
-  bool with_spread = quantity.spread != Spread::none; // once, in the first system
+  bool with_spread = quantity.spread != Spread::none; // in the first system only
   for (const UnitSystem in : quantity.systems(system)) {
     const Value value = in_units(entry.value, size_of_unit(quantity.unit, in, units));
     const auto* const uncertain = std::get_if<Uncertain>(&value);
@@ -228,7 +230,7 @@ Json json_of(const Record& record, std::optional<UnitSystem> system) {
   Json json = Json::object();
   for (const Entry& entry : record.entries)
     for (const NamedValue& named : named_values(entry, record.units, system))
-      place_of(json, named.name) = json_of(named.value);
+      element_at(json, named.name) = json_of(named.value);
   return json;
 }
 
@@ -271,7 +273,7 @@ std::string text_of(const Entry& entry, const PatchUnits& units, std::optional<U
   for (const UnitSystem in : quantity.systems(system)) {
     Value value = in_units(entry.value, size_of_unit(quantity.unit, in, units));
     if (const auto* const uncertain = std::get_if<Uncertain>(&value); uncertain && !all.empty())
-      value = uncertain->value; // the error is told once
+      value = uncertain->value; // the error is given once
     const std::string_view name = unit_in(quantity.unit, in).text;
     all += fmt::format("{}{}{}{}{}", all.empty() ? "" : " = ", text_of(value, quantity.digits), name.empty() ? "" : " ",
                        name, in_hours(value, quantity.unit));
@@ -303,6 +305,7 @@ std::string markdown_of(std::span<const Quantity> quantities) {
       if (system == UnitSystem::si && quantity.spread != Spread::none)
         names += fmt::format(", `{}`", quantity.spread_name());
     }
+    assert(quantity.meaning.find('|') == std::string::npos);
     table += fmt::format("| {} | {} | {} |\n", names, quantity.unit.text, quantity.meaning);
   }
   return table;

@@ -1,11 +1,12 @@
-// Animated PNG: the chunks of single PNGs, put together as the third edition of the PNG specification (W3C, 2025) says
-// in its sections on acTL, fcTL and fdAT. The first frame is what programs show that know still pictures alone.
+// Animated PNG: the chunks of single PNGs, combined according to the PNG specification, third edition (W3C, 2025),
+// sections acTL, fcTL and fdAT. Programs without support for animation show the first frame.
 #include "movie_file.hpp"
 
 #include <keeler/files/new_file.hpp>
 #include <keeler/render/movie.hpp>
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -16,9 +17,9 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-constexpr std::size_t signature = 8, frame_of_chunk = 12; // bytes: length, name and check around the content
+constexpr std::size_t signature = 8, chunk_overhead = 12; // bytes; length, name and CRC of a chunk
 
-// The remainder of each byte by the polynomial of PNG's CRC-32.
+// The table of PNG's CRC-32, for each value of a byte.
 constexpr std::array<std::uint32_t, 256> crc_table = [] {
   std::array<std::uint32_t, 256> table{};
   for (std::uint32_t n = 0; n < 256; ++n) {
@@ -36,7 +37,7 @@ std::uint32_t crc(std::span<const std::byte> bytes) {
   return ~c;
 }
 
-// Big-endian, of so many bytes.
+// Appends a big-endian number.
 void put(Bytes& to, std::uint32_t value, int bytes = 4) {
   for (int shift = 8 * (bytes - 1); shift >= 0; shift -= 8)
     to.push_back(static_cast<std::byte>(value >> shift & 0xff));
@@ -50,6 +51,7 @@ std::uint32_t number_at(std::span<const std::byte> bytes, std::size_t at) {
 }
 
 void put_chunk(Bytes& to, std::string_view name, std::span<const std::byte> content) {
+  assert(name.size() == 4);
   put(to, static_cast<std::uint32_t>(content.size()));
   const std::size_t begin = to.size();
   for (const char letter : name)
@@ -66,7 +68,7 @@ public:
   void finish() override;
 
 private:
-  // acTL: how many frames; 0 plays: again and again.
+  // acTL: number of frames; 0 plays means an endless loop.
   void put_animation(Bytes& to) const {
     Bytes content;
     put(content, static_cast<std::uint32_t>(frames_));
@@ -74,14 +76,14 @@ private:
     put_chunk(to, "acTL", content);
   }
 
-  // fcTL: number in the sequence, size, place, time shown as a fraction, and that it takes the place of the last one.
+  // fcTL: sequence number, size, position, duration as a fraction, and replacement of the previous frame.
   void put_control(Bytes& to, const Page& page) {
     Bytes content;
     for (const std::uint32_t value :
          {sequence_++, static_cast<std::uint32_t>(page.width()), static_cast<std::uint32_t>(page.height()), 0u, 0u})
       put(content, value);
     put(content, 1, 2);
-    put(content, movie_frames_a_second, 2);
+    put(content, movie_frames_per_second, 2);
     put(content, 0, 2);
     put_chunk(to, "fcTL", content);
   }
@@ -92,11 +94,12 @@ private:
 };
 
 void AnimatedPng::add(Page& page) {
+  assert(added_ < frames_);
   const Bytes png = page.png();
   const std::span<const std::byte> all(png);
   Bytes to;
-  if (added_ == 0) { // what stands before the pixels: the signature and the header
-    const std::size_t header = signature + frame_of_chunk + number_at(all, signature);
+  if (added_ == 0) { // signature and header come before the pixels
+    const std::size_t header = signature + chunk_overhead + number_at(all, signature);
     to.insert(to.end(), all.begin(), all.begin() + static_cast<std::ptrdiff_t>(header));
     put_animation(to);
   }
@@ -113,13 +116,14 @@ void AnimatedPng::add(Page& page) {
       numbered.insert(numbered.end(), content.begin(), content.end());
       put_chunk(to, "fdAT", numbered);
     }
-    at += frame_of_chunk + length;
+    at += chunk_overhead + length;
   }
   out_.write(to);
   ++added_;
 }
 
 void AnimatedPng::finish() {
+  assert(added_ == frames_);
   Bytes end;
   put_chunk(end, "IEND", {});
   out_.write(end);

@@ -7,23 +7,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-// Dark blue where particles avoid each other, black at random, through red to ivory where they crowd.
+// Blue for negative ξ (depletion), black for 0 (random), through red to ivory for positive ξ (crowding).
 constexpr std::array<Colour, 4> crowded = {Colour{0.02, 0.02, 0.04}, Colour{0.50, 0.11, 0.20}, Colour{0.93, 0.53, 0.20},
                                            Colour{1.0, 0.97, 0.84}};
 constexpr std::array<Colour, 3> sparse = {Colour{0.02, 0.02, 0.04}, Colour{0.10, 0.26, 0.46}, Colour{0.42, 0.68, 0.86}};
 
-// Steeper than linear near zero, so that the faint side ridges show.
+// Steeper than linear near zero, so that faint side ridges are visible.
 Colour colour_of(double xi, double full) {
+  assert(full > 0.0);
   const double strength = std::pow(std::fabs(xi) / full, 0.7);
   return xi >= 0.0 ? ramp(crowded, strength) : ramp(sparse, strength);
 }
 
-// The scale's end: the ridge a little away from zero lag, where the peak of single clumps has fallen off.
+// Returns the end of the scale: the 99.5th percentile, which excludes the peak of single clumps at zero lag.
 double full_scale(const AutocorrelationMap& map) {
   std::vector<double> values = map.values;
   const auto high = values.begin() + static_cast<std::ptrdiff_t>(0.995 * static_cast<double>(values.size() - 1));
@@ -33,7 +35,7 @@ double full_scale(const AutocorrelationMap& map) {
 
 constexpr double map_left = 120, map_top = 130, map_size = 620, plot_left = 940, plot_width = 600;
 
-// Pixels for lags in the square map, ± half metres wide.
+// Maps lags to pixels of the square map, which extends ± `half` metres.
 struct MapView {
   double half;
   PagePoint at(double dx, double dy) const {
@@ -50,21 +52,21 @@ double tick_step(double range) {
   return power;
 }
 
-// What the colours mean, right of the map.
+// Draws the colour bar right of the map.
 void draw_key(Page& page, double full) {
   constexpr int left = static_cast<int>(map_left + map_size) + 14, width = 14, height = 260;
   Raster bar(width, height, space_colour);
   for (int j = 0; j < height; ++j)
     for (int i = 0; i < width; ++i)
       bar.pixel(i, j) = colour_of(full * (1.0 - 2.0 * (j + 0.5) / height), full);
-  page.place(bar, left, static_cast<int>(map_top));
+  page.draw_raster(bar, left, static_cast<int>(map_top));
   page.frame(left, map_top, width, height, mix(page_colour, faint_ink, 0.5));
-  for (const double share : {1.0, 0.0, -1.0})
-    page.text({left + width + 6.0, map_top + 0.5 * height * (1.0 - share) +
-                                       (share > 0.0   ? 13.0
-                                        : share < 0.0 ? 0.0
-                                                      : 6.0)},
-              fmt::format("{:.2g}", share * full), {15, faint_ink});
+  for (const double end : {1.0, 0.0, -1.0})
+    page.text({left + width + 6.0, map_top + 0.5 * height * (1.0 - end) +
+                                       (end > 0.0   ? 13.0
+                                        : end < 0.0 ? 0.0
+                                                    : 6.0)},
+              fmt::format("{:.2g}", end * full), {15, faint_ink});
   page.text({left + 1.0, map_top + height + 24.0}, "ξ", {19});
 }
 
@@ -75,7 +77,7 @@ void draw_map(Page& page, const AutocorrelationMap& map, const Wakes& wakes, con
     for (int i = 0; i < raster.width(); ++i)
       raster.pixel(i, j) = colour_of(
           map.at(view.half * (2.0 * (i + 0.5) / map_size - 1.0), view.half * (1.0 - 2.0 * (j + 0.5) / map_size)), full);
-  page.place(raster, static_cast<int>(map_left), static_cast<int>(map_top));
+  page.draw_raster(raster, static_cast<int>(map_left), static_cast<int>(map_top));
   draw_key(page, full);
   page.frame(map_left, map_top, map_size, map_size, mix(page_colour, faint_ink, 0.5));
 
@@ -114,8 +116,8 @@ void draw_profile(Page& page, const Wakes& wakes, double critical_wavelength) {
     return;
   }
   const double end = wakes.profile_spacing * static_cast<double>(wakes.profile.size() - 1);
-  const auto [least, most] = std::minmax_element(wakes.profile.begin(), wakes.profile.end());
-  const double margin = 0.08 * (*most - *least), low = *least - margin, high = *most + margin;
+  const auto [min, max] = std::minmax_element(wakes.profile.begin(), wakes.profile.end());
+  const double margin = 0.08 * (*max - *min), low = *min - margin, high = *max + margin;
   const auto at = [=](double lag, double xi) {
     return PagePoint{plot_left + plot_width * lag / end, map_top + map_size * (high - xi) / (high - low)};
   };

@@ -11,11 +11,12 @@ struct Colour {
   double r = 0, g = 0, b = 0;
 };
 
-inline Colour mix(const Colour& from, const Colour& to, double share) {
-  return {from.r + share * (to.r - from.r), from.g + share * (to.g - from.g), from.b + share * (to.b - from.b)};
+/// Interpolates: `from` at t = 0, `to` at t = 1.
+inline Colour mix(const Colour& from, const Colour& to, double t) {
+  return {from.r + t * (to.r - from.r), from.g + t * (to.g - from.g), from.b + t * (to.b - from.b)};
 }
 
-/// Evenly spaced colours, straight lines between them; t is clamped to [0, 1].
+/// Interpolates linearly between evenly spaced colours; t is clamped to [0, 1].
 template<std::size_t n> Colour ramp(const std::array<Colour, n>& stops, double t) {
   const double u = std::clamp(t, 0.0, 1.0) * static_cast<double>(n - 1);
   const std::size_t k = std::min(static_cast<std::size_t>(u), n - 2);
@@ -28,7 +29,7 @@ inline constexpr Colour ink{0.93, 0.91, 0.86};
 inline constexpr Colour faint_ink{0.62, 0.61, 0.60};
 inline constexpr Colour accent{0.45, 0.80, 0.95};
 
-/// Of a page around its views.
+/// The colours of a page around its views.
 struct Theme {
   Colour page, ink, faint_ink;
 };

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -25,7 +26,7 @@ constexpr std::array<std::pair<const char*, ColourField>, 6> fields = {{{"height
                                                                         {"cluster", ColourField::cluster},
                                                                         {"density", ColourField::density}}};
 
-// Relative to the mean motion (0, −S x, 0); Ω turns rad⁻¹ into s⁻¹.
+// Returns speeds relative to the mean motion (0, −S x, 0), converted by Ω from rad⁻¹ to s⁻¹.
 std::vector<double> speeds(const Patch& patch) {
   std::vector<double> values;
   for (std::size_t k = 0; k < patch.size(); ++k) {
@@ -66,11 +67,12 @@ ColourField colour_field_named(const std::string& name) {
   for (const auto& [known, field] : fields)
     if (name == known)
       return field;
-  throw UsageError(fmt::format("--colour: '{}' is no field of a picture; choose one of {}", name,
+  throw UsageError(fmt::format("--colour: '{}' is not a field of a picture; choose one of {}", name,
                                fmt::join(colour_field_names(), ", ")));
 }
 
-double ColourRange::share(double value) const {
+double ColourRange::position(double value) const {
+  assert(!logarithmic || low > 0.0);
   if (!(high > low))
     return 0.5;
   return std::clamp(logarithmic ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low), 0.0,
@@ -103,9 +105,10 @@ std::vector<double> field_values(const Patch& patch, ColourField field) {
 }
 
 ColourRange colour_range(std::vector<double> values, ColourField field) {
-  const bool whole = field == ColourField::size || field == ColourField::cluster; // few stand out, and they matter
-  const auto quantile = [&](double share) {
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  assert(!values.empty());
+  const bool whole = field == ColourField::size || field == ColourField::cluster; // the few extreme values matter
+  const auto quantile = [&](double fraction) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), at, values.end());
     return *at;
   };

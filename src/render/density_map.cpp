@@ -3,23 +3,25 @@
 #include "images.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-constexpr double particles_a_cell = 4.0;
+constexpr double particles_per_cell = 4.0;
 
-int cells(double length, double wanted) {
-  return static_cast<int>(std::clamp(std::round(length / wanted), 1.0, 4096.0));
+int cells(double length, double target_spacing) {
+  return static_cast<int>(std::clamp(std::round(length / target_spacing), 1.0, 4096.0));
 }
 
 } // namespace
 
 DensityMap::DensityMap(const Patch& patch) : size_x_(patch.box.size_x), size_y_(patch.box.size_y) {
-  const double wanted = std::sqrt(particles_a_cell * size_x_ * size_y_ / static_cast<double>(patch.size()));
-  columns_ = cells(size_x_, wanted);
-  rows_ = cells(size_y_, wanted);
+  assert(patch.size() > 0);
+  const double target_spacing = std::sqrt(particles_per_cell * size_x_ * size_y_ / static_cast<double>(patch.size()));
+  columns_ = cells(size_x_, target_spacing);
+  rows_ = cells(size_y_, target_spacing);
   spacing_x_ = size_x_ / columns_;
   spacing_y_ = size_y_ / rows_;
   values_.assign(static_cast<std::size_t>((columns_ + 2) * (rows_ + 2)), 0.0);
@@ -33,8 +35,8 @@ DensityMap::DensityMap(const Patch& patch) : size_x_(patch.box.size_x), size_y_(
         const int at_i = static_cast<int>(i) + right, at_j = static_cast<int>(j) + up;
         if (at_i < 0 || at_j < 0 || at_i > columns_ + 1 || at_j > rows_ + 1)
           continue;
-        const double share = (right ? column - i : 1.0 - column + i) * (up ? row - j : 1.0 - row + j);
-        node(at_i, at_j) += share * patch.masses[k] / cell_area();
+        const double weight = (right ? column - i : 1.0 - column + i) * (up ? row - j : 1.0 - row + j);
+        node(at_i, at_j) += weight * patch.masses[k] / cell_area();
       }
   });
 }

@@ -1,4 +1,4 @@
-// The images of particles that may reach into the cell.
+// The periodic images of particles that may reach into the box.
 #pragma once
 
 #include <keeler/particles/patch.hpp>
@@ -7,7 +7,7 @@
 
 namespace keeler {
 
-/// visit(k, place) for every particle's image in the cell and those around it.
+/// Calls visit(k, position) for every particle k and its images in the box and in the neighbouring ones.
 template<class Visit> void for_each_image(const Patch& patch, const Visit& visit) {
   const ShearingBox& box = patch.box;
   for (std::size_t k = 0; k < patch.size(); ++k) {

@@ -28,12 +28,12 @@ PictureScale common_scale(std::size_t count, const std::function<Patch(std::size
     const Patch here = patch(k);
     progress.add(1.0);
     if (here.size() == 0)
-      continue; // drawing it says so
-    const PictureScale own = picture_scale(here, field);
+      continue; // reported when it is drawn
+    const PictureScale next = picture_scale(here, field);
     if (scale)
-      scale->include(own);
+      scale->include(next);
     else
-      scale = own;
+      scale = next;
   }
   return scale.value_or(PictureScale());
 }
@@ -59,7 +59,7 @@ void require_movie_name(const std::string& path) {
     return; // an animated PNG
   if (ending != ".mp4" && ending != ".png")
     throw UsageError(fmt::format(
-        "'{}' cannot be a movie: movies are .mp4 files or animated .png files; give it such an ending", path));
+        "'{}' cannot be a movie: movies are .mp4 files or animated .png files; use one of these extensions", path));
   if (ending == ".mp4" && !has_ffmpeg())
     throw UsageError(fmt::format(
         "'{}' cannot be made: the program ffmpeg is not on PATH; install the package ffmpeg, or name a .png", path));
@@ -83,8 +83,8 @@ void render_movie(std::size_t count, const std::function<Patch(std::size_t)>& pa
       movie = new_movie(path, width, height, count);
     }
     if (page->width() != width || page->height() != height)
-      throw UsageError(fmt::format("no movie '{}': the box changes at picture {}; draw the parts of the run by "
-                                   "themselves",
+      throw UsageError(fmt::format("no movie '{}': the box changes at picture {}; draw the parts of the run "
+                                   "separately",
                                    path, k + 1));
     movie->add(*page);
     progress.add(1.0);

@@ -1,4 +1,4 @@
-// MP4 by a child process: ffmpeg gets the pixels of the pages through a pipe.
+// MP4 by a child process: ffmpeg receives the pixels of the pages through a pipe.
 #include "movie_file.hpp"
 
 #include <keeler/core/error.hpp>
@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -22,15 +23,15 @@
 namespace keeler {
 namespace {
 
-// The descriptor under which ffmpeg finds the file that it fills.
+// The descriptor of the output file in ffmpeg.
 constexpr int movie_descriptor = 3;
 
 std::vector<std::string> arguments(int width, int height) {
   return {"ffmpeg", "-nostdin", "-loglevel", "error", "-xerror", "-y",
           // Cairo's pixels, blue first, the fourth byte unused.
           "-f", "rawvideo", "-pixel_format", "bgr0", "-video_size", fmt::format("{}x{}", width, height), "-framerate",
-          std::to_string(movie_frames_a_second), "-i", "pipe:0",
-          // This chroma format needs even sides.
+          std::to_string(movie_frames_per_second), "-i", "pipe:0",
+          // This chroma format needs even dimensions.
           "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-preset", "veryfast", "-crf", "20", "-pix_fmt",
           "yuv420p", "-f", "mp4", fmt::format("file:/proc/self/fd/{}", movie_descriptor)};
 }
@@ -53,7 +54,7 @@ private:
 
   std::filesystem::path name_;
   NewFile file_;
-  std::unique_ptr<std::FILE, CloseFile> messages_; // what ffmpeg says, in a file without a name
+  std::unique_ptr<std::FILE, CloseFile> messages_; // standard error of ffmpeg, an unnamed file
   int pipe_ = -1;
   pid_t process_ = -1; // -1: it has ended
 };
@@ -74,7 +75,7 @@ Mp4::Mp4(const std::filesystem::path& file, int width, int height)
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, fileno(messages_.get()), STDERR_FILENO);
   posix_spawn_file_actions_adddup2(&actions, file_.descriptor()->number(), movie_descriptor);
-  posix_spawnattr_t apart; // in a group of its own: Ctrl-C is for this program, which then ends it
+  posix_spawnattr_t apart; // a new process group: Ctrl-C reaches this program, which then ends ffmpeg
   posix_spawnattr_init(&apart);
   posix_spawnattr_setflags(&apart, POSIX_SPAWN_SETPGROUP);
   const int error = posix_spawnp(&process_, "ffmpeg", &actions, &apart, pointers.data(), environ);
@@ -93,12 +94,13 @@ Mp4::Mp4(const std::filesystem::path& file, int width, int height)
 Mp4::~Mp4() {
   if (process_ < 0)
     return;
-  kill(process_, SIGKILL); // it would finish a movie of half the run
+  kill(process_, SIGKILL); // otherwise it would finish an incomplete movie
   ended_well();
 }
 
-// A closed pipe says that the movie ends; true when ffmpeg wrote all of it.
+// Closes the pipe, which ends the movie, and waits. Returns true if ffmpeg succeeded. Precondition: ffmpeg is running.
 bool Mp4::ended_well() {
+  assert(process_ > 0);
   close(pipe_);
   int status = 0;
   while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {

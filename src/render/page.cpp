@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <new>
@@ -33,6 +34,7 @@ void require_drawn(cairo_status_t status) {
 
 Page::Page(int width, int height, const Colour& background)
     : surface_(cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height)), cairo_(cairo_create(surface_)) {
+  assert(width > 0 && height > 0);
   if (const cairo_status_t status = cairo_status(cairo_); status != CAIRO_STATUS_SUCCESS) {
     cairo_destroy(cairo_);
     cairo_surface_destroy(surface_);
@@ -47,11 +49,12 @@ Page::~Page() {
   cairo_surface_destroy(surface_);
 }
 
-void Page::place(const Raster& raster, int left, int top) {
+void Page::draw_raster(const Raster& raster, int left, int top) {
+  assert(left >= 0 && top >= 0 && left + raster.width() <= width() && top + raster.height() <= height());
   cairo_surface_flush(surface_);
   unsigned char* data = cairo_image_surface_get_data(surface_);
   if (data == nullptr)
-    return; // drawing failed; pixels() and png() say so
+    return; // drawing failed; pixels() and png() report it
   const std::ptrdiff_t stride = cairo_image_surface_get_stride(surface_);
   for (int y = 0; y < raster.height(); ++y) {
     auto* row = reinterpret_cast<std::uint32_t*>(data + (top + y) * stride) + left;
@@ -79,6 +82,7 @@ void Page::curve(const std::vector<PagePoint>& points, const Colour& colour, dou
 
 void Page::arrow(PagePoint from, PagePoint to, const Colour& colour, double width) {
   const double length = std::hypot(to.x - from.x, to.y - from.y);
+  assert(length > 0.0);
   const double ux = (to.x - from.x) / length, uy = (to.y - from.y) / length, head = 5.0 * width;
   line(from, {to.x - ux * head, to.y - uy * head}, colour, width);
   set_colour(cairo_, colour);
@@ -137,7 +141,7 @@ double Page::text_width(const std::string& text, const TextStyle& style) {
 }
 
 double Page::show(const std::string& text, const TextStyle& style, bool draw) {
-  // Cairo's plain text calls; fontconfig offers its closest face when this one is not installed.
+  // Cairo's simple text functions; fontconfig substitutes the closest font if this one is not installed.
   cairo_select_font_face(cairo_, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL,
                          style.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
   set_colour(cairo_, style.colour);

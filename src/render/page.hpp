@@ -1,4 +1,4 @@
-// A sheet to draw on with Cairo: lines, text with subscripts, pictures, and the PNG at the end.
+// A canvas for Cairo: lines, text with subscripts, rasters, and output as PNG.
 #pragma once
 
 #include "colour.hpp"
@@ -33,8 +33,8 @@ public:
   Page(const Page&) = delete;
   Page& operator=(const Page&) = delete;
 
-  /// Puts a raster with its upper left corner at a pixel; it must fit.
-  void place(const Raster& raster, int left, int top);
+  /// Copies a raster, with its upper left corner at a pixel. Precondition: it fits into the page.
+  void draw_raster(const Raster& raster, int left, int top);
 
   void line(PagePoint from, PagePoint to, const Colour& colour, double width, bool dashed = false);
   void curve(const std::vector<PagePoint>& points, const Colour& colour, double width);
@@ -43,22 +43,22 @@ public:
   void shade(double left, double top, double width, double height, const Colour& colour, double opacity);
   void dot(PagePoint at, double radius, const Colour& colour);
 
-  /// Everything drawn until the end of the clip stays inside the rectangle.
+  /// Clips everything drawn until end_clip() to the rectangle.
   void begin_clip(double left, double top, double width, double height);
   void end_clip();
 
-  /// Text on a base line, read upward when `upward`; "_{cr}" sets a subscript. Returns its width.
+  /// Draws text on a baseline, vertical if `upward`; "_{cr}" sets a subscript. Returns its width.
   double text(PagePoint base, const std::string& text, const TextStyle& style, bool upward = false);
   double text_width(const std::string& text, const TextStyle& style);
 
   int width() const { return cairo_image_surface_get_width(surface_); }
   int height() const { return cairo_image_surface_get_height(surface_); }
 
-  /// Rows of four bytes a pixel: blue, green, red, and one unused. Throws Error when drawing failed.
+  /// Returns rows of four bytes per pixel: blue, green, red, unused. Throws Error when drawing failed.
   std::span<const std::byte> pixels();
-  /// The picture as the bytes of a PNG file. Throws Error when drawing failed.
+  /// Returns the bytes of a PNG file. Throws Error when drawing failed.
   std::vector<std::byte> png();
-  /// Writes it; the name always stands for a complete file. Throws IoError when that fails.
+  /// Writes a PNG file, atomically: the name always refers to a complete file. Throws IoError when that fails.
   void save(const std::string& path);
 
 private:

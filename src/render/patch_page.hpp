@@ -1,4 +1,4 @@
-// The picture of a patch before it becomes a file.
+// The picture of a patch as a page in memory.
 #pragma once
 
 #include "page.hpp"
@@ -9,7 +9,7 @@
 
 namespace keeler {
 
-/// Throws as render_patch.
+/// Draws the picture. Throws UsageError as render_patch.
 std::unique_ptr<Page> patch_page(const Patch& patch, const PictureOptions& options);
 
 } // namespace keeler

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
@@ -18,8 +19,9 @@
 namespace keeler {
 namespace {
 
-// 1, 2 or 5 times a power of ten, at most `length`.
+// Returns the largest of 1, 2 and 5 times powers of ten that is at most `length`.
 double round_length(double length) {
+  assert(length > 0.0);
   const double power = std::pow(10.0, std::floor(std::log10(length)));
   for (const double step : {5.0, 2.0})
     if (step * power <= length)
@@ -27,8 +29,9 @@ double round_length(double length) {
   return power;
 }
 
-// The least of 1, 2 and 5 times powers of ten that is at least `length`.
+// Returns the smallest of 1, 2 and 5 times powers of ten that is at least `length`.
 double round_step(double length) {
+  assert(length > 0.0);
   const double power = std::pow(10.0, std::floor(std::log10(length)));
   for (const double step : {1.0, 2.0, 5.0})
     if (step * power >= length)
@@ -45,7 +48,7 @@ void draw_header(Page& page, const Patch& patch, const PictureOptions& options, 
   page.text({110 * u, 98 * u}, facts, {21 * u, theme.faint_ink});
 }
 
-// The first of several names, longest first, that is no wider than `room`; none when even the last is.
+// Returns the first of several names, longest first, that is no wider than `room`; empty if none fits.
 std::string fitting(Page& page, std::initializer_list<const char*> names, const TextStyle& style, double room) {
   for (const char* name : names)
     if (page.text_width(name, style) <= room)
@@ -53,8 +56,8 @@ std::string fitting(Page& page, std::initializer_list<const char*> names, const 
   return {};
 }
 
-// Marks at round lengths (plus 0.0: no "-0") from the middle of a view, below it and left of it, with their metres.
-// `rise`: how many pixels up a metre of the upward axis is.
+// Draws ticks at round lengths from the middle of a view, below and left of it, labelled in metres ("+ 0.0" avoids
+// "-0"). `rise` is pixels per metre of the upward axis.
 void draw_axes(Page& page, const PixelFrame& f, double pixels_per_metre, double rise, const Theme& theme, double u) {
   const TextStyle below{17 * u, theme.faint_ink, Align::centre}, beside{17 * u, theme.faint_ink, Align::right};
   const Colour mark = mix(theme.page, theme.faint_ink, 0.5);
@@ -72,7 +75,7 @@ void draw_axes(Page& page, const PixelFrame& f, double pixels_per_metre, double 
   }
 }
 
-// Below the top view: what is to the right, and how long a metre is.
+// Draws the scale bar and the name of the radial axis, below the top view.
 void draw_scale(Page& page, const Patch& patch, const PictureLayout& layout, const Colour& ink, double u) {
   const PixelFrame& f = layout.top_view;
   const double y = f.top + f.height + 62 * u, right = f.left + f.width;
@@ -91,7 +94,7 @@ void draw_scale(Page& page, const Patch& patch, const PictureLayout& layout, con
   page.text({right - 102 * u, y}, name, style);
 }
 
-// Left of a view: what is up, by the first name that fits.
+// Draws the name of the upward axis left of a view: the first one that fits.
 void draw_upward(Page& page, const PixelFrame& f, std::initializer_list<const char*> names, const Colour& ink,
                  double u) {
   const double x = f.left - 72 * u, arrow = std::min(90 * u, 0.4 * f.height);
@@ -100,7 +103,7 @@ void draw_upward(Page& page, const PixelFrame& f, std::initializer_list<const ch
   page.text({x, f.top + arrow + 10 * u}, fitting(page, names, style, f.height - arrow - 10 * u), style, true);
 }
 
-// Below the views: what the colours mean.
+// Draws the colour bar below the views.
 void draw_colour_bar(Page& page, const PictureLayout& layout, ColourField field, const ColourRange& range,
                      const Theme& theme, double u) {
   const int left = layout.edge_view.left, top = layout.foot + static_cast<int>(72 * u);
@@ -108,7 +111,7 @@ void draw_colour_bar(Page& page, const PictureLayout& layout, ColourField field,
   for (int j = 0; j < bar.height(); ++j)
     for (int i = 0; i < bar.width(); ++i)
       bar.pixel(i, j) = field_colour((i + 0.5) / bar.width());
-  page.place(bar, left, top);
+  page.draw_raster(bar, left, top);
   page.frame(left, top, bar.width(), bar.height(), mix(theme.page, theme.faint_ink, 0.5));
   const double below = top + bar.height() + 22 * u, right = left + bar.width();
   page.text({0.5 * (left + right), below}, format_number(range.middle(), 3), {17 * u, theme.faint_ink, Align::centre});
@@ -129,10 +132,11 @@ void PictureScale::include(const PictureScale& other) {
 }
 
 PictureScale picture_scale(const Patch& patch, ColourField field) {
+  assert(patch.size() > 0);
   std::vector<double> tops;
   for (std::size_t k = 0; k < patch.size(); ++k)
     tops.push_back(std::fabs(patch.positions[k].z()) + patch.radii[k]);
-  // All but one particle in a thousand, with some air.
+  // The 99.9th percentile, with a margin.
   const auto nearly_all = tops.begin() + static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(tops.size() - 1));
   std::nth_element(tops.begin(), nearly_all, tops.end());
   return {1.25 * *nearly_all, 2.0 * std::max(scale_height(patch), 1e-3 * mean_radius(patch)),
@@ -140,17 +144,18 @@ PictureScale picture_scale(const Patch& patch, ColourField field) {
 }
 
 PictureLayout layout_of(const Patch& patch, const PictureOptions& options) {
+  assert(options.width > 0);
   const double u = options.width / 1600.0;
   const ShearingBox& box = patch.box;
   PictureLayout layout;
   layout.elevation = (options.oblique ? PictureOptions::oblique_elevation : 90.0) * std::numbers::pi / 180.0;
-  const double tall = box.size_y * std::sin(layout.elevation); // of the upper view, m
+  const double tall = box.size_y * std::sin(layout.elevation); // height of the upper view, m
   layout.pixels_per_metre = std::min(1430.0 * u / box.size_x, 2200.0 * u / tall);
   const auto pixels = [&](double metres) {
     return std::max(1, static_cast<int>(std::lround(metres * layout.pixels_per_metre)));
   };
 
-  // Never taller than the top view or thinner than a label.
+  // The edge view is at most as tall as the box is long, and at least as tall as a label.
   const double half_height =
       options.scale ? options.scale->half_height : picture_scale(patch, ColourField::height).half_height;
   layout.half_height =
@@ -160,7 +165,7 @@ PictureLayout layout_of(const Patch& patch, const PictureOptions& options) {
   const int left = static_cast<int>(std::lround(110 * u)), margin = static_cast<int>(std::lround(60 * u));
   const int gap = static_cast<int>(std::lround(94 * u));
   layout.top_view = {left, static_cast<int>(std::lround(124 * u)), pixels(box.size_x), pixels(tall)};
-  layout.top_view.left += (options.width - left - margin - layout.top_view.width) / 2; // a tall box: in the middle
+  layout.top_view.left += (options.width - left - margin - layout.top_view.width) / 2; // a tall box is centred
   layout.edge_view = {layout.top_view.left, layout.top_view.top + layout.top_view.height + gap, layout.top_view.width,
                       pixels(2.0 * layout.half_height)};
   layout.foot = layout.edge_view.top + layout.edge_view.height;
@@ -186,8 +191,8 @@ std::unique_ptr<Page> patch_page(const Patch& patch, const PictureOptions& asked
   const double u = options.width / 1600.0;
   const PatchViews views = patch_views(patch, layout, options.colour, *options.scale);
   auto page = std::make_unique<Page>(layout.width, layout.height, theme.page);
-  page->place(views.top, layout.top_view.left, layout.top_view.top);
-  page->place(views.edge, layout.edge_view.left, layout.edge_view.top);
+  page->draw_raster(views.top, layout.top_view.left, layout.top_view.top);
+  page->draw_raster(views.edge, layout.edge_view.left, layout.edge_view.top);
   for (const PixelFrame& f : {layout.top_view, layout.edge_view})
     page->frame(f.left, f.top, f.width, f.height, mix(theme.page, theme.faint_ink, 0.5));
   draw_header(*page, patch, options, theme, u);

@@ -4,6 +4,7 @@
 #include "images.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <tuple>
@@ -11,46 +12,47 @@
 namespace keeler {
 namespace {
 
-// Ring particles: umber in the depth, ivory in front.
+// Shades of ring particles: umber far from the viewer, ivory near.
 constexpr std::array<Colour, 4> ring_colours = {Colour{0.36, 0.25, 0.18}, Colour{0.70, 0.53, 0.37},
                                                 Colour{0.93, 0.80, 0.62}, Colour{1.0, 0.96, 0.88}};
-// Violet over green to yellow, evenly brighter, also in grey and to the colour-blind.
+// Violet through green to yellow: perceptually uniform, also in greyscale and for colour-blind readers.
 constexpr std::array<Colour, 5> field_colours = {Colour{0.27, 0.23, 0.52}, Colour{0.16, 0.45, 0.56},
                                                  Colour{0.13, 0.66, 0.52}, Colour{0.48, 0.82, 0.32},
                                                  Colour{0.99, 0.91, 0.14}};
 
-// A particle, or an image of one, that shows in the frame.
+// A particle or periodic image that is visible in the frame.
 struct Shown {
   Vec3 position;
   double radius;
   std::uint64_t id;
-  double share; // of the range of colours
+  double colour_position; // on the colour bar, 0 … 1
   double toward_viewer = 0.0;
 };
 
-// From where one sees the upper view: what is up in it, and what is toward the viewer.
-struct Sight {
-  explicit Sight(double elevation)
+// The directions of the upper view: upward in the picture, and toward the viewer.
+struct ViewAxes {
+  explicit ViewAxes(double elevation)
       : up(0.0, std::sin(elevation), std::cos(elevation)), near(0.0, -std::cos(elevation), std::sin(elevation)) {}
   Vec3 up, near;
 };
 
-// Everything that reaches into a frame as wide as the cell and so tall on either side of its middle, images included.
+// Returns the particles and images that reach into the frame: as wide as the box, ± half_tall along `up`.
 std::vector<Shown> visible(const Patch& patch, ColourField field, const PictureScale& scale, const Vec3& up,
                            double half_tall) {
   const bool has_values = field != ColourField::height && field != ColourField::density;
   const std::vector<double> values = has_values ? field_values(patch, field) : std::vector<double>();
+  assert(values.empty() || field == ColourField::density || values.size() == patch.size());
   std::vector<Shown> shown;
   shown.reserve(patch.size() + patch.size() / 8);
   for_each_image(patch, [&](std::size_t k, const Vec3& image) {
     const double r = patch.radii[k];
     if (std::fabs(image.x()) < 0.5 * patch.box.size_x + r && std::fabs(image.dot(up)) < half_tall + r)
-      shown.push_back({image, r, patch.ids[k], has_values ? scale.colours.share(values[k]) : 0.0});
+      shown.push_back({image, r, patch.ids[k], has_values ? scale.colours.position(values[k]) : 0.0});
   });
   return shown;
 }
 
-// Back to front along a direction of view; what is equally far in the order of ids and places.
+// Sorts back to front toward the viewer; ties are ordered by id and position.
 void sort_along(std::vector<Shown>& shown, const Vec3& direction) {
   for (Shown& s : shown)
     s.toward_viewer = s.position.dot(direction);
@@ -65,7 +67,7 @@ Raster density_view(const Patch& patch, const PictureLayout& layout, const Pictu
     for (int i = 0; i < raster.width(); ++i) {
       const double x = (i + 0.5 - 0.5 * raster.width()) / layout.pixels_per_metre;
       const double y = (0.5 * raster.height() - j - 0.5) / layout.pixels_per_metre;
-      raster.pixel(i, j) = field_colour(scale.colours.share(map.at(x, y)));
+      raster.pixel(i, j) = field_colour(scale.colours.position(map.at(x, y)));
     }
   return raster;
 }
@@ -73,17 +75,17 @@ Raster density_view(const Patch& patch, const PictureLayout& layout, const Pictu
 Raster top_view(const PictureLayout& layout, ColourField field, const PictureScale& scale, std::vector<Shown>& shown) {
   Raster raster(layout.top_view.width, layout.top_view.height, space_colour);
   const double pixels = layout.pixels_per_metre;
-  const Sight sight(layout.elevation);
-  sort_along(shown, sight.near);
+  const ViewAxes axes(layout.elevation);
+  sort_along(shown, axes.near);
   for (const Shown& s : shown)
     raster.sphere(0.5 * raster.width() + pixels * s.position.x(),
-                  0.5 * raster.height() - pixels * s.position.dot(sight.up), pixels * s.radius,
+                  0.5 * raster.height() - pixels * s.position.dot(axes.up), pixels * s.radius,
                   field == ColourField::height ? ramp(ring_colours, 0.5 + 0.5 * s.position.z() / scale.depth)
-                                               : field_colour(s.share));
+                                               : field_colour(s.colour_position));
   return raster;
 }
 
-// Seen from behind, along the orbit: the far end of the box fades.
+// Draws the view along the orbit, from behind; the far end of the box fades.
 Raster edge_view(const Patch& patch, const PictureLayout& layout, ColourField field, std::vector<Shown>& shown) {
   Raster raster(layout.edge_view.width, layout.edge_view.height, space_colour);
   const double pixels = layout.pixels_per_metre;
@@ -91,7 +93,7 @@ Raster edge_view(const Patch& patch, const PictureLayout& layout, ColourField fi
   sort_along(shown, -Vec3::UnitY());
   for (const Shown& s : shown) {
     const double nearness = 0.5 - s.position.y() / patch.box.size_y;
-    const Colour colour = has_values ? field_colour(s.share) : ramp(ring_colours, nearness);
+    const Colour colour = has_values ? field_colour(s.colour_position) : ramp(ring_colours, nearness);
     raster.sphere(0.5 * raster.width() + pixels * s.position.x(), 0.5 * raster.height() - pixels * s.position.z(),
                   pixels * s.radius, mix(space_colour, colour, 0.15 + 0.85 * nearness));
   }
@@ -100,8 +102,8 @@ Raster edge_view(const Patch& patch, const PictureLayout& layout, ColourField fi
 
 } // namespace
 
-Colour field_colour(double share) {
-  return ramp(field_colours, share);
+Colour field_colour(double position) {
+  return ramp(field_colours, position);
 }
 
 PatchViews patch_views(const Patch& patch, const PictureLayout& layout, ColourField field, const PictureScale& scale) {
@@ -110,8 +112,8 @@ PatchViews patch_views(const Patch& patch, const PictureLayout& layout, ColourFi
   Raster edge = edge_view(patch, layout, field, cell);
   if (field == ColourField::density)
     return {density_view(patch, layout, scale), std::move(edge)};
-  const Sight sight(layout.elevation);
-  std::vector<Shown> above = visible(patch, field, scale, sight.up, half_y * std::sin(layout.elevation));
+  const ViewAxes axes(layout.elevation);
+  std::vector<Shown> above = visible(patch, field, scale, axes.up, half_y * std::sin(layout.elevation));
   return {top_view(layout, field, scale, above), std::move(edge)};
 }
 

@@ -1,4 +1,4 @@
-// The particles of a patch, painted from above and from the edge.
+// The particles of a patch, drawn from above and edge-on.
 #pragma once
 
 #include "raster.hpp"
@@ -11,9 +11,10 @@ struct PatchViews {
   Raster top, edge;
 };
 
+/// Draws both views. Throws UsageError when the patch does not have the field.
 PatchViews patch_views(const Patch& patch, const PictureLayout& layout, ColourField field, const PictureScale& scale);
 
-/// The colour of a value's share of its range.
-Colour field_colour(double share);
+/// Returns the colour at a position on the colour bar, from 0 to 1.
+Colour field_colour(double position);
 
 } // namespace keeler

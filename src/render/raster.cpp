@@ -4,18 +4,20 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-constexpr double min_radius = 0.6;    // pixels: a smaller sphere is drawn this large and fainter, with the same light
+constexpr double min_radius =
+    0.6; // pixels; a smaller sphere is drawn with this radius but fainter, with equal total light
 constexpr double shadow_reach = 1.45; // radii
-constexpr double shadow_depth = 0.45; // darkest, at the rim
-constexpr double shadow_radius = 5.0; // pixels: below it shadows fade, or a far view would only get darker
-constexpr double light[] = {-0.42, -0.52, 0.744}; // from the upper left, y down; of length 1
+constexpr double shadow_depth = 0.45; // at the rim, where it is darkest
+constexpr double shadow_radius = 5.0; // pixels; shadows of smaller spheres fade, otherwise distant views would darken
+constexpr double light[] = {-0.42, -0.52, 0.744}; // from the upper left, y down; unit vector
 
-// Brightness of a sphere at (u, v), in radii from its centre: ambient light, a lamp, and a small highlight.
+// Returns the brightness of a sphere at (u, v), in radii from its centre: ambient light, a facing term, and a lamp.
 double lit(double u, double v) {
   const double w = std::sqrt(std::max(0.0, 1.0 - u * u - v * v));
   const double lamp = std::max(0.0, u * light[0] + v * light[1] + w * light[2]);
@@ -31,6 +33,7 @@ Raster::Raster(int width, int height, const Colour& background)
               background) {}
 
 void Raster::sphere(double x, double y, double radius, const Colour& colour) {
+  assert(radius > 0.0);
   const double drawn = std::max(radius, min_radius);
   const double light_fraction = radius * radius / (drawn * drawn);
   const double shadow = shadow_depth * light_fraction * std::min(1.0, drawn / shadow_radius);
@@ -43,7 +46,8 @@ void Raster::sphere(double x, double y, double radius, const Colour& colour) {
     for (int i = left; i <= right; ++i) {
       const double u = i + 0.5 - x, v = j + 0.5 - y, distance = std::sqrt(u * u + v * v);
       Colour& here = pixel(i, j);
-      const double outside = (distance / drawn - 1.0) / (shadow_reach - 1.0); // 0 at the rim, 1 where the shadow ends
+      const double outside =
+          (distance / drawn - 1.0) / (shadow_reach - 1.0); // 0 at the rim, 1 at the end of the shadow
       if (outside < 1.0) {
         const double depth = 1.0 - std::max(0.0, outside);
         here = mix(here, {0.0, 0.0, 0.0}, shadow * depth * depth);

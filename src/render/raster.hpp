@@ -1,5 +1,5 @@
-// A plane of pixels on which spheres are painted, back to front. Edges are smoothed by coverage, and each sphere throws
-// a soft shadow on what lies behind it, so that crowded places read as depth.
+// A pixel raster on which spheres are drawn back to front. Edges are antialiased by coverage, and each sphere casts a
+// soft shadow on the spheres behind it, so that crowded regions show depth.
 #pragma once
 
 #include "colour.hpp"
@@ -17,7 +17,8 @@ public:
   const Colour& pixel(int x, int y) const { return pixels_[static_cast<std::size_t>(y * width_ + x)]; }
   Colour& pixel(int x, int y) { return pixels_[static_cast<std::size_t>(y * width_ + x)]; }
 
-  /// A lit sphere; centre and radius in pixels, pixel (0, 0) reaching from 0 to 1. Parts outside are cut.
+  /// Draws a lit sphere; centre and radius in pixels, where pixel (0, 0) extends from 0 to 1. Parts outside are
+  /// clipped. Precondition: radius > 0.
   void sphere(double x, double y, double radius, const Colour& colour);
 
 private:

@@ -2,10 +2,12 @@
 
 #include <keeler/core/json_of_files.hpp>
 
+#include <cassert>
+
 namespace keeler {
 namespace {
 
-// Quoted where it must be (RFC 4180).
+// Returns a field, quoted if necessary (RFC 4180).
 std::string field_of(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos)
     return text;
@@ -29,6 +31,7 @@ std::string csv_line(const nlohmann::ordered_json& row, bool names) {
 } // namespace
 
 std::string csv_of(const nlohmann::ordered_json& rows) {
+  assert(!rows.empty());
   std::string csv = csv_line(rows.front(), true);
   for (const nlohmann::ordered_json& row : rows)
     csv += csv_line(row, false);

@@ -11,7 +11,7 @@
 namespace keeler {
 namespace {
 
-// On one line, in one cell.
+// Returns text for one cell of a Markdown table: on one line, | escaped.
 std::string in_cell(const std::string& text) {
   std::string cell;
   for (const char c : printable_line(text))
@@ -49,9 +49,9 @@ void Document::table(const std::vector<std::vector<std::string>>& rows) {
 }
 
 void Document::figure(const std::filesystem::path& folder, const std::string& name, const std::string& caption) {
-  const std::string place = folder.filename().string() + "/" + name;
+  const std::string path = folder.filename().string() + "/" + name;
   const bool vector = std::filesystem::exists(folder / (name + ".svg"));
-  markdown_ += fmt::format("\n![{}]({}.{})\n\n*{}*\n", name, place, vector ? "svg" : "png", caption);
+  markdown_ += fmt::format("\n![{}]({}.{})\n\n*{}*\n", name, path, vector ? "svg" : "png", caption);
   const std::string type = vector ? "svg+xml" : "png";
   body_ +=
       fmt::format("<figure><img alt=\"{}\" src=\"data:image/{};base64,{}\"><figcaption>{}</figcaption></figure>\n",

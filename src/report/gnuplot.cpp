@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cassert>
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -17,7 +18,7 @@
 namespace keeler {
 namespace {
 
-constexpr int not_found = 127; // as a shell says it
+constexpr int not_found = 127; // exit code, as in a shell
 
 int run_in(const std::filesystem::path& folder, const std::string& terminal, const std::string& script, int output) {
   posix_spawn_file_actions_t actions;
@@ -48,6 +49,7 @@ std::string gnuplot_string(const std::string& text) {
 
 bool plot(const std::filesystem::path& folder, const std::string& name, const std::string& script, int width,
           int height) {
+  assert(width > 0 && height > 0);
   write_text(folder / (name + ".gp"), script);
   const std::string png = fmt::format("set terminal pngcairo size {},{} font 'DejaVu Sans,11'", width, height);
   const std::string svg = fmt::format("set terminal svg size {},{} font 'DejaVu Sans,11'", width, height);
@@ -57,7 +59,8 @@ bool plot(const std::filesystem::path& folder, const std::string& name, const st
     if (code == not_found)
       return false;
     if (code != 0)
-      throw IoError(fmt::format("gnuplot failed on '{}'; run it there to see why", (folder / (name + ".gp")).string()));
+      throw IoError(
+          fmt::format("gnuplot failed on '{}'; run it there to see the error", (folder / (name + ".gp")).string()));
     picture.keep();
   }
   return true;

@@ -4,12 +4,15 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
+
 namespace keeler {
 namespace {
 
-// Every other occurrence of the mark opens or closes the element.
+// Replaces the marks alternately by the opening and closing tags of the element.
 void replace_marks(std::string& text, const std::string& mark, const std::string& element) {
   bool open = false;
+  assert(!mark.empty());
   for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at)) {
     const std::string tag = fmt::format("<{}{}>", open ? "/" : "", element);
     text.replace(at, mark.size(), tag);

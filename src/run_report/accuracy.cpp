@@ -20,8 +20,8 @@ std::string number(const Record& summary, const std::string& name, int digits = 
   return value ? format_number(*value, digits) : "not measured";
 }
 
-// "12 s, 31 % of the time".
-std::string price(const Record& summary, const std::string& part) {
+// Returns "12 s, 31 % of the time".
+std::string cost(const Record& summary, const std::string& part) {
   const double wall = number_in(summary, "wall").value_or(0.0),
                seconds = number_in(summary, "split." + part).value_or(0.0);
   return wall > 0.0 ? fmt::format("{} s, {} % of the time", format_number(seconds, 3),
@@ -39,34 +39,34 @@ void add_gravity(Rows& rows, const Scene& scene, const Record& summary) {
                                     number(summary, "force_error.rms"), number(summary, "force_error.checks"),
                                     number(summary, "force_error.worst_rms"))
                       : "not measured",
-                  price(summary, "gravity")});
+                  cost(summary, "gravity")});
 }
 
 } // namespace
 
 std::string accuracy_table(const Scene& scene, const Record& summary) {
-  Rows rows = {{"what", "as it was done", "how exact", "price"}};
+  Rows rows = {{"part", "method", "accuracy", "cost"}};
   rows.push_back({"contacts", "finder " + scene.collisions.finder,
-                  fmt::format("largest overlap {} of a radius sum; contacts slower than what a kick of the pair's "
-                              "own gravity gives: {} of all; searches given up: {}",
+                  fmt::format("largest overlap {} of a radius sum; contacts slower than the speed from one kick "
+                              "of the pair's own gravity: fraction {}; searches given up: {}",
                               number(summary, "largest_overlap"), number(summary, "unresolved_contacts_share"),
                               number(summary, "finder_gave_up")),
-                  price(summary, "drift")});
+                  cost(summary, "drift")});
   add_gravity(rows, scene, summary);
-  rows.push_back({"energy, step by step", "booked in collisions and kicks",
-                  fmt::format("not booked (rounding): {} J beside {} J lost in collisions",
+  rows.push_back({"energy, step by step", "work of collisions and kicks summed",
+                  fmt::format("residual (rounding): {} J, compared with {} J lost in collisions",
                               number(summary, "energy_j.residual"), number(summary, "energy_j.lost_in_collisions")),
-                  price(summary, "series")});
+                  cost(summary, "series")});
   if (number_in(summary, "energy_balance.ratio"))
     rows.push_back(
         {"energy, of the steady part", "viscosity from the loss over that of the stresses; 1 is exact",
          fmt::format("{} ± {}", number(summary, "energy_balance.ratio", 4), number(summary, "energy_balance.error", 2)),
-         price(summary, "stresses")});
+         cost(summary, "stresses")});
   return html_table(rows);
 }
 
 std::string timing_table(const Record& summary) {
-  Rows rows = {{"part", "wall time, s", "share"}};
+  Rows rows = {{"part", "wall time, s", "fraction"}};
   const double wall = number_in(summary, "wall").value_or(0.0);
   for (const Entry& entry : summary.entries)
     if (const double seconds = number_in(summary, entry.quantity.name).value_or(0.0);

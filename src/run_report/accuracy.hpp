@@ -1,4 +1,4 @@
-// How exact a run was, and what each part of it cost.
+// The accuracy of a run, and the cost of its parts.
 #pragma once
 
 #include <keeler/quantities/quantity.hpp>
@@ -8,10 +8,10 @@
 
 namespace keeler {
 
-/// What was approximated, by how much, and its share of the time. `summary` is the run's summary.json.
+/// Returns a table of the approximations, their errors and their fractions of the wall time. `summary` is summary.json.
 std::string accuracy_table(const Scene& scene, const Record& summary);
 
-/// Where the wall time went.
+/// Returns a table of the wall time by parts.
 std::string timing_table(const Record& summary);
 
 } // namespace keeler

@@ -1,4 +1,4 @@
-// Files that the program carries for its pages: see CMakeLists.txt.
+// Files for the pages that are embedded in the program: see CMakeLists.txt.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace keeler {
 
-/// The content of "view.js"; nothing when the program was built without it.
+/// Returns the content of an embedded file, as "view.js"; empty if the program was built without it.
 std::string_view asset(const std::string& file);
 
 } // namespace keeler

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <vector>
 
 namespace keeler {
@@ -19,6 +20,7 @@ using Rows = std::vector<std::vector<std::string>>;
 }
 
 std::string derived_table(const Scene& scene, const Patch& patch) {
+  assert(patch.size() > 0);
   const double wavelength = critical_wavelength(patch);
   const double density = material_density(patch);
   const auto text = [](double value) { return format_number(value, 4); };
@@ -33,7 +35,7 @@ std::string derived_table(const Scene& scene, const Patch& patch) {
   if (!scene.time.automatic)
     rows.push_back({"step", text(scene.time.step) + " orbits"});
   if (scene.gravity)
-    rows.push_back({"drifts a kick", fmt::format("{}", scene.gravity->kick_every)});
+    rows.push_back({"drifts per kick", fmt::format("{}", scene.gravity->kick_every)});
   return html_table(rows);
 }
 

@@ -1,4 +1,4 @@
-// What was measured in a run, as tables of the page.
+// The tables of numbers on the page.
 #pragma once
 
 #include <keeler/particles/patch.hpp>
@@ -9,13 +9,13 @@
 
 namespace keeler {
 
-/// What follows from the scene and the patch of a run.
+/// Returns the quantities that follow from the scene and the patch of a run. Precondition: the patch is not empty.
 std::string derived_table(const Scene& scene, const Patch& patch);
 
-/// The numbers of `keeler analyze`, with errors.
+/// Returns the numbers of `keeler analyze`, with errors.
 std::string measured_table(const Record& numbers);
 
-/// Every single one of them, by its name in `keeler analyze --json`.
+/// Returns all numbers, by their names in `keeler analyze --json`.
 std::string all_numbers(const Record& numbers);
 
 } // namespace keeler

@@ -1,4 +1,4 @@
-// The particles of a run's snapshots as the page's view in three dimensions takes them: places in 16 bits, colours
+// The particles of a run's snapshots, encoded for the three-dimensional view of the page: positions in 16 bits, colours
 // in 8.
 #pragma once
 
@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cassert>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -15,34 +16,36 @@ namespace keeler {
 
 class ParticleView {
 public:
-  /// Shows so many particles of each snapshot at most, the same ids in all.
-  explicit ParticleView(std::size_t max_particles) : max_particles_(max_particles) {}
+  /// Encodes at most this many particles per snapshot, with equal ids in all snapshots. Precondition: max_particles >
+  /// 0.
+  explicit ParticleView(std::size_t max_particles) : max_particles_(max_particles) { assert(max_particles > 0); }
 
-  /// Snapshots of one run, oldest first.
+  /// Adds a snapshot; call it for the snapshots of one run, oldest first. Throws IoError if the number of particles
+  /// differs from the first snapshot's.
   void add(const Patch& patch, const std::string& file);
 
   std::size_t snapshots() const { return snapshots_.size(); }
 
-  /// What view.js reads. At least one snapshot.
+  /// Returns the data that view.js reads. Precondition: at least one snapshot was added.
   nlohmann::ordered_json json() const;
 
 private:
   struct Shown {
     std::string file;
     double time_orbits;
-    std::vector<Vec3> places;
-    std::vector<std::vector<double>> values; // of each field
+    std::vector<Vec3> positions;
+    std::vector<std::vector<double>> values; // for each field, of all particles shown
   };
   struct Field {
     const char* name;
     ColourField field;
-    ColourRange range; // of all snapshots
+    ColourRange range; // over all snapshots
   };
 
   void choose_fields(const Patch& patch);
   nlohmann::ordered_json fields() const;
 
-  std::size_t max_particles_, of_ = 0;
+  std::size_t max_particles_, total_ = 0;
   double size_x_ = 0.0, size_y_ = 0.0;
   std::vector<double> radii_;
   std::vector<Field> fields_;

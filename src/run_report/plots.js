@@ -1,4 +1,4 @@
-// The run's series, drawn by dygraphs. Plots are zoomed together along their axis of time.
+// The run's series, drawn by dygraphs. All plots share the zoom of the time axis.
 "use strict";
 (function () {
   const element = document.getElementById("series-data");
@@ -7,7 +7,7 @@
   const data = JSON.parse(element.textContent);
   const colours = ["#2166ac", "#b2182b", "#1b7837", "#762a83"];
 
-  // dygraphs wants a row a time, [low, middle, high] for each curve; curves without a row then have null.
+  // Returns one row per time for dygraphs: [low, middle, high] for each curve, null for curves without a point there.
   function rows(curves) {
     const table = new Map();
     curves.forEach((curve, which) => curve.points.forEach(([time, mean, error]) => {
@@ -19,7 +19,7 @@
     return Array.from(table.values()).sort((a, b) => a[0] - b[0]);
   }
 
-  function figures(value, error) {
+  function formatEstimate(value, error) {
     if (value === null)
       return "unknown";
     return error === null ? value.toPrecision(4) : `${value.toPrecision(4)} ± ${error.toPrecision(2)}`;
@@ -27,7 +27,7 @@
 
   function means(plot) {
     return plot.curves.filter((curve) => curve.mean)
-      .map((curve) => `${curve.name}: ${figures(curve.mean.value, curve.mean.error)}`).join("; ");
+      .map((curve) => `${curve.name}: ${formatEstimate(curve.mean.value, curve.mean.error)}`).join("; ");
   }
 
   function shade(pen, area, graph) {
@@ -55,7 +55,7 @@
     zooming = false;
   }
 
-  // All boxes stand before the first chart takes its width from its own.
+  // Makes all boxes before the first chart is drawn, since a chart takes its width from its box.
   function box(plot) {
     const all = part(document.getElementById("plots"), "div", "plot");
     part(all, "h3", "").textContent = plot.unit ? `${plot.title}, ${plot.unit}` : plot.title;

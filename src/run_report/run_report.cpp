@@ -29,6 +29,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -40,24 +41,24 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// Pictures through time, and what keeps a page small: widths in pixels, and how many bytes a picture has at most.
+// Limits that keep a page small: number of pictures, their widths (pixels) and sizes (bytes).
 constexpr std::size_t max_pictures = 4;
-constexpr int picture_width = 1200, earlier_picture_width = 600, narrowest_picture = 300;
+constexpr int picture_width = 1200, earlier_picture_width = 600, min_picture_width = 300;
 constexpr std::size_t picture_bytes = 1'600'000, earlier_picture_bytes = 430'000;
 
-// Snapshots are measured only up to so many particles in all: a page of large patches is wanted soon, too.
+// Particles measured, over all snapshots: limits the time that a page of large patches takes.
 constexpr std::size_t max_measured_particles = 3'000'000;
 
-// `most` places out of `count`, evenly, the first and the last among them.
-std::vector<std::size_t> evenly(std::size_t count, std::size_t most) {
-  std::vector<std::size_t> places;
-  const std::size_t n = std::min(count, std::max<std::size_t>(most, 1));
+// Returns at most `max_count` indices out of `count`, evenly spaced, with the first and the last.
+std::vector<std::size_t> evenly(std::size_t count, std::size_t max_count) {
+  std::vector<std::size_t> indices;
+  const std::size_t n = std::min(count, std::max<std::size_t>(max_count, 1));
   for (std::size_t k = 0; k < n; ++k)
-    places.push_back(n == 1 ? count - 1 : k * (count - 1) / (n - 1));
-  return places;
+    indices.push_back(n == 1 ? count - 1 : k * (count - 1) / (n - 1));
+  return indices;
 }
 
-// JSON in a page: "</script>" in a title must not end the element.
+// Returns a script element with JSON. "</" is escaped, so that a title cannot end the element.
 std::string data_element(const std::string& id, const Json& json) {
   std::string text = json_text(json);
   for (std::size_t at = text.find("</"); at != std::string::npos; at = text.find("</", at + 3))
@@ -85,23 +86,24 @@ bool has_plots() {
   return !asset("dygraph.min.js").empty();
 }
 
-// Narrower than asked for where it would be larger than `bytes`; the width stays so for the pictures to come.
+// Draws a patch, reducing look.width until the picture has at most `bytes` bytes or the minimum width.
 std::vector<std::byte> picture_within(std::size_t bytes, const Patch& patch, PictureOptions& look) {
   for (;;) {
     std::vector<std::byte> png = patch_png(patch, look);
-    if (png.size() <= bytes || look.width <= narrowest_picture)
+    if (png.size() <= bytes || look.width <= min_picture_width)
       return png;
-    const double share = 0.95 * std::sqrt(static_cast<double>(bytes) / static_cast<double>(png.size()));
-    look.width = std::max(narrowest_picture, static_cast<int>(share * look.width));
+    const double factor = 0.95 * std::sqrt(static_cast<double>(bytes) / static_cast<double>(png.size()));
+    look.width = std::max(min_picture_width, static_cast<int>(factor * look.width));
   }
 }
 
-// The newest of them in any case.
+// Keeps as many patches as the limit allows, always the newest. Precondition: `patches` is not empty.
 void thin_out(std::vector<Patch>& patches) {
-  const std::size_t most = std::max<std::size_t>(1, max_measured_particles / patches.back().size());
+  assert(!patches.empty() && patches.back().size() > 0);
+  const std::size_t max_count = std::max<std::size_t>(1, max_measured_particles / patches.back().size());
   std::vector<Patch> some;
-  for (const std::size_t place : evenly(patches.size(), most))
-    some.push_back(std::move(patches[place]));
+  for (const std::size_t k : evenly(patches.size(), max_count))
+    some.push_back(std::move(patches[k]));
   patches = std::move(some);
 }
 
@@ -120,7 +122,7 @@ public:
   std::string html();
 
 private:
-  void look_at_snapshots();
+  void read_snapshots();
   std::string pictures();
   std::string view() const;
   std::string plots(const TransportReport& transport) const;
@@ -140,10 +142,10 @@ private:
   std::vector<Patch> pictured_;
   SnapshotMeta meta_; // of the newest snapshot
   std::optional<Scene> scene_;
-  std::optional<Record> summary_; // none while the run works, and when it was killed
+  std::optional<Record> summary_; // none while the run is in progress, or after it was killed
 };
 
-void RunPage::look_at_snapshots() {
+void RunPage::read_snapshots() {
   const std::vector<std::size_t> viewed = evenly(files_.size(), max_snapshots_);
   const std::vector<std::size_t> drawn = evenly(viewed.size(), max_pictures);
   progress_.begin("snapshots", static_cast<double>(viewed.size()));
@@ -160,8 +162,9 @@ void RunPage::look_at_snapshots() {
   scene_ = parse_stored_scene(meta_.scene, files_.back().string());
 }
 
-// The newest one large, those before small, at one scale.
+// Draws the newest snapshot large and earlier ones small, all at one scale. Precondition: read_snapshots() was called.
 std::string RunPage::pictures() {
+  assert(!pictured_.empty() && scene_);
   PictureOptions look;
   look.title = scene_->title.empty() ? "Ring patch" : scene_->title;
   for (const Patch& patch : pictured_) {
@@ -187,7 +190,7 @@ std::string RunPage::pictures() {
 std::string RunPage::view() const {
   if (!has_view())
     return section("view", "In three dimensions",
-                   note("This program was built without the library three.js, so there is no view here."));
+                   note("This program was built without the library three.js, so the view is not available."));
   return section("view", "In three dimensions", std::string(asset("view.html"))) +
          data_element("view-data", particles_.json());
 }
@@ -199,18 +202,17 @@ std::string RunPage::plots(const TransportReport& report) const {
     return section("series", "Through time",
                    note("This program was built without the library dygraphs, so the series is not drawn here."));
   const std::optional<Transport> steady = steady_part(report);
-  std::string words = "No part of the run is known to be steady, so no means are told.";
+  std::string words = "No steady part of the run was detected, so no means are given.";
   if (steady)
-    words =
-        fmt::format("Means are of orbits {} to {} (shaded), {}; errors by blocks, neighbouring rows being "
-                    "correlated.",
-                    format_number(steady->since_orbit, 3), format_number(steady->until_orbit, 4),
-                    steady->steady ? "where the run is steady" : "the best there is, though the run is not steady yet");
+    words = fmt::format(
+        "Means are over orbits {} to {} (shaded), {}; their errors are by blocks, since consecutive rows "
+        "are correlated.",
+        format_number(steady->since_orbit, 3), format_number(steady->until_orbit, 4),
+        steady->steady ? "where the run is steady" : "the best available part, though the run is not steady yet");
   if (steady && steady->waves)
-    words += fmt::format(" Axisymmetric waves as long as the box hold {}.", words_of(*steady->waves));
-  words +=
-      " A curve is the mean of rows that follow each other, the band its standard error where a mean is of several "
-      "rows. Drag along an axis to zoom, double-click to see all.";
+    words += fmt::format(" Axisymmetric waves as long as the box hold {}.", describe(*steady->waves));
+  words += " Curves are means over consecutive rows, bands their standard errors where a mean is over several "
+           "rows. Drag along an axis to zoom, double-click to see all.";
   const RingScale scale = RingScale::of(pictured_.back(), !scene_->external_forces.empty());
   return section("series", "Through time", note(words) + "<div id=\"plots\"></div>\n") +
          data_element("series-data", series_plots(run_.series, scale, steady));
@@ -222,25 +224,25 @@ std::string RunPage::measured(MeasuredPart part) {
   const Record numbers = record_of(measure(part.stored.patches, part.transport, {}, [this] { progress_.add(2.0); }));
   return section(
       "measured", "Measured",
-      note(fmt::format("As `keeler analyze` measures, structure in {}; viscosities and the balance are of the "
-                       "same orbits as the means above.",
+      note(fmt::format("The numbers of `keeler analyze`: structure from {}; viscosities and the balance over the "
+                       "orbits of the means above.",
                        pluralize(part.stored.patches.size(), "snapshot"))) +
           measured_table(numbers) + folded("All numbers, by their names in JSON", all_numbers(numbers)));
 }
 
 std::string RunPage::accuracy() const {
   if (!summary_)
-    return section("accuracy", "Accuracy and its price",
-                   note("The run has not ended, so it has no account yet (summary.json is missing)."));
+    return section("accuracy", "Accuracy and cost",
+                   note("The run has not ended, so costs and errors are not known yet (summary.json is missing)."));
   std::string speed;
   const auto number = [&](const char* name) { return number_in(*summary_, name).value_or(0.0); };
   for (const char* const part : {"drift", "gravity", "series"})
     speed += fmt::format("{}{} {} ns", speed.empty() ? "" : ", ", part,
                          format_number(number(fmt::format("ns_per_particle_step.{}", part).c_str()), 3));
   return section(
-      "accuracy", "Accuracy and its price",
+      "accuracy", "Accuracy and cost",
       accuracy_table(*scene_, *summary_) + "<h3>Time</h3>\n" + timing_table(*summary_) +
-          note(fmt::format("{}, {} s of processor time, {} MB at most. A particle and step: {}.",
+          note(fmt::format("{}, {} s of processor time, {} MB at most. Per particle and step: {}.",
                            pluralize(static_cast<std::uint64_t>(number("threads")), "thread"),
                            format_number(number("cpu"), 4), format_number(number("peak_memory"), 4), speed)));
 }
@@ -251,12 +253,12 @@ std::string RunPage::scene_section() const {
   for (const std::string& notice : scene_->notices)
     words += note("Note: " + notice);
   PatchScale scale = scale_of(last);
-  scale.start = {}; // a later state is not judged as a start
+  scale.start = {}; // the warnings on initial states do not apply to a later state
   for (const std::string& warning : warnings(*scene_, scale))
     words += note("Note: " + warning);
   return section("scene", "The scene",
                  derived_table(*scene_, last) + words +
-                     folded("As it was run, every key", "<pre>" + html_text(meta_.scene) + "</pre>\n"));
+                     folded("The resolved scene, all keys", "<pre>" + html_text(meta_.scene) + "</pre>\n"));
 }
 
 std::string RunPage::provenance() const {
@@ -277,10 +279,10 @@ std::string RunPage::provenance() const {
 std::string RunPage::facts() const {
   const Value* const value = summary_ ? find_value(*summary_, "finished") : nullptr;
   const bool* const finished = value ? std::get_if<bool>(value) : nullptr;
-  const std::string state = run_.running            ? "still working"
-                            : !summary_             ? "broken off"
+  const std::string state = run_.running            ? "in progress"
+                            : !summary_             ? "interrupted"
                             : finished && *finished ? "finished"
-                                                    : "stopped before its end";
+                                                    : "stopped before the end";
   return note(fmt::format("{} particles, {} of {} orbits, {}.", pictured_.back().size(), format_number(run_.orbits, 4),
                           format_number(run_.end_orbits, 4), state));
 }
@@ -302,7 +304,7 @@ std::string scripts() {
 }
 
 std::string RunPage::html() {
-  look_at_snapshots();
+  read_snapshots();
   if (fs::exists(folder_ / "summary.json"))
     summary_ = read_summary(folder_);
   MeasuredPart part = measured_part(folder_, {});

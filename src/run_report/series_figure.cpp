@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -30,7 +31,7 @@ constexpr Ink dark_ink{"#0c0d11", "#4a4c52", "#ede8db",
 constexpr Ink light_ink{"#ffffff", "#9a9a9e", "#1a1a1f",
                         "#5c5c61", "#eceff4", {"#2166ac", "#b2182b", "#1b7837", "#762a83"}};
 
-// Lengths in units of the drawing, which is 1200 wide.
+// Lengths, in units of the drawing of width 1200.
 constexpr double drawing_width = 1200, head = 70, panel_height = 316, panel_width = drawing_width / 2;
 constexpr double frame_left = 96, frame_right = 26, frame_top = 78, frame_bottom = 44;
 
@@ -41,17 +42,18 @@ struct Range {
     low = std::min(low, value);
     high = std::max(high, value);
   }
-  // Some air above and below; of a constant a tenth of it.
+  // Returns the range with a margin above and below: 6 % of it, or a tenth of a constant value.
   Range widened() const {
-    const double span = high - low, least = 1e-9 * std::max(std::fabs(low), std::fabs(high));
-    const double air = span > least ? 0.06 * span : std::max(0.1 * std::fabs(high), 1e-12);
-    // A quantity without a sign begins at 0 where that is near.
-    return {low >= 0.0 && low < 0.5 * high ? 0.0 : low - air, high + air};
+    const double span = high - low, rounding = 1e-9 * std::max(std::fabs(low), std::fabs(high));
+    const double margin = span > rounding ? 0.06 * span : std::max(0.1 * std::fabs(high), 1e-12);
+    // the axis of a non-negative quantity begins at 0 if that is near
+    return {low >= 0.0 && low < 0.5 * high ? 0.0 : low - margin, high + margin};
   }
 };
 
-// 1, 2 or 5 times a power of ten: three to eight steps in the range.
+// Returns 1, 2 or 5 times a power of ten, for three to eight steps in the range.
 double tick_step(const Range& range) {
+  assert(range.high > range.low);
   const double span = range.high - range.low, power = std::pow(10.0, std::floor(std::log10(span / 3.0)));
   for (const double step : {5.0, 2.0})
     if (span / (step * power) >= 3.0)
@@ -68,7 +70,7 @@ std::string text_at(double x, double y, const char* colour, double size, const c
                      y, colour, size, anchor, html_text(words));
 }
 
-// "0.0017 ± 0.0001", or nothing
+// Returns "0.0017 ± 0.0001", or an empty string if there is no mean.
 std::string mean_of(const Json& curve) {
   const Json& mean = curve["mean"];
   if (!mean.is_object() || !mean["value"].is_number())
@@ -124,12 +126,12 @@ private:
     std::string line, upper, lower;
     for (const Json& point : curve["points"]) {
       const double at = x(point[0]), value = point[1], error = point[2].is_number() ? point[2].get<double>() : 0.0;
-      const auto place = [&](double v) {
+      const auto vertex = [&](double v) {
         return fmt::format("{:.1f},{:.1f} ", at, y(std::clamp(v, values_.low, values_.high)));
       };
-      line += place(value);
-      upper += place(value + error);
-      lower = place(value - error) + lower;
+      line += vertex(value);
+      upper += vertex(value + error);
+      lower = vertex(value - error) + lower;
     }
     return fmt::format("<polygon points=\"{}{}\" fill=\"{}\" fill-opacity=\"0.25\" stroke=\"none\"/>\n"
                        "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\" "
@@ -137,8 +139,8 @@ private:
                        upper, lower, colour, line, colour);
   }
 
-  // Names and, below them, means. One text each, whose parts have the colours of the curves: the viewer knows how wide
-  // they are.
+  // Returns the names of the curves and, below, their means. Each is one text with coloured parts, since only the
+  // viewer can lay out text of unknown width.
   std::string legend() const {
     std::string names, means;
     for (std::size_t k = 0; k < plot_["curves"].size(); ++k) {
@@ -187,6 +189,7 @@ private:
 std::string series_svg(const Json& plots, const std::string& title, const SeriesFigureLook& look) {
   const Ink& ink = look.light ? light_ink : dark_ink;
   const Json& panels = plots["plots"];
+  assert(!panels.empty());
   const double drawing_height = head + panel_height * std::ceil(0.5 * static_cast<double>(panels.size())) + 10;
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{:.0f}\" viewBox=\"0 0 {} {}\" "

@@ -6,6 +6,7 @@
 #include <keeler/statistics/time_series.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -17,11 +18,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t max_points = 200; // of a curve
+constexpr std::size_t max_points = 200; // per curve
 
 struct Curve {
   std::string column, name;
-  Course course = Course::value;
+  ColumnKind kind = ColumnKind::value;
 };
 
 struct Plot {
@@ -29,13 +30,16 @@ struct Plot {
   std::vector<Curve> curves;
 };
 
-// Sums are drawn as they are, events as their number an orbit, fluxes as viscosities.
+// Returns the unit of a curve: sums are drawn as they are, events per orbit, fluxes as viscosities.
 std::string drawn_unit(const SeriesColumn& column) {
   const std::string unit = column.unit;
-  return column.course == Course::count ? "an orbit" : column.course == Course::flux ? "m²/s" : unit == "1" ? "" : unit;
+  return column.kind == ColumnKind::count  ? "per orbit"
+         : column.kind == ColumnKind::flux ? "m²/s"
+         : unit == "1"                     ? ""
+                                           : unit;
 }
 
-// Columns that this program does not know have a plot by their own names.
+// Returns the plots of a series. Columns unknown to this program have plots titled with their names.
 std::vector<Plot> plots_of(const SeriesTable& series) {
   std::vector<Plot> plots;
   const auto curve_of = [&](const std::string& title, const std::string& unit, const Curve& curve) {
@@ -50,7 +54,7 @@ std::vector<Plot> plots_of(const SeriesTable& series) {
     const std::string plot = column.plot;
     const std::size_t colon = plot.find(": ");
     if (known.insert(column.name).second)
-      curve_of(plot.substr(0, colon), drawn_unit(column), {column.name, plot.substr(colon + 2), column.course});
+      curve_of(plot.substr(0, colon), drawn_unit(column), {column.name, plot.substr(colon + 2), column.kind});
   }
   for (const std::string& name : series.names)
     if (!known.contains(name))
@@ -62,16 +66,18 @@ struct Points {
   std::vector<double> times, values;
 };
 
-// What is not known (nan) is left out.
+// Returns the points of a curve; unknown values (NaN) are omitted.
 Points points_of(const SeriesTable& series, const Curve& curve, const RingScale& scale) {
   const std::vector<double>&times = series.of("time_orbits"), &column = series.of(curve.column);
   const double orbit_s = 2.0 * std::numbers::pi / scale.orbital_frequency;
-  const double unit = curve.course == Course::flux ? orbit_s * scale.mass * scale.shear * scale.orbital_frequency : 1.0;
+  const double unit =
+      curve.kind == ColumnKind::flux ? orbit_s * scale.mass * scale.shear * scale.orbital_frequency : 1.0;
+  assert(column.size() == times.size());
   Points points;
-  const bool itself = curve.course == Course::value || curve.course == Course::sum;
-  for (std::size_t k = itself ? 0 : 1; k < column.size(); ++k) {
-    const double time = itself ? times[k] : 0.5 * (times[k - 1] + times[k]);
-    const double value = itself ? column[k] : (column[k] - column[k - 1]) / ((times[k] - times[k - 1]) * unit);
+  const bool instantaneous = curve.kind == ColumnKind::value || curve.kind == ColumnKind::sum;
+  for (std::size_t k = instantaneous ? 0 : 1; k < column.size(); ++k) {
+    const double time = instantaneous ? times[k] : 0.5 * (times[k - 1] + times[k]);
+    const double value = instantaneous ? column[k] : (column[k] - column[k - 1]) / ((times[k] - times[k - 1]) * unit);
     if (std::isfinite(value)) {
       points.times.push_back(time);
       points.values.push_back(value);
@@ -80,8 +86,9 @@ Points points_of(const SeriesTable& series, const Curve& curve, const RingScale&
   return points;
 }
 
-// [time, mean, standard error of the mean or null] of rows that follow each other.
+// Returns bins of consecutive rows: [time, mean, standard error of the mean or null].
 Json binned(const Points& points) {
+  assert(points.times.size() == points.values.size());
   const std::size_t bins = std::min(max_points, points.times.size());
   Json all = Json::array();
   for (std::size_t b = 0; b < bins; ++b) {
@@ -100,7 +107,8 @@ Json numbers_of_estimate(const Estimate& mean) {
   return {{"value", or_null(mean.value)}, {"error", or_null(mean.error)}};
 }
 
-// A viscosity is the one of the tables; of anything else the mean of the rows in the window, null where there are none.
+// Returns the mean over the steady part: for viscosities the value of the tables, otherwise the mean of the rows; null
+// if there are none.
 Json steady_mean(const Curve& curve, const Points& points, const Transport& steady) {
   if (curve.column == "translational_flux_kg_m2_s")
     return numbers_of_estimate(steady.translational);
@@ -112,7 +120,7 @@ Json steady_mean(const Curve& curve, const Points& points, const Transport& stea
   for (std::size_t k = 0; k < points.times.size(); ++k)
     if (points.times[k] >= steady.since_orbit && points.times[k] <= steady.until_orbit)
       values.push_back(points.values[k]);
-  return values.empty() || curve.course == Course::sum ? Json(nullptr) : numbers_of_estimate(block_mean(values));
+  return values.empty() || curve.kind == ColumnKind::sum ? Json(nullptr) : numbers_of_estimate(block_mean(values));
 }
 
 } // namespace

@@ -1,5 +1,4 @@
-// The columns of a run's series as plots: means of rows that follow each other, and of the steady part with their
-// errors.
+// The columns of a run's series as plots: bin means over consecutive rows, and means over the steady part with errors.
 #pragma once
 
 #include <keeler/io/series.hpp>
@@ -11,11 +10,11 @@
 
 namespace keeler {
 
-/// The part of a run whose means a plot tells: none where it was not found.
+/// Returns the steady part of a run, over which plots give means; none if it was not detected.
 std::optional<Transport> steady_part(const TransportReport& report);
 
-/// What plots.js draws: a plot for each quantity, none left out. `steady` is the part whose means are told, and has
-/// those of the viscosities; none: no means.
+/// Returns the data that plots.js draws: a plot for each quantity of the series, with the means over `steady`, if any,
+/// and its viscosities.
 nlohmann::ordered_json series_plots(const SeriesTable& series, const RingScale& scale,
                                     const std::optional<Transport>& steady);
 

@@ -1,5 +1,5 @@
-// The particles of the snapshots in three dimensions, as spheres at true scale. Each is a square that faces the viewer,
-// on which a sphere is painted with its own depth: 10⁵ of them need no triangles.
+// The particles of the snapshots in three dimensions, as spheres at true scale. Each is drawn as a point sprite that
+// faces the viewer, with the shading and depth of a sphere: 10⁵ particles need no triangle meshes.
 "use strict";
 (function () {
   const element = (id) => document.getElementById(id);
@@ -23,15 +23,15 @@
   try {
     renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
   } catch (error) {
-    element("stage").innerHTML = "<p>This browser shows no WebGL, so the particles cannot be shown here.</p>";
+    element("stage").innerHTML = "<p>This browser has no WebGL, so the particles cannot be shown.</p>";
     return;
   }
   element("stage").appendChild(renderer.domElement);
 
   const geometry = new THREE.BufferGeometry();
-  const places = new THREE.BufferAttribute(new Float32Array(3 * n), 3);
+  const positions = new THREE.BufferAttribute(new Float32Array(3 * n), 3);
   const tints = new THREE.BufferAttribute(new Uint8Array(3 * n), 3, true);
-  geometry.setAttribute("position", places);
+  geometry.setAttribute("position", positions);
   geometry.setAttribute("tint", tints);
   geometry.setAttribute("radius", new THREE.BufferAttribute(radii, 1));
 
@@ -41,7 +41,7 @@
     vertexShader: `
       attribute vec3 tint;
       attribute float radius;
-      uniform float pixels; // of a metre at a metre's distance
+      uniform float pixels; // per metre, at a distance of one metre
       varying vec3 colour;
       varying float size;
       varying vec3 middle;
@@ -96,14 +96,14 @@
     renderer.render(scene, camera);
   }
 
-  // The patch fills the stage, whichever way the stage is long. Above, x runs to the right and y upward.
+  // Fits the patch to the stage, whatever its aspect ratio. From above, x points to the right and y upward.
   const directions = { above: [0, -1e-3, 1], edge: [0, -1, 0.02], oblique: [-0.35, -0.8, 0.55] };
   function look(name) {
     const direction = new THREE.Vector3(...directions[name]).normalize();
     const tall = Math.tan(0.5 * camera.fov * Math.PI / 180), wide = tall * camera.aspect;
     const right = new THREE.Vector3(0, 0, 1).cross(direction).normalize();
     const up = direction.clone().cross(right);
-    let distance = 0; // at which the nearest and the farthest corner are both within the frame
+    let distance = 0; // at which all corners are within the frame
     for (const [x, y] of [[-1, -1], [1, -1], [1, 1], [-1, 1]]) {
       const corner = new THREE.Vector3(0.53 * x * sizeX, 0.53 * y * sizeY, 0);
       const aside = Math.max(Math.abs(corner.dot(right)) / wide, Math.abs(corner.dot(up)) / tall);
@@ -126,23 +126,23 @@
     draw();
   }
 
-  function place(snapshot) {
+  function setPositions(snapshot) {
     const units = new Uint16Array(bytes(snapshot.places).buffer);
     for (let k = 0; k < n; ++k)
       for (let axis = 0; axis < 3; ++axis)
-        places.array[3 * k + axis] = data.low_m[axis] + data.unit_m[axis] * units[axis * n + k];
-    places.needsUpdate = true;
+        positions.array[3 * k + axis] = data.low_m[axis] + data.unit_m[axis] * units[axis * n + k];
+    positions.needsUpdate = true;
   }
 
-  // Heights are known from the places; nearly all of them lie within the range of the bar.
+  // Returns the heights, from the positions. The colour bar spans their 1st to 99th percentile.
   function heights() {
     const all = new Float32Array(n);
     for (let k = 0; k < n; ++k)
-      all[k] = places.array[3 * k + 2];
+      all[k] = positions.array[3 * k + 2];
     const sorted = Float32Array.from(all).sort();
     const low = sorted[Math.floor(0.01 * (n - 1))], high = sorted[Math.ceil(0.99 * (n - 1))];
-    const share = high > low ? 255 / (high - low) : 0;
-    return { range: { low: low, high: high }, bytes: all.map((z) => Math.min(255, Math.max(0, share * (z - low)))) };
+    const scale = high > low ? 255 / (high - low) : 0;
+    return { range: { low: low, high: high }, bytes: all.map((z) => Math.min(255, Math.max(0, scale * (z - low)))) };
   }
 
   function colour(field, moment) {
@@ -162,7 +162,7 @@
   const time = element("time"), choice = element("field");
   function show() {
     const moment = Number(time.value), snapshot = data.snapshots[moment];
-    place(snapshot);
+    setPositions(snapshot);
     colour(data.fields[Number(choice.value)], moment);
     element("moment").textContent = `orbit ${snapshot.time_orbits.toFixed(2)} (${snapshot.file})`;
     draw();
@@ -178,7 +178,7 @@
       pixels.data.set([colours[3 * k], colours[3 * k + 1], colours[3 * k + 2], 255], 4 * k);
     pen.putImageData(pixels, 0, 0);
     element("shown").textContent = (n < data.of ? `${n} of ${data.of} particles` : `All ${n} particles`) +
-      " at true scale. Drag to turn, drag with the right button to move, roll the wheel to come closer.";
+      " at true scale. Drag to rotate, drag with the right button to move, use the wheel to zoom.";
   }
 
   let playing = 0;

@@ -9,13 +9,13 @@ namespace keeler {
 void fail_broken(const InvariantError& error, const Simulation& simulation, const Scene& scene, const RunFolder& folder,
                  Recorder& recorder) {
   const BrokenState broken(error, simulation);
-  std::string told = save_broken(broken, folder.broken(broken.step), {scene.resolved, recorder.provenance()});
+  std::string message = save_broken(broken, folder.broken(broken.step), {scene.resolved, recorder.provenance()});
   try {
     recorder.log("broken", {{"step", broken.step}, {"orbits", broken.patch.time_orbits}, {"reason", error.what()}});
   } catch (const IoError& not_logged) {
-    told += fmt::format("; the log does not tell: {}", not_logged.what());
+    message += fmt::format("; the log was not written: {}", not_logged.what());
   }
-  throw InvariantError(told);
+  throw InvariantError(message);
 }
 
 } // namespace keeler

@@ -1,4 +1,4 @@
-// What a run leaves when an invariant breaks: its state, as a snapshot that commands can look at and no run takes up.
+// The state of a run at a broken invariant, saved as a snapshot: commands can read it, runs never continue from it.
 #pragma once
 
 #include "recorder.hpp"
@@ -9,9 +9,9 @@
 
 namespace keeler {
 
-/// Writes broken_NNNNNN.hdf, numbered by the step, and throws an InvariantError with the words of `error`, when it was,
-/// and the file. The state is that of the last boundary, or of the last contact in the middle of a drift. Particles
-/// that no snapshot may have (particle_fault) are left out.
+/// Writes broken_NNNNNN.hdf, numbered by the step, and throws an InvariantError with the message of `error`, its time
+/// and the file. The state is that of the last boundary, or of the last contact if the error occurred during a drift.
+/// Particles that are invalid in a snapshot (particle_fault) are omitted.
 [[noreturn]] void fail_broken(const InvariantError& error, const Simulation& simulation, const Scene& scene,
                               const RunFolder& folder, Recorder& recorder);
 

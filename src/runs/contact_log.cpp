@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 namespace keeler {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 const std::vector<std::string> speed_columns = {"since_orbits", "until_orbits", "speed_from_m_s",
                                                 "speed_to_m_s", "contacts",     "energy_lost_j"};
 
-// Rows stand at snapshots alone, so those after the last one will be made again.
+// Rows are written at snapshots only, so a resumed run cuts off the rows after its last snapshot and writes them again.
 Series open_speeds(const RunFolder& folder, const std::optional<LogResume>& resume) {
   return resume ? Series::resume(folder.impact_speeds(), speed_columns, resume->last_snapshot_step)
                 : Series::begin(folder.impact_speeds(), speed_columns);
@@ -32,7 +33,7 @@ bool is_logged(const ContactLogSettings& settings, const CollisionRecord& record
     return false;
   if (settings.fraction >= 1.0)
     return true;
-  constexpr std::uint64_t odd = 0x9e3779b97f4a7c15; // one number for both ids
+  constexpr std::uint64_t odd = 0x9e3779b97f4a7c15; // combines both ids into one number
   RandomStream random(std::bit_cast<std::uint64_t>(time_orbits), RandomPurpose::contact,
                       odd * record.low_id + record.high_id);
   return random.uniform() < settings.fraction;
@@ -42,14 +43,15 @@ ContactLog::ContactLog(const RunFolder& folder, const Scene& scene, const Proven
                        const std::optional<LogResume>& resume, std::int64_t file_rows)
     : folder_(folder), scene_(scene), provenance_(provenance), file_rows_(file_rows),
       counters_(resume ? resume->counters : ContactCounters{}), speeds_(open_speeds(folder, resume)) {
+  assert(file_rows > 0 && counters_.rows >= 0);
   if (resume)
-    take_up();
-  write_all(); // now, so that a run whose log cannot be written ends before its first step
+    load_last_file();
+  write_all(); // so that a run without write access fails before its first step
 }
 
-// The rows of the last file up to the checkpoint's. What somebody removed or damaged is no reason to lose the run: the
-// table goes on with a gap.
-void ContactLog::take_up() {
+// Loads the rows of the last file, up to the number in the checkpoint. If the file is missing or damaged, the table
+// continues with a gap.
+void ContactLog::load_last_file() {
   const std::int64_t number = counters_.rows / file_rows_;
   folder_.cut_contacts(number + 1);
   first_row_ = number * file_rows_;
@@ -65,9 +67,9 @@ void ContactLog::take_up() {
       return;
     }
   } catch (const IoError&) {
-    // it is not there or damaged
+    // missing or damaged
   }
-  lost_ = counters_.rows - first_row_;
+  lost_rows_ = counters_.rows - first_row_;
   first_row_ = counters_.rows;
 }
 
@@ -77,6 +79,7 @@ void ContactLog::watch(Simulation& simulation) {
 }
 
 void ContactLog::recorded(std::span<const CollisionRecord> records) {
+  assert(simulation_ != nullptr && scene_.output.collisions);
   const double omega = scene_.planet.orbital_frequency;
   const SimulationState& state = simulation_->state();
   const std::int64_t step = state.step;
@@ -109,6 +112,7 @@ void ContactLog::write_all() {
 }
 
 void ContactLog::write_file(std::size_t rows) {
+  assert(rows <= rows_.size() && rows <= static_cast<std::size_t>(file_rows_));
   write_contacts(folder_.contacts(first_row_ / file_rows_), std::span(rows_).first(rows),
                  {first_row_, scene_.planet.orbital_frequency, scene_.resolved, provenance_});
   written_ = first_row_ + static_cast<std::int64_t>(rows);
@@ -117,10 +121,11 @@ void ContactLog::write_file(std::size_t rows) {
 void ContactLog::end_interval(std::int64_t last_snapshot_step, std::int64_t step) {
   const double since = static_cast<double>(std::max<std::int64_t>(last_snapshot_step, 0)) * scene_.time.step;
   const double until = static_cast<double>(step) * scene_.time.step;
+  assert(last_snapshot_step <= step);
   ImpactSpeeds& speeds = counters_.speeds;
   for (std::size_t bin = 0; bin < speeds.bins(); ++bin)
     if (speeds.count(bin) > 0)
-      speeds_.append(step, std::vector<double>{since, until, speeds.from(bin), speeds.to(bin),
+      speeds_.append(step, std::vector<double>{since, until, speeds.lower_edge(bin), speeds.upper_edge(bin),
                                                static_cast<double>(speeds.count(bin)), speeds.energy_lost(bin)});
   speeds.clear();
 }

@@ -1,10 +1,9 @@
-// The log of contacts: those that the scene asks for, as rows of one long table in the order of events, and how fast
-// all contacts were.
+// The log of contacts: the contacts that the scene selects, as rows of one table in the order of events, and a
+// histogram of the impact speeds of all contacts.
 //
-// The table lies in files of `rows_a_file` rows. The last one is written anew whenever it is to be on disk, so a
-// checkpoint needs to know no more than the number of rows: on resume the rows beyond it are cut off, and the files are
-// those of a run without a break, whenever it had its checkpoints. Invariant: files before the last are full and never
-// change.
+// The table is split into files of `rows_per_file` rows. The last file is rewritten before each checkpoint, so a
+// checkpoint stores only the number of rows: on resume the rows beyond it are cut off, and the files equal the files
+// of an uninterrupted run, whatever its checkpoints. Invariant: files before the last are full and never change.
 #pragma once
 
 #include "impact_speeds.hpp"
@@ -17,45 +16,45 @@
 
 namespace keeler {
 
-/// What of the log stands in a checkpoint.
+/// The part of the log that a checkpoint stores.
 struct ContactCounters {
-  std::int64_t rows = 0; ///< of the table
+  std::int64_t rows = 0; ///< number of rows of the table
   ImpactSpeeds speeds;   ///< since the last snapshot
 
   void list_fields(FieldTable& table);
 };
 
-/// Where a run goes on.
+/// The position in the log at which a resumed run continues.
 struct LogResume {
   ContactCounters counters;
   std::int64_t last_snapshot_step; ///< −1: none yet
 };
 
-/// Whether a contact is for the log; its time in orbits stands for its step.
+/// Returns true if the log selects a contact. The random choice depends on its time (orbits) and ids alone.
 bool is_logged(const ContactLogSettings& settings, const CollisionRecord& record, double time_orbits,
                double orbital_frequency);
 
 class ContactLog final : public DriftObserver {
 public:
-  static constexpr std::int64_t rows_a_file = std::int64_t{1} << 19;
+  static constexpr std::int64_t rows_per_file = std::int64_t{1} << 19;
 
-  /// Begins a log, or goes on with one. Throws IoError when it cannot be written.
+  /// Begins a log, or continues one. The scene must outlive it. Throws IoError when the log cannot be written.
   ContactLog(const RunFolder& folder, const Scene& scene, const Provenance& provenance,
-             const std::optional<LogResume>& resume, std::int64_t file_rows = rows_a_file);
+             const std::optional<LogResume>& resume, std::int64_t file_rows = rows_per_file);
 
-  /// Takes the contacts of all steps from now on. Both must outlive its use.
+  /// Registers this log for the contacts of all following steps. The log must outlive them.
   void watch(Simulation& simulation);
 
-  /// After a step: writes the files that are full.
+  /// Writes the files that are full. Call it after each step.
   void write_full_files();
-  /// Writes all rows so far: before a checkpoint.
+  /// Writes all rows so far. Call it before a checkpoint.
   void write_all();
-  /// Writes the impact speeds since the last snapshot and begins anew.
+  /// Writes the histogram of impact speeds since the last snapshot, and clears it.
   void end_interval(std::int64_t last_snapshot_step, std::int64_t step);
 
   const ContactCounters& counters() const { return counters_; }
-  /// Rows that a resumed run did not find any more.
-  std::int64_t lost() const { return lost_; }
+  /// Returns the number of rows that were missing on resume.
+  std::int64_t lost_rows() const { return lost_rows_; }
   Series& speeds() { return speeds_; }
 
   bool looks_on() const override { return false; }
@@ -63,7 +62,7 @@ public:
   void recorded(std::span<const CollisionRecord> records) override;
 
 private:
-  void take_up();
+  void load_last_file();
   void write_file(std::size_t rows);
 
   RunFolder folder_;
@@ -73,10 +72,10 @@ private:
   ContactCounters counters_;
   Series speeds_;
   const Simulation* simulation_ = nullptr;
-  std::vector<ContactRow> rows_; // of the last file, and more until it is written
-  std::int64_t first_row_ = 0;   // of them in the table
-  std::int64_t written_ = -1;    // rows of the table that are on disk
-  std::int64_t lost_ = 0;
+  std::vector<ContactRow> rows_; // of the last file, and later rows until it is written
+  std::int64_t first_row_ = 0;   // index of rows_.front() in the table
+  std::int64_t written_ = -1;    // number of rows on disk
+  std::int64_t lost_rows_ = 0;
 };
 
 } // namespace keeler

@@ -11,9 +11,9 @@
 namespace keeler {
 namespace {
 
-// By where it is, not by how it is written: ranks may be started in different folders.
+// Returns the canonical path: ranks may be started in different folders.
 std::string location(const std::filesystem::path& folder) {
-  std::error_code unknown; // a current folder that is gone, or one that cannot be looked into
+  std::error_code unknown; // the current folder was removed, or cannot be read
   const std::filesystem::path whole = std::filesystem::absolute(folder, unknown);
   const std::filesystem::path found = std::filesystem::weakly_canonical(whole, unknown);
   return (unknown ? whole.lexically_normal() : found).string();
@@ -32,9 +32,9 @@ std::vector<Asked> asked_of(const RunOptions& options) {
           {"--wall-time", in_words(options.wall_time_s)}};
 }
 
-// A start can be large, and is known by its seal; one without a seal is read by the first rank alone. Other files are
-// tables.
-std::string content_of(const Scene& scene, const std::string& file) {
+// Returns a fingerprint of a file. A start snapshot can be large and is identified by its seal; one without a seal is
+// read by the root alone. Other files are tables, and are hashed.
+std::string fingerprint(const Scene& scene, const std::string& file) {
   if (file == scene.start_from)
     return snapshot_seal(file);
   Hash hash;
@@ -52,7 +52,7 @@ void require_same_run(const Scene& scene, const RunOptions& options) {
     for (const KeyInForce& key : keys_in_force(scene)) {
       request.push_back({key.path, key.value});
       if (key.file)
-        request.push_back({fmt::format("the content of '{}'", *key.file), content_of(scene, *key.file)});
+        request.push_back({fmt::format("the content of '{}'", *key.file), fingerprint(scene, *key.file)});
     }
   });
   require_same_request(request, options.ranks);

@@ -1,16 +1,15 @@
-// What the ranks of a run are asked for: the same of all, or the run does not begin.
+// A distributed run begins only if all ranks received the same request.
 #pragma once
 
 #include <keeler/runs/run.hpp>
 
 namespace keeler {
 
-/// Collective. Throws UsageError where a rank has other options than the first one, another scene, or other files that
-/// the scene names. Options that only the first rank heeds count too: ranks that differ in them were not started as one
-/// run.
+/// Throws UsageError if the options of a rank, its scene, or the files that the scene names differ from the root's.
+/// Options that only the root uses are compared too: ranks that differ in them were not started as one run. Collective.
 void require_same_run(const Scene& scene, const RunOptions& options);
 
-/// The same of a run that goes on, whose scene is in its checkpoint.
+/// As above for a resumed run, which reads its scene from the checkpoint.
 void require_same_run(const RunOptions& options);
 
 } // namespace keeler

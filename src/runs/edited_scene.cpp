@@ -24,7 +24,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-// Lines of one that are not in the other; both are resolved scenes, with a key in each line.
+// Returns the lines of `text` that are not in `other`; both are resolved scenes, with one key per line.
 std::vector<std::string> lines_beyond(const std::string& text, const std::string& other) {
   std::vector<std::string> lines = lines_of(text), others = lines_of(other), beyond;
   std::sort(others.begin(), others.end());
@@ -59,7 +59,7 @@ void EditedScene::keep_apart() {
 
 std::string EditedScene::notice(const fs::path& newest) const {
   const std::string ignored =
-      fmt::format("'{}' was edited, and a run goes on with the scene that it began with: ", folder_.scene().string());
+      fmt::format("'{}' was edited, but a run continues with the scene that it began with: ", folder_.scene().string());
   const std::string kept = file_ == folder_.scene() ? "" : fmt::format("the edited text is now '{}'; ", file_.string());
   const std::string begins_again = fmt::format("\"keeler run {} --from {} -o NEW_FOLDER\" starts a run of the edited "
                                                "scene from the newest snapshot",
@@ -68,13 +68,13 @@ std::string EditedScene::notice(const fs::path& newest) const {
     const Scene edited = parse_stored_scene(text_, file_.string());
     const std::vector<std::string> changed = lines_beyond(edited.resolved, scene_.resolved);
     if (changed.empty())
-      return fmt::format("{}{}no key of it differs", ignored, kept);
+      return fmt::format("{}{}no key differs", ignored, kept);
     if (changed.size() == 1 && changed.front().starts_with("end = "))
-      return fmt::format("{}{}\"keeler resume {} --until {:.10g}\" goes on to the edited end", ignored, kept,
+      return fmt::format("{}{}\"keeler resume {} --until {:.10g}\" continues to the edited end", ignored, kept,
                          folder_.path().string(), static_cast<double>(edited.time.end_step) * edited.time.step);
     return fmt::format("{}{}{} ({})", ignored, kept, begins_again, fmt::join(changed, ", "));
   } catch (const UsageError& fault) {
-    return fmt::format("{}{}it is no valid scene ({})", ignored, kept, fault.what());
+    return fmt::format("{}{}it is not a valid scene ({})", ignored, kept, fault.what());
   }
 }
 

@@ -1,5 +1,6 @@
-// A scene.toml that was edited after a run wrote it. A resumed run goes on with the scene of its checkpoint and writes
-// scene.toml again, so the edited text is kept under another name, and the user hears what would do as it says.
+// A scene.toml that was edited after a run wrote it. A resumed run continues with the scene of its checkpoint and
+// writes scene.toml again. The edited text is kept under another name, and the user is told the command that would use
+// it.
 #pragma once
 
 #include "run_folder.hpp"
@@ -14,15 +15,16 @@ namespace keeler {
 
 class EditedScene {
 public:
-  /// Returns none where scene.toml is missing, or holds the scene as the run wrote it: `stored`, the text in the
-  /// checkpoint, or what this program makes of that. Throws IoError.
+  /// Returns none if scene.toml is missing or unchanged: equal to `stored`, the text in the checkpoint, or to its
+  /// resolved form by this program. `scene` must outlive the result. Throws IoError.
   static std::optional<EditedScene> in(const RunFolder& folder, const std::string& stored, const Scene& scene);
 
-  /// Gives scene.toml the first name of scene_edited.toml, scene_edited_2.toml … that is free, for a run that goes on.
+  /// Renames scene.toml to the first free name of scene_edited.toml, scene_edited_2.toml …, before the run continues.
   /// Throws IoError.
   void keep_apart();
 
-  /// Returns a line: what is ignored, where it is, and the command for it. `newest` is the newest snapshot.
+  /// Returns a line with the ignored changes, the file that has them and the command that uses it. `newest` is the
+  /// newest snapshot.
   std::string notice(const std::filesystem::path& newest) const;
 
 private:

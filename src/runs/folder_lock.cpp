@@ -19,9 +19,9 @@ FolderLock::FolderLock(const std::filesystem::path& folder)
   if (descriptor_ < 0)
     throw IoError(fmt::format("cannot open the folder '{}': {}", folder.string(), std::strerror(errno)));
   if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
-    return; // a file system without locks does not keep anyone from working
+    return; // without support for locks in the file system, no lock is required
   close(descriptor_);
-  throw UsageError(fmt::format("work is going on in '{}' (another process holds the folder); wait for its end or name "
+  throw UsageError(fmt::format("'{}' is in use (another process holds the folder); wait until it ends, or name "
                                "another folder",
                                folder.string()));
 }
@@ -37,8 +37,8 @@ void FolderLock::require_in_place() const {
     return;
   throw IoError(
       fmt::format("the folder '{}' was moved, replaced or removed while the run wrote to it, so the run stops "
-                  "(its files would end up in two places); go on with \"keeler resume\" where the folder is "
-                  "now",
+                  "(its files would end up in two places); continue with \"keeler resume\" in the folder's "
+                  "new place",
                   folder_.string()));
 }
 

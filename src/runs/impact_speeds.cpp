@@ -2,20 +2,21 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
 namespace keeler {
 namespace {
 
-constexpr int lowest_decade = -7, highest_decade = 1, bins_a_decade = 10;
-constexpr std::size_t edge_count = (highest_decade - lowest_decade) * bins_a_decade + 1;
+constexpr int lowest_decade = -7, highest_decade = 1, bins_per_decade = 10;
+constexpr std::size_t edge_count = (highest_decade - lowest_decade) * bins_per_decade + 1;
 
 const std::array<double, edge_count>& edges() {
   static const auto all = [] {
     std::array<double, edge_count> made{};
     for (std::size_t k = 0; k < edge_count; ++k)
-      made[k] = std::pow(10.0, lowest_decade + static_cast<double>(k) / bins_a_decade);
+      made[k] = std::pow(10.0, lowest_decade + static_cast<double>(k) / bins_per_decade);
     return made;
   }();
   return all;
@@ -26,6 +27,7 @@ const std::array<double, edge_count>& edges() {
 ImpactSpeeds::ImpactSpeeds() : counts_(edge_count + 1), energies_(edge_count + 1) {}
 
 void ImpactSpeeds::add(double speed, double energy_lost) {
+  assert(!std::isnan(speed));
   const auto bin = static_cast<std::size_t>(std::upper_bound(edges().begin(), edges().end(), speed) - edges().begin());
   ++counts_[bin];
   energies_[bin] += energy_lost;
@@ -36,11 +38,13 @@ void ImpactSpeeds::clear() {
   std::fill(energies_.begin(), energies_.end(), 0.0);
 }
 
-double ImpactSpeeds::from(std::size_t bin) const {
+double ImpactSpeeds::lower_edge(std::size_t bin) const {
+  assert(bin < bins());
   return bin == 0 ? 0.0 : edges()[bin - 1];
 }
 
-double ImpactSpeeds::to(std::size_t bin) const {
+double ImpactSpeeds::upper_edge(std::size_t bin) const {
+  assert(bin < bins());
   return bin == edge_count ? std::numeric_limits<double>::infinity() : edges()[bin];
 }
 

@@ -1,5 +1,5 @@
-// How fast contacts were: counts and the energy lost in them by bins of normal speed, ten a decade from 1e-7 to 10 m/s,
-// with a bin below and one above.
+// A histogram of impact speeds: number of contacts and energy lost per bin of normal speed, ten bins per decade from
+// 1e-7 to 10 m/s, with one bin below and one above.
 #pragma once
 
 #include <keeler/core/field_table.hpp>
@@ -14,13 +14,13 @@ class ImpactSpeeds {
 public:
   ImpactSpeeds();
 
-  /// Normal speed in m/s, energy in J.
+  /// Adds a contact; normal speed in m/s, energy in J. Precondition: the speed is not NaN.
   void add(double speed, double energy_lost);
   void clear();
 
   std::size_t bins() const { return counts_.size(); }
-  double from(std::size_t bin) const; ///< m/s; 0 for the first
-  double to(std::size_t bin) const;   ///< m/s; infinite for the last
+  double lower_edge(std::size_t bin) const; ///< m/s; 0 for the first bin
+  double upper_edge(std::size_t bin) const; ///< m/s; infinite for the last bin
   std::uint64_t count(std::size_t bin) const { return counts_[bin]; }
   double energy_lost(std::size_t bin) const { return energies_[bin]; }
 

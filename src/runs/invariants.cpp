@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -25,23 +26,24 @@ std::array<double, 6> components(const Elements& el) {
   return {el.guiding_x, el.guiding_y, el.e_cos, el.e_sin, el.i_sin, el.i_cos};
 }
 
-// What the step that ends with `now` has done to a particle beyond kicks, the way along its orbit and wraps: at the
-// first epoch after it.
-class Undone {
+// The change of a particle's elements in the step that ends with `now`, beyond kicks, orbital drift and wraps, referred
+// to the first epoch after the step.
+class CollisionalChange {
 public:
-  Undone(const BeforeStep& before, const SimulationState& now, const Frequencies& f)
+  CollisionalChange(const BeforeStep& before, const SimulationState& now, const Frequencies& f)
       : before_(before), now_(now), frequencies_(f), boundary_(f, -0.5 * before.state.step_length),
         step_(f, before.state.step_length), back_(f, -0.5 * (now.step_length - before.state.step_length)),
         offset_(before.state.box.offset(2 * now.step + before.state.control.step, 0.5 * before.state.tick())) {}
 
-  Elements operator()(std::size_t place_before, std::size_t place_now) const {
-    Elements expected = before_.state.particles.bodies[place_before].elements;
-    half_kicks(before_.state, place_before, 1.0, expected);
+  // The arguments are the particle's indices in the two states.
+  Elements operator()(std::size_t index_before, std::size_t index_now) const {
+    Elements expected = before_.state.particles.bodies[index_before].elements;
+    half_kicks(before_.state, index_before, 1.0, expected);
     step_(expected);
-    Elements found = now_.particles.bodies[place_now].elements;
+    Elements found = now_.particles.bodies[index_now].elements;
     if (now_.step_length != before_.state.step_length)
       back_(found);
-    half_kicks(now_, place_now, -1.0, found);
+    half_kicks(now_, index_now, -1.0, found);
     const ShearingBox& box = before_.state.box;
     Elements change = found - expected;
     change = box.image_of(change, {-nearest(change.guiding_x / box.size_x), 0}, offset_);
@@ -53,12 +55,12 @@ private:
     return std::fabs(boxes) < 1e9 ? static_cast<std::int32_t>(std::lrint(boxes)) : 0;
   }
 
-  // Of all forces whose kicks stand at this boundary.
-  void half_kicks(const SimulationState& state, std::size_t place, double sign, Elements& el) const {
+  // Applies the half kicks of all forces that kick at this boundary.
+  void half_kicks(const SimulationState& state, std::size_t index, double sign, Elements& el) const {
     for (std::size_t f = 0; f < state.forces.size(); ++f) {
       const std::int64_t ticks = before_.kick_ticks[f];
       if (state.step % ticks == 0)
-        kick(el, sign * 0.5 * before_.state.tick() * static_cast<double>(ticks) * state.forces[f].accelerations[place],
+        kick(el, sign * 0.5 * before_.state.tick() * static_cast<double>(ticks) * state.forces[f].accelerations[index],
              frequencies_, boundary_);
     }
   }
@@ -85,7 +87,7 @@ double energy_scale(const SimulationState& state, const ParticleMeans& means, co
   return scale;
 }
 
-std::string fault_of_books(const SimulationState& state, const ParticleMeans& means, const Frequencies& f) {
+std::string fault_of_budget(const SimulationState& state, const ParticleMeans& means, const Frequencies& f) {
   const double residual = state.balance(means, f).residual;
   if (!std::isfinite(residual)) {
     const std::string numbers = fault_of_numbers(state);
@@ -94,7 +96,7 @@ std::string fault_of_books(const SimulationState& state, const ParticleMeans& me
   const double scale = energy_scale(state, means, f);
   if (std::fabs(residual) <= allowed_residual * scale)
     return {};
-  return fmt::format("the energy budget leaves {} of its sums open since the run began ({:g} is allowed)",
+  return fmt::format("the energy budget does not close: residual {} of its sums since the run began ({:g} is allowed)",
                      format_number(std::fabs(residual) / scale, 2), allowed_residual);
 }
 
@@ -145,7 +147,7 @@ std::string fault_of_particles(const SimulationState& before, const SimulationSt
   for (std::size_t k = 0; k < order.size(); ++k) {
     const std::uint64_t id = before.particles.ids[then[k]];
     if (now.particles.ids[order[k]] != id)
-      return fmt::format("particle {} is gone", id);
+      return fmt::format("particle {} is missing", id);
     const Body &body = now.particles.bodies[order[k]], &was = before.particles.bodies[then[k]];
     if (body.radius != was.radius || body.mass != was.mass)
       return fmt::format("particle {} has another radius or mass than before", id);
@@ -159,36 +161,39 @@ std::string fault_of_energy(const BeforeStep& before, const SimulationState& now
                scale = energy_scale(now, means, f);
   if (change <= allowed_residual_of_step * scale)
     return {};
-  return fmt::format("the step leaves {} of the energy budget's sums open ({:g} is allowed)",
+  return fmt::format("the energy budget of the step does not close: residual {} of its sums ({:g} is allowed)",
                      format_number(change / scale, 2), allowed_residual_of_step);
 }
 
 std::string fault_of_sums(const BeforeStep& before, const SimulationState& now, const Frequencies& f) {
   constexpr std::array<const char*, 6> names = {"m X", "m Y", "m e cos", "m e sin", "m i sin", "m i cos"};
-  constexpr double share = 1e-10; // of what collisions did to single particles
+  constexpr double tolerance = 1e-10; // over the summed magnitudes of single particles' changes
   constexpr double epsilon = std::numeric_limits<double>::epsilon(), roundings = 64.0;
-  const Undone undone(before, now, f);
+  assert(before.state.particles.size() == now.particles.size());
+  assert(before.kick_ticks.size() == now.forces.size());
+  const CollisionalChange collisional_change(before, now, f);
   const ShearingBox& box = now.box;
   const std::vector<std::uint32_t> order = order_by_id(now.particles.ids),
                                    then = order_by_id(before.state.particles.ids);
   std::array<double, 6> sums{}, sizes{}, rounding{};
-  bool thrown_far = false; // so that the box does not tell a wrap from what collisions did
+  bool displaced_far = false; // a collisional change could be mistaken for a wrap
   for (std::size_t k = 0; k < order.size(); ++k) {
     const Body& body = now.particles.bodies[order[k]];
-    const std::array<double, 6> change = components(undone(then[k], order[k])), values = components(body.elements);
-    const double thrown = std::hypot(change[2], change[3]); // X goes no farther, and Y as its velocity and X say
-    thrown_far |= thrown > 0.25 * box.size_x ||
-                  (2.0 / f.kappa + f.shear() * before.state.step_length) * thrown > 0.25 * box.size_y;
+    const std::array<double, 6> change = components(collisional_change(then[k], order[k])),
+                                values = components(body.elements);
+    const double displaced = std::hypot(change[2], change[3]); // bounds the change of X; of Y with velocity and X
+    displaced_far |= displaced > 0.25 * box.size_x ||
+                     (2.0 / f.kappa + f.shear() * before.state.step_length) * displaced > 0.25 * box.size_y;
     for (std::size_t c = 0; c < change.size(); ++c) {
-      const double place = c == 0 ? box.size_x : c == 1 ? box.size_x + box.size_y : 0.0;
+      const double position = c == 0 ? box.size_x : c == 1 ? box.size_x + box.size_y : 0.0;
       sums[c] += body.mass * change[c];
       sizes[c] += body.mass * std::fabs(change[c]);
-      rounding[c] += roundings * epsilon * body.mass * (std::fabs(values[c]) + place);
+      rounding[c] += roundings * epsilon * body.mass * (std::fabs(values[c]) + position);
     }
   }
-  const double vectors = rounding[2] + rounding[3] + rounding[4] + rounding[5]; // a turn mixes them
-  for (std::size_t c = thrown_far ? 2 : 0; c < sums.size(); ++c) {
-    const double allowed = share * sizes[c] + (c < 2 ? rounding[c] + vectors : vectors);
+  const double vectors = rounding[2] + rounding[3] + rounding[4] + rounding[5]; // a rotation mixes the components
+  for (std::size_t c = displaced_far ? 2 : 0; c < sums.size(); ++c) {
+    const double allowed = tolerance * sizes[c] + (c < 2 ? rounding[c] + vectors : vectors);
     if (!(std::fabs(sums[c]) <= allowed))
       return fmt::format("collisions changed the sum of {} by {} kg m ({} is allowed)", names[c],
                          format_number(sums[c], 2), format_number(allowed, 2));
@@ -200,7 +205,7 @@ double force_tolerance(const GravitySettings& settings) {
   using Solver = GravitySettings::Solver;
   switch (settings.solver) {
   case Solver::direct:
-    return 1e-4; // one ring of images and the far ones: docs/theory/gravity.md
+    return 1e-4; // one ring of images and the far field: docs/theory/gravity.md
   case Solver::tree: {
     const double relative = settings.opening_angle / 0.6; // docs/dev/gravity.md
     return 1e-3 * relative * relative * relative * relative + 1e-4;
@@ -215,11 +220,12 @@ double force_tolerance(const GravitySettings& settings) {
 
 std::string fault_of_forces(const Scene& scene, const Boundary& boundary, const SimulationState& state) {
   constexpr std::size_t sampled = 32;
-  constexpr double rough = 1e-3; // one ring errs by 3e-5 (docs/theory/gravity.md), nothing beside such an error
+  constexpr double one_ring_suffices = 1e-3; // the error of one ring, 3e-5 (docs/theory/gravity.md), is negligible then
   const double tolerance = scene.gravity ? force_tolerance(*scene.gravity) : 0.0;
   const std::size_t count = state.particles.size();
   if (tolerance == 0.0 || count == 0)
     return {};
+  assert(state.forces.front().accelerations.size() == count);
   std::vector<Vec3> positions;
   std::vector<double> masses;
   const GravityProblem problem = gravity_problem(boundary, scene.planet.orbital_frequency, positions, masses);
@@ -227,10 +233,10 @@ std::string fault_of_forces(const Scene& scene, const Boundary& boundary, const 
   std::vector<std::size_t> sample;
   for (std::size_t k = 0; k < std::min(sampled, count); ++k)
     sample.push_back(count <= sampled ? k : static_cast<std::size_t>(random.uniform() * static_cast<double>(count)));
-  // what sums over pairs itself is held against two rings, so that its own images are not their own judge
+  // solvers that sum over pairs are compared with two rings, so that their truncation of the images is tested too
   const bool pairs = scene.gravity->solver == GravitySettings::Solver::direct ||
                      scene.gravity->solver == GravitySettings::Solver::tree;
-  ImageSettings images = {.rings = pairs || tolerance < rough ? 2 : 1};
+  ImageSettings images = {.rings = pairs || tolerance < one_ring_suffices ? 2 : 1};
   if (pairs && !scene.gravity->images.far)
     images = scene.gravity->images;
   const std::vector<Vec3> exact =
@@ -248,15 +254,15 @@ std::string fault_of_forces(const Scene& scene, const Boundary& boundary, const 
   }
   for (const double m : masses)
     mass += m;
-  // where particles are few and far between, forces nearly cancel: then against that of the sheet
+  // in a sparse patch the forces nearly cancel: the scale is then the force of a uniform sheet
   const double sheet = problem.newton_g * mass / boundary.box.area();
   const double size = std::max(std::sqrt(squares / static_cast<double>(sample.size())), sheet);
   const double error = std::sqrt(errors / static_cast<double>(sample.size())) / size;
   if (error <= forces_factor * tolerance)
     return {};
   return fmt::format(
-      "the forces of {} err by {} of their size, the most on particle {} ({} is allowed: {:g} times what "
-      "the solver is good for)",
+      "the forces on {} have a relative rms error of {}, largest on particle {} ({} is allowed: {:g} times "
+      "the solver's tolerance)",
       pluralize(sample.size(), "particle"), format_number(error, 2), state.particles.ids[worst_at],
       format_number(forces_factor * tolerance, 2), forces_factor);
 }

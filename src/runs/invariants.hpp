@@ -1,5 +1,5 @@
-// What holds at every boundary between two steps, looked at from outside: in the state as it stands, beside what it was
-// a step before. Each check says what does not hold, "particles 3 and 17 overlap …", and nothing where all is well.
+// Invariants of the state at every boundary between two steps, checked against the state one step before where needed.
+// Each check returns the description of the first fault, "particles 3 and 17 overlap …", or an empty string.
 #pragma once
 
 #include <keeler/collision/neighbour_audit.hpp>
@@ -11,52 +11,53 @@
 
 namespace keeler {
 
-/// What the sums of the budget are held against: all that was booked, and the epicycles themselves, kg m² rad⁻².
+/// Returns the scale of the energy budget: the sum of the magnitudes of all its terms and of the epicyclic energy,
+/// kg m² rad⁻².
 double energy_scale(const SimulationState& state, const ParticleMeans& means, const Frequencies& frequencies);
 
-/// A residual of the energy budget that no rounding makes, over energy_scale(): of a whole run, and of one step.
+/// Largest residual of the energy budget, over energy_scale(), that rounding can explain: of a run, and of one step.
 inline constexpr double allowed_residual = 1e-9, allowed_residual_of_step = 1e-11;
 
-/// The energy of the epicycles and the books, of which one not finite number makes all not finite; and the residual of
-/// the whole run. It costs nothing beside the means.
-std::string fault_of_books(const SimulationState& state, const ParticleMeans& means, const Frequencies& frequencies);
+/// Checks that the energy budget of the run is finite and closes. A single number that is not finite makes its sums so
+/// too. The cost is negligible beside the means.
+std::string fault_of_budget(const SimulationState& state, const ParticleMeans& means, const Frequencies& frequencies);
 
-/// Elements, spins, accelerations: all are finite.
+/// Checks that all elements, spins and accelerations are finite.
 std::string fault_of_numbers(const SimulationState& state);
 
-/// No two particles overlap by more than rounding (allowed_overlap).
+/// Checks that no two particles overlap by more than rounding (allowed_overlap).
 std::string fault_of_overlap(const Patch& patch);
 
-/// What a step has missed of the neighbours.
+/// Reports a pair that the neighbour lists of a step missed.
 std::string fault_of_neighbours(const NeighbourAudit& audit);
 
-/// A state before a step, and from kick to kick of each force the ticks (Simulation::ticks_between_kicks).
+/// The state before a step, and the kick interval of each force in ticks (Simulation::ticks_between_kicks).
 struct BeforeStep {
   SimulationState state;
   std::vector<std::int64_t> kick_ticks;
-  double residual = 0.0; ///< of the budget, kg m² rad⁻²
+  double residual = 0.0; ///< of the energy budget, kg m² rad⁻²
 };
 BeforeStep before_step(const Simulation& simulation);
 
-/// The same particles as before: ids, radii, masses.
+/// Checks that ids, radii and masses did not change.
 std::string fault_of_particles(const SimulationState& before, const SimulationState& now);
 
-/// What the step has added to the residual of the budget.
+/// Checks the change of the budget's residual in one step.
 std::string fault_of_energy(const BeforeStep& before, const SimulationState& now, const ParticleMeans& means,
                             const Frequencies& frequencies);
 
-/// Collisions keep Σ mX, Σ mY, Σ m e and Σ m i, the vectors at one epoch: what the step has done to these beyond kicks,
-/// the way along the orbits and wraps is nothing in sum. X and Y are left out where collisions carried a particle
-/// farther than a quarter of the box.
+/// Checks that collisions conserve Σ mX, Σ mY, Σ m e and Σ m i (e, i as vectors, at one epoch): the changes beyond
+/// kicks, orbital drift and wraps must sum to zero. X and Y are not checked if collisions displaced a particle by more
+/// than a quarter of the box. Precondition: fault_of_particles() is empty.
 std::string fault_of_sums(const BeforeStep& before, const SimulationState& now, const Frequencies& frequencies);
 
-/// The forces of self-gravity's last kick at this boundary, of some particles that the step draws, against the sum over
-/// all pairs and images: their rms error is no more than forces_factor times what the solver is good for.
+/// Compares the self-gravity of the last kick on a random sample of particles with the sum over all pairs and images:
+/// the rms error may be at most forces_factor times the solver's tolerance. Precondition: the step ended with a kick.
 std::string fault_of_forces(const Scene& scene, const Boundary& boundary, const SimulationState& state);
 inline constexpr double forces_factor = 4.0;
 
-/// The rms error over the rms force that a solver's settings ask for; 0 where there is none: of the mesh alone and of
-/// radial waves, which are not to be the sum over pairs.
+/// Returns the relative rms error that a solver's settings imply; 0 for the mesh alone and for radial waves, which do
+/// not approximate the sum over pairs.
 double force_tolerance(const GravitySettings& settings);
 
 } // namespace keeler

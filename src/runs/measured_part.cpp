@@ -10,13 +10,13 @@
 namespace keeler {
 namespace {
 
-constexpr double averaged_orbits = 1.0; // where nothing says what is steady
+constexpr double averaged_orbits = 1.0; // if no steady part was detected
 
 } // namespace
 
 MeasuredPart measured_part(const std::filesystem::path& path, const OrbitWindow& window) {
   if (std::isnan(window.since.value_or(0.0)) || std::isnan(window.until.value_or(0.0)))
-    throw UsageError("--since or --until is no number (a part of a run lies between two orbits); give orbits");
+    throw UsageError("--since or --until is not a number (a part of a run lies between two orbits); give orbits");
   if (!std::filesystem::is_directory(path)) {
     if (window.since || window.until)
       throw UsageError(fmt::format("--since and --until choose a part of a run, and '{}' is a snapshot; give the run's "

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 
 namespace keeler {
 namespace {
@@ -24,7 +25,7 @@ Value vector_of(const Vec3& axes) {
 
 Rows state_rows() {
   return {
-      {{"snapshots", unit::none, "snapshots", "how many snapshots these are means of"},
+      {{"snapshots", unit::none, "snapshots", "number of snapshots averaged over"},
        [](Source m) -> Value { return m.analysis.snapshots; }},
       {{"time", unit::orbits, "time of the last", "time of the last snapshot since the run began"},
        [](Source m) -> Value { return m.analysis.time_orbits; }},
@@ -57,7 +58,7 @@ Rows state_rows() {
        [](Source m) -> Value { return m.mean_over_snapshots(mean_eccentricity); }},
       {{"mean_inclination", unit::metres, "", "mean amplitude of the vertical oscillations"},
        [](Source m) -> Value { return m.mean_over_snapshots(mean_inclination); }},
-      {{"filling_factor", unit::none, "filling factor", "share of the plane z = 0 that spheres cut"},
+      {{"filling_factor", unit::none, "filling factor", "fraction of the plane z = 0 inside particles"},
        [](Source m) -> Value { return m.mean_over_snapshots(midplane_filling); }},
       {{"random_energy", unit::specific_energy, "", "⟨½κ²e² + ½ν²i²⟩ per mass, which free epicycles keep"},
        [](Source m) -> Value { return m.analysis.random_energy_m2_s2; }},
@@ -68,7 +69,7 @@ Rows state_rows() {
 }
 
 std::string why_no_wakes(const Analysis& a) {
-  return a.wake_amplitude > 0.0 ? "no wakes stand out of the noise" : "these particles are too few to resolve λ_cr";
+  return a.wake_amplitude > 0.0 ? "no wakes exceed the noise" : "these particles are too few to resolve λ_cr";
 }
 
 Rows wake_rows() {
@@ -80,7 +81,7 @@ Rows wake_rows() {
             "radial distance to the first side maximum of the mean autocorrelation", Spread::none, Forms::si, 3},
            [](Source m) {
              return value_of(m.analysis.wake_spacing_m, m.analysis.wake_pitch_degrees
-                                                            ? "no second wake stands out within half a box"
+                                                            ? "no second wake exceeds the noise within half a box"
                                                             : why_no_wakes(m.analysis));
            }},
           {{"wake_amplitude", unit::none, "wakes: amplitude", "how far the ridge of the autocorrelation stands out",
@@ -106,7 +107,7 @@ Rows wake_rows() {
            [](Source m) -> Value { return m.analysis.wakes.contrast; }}};
 }
 
-// What is known of the waves, where there are particles enough.
+// Returns a number of the waves; unknown if there are too few particles.
 Value of_waves(Source m, Value (*number)(const WaveAnalysis&)) {
   return m.analysis.waves ? number(*m.analysis.waves) : Unknown{"these particles are too few"};
 }
@@ -142,24 +143,26 @@ std::vector<Record> size_classes_of(Source m) {
 Rows local_rows() {
   return {
       {{"local_radius", unit::metres, "local: within",
-        "of the neighbourhood whose mean velocity is taken out: 3 r or λ_cr/20, the larger"},
+        "radius of the neighbourhood whose mean velocity is subtracted: the larger of 3 r and λ_cr/20"},
        [](Source m) -> Value { return m.analysis.local.radius_m; }},
       {of_shape({"local_dispersion", unit::metres_per_second, "local: dispersion",
-                 "standard deviation of the velocities about that of the neighbours"},
+                 "standard deviation of the velocities about the mean of the neighbours"},
                 Shape::vector),
        [](Source m) { return vector_of(m.analysis.local.dispersion_m_s); }},
       {{"local_toomre_q", unit::none, "local: Toomre Q", "by the local c_x and the mean Σ of the patch"},
        [](Source m) -> Value { return m.analysis.local.toomre_q; }},
-      {{"local_share", unit::none, "", "share of the mass in particles that have a neighbour"},
+      {{"local_share", unit::none, "", "mass fraction of the particles that have a neighbour"},
        [](Source m) -> Value { return m.analysis.local.share; }},
-      {{"crowding_radius", unit::metres, "mean particle: within",
-        "radius of the disc about each particle in which density is counted: 6 r or λ_cr/10, the larger"},
+      {{"crowding_radius", unit::metres, "mean over particles: within",
+        "radius of the disc about each particle in which density is counted: the larger of 6 r and λ_cr/10"},
        [](Source m) -> Value { return m.analysis.local.crowding_radius_m; }},
-      {{"crowding_optical_depth", unit::none, "mean particle: optical depth", "of the others within that disc"},
+      {{"crowding_optical_depth", unit::none, "mean over particles: optical depth",
+        "of the other particles within that disc"},
        [](Source m) -> Value { return m.analysis.local.optical_depth; }},
-      {{"crowding_filling_factor", unit::none, "mean particle: filling factor", "of the others there at z = 0"},
+      {{"crowding_filling_factor", unit::none, "mean over particles: filling factor",
+        "of the other particles there at z = 0"},
        [](Source m) -> Value { return m.analysis.local.filling_factor; }},
-      {{"thin_area_share", unit::none, "thin area (τ < 0.1)", "share of cells with an optical depth below 0.1"},
+      {{"thin_area_share", unit::none, "thin area (τ < 0.1)", "fraction of cells with an optical depth below 0.1"},
        [](Source m) -> Value { return m.analysis.local.thin_area_fraction; }},
       {{"thin_cell", unit::metres, "", "side of these cells"},
        [](Source m) -> Value { return m.analysis.local.thin_cell_m; }},
@@ -170,7 +173,7 @@ Rows local_rows() {
          return std::vector{m.analysis.ellipsoid.second_ratio, m.analysis.ellipsoid.vertical_ratio};
        }},
       {{"vertex_deviation", unit::degrees, "velocity ellipsoid: deviation",
-        "from the radius to its longest axis, positive towards the orbital motion"},
+        "angle from the radius to its longest axis, positive towards the orbital motion"},
        [](Source m) -> Value { return m.analysis.ellipsoid.vertex_deviation_degrees; }},
       {of_shape({"size_classes", unit::none, "radii",
                  "`count`, `mass_share`, `dispersion_m_s`, `scale_height_m` of radii from `smallest_m` to `largest_m`"},
@@ -212,21 +215,21 @@ Rows cluster_rows() {
   return {{{"clusters.gap", unit::none, "",
             "largest gap between friends, over the sum of their radii (friends of friends)"},
            [](Source m) -> Value { return m.analysis.clusters.gap; }},
-          {{"clusters.count", unit::none, "clusters", "clusters of two or more touching spheres, a snapshot",
+          {{"clusters.count", unit::none, "clusters", "clusters of two or more touching spheres, per snapshot",
             Spread::none, Forms::si, 3},
            [](Source m) -> Value { return m.analysis.clusters.count; }},
-          {{"clusters.mass_share", unit::unnamed("of the mass"), "clusters: all", "share of all mass in them"},
+          {{"clusters.mass_share", unit::unnamed("of the mass"), "clusters: all", "fraction of all mass in them"},
            [](Source m) -> Value { return m.analysis.clusters.mass_fraction; }},
           {{"clusters.largest_mass_share", unit::unnamed("of the mass"), "clusters: the heaviest",
-            "share of all mass in the heaviest one"},
+            "fraction of all mass in the heaviest one"},
            [](Source m) -> Value { return m.analysis.clusters.largest_mass_fraction; }},
           {of_shape({"clusters.largest_half_axes", unit::metres, "clusters: its half axes",
-                     "of the homogeneous ellipsoid with the moments of inertia of the heaviest one"},
+                     "half axes of the homogeneous ellipsoid with the moments of inertia of the heaviest one"},
                     Shape::vector),
            [](Source m) -> Value {
              const auto& axes = m.analysis.clusters.largest_half_axes;
              return axes ? vector_of(*axes)
-                         : Unknown{m.analysis.clusters.count > 0.0 ? "it has no end in the periodic box"
+                         : Unknown{m.analysis.clusters.count > 0.0 ? "it is unbounded in the periodic box"
                                                                    : "there are none"};
            }},
           {{"clusters.spin", unit::omega, "clusters: spin", "1 + L_z/I_z, seen from the stars; mean over their mass"},
@@ -279,26 +282,29 @@ const Rows& all_rows() {
 
 } // namespace
 
-double Measurement::mean_over_snapshots(double (*of)(const Patch&)) const {
-  const double share = 1.0 / static_cast<double>(patches.size());
+double Measurement::mean_over_snapshots(double (*value)(const Patch&)) const {
+  assert(!patches.empty());
+  const double weight = 1.0 / static_cast<double>(patches.size());
   double mean = 0.0;
   for (const Patch& patch : patches)
-    mean += share * of(patch);
+    mean += weight * value(patch);
   return mean;
 }
 
 Measurement measure(std::span<const Patch> patches, const TransportReport& transport, const AnalysisSettings& settings,
-                    const std::function<void()>& looked_at) {
+                    const std::function<void()>& patch_done) {
+  assert(!patches.empty());
   Measurement m{patches, analyze(patches, settings), 0.0, transport, units_of(patches.back())};
   for (const Patch& patch : patches) {
     m.largest_overlap = std::max(m.largest_overlap, largest_overlap(patch).depth);
-    if (looked_at)
-      looked_at();
+    if (patch_done)
+      patch_done();
   }
   return m;
 }
 
 Record wakes_of(std::span<const Patch> patches) {
+  assert(!patches.empty());
   static const Rows rows = wake_rows();
   Measurement m;
   m.patches = patches;

@@ -20,12 +20,13 @@ double guiding_x(Sampled s) {
   return s.body().elements.guiding_x - s.track().shift_x;
 }
 
-// Elements stand half a step ahead. Its own Y drifts by its own X; wraps of X change both, as a shearing box does.
+// The elements refer to half a step ahead, so the drift of Y in that time is undone, with the unwrapped X.
 double guiding_y(Sampled s) {
   const double ahead = s.simulation.boundary().to_epoch;
   return s.body().elements.guiding_y - s.track().shift_y + frequencies(s).shear() * guiding_x(s) * ahead;
 }
 
+// Returns the momentum gained by gravity, or by all external forces.
 double gains(Sampled s, bool of_gravity) {
   double sum = 0.0;
   for (const ForceState& force : s.simulation.state().forces)
@@ -34,7 +35,7 @@ double gains(Sampled s, bool of_gravity) {
   return sum;
 }
 
-// X changes by 2 Δv_y/κ² in kicks and collisions, and by nothing else: collisions made what kicks did not.
+// X changes by 2 Δv_y/κ² in kicks and collisions only: the collisional part is the total minus the kicks.
 double collisional_gain(Sampled s) {
   const double kappa = frequencies(s).kappa;
   return 0.5 * kappa * kappa * s.body().mass * (guiding_x(s) - s.track().start_x) - gains(s, true) - gains(s, false);
@@ -42,7 +43,7 @@ double collisional_gain(Sampled s) {
 
 const MoonletColumn all_moonlet_columns[] = {
     {"time_orbits", "orbits", "time since the run began", [](Sampled s) { return s.simulation.orbits(); }},
-    {"id", "1", "of the moonlet: the ids after the particles', in the order of the scene",
+    {"id", "1", "id of the moonlet: the ids after the particles', in the order of the scene",
      [](Sampled s) { return static_cast<double>(s.simulation.first_moonlet() + s.k); }},
     {"guiding_x_m", "m", "X of its guiding centre, not wrapped: X − X at the start is a change of semi-major axis",
      guiding_x},
@@ -55,10 +56,11 @@ const MoonletColumn all_moonlet_columns[] = {
      "momentum along the orbit that collisions gave it since the run began; times the distance from the planet it is "
      "the angular momentum",
      [](Sampled s) { return momentum(s, collisional_gain(s)); }},
-    {"gravity_momentum_kg_m_s", "kg m/s", "the same by the gravity of the particles; only with `[gravity]`",
+    {"gravity_momentum_kg_m_s", "kg m/s",
+     "momentum along the orbit by the gravity of the particles; only with `[gravity]`",
      [](Sampled s) { return momentum(s, gains(s, true)); },
      [](const Scene& scene) { return scene.gravity.has_value(); }},
-    {"force_momentum_kg_m_s", "kg m/s", "the same by external forces; only with one",
+    {"force_momentum_kg_m_s", "kg m/s", "momentum along the orbit by external forces; only with such forces",
      [](Sampled s) { return momentum(s, gains(s, false)); },
      [](const Scene& scene) { return !scene.external_forces.empty(); }},
 };

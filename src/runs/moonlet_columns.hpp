@@ -1,10 +1,11 @@
-// The columns of moonlets.csv: for each row of the series a row for each moonlet. Declared once, as those of
-// series.csv.
+// The columns of moonlets.csv: for each row of the series, one row per moonlet. As in series_columns.hpp, each column
+// is declared once.
 #pragma once
 
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/simulation.hpp>
 
+#include <cassert>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,24 +16,27 @@ namespace keeler {
 struct MoonletSample {
   const Scene& scene;
   const Simulation& simulation;
-  std::size_t k; ///< which, from 0
+  std::size_t k; ///< index of the moonlet
 
   Body body() const { return simulation.moonlet(k); }
-  const MoonletTrack& track() const { return simulation.state().moonlets[k]; }
+  const MoonletTrack& track() const {
+    assert(k < simulation.state().moonlets.size());
+    return simulation.state().moonlets[k];
+  }
 };
 
 struct MoonletColumn {
-  const char* name; ///< in the header: what and unit
+  const char* name; ///< in the header: quantity and unit
   const char* unit;
   const char* meaning;
   double (*value)(const MoonletSample&);
-  bool (*in)(const Scene&) = nullptr; ///< scenes that have the column; null: all
+  bool (*in)(const Scene&) = nullptr; ///< true for scenes that have the column; null: all scenes
 };
 
-/// All columns, in their order. The step, which every row begins with, is none of them.
+/// Returns all columns, in their order, without the step with which every row begins.
 std::span<const MoonletColumn> moonlet_columns();
 
-/// Those that a scene has: none without moonlets.
+/// Returns the columns that a scene has: none without moonlets.
 std::vector<MoonletColumn> moonlet_columns_of(const Scene& scene);
 
 } // namespace keeler

@@ -4,9 +4,12 @@
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/surface.hpp>
 
+#include <cassert>
+
 namespace keeler {
 
 PatchUnits units_of(const Patch& patch) {
+  assert(patch.size() > 0);
   return {mean_radius(patch), patch.orbital_frequency, newton_g_si * surface_density(patch)};
 }
 

@@ -20,6 +20,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 #include <utility>
 
@@ -28,22 +29,23 @@
 namespace keeler {
 namespace {
 
-// Whose forces are summed exactly: fewer in a long box, where each sum has thousands of images.
 constexpr ImageSettings exact_images{.rings = 2};
+
+// Returns the number of particles of a force check: fewer in a long box, where each exact sum has thousands of images.
 std::size_t checked_particles(const ShearingBox& box, const ImageSettings& images) {
-  constexpr std::size_t most = 200, least = 8, of_square_box = 25;
-  return std::clamp(most * of_square_box / near_image_count(box, images), least, most);
+  constexpr std::size_t max_count = 200, min_count = 8, images_of_square_box = 25;
+  return std::clamp(max_count * images_of_square_box / near_image_count(box, images), min_count, max_count);
 }
 
 Series open_series(const std::filesystem::path& file, const std::vector<std::string>& columns, const Scene& scene,
                    std::optional<std::int64_t> resumed_at) {
   if (!resumed_at)
     return Series::begin(file, columns);
-  const std::int64_t every = scene.output.series_every; // 0: one at the start
+  const std::int64_t every = scene.output.series_every; // 0: only the row at the start
   return Series::resume(file, columns, *resumed_at, every > 0 ? every : *resumed_at + 1);
 }
 
-// A series that an earlier version began has fewer columns, and keeps them.
+// Returns the columns of an existing series: one begun by an earlier version has fewer, and keeps them.
 std::vector<SeriesColumn> columns_to_continue(const std::filesystem::path& file,
                                               const std::vector<SeriesColumn>& columns) {
   const std::vector<std::string> names = series_names(file);
@@ -70,6 +72,7 @@ Recorder::Recorder(const RunFolder& folder, const FolderLock* lock, const Scene&
     : folder_(folder), lock_(lock), ranks_(ranks), scene_(scene), provenance_(collect_provenance(arguments)),
       counters_(std::move(counters)), notice_(std::move(notice)), columns_(series_columns_of(scene)),
       moonlet_columns_(moonlet_columns_of(scene)) {
+  assert((lock != nullptr) == ranks.is_root());
   ranks_.on_root([&] { open(resumed_at); });
 }
 
@@ -92,51 +95,53 @@ void Recorder::open(std::optional<std::int64_t> resumed_at) {
   contact_log_.emplace(folder_, scene_, provenance_, resume);
 }
 
-void Recorder::tell(const std::string& text) const {
+void Recorder::notify(const std::string& text) const {
   if (notice_)
     notice_(text);
 }
 
-void Recorder::tell_restored(Series& series, const std::filesystem::path& file) {
+void Recorder::report_restored(Series& series, const std::filesystem::path& file) {
   if (!series.take_restored())
     return;
   write_log("restored", {{"file", file.filename().string()}});
-  tell(fmt::format("'{}' was removed or replaced while the run wrote to it; it is written anew with all its rows",
-                   file.string()));
+  notify(fmt::format("'{}' was removed or replaced while the run wrote to it; it is rewritten with all its rows",
+                     file.string()));
 }
 
-void Recorder::tell_restored() {
-  tell_restored(*series_, folder_.series());
+void Recorder::report_restored() {
+  report_restored(*series_, folder_.series());
   if (moonlets_)
-    tell_restored(*moonlets_, folder_.moonlets());
+    report_restored(*moonlets_, folder_.moonlets());
   if (contact_log_)
-    tell_restored(contact_log_->speeds(), folder_.impact_speeds());
+    report_restored(contact_log_->speeds(), folder_.impact_speeds());
 }
 
-void Recorder::tell_lost_rows(const Series& series, const std::filesystem::path& file) {
+void Recorder::report_lost_rows(const Series& series, const std::filesystem::path& file) {
   if (series.gaps().empty())
     return;
   const SeriesGap first = series.gaps().front();
   const std::size_t others = series.gaps().size() - 1;
   for (const SeriesGap& gap : series.gaps())
     write_log("rows lost", {{"file", file.filename().string()}, {"from_step", gap.from}, {"to_step", gap.to}});
-  tell(fmt::format("the rows of '{}' from step {} to {}{} are missing; it goes on without them", file.string(),
-                   first.from, first.to, others > 0 ? fmt::format(", and {} more,", pluralize(others, "gap")) : ""));
+  notify(fmt::format("the rows of '{}' from step {} to {}{} are missing; the file continues without them",
+                     file.string(), first.from, first.to,
+                     others > 0 ? fmt::format(", and {} more,", pluralize(others, "gap")) : ""));
 }
 
-void Recorder::tell_losses() {
-  ranks_.on_root([&] { tell_what_was_lost(); });
+void Recorder::report_losses() {
+  ranks_.on_root([&] { report_losses_on_root(); });
 }
 
-void Recorder::tell_what_was_lost() {
-  tell_lost_rows(*series_, folder_.series());
+void Recorder::report_losses_on_root() {
+  report_lost_rows(*series_, folder_.series());
   if (moonlets_)
-    tell_lost_rows(*moonlets_, folder_.moonlets());
+    report_lost_rows(*moonlets_, folder_.moonlets());
   if (!contact_log_)
     return;
-  if (const std::int64_t lost = contact_log_->lost(); lost > 0) {
+  if (const std::int64_t lost = contact_log_->lost_rows(); lost > 0) {
     write_log("contacts lost", {{"rows", lost}});
-    tell(fmt::format("the last {} rows of the log of contacts are missing or damaged; it goes on without them", lost));
+    notify(fmt::format("the last {} rows of the log of contacts are missing or damaged; the log continues without them",
+                       lost));
   }
 }
 
@@ -144,7 +149,7 @@ void Recorder::watch(Simulation& simulation) {
   if (contact_log_)
     contact_log_->watch(simulation);
   else if (scene_.output.collisions)
-    simulation.drift().observe(&for_first_);
+    simulation.drift().observe(&record_requester_);
 }
 
 void Recorder::contacts() {
@@ -156,13 +161,13 @@ void Recorder::contacts() {
 
 void Recorder::require_sound(const SimulationState& state, const ParticleMeans& means) {
   ranks_.together([&] {
-    if (const std::string fault = fault_of_books(state, means, scene_.planet.frequencies); !fault.empty())
+    if (const std::string fault = fault_of_budget(state, means, scene_.planet.frequencies); !fault.empty())
       throw InvariantError(fault);
   });
   sound_step_ = state.step;
 }
 
-// Once a step: the means of a row of the series serve what follows it.
+// Checks once per step: a row of the series makes the check with its own means, and later outputs reuse it.
 void Recorder::require_sound(const Simulation& simulation) {
   if (simulation.state().step != sound_step_)
     require_sound(simulation.state(), simulation.means());
@@ -181,7 +186,7 @@ void Recorder::snapshot(const Simulation& simulation) {
     file->finish();
     if (contact_log_)
       contact_log_->end_interval(counters_.last_snapshot_step, simulation.state().step);
-    tell_restored();
+    report_restored();
   });
   ++counters_.snapshots;
   counters_.last_snapshot_step = simulation.state().step;
@@ -202,12 +207,13 @@ void Recorder::checkpoint(const Simulation& simulation) {
     series_->sync();
     if (moonlets_)
       moonlets_->sync();
-    tell_restored();
+    report_restored();
   });
   OutputCounters counters = counters_;
   ++counters.checkpoints;
   FieldTable table = simulation.state().fields();
   counters.list_fields(table, scene_);
+  assert(counters.checkpoints > 0 && counters.snapshots >= 0);
   const std::filesystem::path file = checkpoint_path(folder_.path(), counters_.checkpoints);
   write_checkpoint(file, table, {scene_.resolved, provenance_}, ranks_);
   ranks_.on_root([&] {
@@ -232,14 +238,16 @@ void Recorder::sample(const Simulation& simulation) {
 
 void Recorder::append(const SeriesSample& row, const std::vector<std::vector<double>>& moonlets) {
   const std::int64_t step = row.simulation.state().step;
+  assert(moonlets.empty() || moonlets_);
   lock_->require_in_place();
   series_->append(step, values_of(columns_, row));
   for (const std::vector<double>& values : moonlets)
     moonlets_->append(step, values);
-  tell_restored();
+  report_restored();
 }
 
-// In the first row at or after each multiple of its interval: what is due follows from the step alone.
+// Measures in the first row at or after each multiple of stress_every. The schedule depends on the step alone, so
+// restarts do not change it.
 std::optional<GravityEnergy> Recorder::measure_gravity(const Simulation& simulation) {
   const std::int64_t step = simulation.state().step, every = scene_.output.stress_every;
   if (!measures_gravity(scene_) || (step > 0 && step / every == (step - scene_.output.series_every) / every))
@@ -249,6 +257,7 @@ std::optional<GravityEnergy> Recorder::measure_gravity(const Simulation& simulat
 }
 
 void Recorder::check_forces(const Simulation& simulation) {
+  assert(scene_.gravity && !ranks_.distributed() && !simulation.state().forces.empty());
   ForceChecks& c = force_checks_;
   c.last_s = 0.0;
   {
@@ -280,6 +289,7 @@ void Recorder::log(const std::string& event, const nlohmann::ordered_json& detai
 }
 
 void Recorder::write_log(const std::string& event, const nlohmann::ordered_json& details) {
+  assert(ranks_.is_root() && lock_ != nullptr);
   lock_->require_in_place();
   nlohmann::ordered_json line;
   line["event"] = event;

@@ -1,6 +1,6 @@
-// Everything that a run writes. It reads the state and never changes it. It writes into the folder that the run
-// holds and nowhere else: every call throws IoError once the folder's name stands for something else. Of a run that
-// ranks share all make each call; the first rank writes, and what it throws all throw.
+// All output of a run. It never changes the state. It writes only into the folder that the run has locked: every call
+// throws IoError once the path names another folder. In a distributed run all ranks make each call; the root writes,
+// and an exception of the root is thrown on all ranks.
 #pragma once
 
 #include "contact_log.hpp"
@@ -16,65 +16,70 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cassert>
 #include <functional>
 #include <optional>
 #include <string>
 
 namespace keeler {
 
-/// What has been written so far; stored in the checkpoint, so that a resumed run counts on.
+/// Counters of the files written; stored in the checkpoint, so that a resumed run continues them.
 struct OutputCounters {
   std::int64_t snapshots = 0;
   std::int64_t checkpoints = 0;
   std::int64_t last_snapshot_step = -1; ///< -1: none yet
-  ContactCounters contacts;             ///< only where the scene asks for a log of contacts
+  ContactCounters contacts;             ///< used only if the scene requests a log of contacts
 
   void list_fields(FieldTable& table, const Scene& scene);
 };
 
-/// Wall time that output took, s.
+/// Wall time of output, s.
 struct OutputCosts {
   double series = 0.0, stresses = 0.0, snapshots = 0.0, checkpoints = 0.0, contacts = 0.0;
 };
 
-/// What became of the checks of forces.
+/// Results of the force checks.
 struct ForceChecks {
   int count = 0;
-  std::size_t particles = 0; ///< looked at in each
+  std::size_t particles = 0; ///< per check
   std::int64_t last_step = -1;
   double last_rms = 0.0, worst_rms = 0.0; ///< rms error of the acceleration over the rms acceleration
-  double last_s = 0.0, seconds = 0.0;     ///< wall time of the last one, and of all
+  double last_s = 0.0, seconds = 0.0;     ///< wall time of the last check, and of all
 };
 
 class Recorder {
 public:
   using Notice = std::function<void(const std::string&)>; ///< a line for the user; may be empty
 
-  /// `resumed_at`: the series is continued from that step, else begun anew. The scene and the lock must outlive it; the
-  /// first rank alone has a lock.
+  /// Continues the series from the step `resumed_at`, or begins new ones if that is none. `lock` is null except on the
+  /// root. The scene and the lock must outlive the recorder.
   Recorder(const RunFolder& folder, const FolderLock* lock, const Scene& scene,
            const std::vector<std::string>& arguments, OutputCounters counters, std::optional<std::int64_t> resumed_at,
            Notice notice, const Communicator& ranks);
 
-  /// From now on contacts are logged, where the scene asks for it. The simulation must outlive its last step only.
+  /// Logs the contacts of the following steps, if the scene requests it. The simulation must outlive its last step.
   void watch(Simulation& simulation);
-  /// Throws IoError when the folder's name stands for something else by now.
-  void require_folder() const { lock_->require_in_place(); }
+  /// Throws IoError when the path no longer names the locked folder. Precondition: this is the root.
+  void require_folder() const {
+    assert(lock_ != nullptr);
+    lock_->require_in_place();
+  }
 
-  /// After each step.
+  /// Writes the full files of the log of contacts. Call it after each step.
   void contacts();
-  /// Tells of the rows that a resumed run did not find any more.
-  void tell_losses();
+  /// Reports rows that were missing in the files of a resumed run.
+  void report_losses();
 
-  /// These throw InvariantError, and write nothing, where a number is not finite or the energy budget does not close.
+  /// Writes a snapshot, a checkpoint, a row of the series. Each throws InvariantError, and writes nothing, when a
+  /// number is not finite or the energy budget does not close.
   void snapshot(const Simulation& simulation);
   void checkpoint(const Simulation& simulation);
   void sample(const Simulation& simulation);
-  /// Holds the accelerations of some particles against the exact ones, and logs the error. Only where a step has ended
-  /// with a kick, or at the start.
+  /// Compares the accelerations of some particles with the exact ones, and logs the error. Precondition: the last step
+  /// ended with a kick, or the run has just started.
   void check_forces(const Simulation& simulation);
   void log(const std::string& event, const nlohmann::ordered_json& details);
-  /// Of the first rank alone.
+  /// Appends an event to the log. Precondition: this is the root.
   void write_log(const std::string& event, const nlohmann::ordered_json& details);
   void summary(const Record& summary);
   const OutputCounters& counters() const { return counters_; }
@@ -85,14 +90,14 @@ public:
 private:
   void open(std::optional<std::int64_t> resumed_at);
   void append(const SeriesSample& row, const std::vector<std::vector<double>>& moonlets);
-  void tell_what_was_lost();
+  void report_losses_on_root();
   std::optional<GravityEnergy> measure_gravity(const Simulation& simulation);
   void require_sound(const SimulationState& state, const ParticleMeans& means);
   void require_sound(const Simulation& simulation);
-  void tell(const std::string& text) const;
-  void tell_restored(Series& series, const std::filesystem::path& file);
-  void tell_restored();
-  void tell_lost_rows(const Series& series, const std::filesystem::path& file);
+  void notify(const std::string& text) const;
+  void report_restored(Series& series, const std::filesystem::path& file);
+  void report_restored();
+  void report_lost_rows(const Series& series, const std::filesystem::path& file);
 
   RunFolder folder_;
   const FolderLock* lock_;
@@ -106,15 +111,15 @@ private:
   OutputCounters counters_;
   Notice notice_;
   std::vector<SeriesColumn> columns_;
-  std::optional<Series> series_; // the first rank's
+  std::optional<Series> series_; // on the root
   std::vector<MoonletColumn> moonlet_columns_;
-  std::optional<Series> moonlets_;        // the same; only where the scene has some
-  std::optional<ContactLog> contact_log_; // the first rank's, to which the others give theirs
-  struct ForFirst final : DriftObserver {
+  std::optional<Series> moonlets_;               // on the root, if the scene has moonlets
+  std::optional<ContactLog> contact_log_;        // on the root, which receives the other ranks' contacts
+  struct RecordRequester final : DriftObserver { // for the other ranks: their contacts are sent to the root
     bool looks_on() const override { return false; }
     bool wants_records() const override { return true; }
-  } for_first_;
-  std::int64_t sound_step_ = -1; // whose state was sound
+  } record_requester_;
+  std::int64_t sound_step_ = -1; // the last step that passed require_sound()
   ForceChecks force_checks_;
   OutputCosts costs_;
 };

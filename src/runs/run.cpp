@@ -25,12 +25,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
+// Returns `steps` rounded to whole kick intervals, at least one.
 std::int64_t whole_kicks(const Scene& scene, double steps) {
+  assert(scene.kick_interval() > 0);
   const auto block = static_cast<double>(scene.kick_interval());
   return static_cast<std::int64_t>(std::max(1.0, std::round(steps / block)) * block);
 }
@@ -40,7 +43,7 @@ std::string resume_command(const RunOptions& options) {
   return fmt::format("keeler resume {}{}", options.folder.string(), until);
 }
 
-// A full disk leaves the newest checkpoint as it was: the user hears how to go on.
+// A full disk leaves the newest checkpoint intact: the message says how to continue.
 template<class Work> RunResult with_advice(const RunOptions& options, const Work& work) {
   try {
     return work();
@@ -52,15 +55,15 @@ template<class Work> RunResult with_advice(const RunOptions& options, const Work
   }
 }
 
-// When the command began, and the step whose checkpoint it found.
+// The times when the command began, and the step of the checkpoint that it loaded.
 struct Start {
   double cpu = cpu_seconds(), wall = 0.0;
   Stopwatch watch{wall};
-  double made_s = 0.0; // wall time until there was a state to evolve
+  double made_s = 0.0; // wall time until the initial state was ready
   std::int64_t checkpoint_step = -1;
 };
 
-// The state is that of an unfinished step: what is on disk is all there is.
+// Ends a run in the middle of a step: its state in memory is unusable, only the files on disk count.
 [[noreturn]] void fail_given_up(const RunOptions& options, std::int64_t last_checkpoint, Recorder& recorder) {
   if (options.ranks.is_root())
     recorder.write_log("given up", {{"checkpoint_step", last_checkpoint}});
@@ -69,12 +72,12 @@ struct Start {
                                     "output.checkpoint_every or, where steps do not end, with a shorter time.step");
   throw Error(
       ExitCode::stopped,
-      fmt::format("a step was given up on request; the checkpoint of step {} stands, continue from it with \"{}\"",
+      fmt::format("a step was given up on request; the checkpoint of step {} is intact, continue from it with \"{}\"",
                   last_checkpoint, resume_command(options)));
 }
 
-RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& requests, const RunFolder& folder,
-                   Simulation& simulation, Recorder& recorder, const Start& start) {
+RunResult evolve(const Scene& scene, const RunOptions& options, RunRequests& requests, const RunFolder& folder,
+                 Simulation& simulation, Recorder& recorder, const Start& start) {
   const std::int64_t first_step = simulation.state().control.steps;
   const double first_orbit = simulation.orbits();
   recorder.watch(simulation);
@@ -87,11 +90,11 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
     fail_given_up(options, runner.last_checkpoint(), recorder);
   } catch (const InvariantError& error) {
     if (options.ranks.distributed())
-      throw; // its particles are on many ranks, and not all of them may know
+      throw; // the particles are distributed, and other ranks may not have seen the error
     fail_broken(error, simulation, scene, folder, recorder);
   } catch (const IoError&) {
     if (options.ranks.is_root())
-      recorder.require_folder(); // a folder that was moved away in the middle of a write is the better reason
+      recorder.require_folder(); // a folder that was moved during a write explains the failure better
     throw;
   }
   const RunCost cost{.first_step = first_step,
@@ -116,11 +119,11 @@ RunResult carry_on(const Scene& scene, const RunOptions& options, RunRequests& r
 
 struct Loaded {
   StoredRun run;
-  std::string scene_text; // as the checkpoint has it
+  std::string scene_text; // as stored in the checkpoint
   OutputCounters counters;
 };
 
-// Collective: each rank gets a part of the particles.
+// Loads a checkpoint. Collective: each rank gets a part of the particles.
 Loaded load(const std::filesystem::path& file, const Communicator& ranks = {}) {
   Loaded loaded;
   const Checkpoint checkpoint(file, ranks);
@@ -138,6 +141,7 @@ Loaded load(const std::filesystem::path& file, const Communicator& ranks = {}) {
   return loaded;
 }
 
+// Returns the scene with the requested end, rounded to whole kicks.
 Scene until(Scene scene, const RunOptions& options, std::int64_t step) {
   if (!options.until_orbits)
     return scene;
@@ -148,8 +152,8 @@ Scene until(Scene scene, const RunOptions& options, std::int64_t step) {
   scene.time.end_step = whole_kicks(scene, asked / scene.time.step);
   const double end = end_orbits(scene);
   if (scene.time.end_step < step)
-    throw UsageError(fmt::format("the run in '{}' is at orbit {:.6g} already (until orbit {:.6g} it cannot go); give a "
-                                 "later end",
+    throw UsageError(fmt::format("the run in '{}' is already at orbit {:.6g}, after the requested end (orbit {:.6g}); "
+                                 "give a later end",
                                  options.folder.string(), now, asked));
   if (options.notice && std::abs(end - asked) > 1e-9 * asked)
     options.notice(fmt::format("the end is rounded to whole kicks: orbit {:.6g} instead of {:.6g}", end, asked));
@@ -157,13 +161,13 @@ Scene until(Scene scene, const RunOptions& options, std::int64_t step) {
 }
 
 struct Begun {
-  Scene scene; // with what its start decides
+  Scene scene; // with the settings that depend on the initial state
   Simulation simulation;
   PatchScale scale;
 };
 
-// Until there is a run, a stop is heeded at once: there is nothing that could be kept. Ranks heed it together, after
-// a sweep of a fresh start.
+// Makes the initial state. A stop request ends it at once, since no result could be kept; distributed ranks check for
+// the request together, at each progress report.
 Begun first_simulation(const Scene& scene, const RunOptions& options, const RunRequests& requests) {
   const Communicator& ranks = options.ranks;
   const std::atomic<bool> never = false;
@@ -189,25 +193,25 @@ Begun first_simulation(const Scene& scene, const RunOptions& options, const RunR
   }
 }
 
-// Before the work of an initial state, which tells how many particles there are.
+// Checks before the initial state is made, when the number of particles is still unknown.
 void require_distributable_start(const Scene& scene, const RunOptions& options) {
-  constexpr std::size_t many = 1000000;
+  constexpr std::size_t enough_particles = 1000000;
   if constexpr (Communicator::possible)
     options.ranks.together([&] {
       if (options.ranks.distributed())
-        Simulation::require_distributable(scene, many);
+        Simulation::require_distributable(scene, enough_particles);
     });
 }
 
-void refuse_checks_of_many(const RunOptions& options) {
+void refuse_distributed_checks(const RunOptions& options) {
   options.ranks.together([&] {
     if (options.check && options.ranks.distributed())
       throw UsageError(
-          "--check looks at all particles at once, and several ranks have them; leave it out, or run on one");
+          "--check needs all particles in one process, and several ranks share them; leave it out, or run on one rank");
   });
 }
 
-void tell_notices(const Scene& scene, const RunOptions& options, const PatchScale& scale) {
+void send_notices(const Scene& scene, const RunOptions& options, const PatchScale& scale) {
   if (!options.notice)
     return;
   for (const std::string& notice : scene.notices)
@@ -221,12 +225,12 @@ RunResult begin(const Scene& asked, const RunOptions& options, RunRequests& requ
   const Communicator& ranks = options.ranks;
   const RunFolder folder(options.folder);
   require_same_run(asked, options);
-  refuse_checks_of_many(options);
+  refuse_distributed_checks(options);
   ranks.on_root([&] { require_start_file(asked); });
   require_distributable_start(asked, options);
   ranks.on_root([&] {
     if (!options.force)
-      folder.refuse_if_occupied(); // before the work of an initial state
+      folder.refuse_if_occupied(); // before the costly initial state
     folder.require_writable();
   });
   Begun begun = first_simulation(asked, options, requests);
@@ -239,7 +243,7 @@ RunResult begin(const Scene& asked, const RunOptions& options, RunRequests& requ
     lock.emplace(folder.path());
     folder.claim(options.force);
   });
-  tell_notices(scene, options, begun.scale);
+  send_notices(scene, options, begun.scale);
   Recorder recorder(folder, lock ? &*lock : nullptr, scene, options.arguments, {}, std::nullopt, options.notice, ranks);
   recorder.log("started", {{"particles", simulation.count()},
                            {"end_orbits", end_orbits(scene)},
@@ -247,10 +251,10 @@ RunResult begin(const Scene& asked, const RunOptions& options, RunRequests& requ
                            {"ranks", ranks.size()}});
   recorder.snapshot(simulation);
   recorder.sample(simulation);
-  return carry_on(scene, options, requests, folder, simulation, recorder, start);
+  return evolve(scene, options, requests, folder, simulation, recorder, start);
 }
 
-// The newest whole checkpoint, which the first rank looks for. Each rank finds the folder by its own name of it.
+// Returns the newest valid checkpoint, which the root searches. Each rank uses its own path to the folder.
 std::filesystem::path newest_checkpoint(const RunOptions& options) {
   std::string name;
   options.ranks.on_root([&] {
@@ -264,23 +268,23 @@ std::filesystem::path newest_checkpoint(const RunOptions& options) {
   return options.folder / name;
 }
 
-void tell_edited_scene(const RunFolder& folder, const Scene& scene, const Loaded& loaded, const RunOptions& options,
-                       bool goes_on) {
+void report_edited_scene(const RunFolder& folder, const Scene& scene, const Loaded& loaded, const RunOptions& options,
+                         bool resumes) {
   std::optional<EditedScene> edited = EditedScene::in(folder, loaded.scene_text, scene);
   if (!edited)
     return;
-  if (goes_on)
+  if (resumes)
     edited->keep_apart();
   if (options.notice)
     options.notice(edited->notice(folder.snapshot(std::max<std::int64_t>(loaded.counters.snapshots - 1, 0))));
 }
 
-RunResult go_on(const RunOptions& options, RunRequests& requests) {
+RunResult resume(const RunOptions& options, RunRequests& requests) {
   Start start;
   const Communicator& ranks = options.ranks;
   const RunFolder folder(options.folder);
   require_same_run(options);
-  refuse_checks_of_many(options);
+  refuse_distributed_checks(options);
   std::optional<FolderLock> lock;
   ranks.on_root([&] { lock.emplace(folder.path()); });
   const std::filesystem::path newest = newest_checkpoint(options);
@@ -290,10 +294,10 @@ RunResult go_on(const RunOptions& options, RunRequests& requests) {
   const std::int64_t step = start.checkpoint_step = loaded.run.state.step;
   ranks.on_root([&] { folder.cut_log(); });
   if (step >= scene.time.end_step && ranks.broadcast(says_finished(folder.path()))) {
-    ranks.on_root([&] { tell_edited_scene(folder, scene, loaded, options, false); });
+    ranks.on_root([&] { report_edited_scene(folder, scene, loaded, options, false); });
     if (options.notice)
       options.notice(fmt::format("the run in '{}' is finished, nothing was changed; --until with a later orbit than "
-                                 "{:.6g} goes on",
+                                 "{:.6g} continues it",
                                  options.folder.string(), static_cast<double>(step) * scene.time.step));
     RunResult result{true, step, state_hash(loaded.run.state, scene, ranks), resume_command(options)};
     ranks.on_root([&] { result.summary = read_summary(options.folder); });
@@ -301,21 +305,21 @@ RunResult go_on(const RunOptions& options, RunRequests& requests) {
   }
   Simulation simulation(scene, std::move(loaded.run.state), ranks);
   ranks.on_root([&] {
-    tell_edited_scene(folder, scene, loaded, options, true);
+    report_edited_scene(folder, scene, loaded, options, true);
     folder.cut_snapshots(loaded.counters.snapshots);
     folder.remove_summary();
     prune_checkpoints(newest);
   });
   Recorder recorder(folder, lock ? &*lock : nullptr, scene, options.arguments, loaded.counters, step, options.notice,
                     ranks);
-  recorder.tell_losses();
+  recorder.report_losses();
   recorder.log("resumed", {{"checkpoint", newest.filename().string()},
                            {"step", step},
                            {"orbits", simulation.orbits()},
                            {"end_orbits", end_orbits(scene)},
                            {"threads", threads()},
                            {"ranks", ranks.size()}});
-  return carry_on(scene, options, requests, folder, simulation, recorder, start);
+  return evolve(scene, options, requests, folder, simulation, recorder, start);
 }
 
 } // namespace
@@ -330,7 +334,7 @@ StoredRun load_newest_checkpoint(const std::filesystem::path& folder,
   options.folder = folder;
   options.notice = notice;
   Loaded loaded = load(newest_checkpoint(options));
-  tell_edited_scene(RunFolder(folder), loaded.run.scene, loaded, options, false);
+  report_edited_scene(RunFolder(folder), loaded.run.scene, loaded, options, false);
   return std::move(loaded.run);
 }
 
@@ -346,7 +350,7 @@ RunResult start_run(const Scene& scene, const RunOptions& options, RunRequests& 
 }
 
 RunResult resume_run(const RunOptions& options, RunRequests& requests) {
-  return with_advice(options, [&] { return go_on(options, requests); });
+  return with_advice(options, [&] { return resume(options, requests); });
 }
 
 } // namespace keeler

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <string_view>
 
 namespace keeler {
@@ -22,24 +23,27 @@ bool is_numbered(std::string_view name, std::string_view prefix, std::string_vie
 
 } // namespace
 
-bool RunFolder::is_own(std::string_view name) {
-  for (const std::string_view own :
+bool RunFolder::is_run_file(std::string_view name) {
+  for (const std::string_view fixed :
        {"scene.toml", "series.csv", "moonlets.csv", "impact_speeds.csv", "summary.json", "log.jsonl"})
-    if (name == own)
+    if (name == fixed)
       return true;
   return is_numbered(name, "snap_", ".hdf") || is_numbered(name, "broken_", ".hdf") ||
          is_numbered(name, "checkpoint_", ".h5") || is_numbered(name, "collisions_", ".h5");
 }
 
 fs::path RunFolder::snapshot(std::int64_t number) const {
+  assert(number >= 0);
   return path_ / fmt::format("snap_{:06}.hdf", number);
 }
 
 fs::path RunFolder::contacts(std::int64_t number) const {
+  assert(number >= 0);
   return path_ / fmt::format("collisions_{:06}.h5", number);
 }
 
 fs::path RunFolder::broken(std::int64_t step) const {
+  assert(step >= 0);
   return path_ / fmt::format("broken_{:06}.hdf", step);
 }
 
@@ -49,7 +53,7 @@ std::string RunFolder::runs_inside() const {
 }
 
 void RunFolder::refuse_if_occupied() const {
-  std::error_code unknown; // what cannot be looked at will be reported when it is made
+  std::error_code unknown; // an unreadable path is reported when the folder is made
   const fs::file_status status = fs::status(path_, unknown);
   if (fs::exists(status) && !fs::is_directory(status))
     throw UsageError(fmt::format("'{}' is a file (results go into a folder); name another", path_.string()));
@@ -80,22 +84,24 @@ void RunFolder::claim(bool force) const {
     refuse_if_occupied();
   try {
     for (const fs::directory_entry& entry : fs::directory_iterator(path_))
-      if (is_own(entry.path().filename().string()))
+      if (is_run_file(entry.path().filename().string()))
         fs::remove(entry.path());
-    remove_left_overs(path_, is_own);
+    remove_left_overs(path_, is_run_file);
   } catch (const fs::filesystem_error& error) {
     throw IoError(fmt::format("cannot empty the folder '{}': {}", path_.string(), error.code().message()));
   }
 }
 
 void RunFolder::cut_snapshots(std::int64_t from_number) const {
-  std::error_code ignored; // what cannot be removed will be replaced
+  assert(from_number >= 0);
+  std::error_code ignored; // a file that cannot be removed will be replaced
   for (std::int64_t number = from_number; fs::exists(snapshot(number)); ++number)
     fs::remove(snapshot(number), ignored);
 }
 
 void RunFolder::cut_contacts(std::int64_t from_number) const {
-  std::error_code ignored; // what cannot be removed will be replaced
+  assert(from_number >= 0);
+  std::error_code ignored; // a file that cannot be removed will be replaced
   for (std::int64_t number = from_number; fs::exists(contacts(number)); ++number)
     fs::remove(contacts(number), ignored);
 }

@@ -1,4 +1,4 @@
-// The files of a run's folder: their names, who may write there, and what a resumed run takes back.
+// The files of a run's folder: their names, the checks before writing, and the removal of files by a resumed run.
 #pragma once
 
 #include <cstdint>
@@ -22,37 +22,36 @@ public:
   std::filesystem::path broken(std::int64_t step) const;
   const std::filesystem::path& path() const { return path_; }
 
-  /// Whether a run gives a file such a name.
-  static bool is_own(std::string_view name);
+  /// Returns true if a run may give a file this name.
+  static bool is_run_file(std::string_view name);
 
-  /// For messages, where nothing of a run is in the folder: "; its runs are in 'sweep/runs'" of a sweep or a study, or
-  /// nothing.
+  /// Returns a hint for messages about a folder without a run: "; its runs are in 'sweep/runs'" if it is the folder of
+  /// a sweep or a study, else an empty string.
   std::string runs_inside() const;
 
-  /// Throws UsageError when the name is taken by a file, or by a folder that holds anything.
+  /// Throws UsageError when the path is a file, or a folder that is not empty.
   void refuse_if_occupied() const;
 
-  /// Throws IoError when the folder is not there and could not be made, or cannot be written to.
+  /// Throws IoError when the folder cannot be written to, or is missing and cannot be made.
   void require_writable() const;
 
-  /// Makes the folder if it is not there. Throws IoError when it cannot be made.
+  /// Makes the folder if it is missing. Throws IoError when it cannot be made.
   void make() const;
 
-  /// Empties the folder for a new run. Throws UsageError when it holds anything and force is not given; with force, the
-  /// files of the run that it holds are removed, nothing else. Throws IoError when one stays.
+  /// Empties the folder for a new run. Without `force`, throws UsageError when it is not empty; with it, removes the
+  /// files of a run and nothing else. Throws IoError when a file cannot be removed.
   void claim(bool force) const;
 
-  /// Removes snapshots from this number on: the resumed run makes them again.
+  /// Removes the snapshots from this number on: the resumed run writes them again.
   void cut_snapshots(std::int64_t from_number) const;
 
-  /// The same of files of contacts.
+  /// Removes the files of contacts from this number on.
   void cut_contacts(std::int64_t from_number) const;
 
-  /// Removes the part of a line that a kill in the middle of its writing left at the end of the log: the next line
-  /// would continue it. Throws IoError.
+  /// Removes an incomplete line at the end of the log, left by a kill during its writing. Throws IoError.
   void cut_log() const;
 
-  /// Removes the summary of what the run was before: it is true no more. Throws IoError.
+  /// Removes the summary, which is outdated once the run continues. Throws IoError.
   void remove_summary() const;
 
 private:

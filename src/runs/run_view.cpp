@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Seconds since 1970 of a time in the log; none for anything else.
+// Returns the time of a line of the log, s since 1970; none if it is missing or malformed.
 std::optional<double> seconds_of(const nlohmann::json& line) {
   const auto found = line.find("time");
   std::tm utc = {};
@@ -29,27 +29,27 @@ std::optional<double> seconds_of(const nlohmann::json& line) {
   return static_cast<double>(timegm(&utc));
 }
 
-// The value of a key; the other one where it is missing, or of another type.
-template<class Value> Value value_in(const nlohmann::json& line, const char* key, const Value& otherwise) {
+// Returns the value of a key, or `fallback` if it is missing or has another type.
+template<class Value> Value value_in(const nlohmann::json& line, const char* key, const Value& fallback) {
   try {
-    return line.value(key, otherwise);
+    return line.value(key, fallback);
   } catch (const nlohmann::json::exception&) {
-    return otherwise;
+    return fallback;
   }
 }
 
-void take_event(RunView& view, const nlohmann::json& line) {
+void apply_event(RunView& view, const nlohmann::json& line) {
   const std::string event = view.last_event = value_in(line, "event", std::string());
   if (event == "started" || event == "resumed") {
-    if (view.unended)
+    if (view.end_missing)
       view.ended_s.reset();
-    view.unended = true;
+    view.end_missing = true;
     view.end_orbits = value_in(line, "end_orbits", 0.0);
     view.first_orbits = value_in(line, "orbits", 0.0);
     view.began_s = seconds_of(line);
     view.particles = value_in(line, "particles", view.particles);
   } else if (event == "finished" || event == "stopped" || event == "broken" || event == "given up") {
-    view.unended = false;
+    view.end_missing = false;
     const std::optional<double> now = seconds_of(line);
     if (view.ended_s && view.began_s && now)
       *view.ended_s += *now - *view.began_s;
@@ -58,17 +58,17 @@ void take_event(RunView& view, const nlohmann::json& line) {
   }
 }
 
-// A line that is still being written, or is no JSON of a log, says nothing.
+// Reads all events; incomplete lines and lines that are not JSON objects are skipped.
 void read_log(RunView& view, const fs::path& file) {
   std::istringstream lines(read_lines(file));
   for (std::string text; std::getline(lines, text);) {
     const nlohmann::json line = json_of<nlohmann::json>(text);
     if (line.is_object())
-      take_event(view, line);
+      apply_event(view, line);
   }
 }
 
-// The names are numbered: the last in their order is the newest.
+// Returns the newest of numbered files: the longest name, and the last one of that length.
 std::string newest_name(const fs::path& folder, const std::string& prefix, const std::string& ending) {
   std::string newest;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
@@ -82,25 +82,25 @@ std::string newest_name(const fs::path& folder, const std::string& prefix, const
 
 } // namespace
 
-double RunView::share() const {
+double RunView::completed_fraction() const {
   return end_orbits > 0.0 ? std::clamp(orbits / end_orbits, 0.0, 1.0) : 0.0;
 }
 
 std::string RunView::state() const {
   if (running)
     return "running";
-  const bool told = last_event == "finished" || last_event == "stopped" || last_event == "broken";
-  return told ? last_event : "not running";
+  const bool ended = last_event == "finished" || last_event == "stopped" || last_event == "broken";
+  return ended ? last_event : "not running";
 }
 
 std::optional<double> RunView::wall_s(double now_s) const {
-  if (!ended_s || !unended)
+  if (!ended_s || !end_missing)
     return ended_s;
   return running && began_s ? std::optional(*ended_s + now_s - *began_s) : std::nullopt;
 }
 
 std::optional<double> RunView::remaining_s(double now_s) const {
-  constexpr double min_s = 2.0; // the log knows whole seconds
+  constexpr double min_s = 2.0; // the log has whole seconds
   if (!running || !began_s || !(orbits > first_orbits) || now_s - *began_s < min_s)
     return std::nullopt;
   return (now_s - *began_s) / (orbits - first_orbits) * std::max(end_orbits - orbits, 0.0);

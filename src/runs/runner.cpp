@@ -12,9 +12,9 @@
 namespace keeler {
 namespace {
 
-constexpr double first_check = 5e-6;         // s a particle: what a check is taken to cost before there was one
-constexpr double fraction_of_checks = 0.005; // of the wall time, for the errors of forces; one at the end besides
-constexpr double min_patience = 5.0;         // s, with a stop
+constexpr double first_check = 5e-6;         // s per particle: assumed cost of the first force check
+constexpr double fraction_of_checks = 0.005; // of the wall time, for force checks; one more runs at the end
+constexpr double min_stop_timeout = 5.0;     // s
 
 } // namespace
 
@@ -24,10 +24,11 @@ Runner::Runner(const Scene& scene, const RunOptions& options, RunRequests& reque
       watch_(watch), passage_(unresolved_passage(scene, simulation.orbits(), end_orbits(scene))),
       first_step_(simulation.state().step), last_checkpoint_(last_checkpoint),
       first_collisions_(simulation.state().collisions.fast + simulation.state().collisions.slow) {
-  requests_.patience_s = patience();
+  requests_.stop_timeout_s = stop_timeout();
   if (options.check)
     check_.emplace(scene, simulation);
   assert(!check_ || !simulation.ranks().distributed());
+  assert(last_checkpoint >= -1 && last_checkpoint <= first_step_);
 }
 
 RunResult Runner::run() {
@@ -62,14 +63,14 @@ void Runner::advance() {
 bool Runner::must_stop() const {
   if (!between_kicks())
     return false;
-  // two passes more for the last checkpoint
-  const double reserve = (passes_between_stops() + 2.0) * longest_pass_ + recorder_.force_checks().last_s;
+  // two steps more for the last checkpoint
+  const double reserve = (steps_between_stops() + 2.0) * longest_step_s_ + recorder_.force_checks().last_s;
   return ranks().broadcast(requests_.stop ||
                            (options_.wall_time_s && watch_.elapsed() + reserve > *options_.wall_time_s));
 }
 
-// An orbit before, when the satellite begins to pull.
-void Runner::tell_of_passage() {
+// Reports a passage one orbit ahead, when the satellite begins to pull.
+void Runner::report_passage() {
   constexpr double before = 1.0, next = 1e-6; // orbits
   if (!passage_ || simulation_.orbits() < passage_->orbits - before)
     return;
@@ -81,7 +82,7 @@ void Runner::tell_of_passage() {
 
 void Runner::record() {
   const std::int64_t step = simulation_.state().step;
-  tell_of_passage();
+  report_passage();
   recorder_.contacts();
   if (due(scene_.output.series_every))
     recorder_.sample(simulation_);
@@ -95,7 +96,7 @@ void Runner::record() {
   }
   if (force_check_due()) {
     recorder_.check_forces(simulation_);
-    last_time_ += recorder_.force_checks().last_s; // not what a step takes
+    last_time_ += recorder_.force_checks().last_s; // not part of a step
   }
 }
 
@@ -104,36 +105,37 @@ bool Runner::checkpoint_due_by_clock() const {
   return interval > 0.0 && between_kicks() && ranks().broadcast(watch_.elapsed() - last_checkpoint_time_ >= interval);
 }
 
-// As often as a small share of the time allows: that is another number of steps for each solver and machine, and no
-// state hangs on it.
+// Force checks take a fixed fraction of the wall time. Their number depends on solver and machine; the state does not
+// depend on them.
 bool Runner::force_check_due() const {
   const ForceChecks& checks = recorder_.force_checks();
   const double next = checks.count > 0 ? checks.last_s : first_check * static_cast<double>(simulation_.count());
   return has_force_checks() && between_kicks() && checks.seconds + next <= fraction_of_checks * watch_.elapsed();
 }
 
-// Three times as long as any pass so far is nothing unusual.
-unsigned Runner::patience() const {
+// A step may take up to three times as long as the longest one so far.
+unsigned Runner::stop_timeout() const {
   if (!ranks().is_root())
-    return 0; // it decides
-  return static_cast<unsigned>(std::ceil(std::max(min_patience, 3.0 * passes_between_stops() * longest_pass_)));
+    return 0; // the root decides
+  return static_cast<unsigned>(std::ceil(std::max(min_stop_timeout, 3.0 * steps_between_stops() * longest_step_s_)));
 }
 
-// A mean over the steps so far whose weights grow with the third power of the step: steps get dearer as wakes grow,
-// and what is left will cost what the last ones did.
-void Runner::take_pace(double now) {
+// Averages the step cost with weights that grow with the third power of the step: steps get slower as wakes grow, and
+// the remaining ones will cost as much as the latest.
+void Runner::update_step_cost(double now) {
   const std::int64_t step = simulation_.state().step;
-  const auto new_steps = static_cast<double>(step - paced_step_), all = static_cast<double>(step - first_step_);
-  seconds_per_step_ += std::min(1.0, 4.0 * new_steps / all) * ((now - paced_s_) / new_steps - seconds_per_step_);
-  paced_step_ = step;
-  paced_s_ = now;
+  const auto new_steps = static_cast<double>(step - cost_step_), all = static_cast<double>(step - first_step_);
+  assert(new_steps > 0.0);
+  seconds_per_step_ += std::min(1.0, 4.0 * new_steps / all) * ((now - cost_s_) / new_steps - seconds_per_step_);
+  cost_step_ = step;
+  cost_s_ = now;
 }
 
 void Runner::report() {
   const double now = watch_.elapsed();
-  take_pace(now);
-  longest_pass_ = std::max(longest_pass_, now - last_time_);
-  requests_.patience_s = patience();
+  update_step_cost(now);
+  longest_step_s_ = std::max(longest_step_s_, now - last_time_);
+  requests_.stop_timeout_s = stop_timeout();
   last_time_ = now;
   if (!options_.progress)
     return;

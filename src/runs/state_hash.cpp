@@ -3,10 +3,14 @@
 #include <keeler/io/hash.hpp>
 #include <keeler/particles/by_id.hpp>
 
+#include <cassert>
+#include <span>
+
 namespace keeler {
 
 std::string state_hash(const SimulationState& state, const Scene& scene, const Communicator& ranks) {
   constexpr std::size_t rows = std::size_t{1} << 16;
+  assert(!state.particles.rough || state.particles.spins.size() == state.particles.size());
   Hash hash;
   visit_by_id(state.particles, ranks, rows, [&](const Particles& particles) {
     for (std::size_t k = 0; k < particles.size(); ++k) {

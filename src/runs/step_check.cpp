@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
+
 namespace keeler {
 namespace {
 
@@ -23,6 +25,7 @@ StepCheck::~StepCheck() {
 }
 
 void StepCheck::end() const {
+  assert(before_ && before_->state.step < simulation_.state().step);
   const SimulationState& now = simulation_.state();
   const Frequencies& f = scene_.planet.frequencies;
   const bool kicked = !now.forces.empty() && now.step % before_->kick_ticks.front() == 0;

@@ -1,4 +1,4 @@
-// `keeler run --check`: all invariants at each step. It only looks, so a run has the same bits with it.
+// `keeler run --check`: all invariants after each step. The checks only read, so the run has the same bits with them.
 #pragma once
 
 #include "invariants.hpp"
@@ -9,16 +9,17 @@ namespace keeler {
 
 class StepCheck {
 public:
-  /// Both must outlive it.
+  /// Registers an audit of the neighbour lists. Both arguments must outlive the check.
   StepCheck(const Scene& scene, Simulation& simulation);
   ~StepCheck();
   StepCheck(const StepCheck&) = delete;
   StepCheck& operator=(const StepCheck&) = delete;
 
-  /// Right before a step.
+  /// Saves the state. Call it directly before a step.
   void begin() { before_ = before_step(simulation_); }
 
-  /// Right after it. Throws InvariantError that names the first invariant that does not hold.
+  /// Checks the state after the step. Precondition: begin() was called. Throws InvariantError that names the first
+  /// invariant that does not hold.
   void end() const;
 
 private:

@@ -11,18 +11,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace keeler {
 namespace fs = std::filesystem;
 namespace {
 
-// Numbered names of six digits or more: longer ones are later.
+// Orders numbered names of six or more digits: longer names are later.
 bool earlier(const fs::path& a, const fs::path& b) {
   const std::string x = a.filename().string(), y = b.filename().string();
   return x.size() != y.size() ? x.size() < y.size() : x < y;
 }
 
-constexpr double time_rounding = 1.0 + 1e-9; // of times in orbits
+constexpr double time_rounding = 1.0 + 1e-9; // factor on times in orbits
 
 Snapshot load_snapshot(const fs::path& file) {
   Snapshot snapshot = read_snapshot(file);
@@ -30,8 +31,8 @@ Snapshot load_snapshot(const fs::path& file) {
   return snapshot;
 }
 
-// Adds it behind the others; the first one tells of the scene.
-void take(StoredPatches& stored, Snapshot snapshot, const fs::path& file) {
+// Appends a snapshot. The first one determines the scene.
+void append(StoredPatches& stored, Snapshot snapshot, const fs::path& file) {
   if (stored.patches.empty()) {
     const Scene scene = parse_stored_scene(snapshot.meta.scene, file.string());
     stored.title = scene.title;
@@ -64,6 +65,7 @@ StoredPatches load_newest_patch(const fs::path& path) {
 }
 
 StoredPatches load_patches(const fs::path& path, double orbits) {
+  assert(orbits >= 0.0);
   const std::vector<fs::path> files = fs::is_directory(path) ? snapshots_in(path) : std::vector<fs::path>{path};
   StoredPatches stored;
   for (auto file = files.rbegin(); file != files.rend(); ++file) {
@@ -71,7 +73,7 @@ StoredPatches load_patches(const fs::path& path, double orbits) {
     if (!stored.patches.empty() &&
         snapshot.patch.time_orbits < stored.patches.back().time_orbits - orbits * time_rounding)
       break;
-    take(stored, std::move(snapshot), *file);
+    append(stored, std::move(snapshot), *file);
     std::rotate(stored.patches.begin(), stored.patches.end() - 1, stored.patches.end()); // oldest first
   }
   return stored;
@@ -84,7 +86,7 @@ StoredPatches load_patches_between(const fs::path& folder, double since, double 
     if (snapshot.patch.time_orbits > until * time_rounding)
       break;
     if (snapshot.patch.time_orbits * time_rounding >= since)
-      take(stored, std::move(snapshot), file);
+      append(stored, std::move(snapshot), file);
   }
   if (stored.patches.empty())
     throw UsageError(fmt::format("no snapshot in '{}' is of orbits {:.6g} to {:.6g}; choose a longer part of the run",

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
@@ -31,7 +32,7 @@ const CollisionTally& collisions(From s) {
   return s.simulation.state().collisions;
 }
 
-// Of each particle and in each orbit: a contact is one of two particles.
+// Returns contacts per particle and orbit; each contact counts for both particles.
 Value rate(From s, std::uint64_t contacts) {
   const double orbits = s.simulation.orbits();
   return orbits > 0.0 ? 2.0 * static_cast<double>(contacts) / (static_cast<double>(s.simulation.count()) * orbits)
@@ -55,14 +56,13 @@ bool has_balance(From s) {
   return s.transport && s.transport->balance;
 }
 
-// What a user must know of the results: empty where nothing is amiss.
+// Returns the warnings on the results; empty if there are none.
 std::vector<std::string> notes(From s) {
-  constexpr double too_many = 0.1, left_out = 0.05; // no solver of all forces errs as much
+  constexpr double too_many = 0.1, omitted = 0.05; // a solver of all forces has smaller errors
   std::vector<std::string> all;
   if (const std::optional<SatellitePassage> passage = unresolved_passage(s.scene, 0.0, s.simulation.orbits()))
     all.push_back(in_words(*passage));
-  // How much such contacts lose depends on the kick interval too (docs/hard-spheres.md), so the balance of energy
-  // decides.
+  // The loss in such contacts depends on the kick interval too (docs/hard-spheres.md), so the energy balance decides.
   if (!carries(s) && unresolved_fraction(s) > too_many)
     all.push_back(
         fmt::format("{} % of the contacts are slower than one kick of the pair's own gravity: where the energy "
@@ -71,10 +71,10 @@ std::vector<std::string> notes(From s) {
   if (collisions(s).gave_up > 0 || s.largest_overlap > 1e-8)
     all.push_back(fmt::format("the collision finder gave up on {} {}, and may have missed contacts",
                               collisions(s).gave_up, collisions(s).gave_up == 1 ? "search" : "searches"));
-  if (const ForceChecks& checks = s.cost.force_checks; has_force_error(s) && checks.last_rms > left_out)
+  if (const ForceChecks& checks = s.cost.force_checks; has_force_error(s) && checks.last_rms > omitted)
     all.push_back(
-        fmt::format("left out of gravity: {} % of the rms acceleration, by choice: a mesh alone has no pull of "
-                    "neighbours, rings of images none from beyond, and few particles feel little else",
+        fmt::format("omitted by the gravity solver: {} % of the rms acceleration (a mesh alone lacks the pull of near "
+                    "neighbours, rings of images lack farther images; few particles feel little else)",
                     format_number(100.0 * checks.last_rms, 2)));
   return all;
 }
@@ -89,22 +89,22 @@ std::vector<SummaryRow> state_rows() {
       {{"steps", unit::none, "steps", "since the run began"},
        [](From s) -> Value { return static_cast<std::uint64_t>(s.simulation.state().control.steps); }},
       {{"particle_count", unit::none, "particles", "N"}, [](From s) -> Value { return s.simulation.count(); }},
-      {{"ranks", unit::none, "ranks", "processes that share the run"},
+      {{"ranks", unit::none, "ranks", "processes of the run"},
        [](From s) -> Value { return static_cast<std::uint64_t>(s.simulation.ranks().size()); }},
-      {{"threads", unit::none, "threads", "of each process"},
+      {{"threads", unit::none, "threads", "per process"},
        [](From) -> Value { return static_cast<std::uint64_t>(threads()); }},
-      {{"collisions_per_particle_orbit", unit::none, "collisions a particle and orbit",
+      {{"collisions_per_particle_orbit", unit::none, "collisions per particle and orbit",
         "faster than v_cut, 2 n/(N orbits), since the run began", Spread::none, Forms::si, 3},
        [](From s) { return rate(s, collisions(s).fast); }},
       {{"slow_contacts_per_particle_orbit", unit::none, "slow contacts",
-        "those slower than v_cut, which bounce elastically", Spread::none, Forms::si, 3},
+        "contacts slower than v_cut, which are elastic", Spread::none, Forms::si, 3},
        [](From s) { return rate(s, collisions(s).slow); }},
       {{"unresolved_contacts_share", unit::none, "unresolved contacts",
-        "share of all contacts that are slower than what one kick of the pair's own gravity gives them", Spread::none,
+        "fraction of the contacts that are slower than the speed from one kick of the pair's own gravity", Spread::none,
         Forms::si, 3},
        [](From s) -> Value { return unresolved_fraction(s); }},
       {{"resting_contacts", unit::none, "contacts at rest",
-        "pairs that rest on each other at the end and carry the kicks; null where the scene has none carried"},
+        "resting pairs at the end, which transmit the kicks; null where the scene does not treat them so"},
        [](From s) -> Value {
          return carries(s) ? Value(std::uint64_t{s.simulation.state().resting.pairs.size()}) : Value(Unknown{});
        }},
@@ -118,8 +118,8 @@ std::vector<SummaryRow> state_rows() {
        [](From s) -> Value { return Unknown{s.scene.gravity ? "it was not checked" : "there is none"}; },
        [](From s) { return !has_force_error(s); }},
       {{"force_error.rms", of_rms, "error of gravity",
-        "rms error of the accelerations held against the sum over all pairs and images, in the last check",
-        Spread::none, Forms::si, 2},
+        "rms error of the accelerations against the sum over all pairs and images, in the last check", Spread::none,
+        Forms::si, 2},
        [](From s) -> Value { return s.cost.force_checks.last_rms; },
        has_force_error},
       {{"force_error.worst_rms", of_rms, "  at worst", "in the worst check of this command", Spread::none, Forms::si,
@@ -129,10 +129,10 @@ std::vector<SummaryRow> state_rows() {
       {{"force_error.checks", unit::none, "", "checks of this command, which take at most 0.5 % of the time"},
        [](From s) -> Value { return static_cast<std::uint64_t>(s.cost.force_checks.count); },
        has_force_error},
-      {{"force_error.particles", unit::none, "", "particles that are looked at in a check"},
+      {{"force_error.particles", unit::none, "", "particles per check"},
        [](From s) -> Value { return s.cost.force_checks.particles; },
        has_force_error},
-      {word("notes", "note", "what happened so far that makes the results doubtful, a text each"),
+      {word("notes", "note", "warnings: events so far that make the results doubtful"),
        [](From s) -> Value { return notes(s); }}};
 }
 
@@ -148,7 +148,7 @@ std::vector<SummaryRow> energy_rows() {
       {{"energy_j.start", joules, "energy of random motion: start",
         "Σ m (½c² + ½ν²z²) of the random motions, c the velocity beyond the shear, and energy of spins"},
        [](From s) -> Value { return s.balance.start * joule(s); }},
-      {{"energy_j.now", joules, "energy of random motion: now", "the same now"},
+      {{"energy_j.now", joules, "energy of random motion: now", "as above, now"},
        [](From s) -> Value { return s.balance.energy * joule(s); }},
       {{"energy_j.translational_shear_work", joules, "  from the shear, by transport",
         "work of the shear on the stress of moving particles"},
@@ -160,16 +160,16 @@ std::vector<SummaryRow> energy_rows() {
        [](From s) -> Value { return s.balance.kick_work * joule(s); }},
       {word("energy_j.kick_work_of", "", "work of each force, under its name"), work_of_forces},
       {{"energy_j.resting_work", joules, "  by contacts at rest",
-        "work of what contacts at rest carry, along their lines of centres"},
+        "work of the impulses of contacts at rest along their lines of centres"},
        [](From s) -> Value { return s.balance.resting_work * joule(s); }},
       {{"energy_j.lost_in_collisions", joules, "  lost in collisions", "since the run began"},
        [](From s) -> Value { return s.balance.lost * joule(s); }},
-      {{"energy_j.residual", joules, "  rounding", "what the books leave", Spread::none, Forms::si, 2},
+      {{"energy_j.residual", joules, "  rounding", "residual of the energy budget", Spread::none, Forms::si, 2},
        [](From s) -> Value { return s.balance.residual * joule(s); }},
       {word("energy_balance", "", "loss over work of the shear; null where the series does not show it"),
        [](From) -> Value { return Unknown{}; }, [](From s) { return !has_balance(s); }},
       {{"energy_balance.ratio", unit::none, "energy balance",
-        "energy lost over the work of the shear on all stresses where the run is steady: 1 but for its error",
+        "energy lost over the work of the shear on all stresses where the run is steady; 1 within its error",
         Spread::none, Forms::si, 4},
        [](From s) { return value_of(std::optional(s.transport->balance->value)); },
        has_balance},
@@ -179,18 +179,19 @@ std::vector<SummaryRow> energy_rows() {
       {{"energy_balance.total_viscosity", unit::viscosity, "  total viscosity", "by all three stresses"},
        [](From s) { return value_of(std::optional(s.transport->total->value)); },
        has_balance},
-      {{"energy_balance.since_orbit", unit::unnamed("orbits"), "  since", "beginning of the part that they are of"},
+      {{"energy_balance.since_orbit", unit::unnamed("orbits"), "  since", "first orbit of the steady part"},
        [](From s) -> Value { return s.transport->since_orbit; },
        has_balance},
-      {{"energy_balance.until_orbit", unit::unnamed("orbits"), "  until", "end of that part"},
+      {{"energy_balance.until_orbit", unit::unnamed("orbits"), "  until", "last orbit of that part"},
        [](From s) -> Value { return s.transport->until_orbit; },
        has_balance},
       {word("energy_balance.steady", "  steady", "whether the run is steady there"),
        [](From s) -> Value { return s.transport->steady; }, has_balance}};
 }
 
-// A particle and step of this stretch, in units of 10⁹.
-double passes(From s) {
+// Returns the number of particle steps of this command, in units of 10⁹: seconds over this are ns per particle and
+// step.
+double giga_particle_steps(From s) {
   const std::int64_t steps = std::max<std::int64_t>(1, s.simulation.state().control.steps - s.cost.first_step);
   return 1e-9 * static_cast<double>(s.simulation.count()) * static_cast<double>(steps);
 }
@@ -225,20 +226,20 @@ std::vector<SummaryRow> cost_rows() {
       {{"split.contacts", unit::seconds, "", "of files of the log of contacts"},
        [](From s) -> Value { return s.cost.output.contacts; }},
       {{"split.exchange", unit::seconds, "  exchange of ranks",
-        "of the first of several ranks: sending, receiving and waiting, within all the others"},
+        "sending, receiving and waiting of the first of several ranks; included in the other times"},
        [](From) -> Value { return exchange_costs().seconds; }},
       {{"split.force_checks", unit::seconds, "  checks of forces", "of the checks behind `force_error`", Spread::none,
         Forms::si, 2},
        [](From s) -> Value { return s.cost.force_checks.seconds; }},
-      {{"ns_per_particle_step.drift", nanoseconds, "drift, a particle and step", "wall time of a particle and step",
+      {{"ns_per_particle_step.drift", nanoseconds, "drift, per particle and step", "wall time per particle and step",
         Spread::none, Forms::si, 3},
-       [](From s) -> Value { return s.simulation.time_split().drift / passes(s); }},
-      {{"ns_per_particle_step.gravity", nanoseconds, "gravity, a particle and step", "the same", Spread::none,
-        Forms::si, 3},
-       [](From s) -> Value { return s.simulation.time_split().force("gravity") / passes(s); }},
-      {{"ns_per_particle_step.series", nanoseconds, "series, a particle and step", "the same", Spread::none, Forms::si,
-        2},
-       [](From s) -> Value { return s.cost.output.series / passes(s); }}};
+       [](From s) -> Value { return s.simulation.time_split().drift / giga_particle_steps(s); }},
+      {{"ns_per_particle_step.gravity", nanoseconds, "gravity, per particle and step",
+        "wall time per particle and step", Spread::none, Forms::si, 3},
+       [](From s) -> Value { return s.simulation.time_split().force("gravity") / giga_particle_steps(s); }},
+      {{"ns_per_particle_step.series", nanoseconds, "series, per particle and step", "wall time per particle and step",
+        Spread::none, Forms::si, 2},
+       [](From s) -> Value { return s.cost.output.series / giga_particle_steps(s); }}};
 }
 
 std::vector<SummaryRow> all_rows() {
@@ -251,7 +252,7 @@ std::optional<Transport> transport_of_run(const std::filesystem::path& series, c
                                           const std::function<void(const std::string&)>& notice) {
   try {
     const SeriesTable table = read_series(series);
-    if (enough_rows(table)) // too few say nothing
+    if (enough_rows(table))
       return transport(table, scale, {});
   } catch (const Error& error) {
     if (notice)
@@ -268,13 +269,14 @@ bool says_finished(const std::filesystem::path& folder) {
     const Record summary = read_summary(folder);
     const Value* const finished = find_value(summary, "finished");
     return finished && std::holds_alternative<bool>(*finished) && std::get<bool>(*finished);
-  } catch (const IoError&) { // a damaged one is written anew
+  } catch (const IoError&) { // the run will rewrite a damaged one
     return false;
   }
 }
 
 Record summarise(Simulation& simulation, const Scene& scene, const std::optional<Transport>& transport,
                  const RunResult& result, const RunCost& cost, const Provenance& provenance) {
+  assert(cost.first_step <= simulation.state().control.steps && cost.wall_s >= 0.0);
   const SummarySource source{simulation,          scene, transport, result, cost, simulation.largest_overlap(),
                              simulation.balance()};
   Record record{entries_of(all_rows(), source), {}};

@@ -1,4 +1,4 @@
-// What a run came to, when it ends or stops.
+// The summary of a run, written when it ends or stops.
 #pragma once
 
 #include "recorder.hpp"
@@ -10,7 +10,7 @@
 
 namespace keeler {
 
-/// What this stretch of the run took: since it began or was resumed when first_step steps were done.
+/// The costs of this command: of the part of the run since its start, or since a resume after `first_step` steps.
 struct RunCost {
   std::int64_t first_step = 0;
   double first_orbit = 0.0;
@@ -19,27 +19,28 @@ struct RunCost {
   ForceChecks force_checks;
 };
 
-/// By the series of the run. None, with a notice where it is damaged: that must not keep a run from ending well.
+/// Computes the transport from the series of the run. A damaged series gives none and a notice: the run still ends
+/// normally.
 std::optional<Transport> transport_of_run(const std::filesystem::path& series, const RingScale& scale,
                                           const std::function<void(const std::string&)>& notice);
 
-/// What the numbers of a summary are read from.
+/// The sources of the numbers of a summary.
 struct SummarySource {
   Simulation& simulation;
   const Scene& scene;
   const std::optional<Transport>& transport;
   const RunResult& result;
   const RunCost& cost;
-  double largest_overlap; ///< now
+  double largest_overlap; ///< at present, as a fraction of the radius sum
   EnergyBalance balance;
 };
 
-/// Counts and energies are those of the whole run, times those of this stretch. Collective; the first rank's is the
-/// one.
+/// Returns the summary: counts and energies of the whole run, times of this command. Collective; only the root's record
+/// is complete.
 Record summarise(Simulation& simulation, const Scene& scene, const std::optional<Transport>& transport,
                  const RunResult& result, const RunCost& cost, const Provenance& provenance);
 
-/// Whether the folder's summary is that of a finished run. False when there is none, or one that is damaged.
+/// Returns true if the folder's summary is of a finished run; false if it is missing or damaged.
 bool says_finished(const std::filesystem::path& folder);
 
 } // namespace keeler

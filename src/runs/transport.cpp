@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 #include <span>
@@ -17,18 +18,18 @@ namespace {
 
 using Values = std::vector<double>;
 
-constexpr std::size_t min_rows = 3;                       // for a viscosity
-constexpr std::size_t min_for_steady = 8;                 // to look for where a run becomes steady
-constexpr double min_orbits = 2.0, min_share = 1.0 / 3.0; // of a part that may be called steady
-constexpr double small_waves = 0.02;                      // fraction of the energy: 1 % of the dispersion
+constexpr std::size_t min_rows = 3;                          // for a viscosity
+constexpr std::size_t min_for_steady = 8;                    // to detect where a run becomes steady
+constexpr double min_orbits = 2.0, min_fraction = 1.0 / 3.0; // of a part that may count as steady
+constexpr double small_waves = 0.02;                         // fraction of the energy; 1 % of the dispersion
 
-// Whether the run had self-gravity, and whether its stress was measured.
+// Returns true if the run had self-gravity and its stress was measured.
 bool measures_gravity(const SeriesTable& series) {
   return series.find("potential_energy_j") != nullptr;
 }
 
-// Rows at which everything is known.
-std::vector<std::size_t> whole_rows(const SeriesTable& series) {
+// Returns the rows at which all quantities were measured.
+std::vector<std::size_t> complete_rows(const SeriesTable& series) {
   std::vector<std::size_t> rows;
   const Values* const potential = series.find("potential_energy_j");
   for (std::size_t k = 0; k < series.rows(); ++k)
@@ -37,10 +38,10 @@ std::vector<std::size_t> whole_rows(const SeriesTable& series) {
   return rows;
 }
 
-// Rates between whole rows, all as viscosities: m²/s.
+// Rates between successive complete rows, all as viscosities: m²/s.
 struct Rates {
-  Values time;                                      // orbits, in the middle
-  Values translational, collisional, gravitational; // the last is empty without
+  Values time;                                      // middle of each interval, orbits
+  Values translational, collisional, gravitational; // the last is empty if not measured
   Values total, loss;
 
   std::size_t size() const { return time.size(); }
@@ -54,6 +55,7 @@ Rates rates_of(const SeriesTable& series, const std::vector<std::size_t>& rows, 
   const Values *const stress = series.find("gravitational_viscosity_m2_s"), *const potential =
                                                                                 series.find("potential_energy_j");
   const double s = scale.shear * scale.orbital_frequency;
+  assert(s > 0.0 && scale.mass > 0.0 && std::is_sorted(rows.begin(), rows.end()));
   Rates rates;
   for (std::size_t k = 0; k + 1 < rows.size(); ++k) {
     const std::size_t a = rows[k], b = rows[k + 1];
@@ -75,7 +77,7 @@ Rates rates_of(const SeriesTable& series, const std::vector<std::size_t>& rows, 
   return rates;
 }
 
-// The part of a list that belongs to rows within the window.
+// Returns the rows within the window.
 std::vector<std::size_t> within(const std::vector<std::size_t>& rows, const Values& orbits, double since,
                                 double until) {
   constexpr double rounding = 1e-9;
@@ -85,8 +87,9 @@ std::vector<std::size_t> within(const std::vector<std::size_t>& rows, const Valu
   return chosen;
 }
 
-// Their ratio, its error from what is left of one where the other has been taken out: both wander together.
+// Returns the ratio of the means. Its error is from the residuals above − ratio · below, since both fluctuate together.
 Estimate ratio_of(const Values& above, const Values& below) {
+  assert(above.size() == below.size());
   const double ratio =
       std::accumulate(above.begin(), above.end(), 0.0) / std::accumulate(below.begin(), below.end(), 0.0);
   Values rest(above.size());
@@ -95,7 +98,7 @@ Estimate ratio_of(const Values& above, const Values& below) {
   return {ratio, block_mean(rest).error / std::fabs(block_mean(below).value)};
 }
 
-// None where it says nothing: where its error is larger than it, or all is zero.
+// Returns none if the ratio is meaningless: smaller than its error, or 0/0.
 std::optional<Estimate> balance_of(const Rates& rates) {
   const Estimate ratio = ratio_of(rates.loss, rates.total);
   if (!std::isfinite(ratio.value) || ratio.error >= std::fabs(ratio.value))
@@ -103,7 +106,7 @@ std::optional<Estimate> balance_of(const Rates& rates) {
   return ratio;
 }
 
-Values picked(const Values& column, const std::vector<std::size_t>& rows) {
+Values values_at(const Values& column, const std::vector<std::size_t>& rows) {
   Values values;
   for (const std::size_t k : rows)
     values.push_back(column[k]);
@@ -114,21 +117,21 @@ bool all_finite(const Values& values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
-// c_x of the random motion: waves as long as the box go on growing when it is steady. Series of former versions, and
-// those of few particles, have only the dispersion about the mean motion.
+// Returns c_x without box-long waves, which keep growing when the random motion is steady. Series of earlier versions
+// or of few particles have only the dispersion about the mean motion.
 Values random_motion(const SeriesTable& series, const std::vector<std::size_t>& rows) {
   if (const Values* const without_waves = series.find("dispersion_without_waves_x_m_s"))
-    if (Values values = picked(*without_waves, rows); all_finite(values))
+    if (Values values = values_at(*without_waves, rows); all_finite(values))
       return values;
-  return picked(series.of("dispersion_x_m_s"), rows);
+  return values_at(series.of("dispersion_x_m_s"), rows);
 }
 
 std::optional<WaveGrowth> waves_in(const SeriesTable& series, const std::vector<std::size_t>& rows) {
-  constexpr double sure = 3.0; // errors
+  constexpr double max_sigmas = 3.0;
   const Values* const column = series.find("epicyclic_wave_fraction");
   if (!column || rows.size() < min_for_steady)
     return std::nullopt;
-  const Values fractions = picked(*column, rows);
+  const Values fractions = values_at(*column, rows);
   if (!all_finite(fractions))
     return std::nullopt;
   const std::span<const double> all(fractions);
@@ -136,13 +139,13 @@ std::optional<WaveGrowth> waves_in(const SeriesTable& series, const std::vector<
   WaveGrowth waves{block_mean(all.first(half)), block_mean(all.last(half))};
   const double first = waves.first_half.value, last = waves.last_half.value;
   waves.steady = std::max(first, last) < small_waves ||
-                 std::fabs(last - first) <= sure * std::hypot(waves.first_half.error, waves.last_half.error);
+                 std::fabs(last - first) <= max_sigmas * std::hypot(waves.first_half.error, waves.last_half.error);
   return waves;
 }
 
-// A particle alone has no dispersion: what it loses and gains is the rounding of its forces.
+// A single particle has no dispersion: its energy changes are the rounding of its forces.
 bool moves_at_random(const SeriesTable& series, const std::vector<std::size_t>& rows) {
-  const Values dispersions = picked(series.of("dispersion_x_m_s"), rows);
+  const Values dispersions = values_at(series.of("dispersion_x_m_s"), rows);
   return std::any_of(dispersions.begin(), dispersions.end(), [](double c) { return c > 0.0; });
 }
 
@@ -153,12 +156,12 @@ RingScale RingScale::of(const Patch& patch, bool driven) {
 }
 
 bool enough_rows(const SeriesTable& series) {
-  return series.find("translational_flux_kg_m2_s") && whole_rows(series).size() >= min_rows;
+  return series.find("translational_flux_kg_m2_s") && complete_rows(series).size() >= min_rows;
 }
 
 double steady_since(const SeriesTable& series, double until) {
   const Values& orbits = series.of("time_orbits");
-  const std::vector<std::size_t> rows = within(whole_rows(series), orbits, -HUGE_VAL, until);
+  const std::vector<std::size_t> rows = within(complete_rows(series), orbits, -HUGE_VAL, until);
   if (rows.size() < min_for_steady)
     return orbits.empty() ? 0.0 : orbits.front();
   const Rates rates = rates_of(series, rows, {.mass = 1.0, .orbital_frequency = 1.0, .shear = 1.0});
@@ -173,7 +176,7 @@ Transport transport(const SeriesTable& series, const RingScale& scale, const Orb
   Transport result;
   const double until = window.until ? *window.until : orbits.empty() ? 0.0 : orbits.back();
   const double since = window.since ? *window.since : steady_since(series, until);
-  const std::vector<std::size_t> rows = within(whole_rows(series), orbits, since, until);
+  const std::vector<std::size_t> rows = within(complete_rows(series), orbits, since, until);
   result.since_found = !window.since && rows.size() >= min_for_steady;
   if (rows.size() < min_rows)
     throw UsageError(
@@ -199,7 +202,7 @@ Transport transport(const SeriesTable& series, const RingScale& scale, const Orb
   }
   result.waves = waves_in(series, rows);
   const double length = result.until_orbit - result.since_orbit;
-  result.steady = length >= min_orbits && length >= min_share * (until - orbits.front()) && is_steady(rates.loss) &&
+  result.steady = length >= min_orbits && length >= min_fraction * (until - orbits.front()) && is_steady(rates.loss) &&
                   is_steady(random_motion(series, rows));
   return result;
 }

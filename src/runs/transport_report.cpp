@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -22,14 +23,15 @@ Estimate at_an_instant(double value) {
 using Report = const TransportReport&;
 using Maybe = std::optional<Estimate>;
 
-// What is known of the transport; some of it of runs alone.
+// Returns a number of the transport; unknown if the series has too few rows.
 Value of_transport(Report r, Value (*number)(const Transport&)) {
   return r.transport() ? number(*r.transport())
                        : Unknown{"series.csv has fewer than three rows with all stresses here"};
 }
 
+// As above, for numbers that a single snapshot does not have.
 Value of_run(Report r, Value (*number)(const Transport&)) {
-  return r.is_of_run() ? of_transport(r, number) : Unknown{"a snapshot does not show it"};
+  return r.is_of_run() ? of_transport(r, number) : Unknown{"a single snapshot does not determine it"};
 }
 
 Quantity viscosity(const char* part, const char* label, const char* meaning) {
@@ -39,31 +41,31 @@ Quantity viscosity(const char* part, const char* label, const char* meaning) {
 std::vector<QuantityRow<TransportReport>> transport_rows() {
   return {
       {viscosity("translational", "viscosity: translational",
-                 "⟨c_x c_y⟩/S: what particles carry by moving (local; Wisdom & Tremaine 1988, AJ 95, 925)"),
+                 "⟨c_x c_y⟩/S: transport by the motion of particles (local; Wisdom & Tremaine 1988, AJ 95, 925)"),
        [](Report r) { return of_transport(r, [](const Transport& t) { return value_of(Maybe(t.translational)); }); }},
       {viscosity("collisional", "viscosity: collisional",
-                 "Σ (x_j − x_i) (p_y gained by j) a time over M S: what jumps from centre to centre in contacts "
+                 "Σ (x_j − x_i) (p_y gained by j) per time over M S: transport from centre to centre in contacts "
                  "(nonlocal; Wisdom & Tremaine 1988)"),
        [](Report r) { return of_run(r, [](const Transport& t) { return value_of(Maybe(t.collisional)); }); }},
       {viscosity("gravitational", "viscosity: gravitational",
-                 "(dΦ/dγ)/(M S): what self-gravity carries (Daisaka, Tanaka & Ida 2001, Icarus 154, 296)"),
+                 "(dΦ/dγ)/(M S): transport by self-gravity (Daisaka, Tanaka & Ida 2001, Icarus 154, 296)"),
        [](Report r) { return of_transport(r, [](const Transport& t) { return value_of(t.gravitational); }); }},
       {viscosity("total", "viscosity: total", "the sum of the three, with the error of the sum"),
        [](Report r) { return of_run(r, [](const Transport& t) { return value_of(t.total); }); }},
       {viscosity("loss", "viscosity: from the loss",
-                 "(energy lost in collisions + gain of random and potential energy) a time over M S²: the total must "
-                 "be this"),
+                 "(energy lost in collisions + gain of random and potential energy) per time over M S²: must equal "
+                 "the total"),
        [](Report r) { return of_run(r, [](const Transport& t) { return value_of(Maybe(t.from_loss)); }); }},
       {{"energy_balance", unit::none, "energy balance",
-        "`loss_viscosity` over `total_viscosity`: 1 but for its error; null where another force does work",
+        "`loss_viscosity` over `total_viscosity`: 1 within its error; null where another force does work",
         Spread::error},
        [](Report r) { return of_run(r, [](const Transport& t) { return value_of(t.balance); }); }},
-      {{"since_orbit", unit::unnamed("orbits"), "viscosities: since", "beginning of the part that they are of"},
+      {{"since_orbit", unit::unnamed("orbits"), "viscosities: since", "first orbit of the measured part"},
        [](Report r) { return of_transport(r, [](const Transport& t) -> Value { return t.since_orbit; }); }},
-      {{"until_orbit", unit::unnamed("orbits"), "viscosities: until", "end of the part that they are of"},
+      {{"until_orbit", unit::unnamed("orbits"), "viscosities: until", "last orbit of the measured part"},
        [](Report r) { return of_transport(r, [](const Transport& t) -> Value { return t.until_orbit; }); }},
       {of_shape({"since_found", unit::none, "",
-                 "whether that beginning was found, by Chodera's criterion (2016, J. Chem. Theory Comput. 12, 1799)"},
+                 "whether its beginning was detected, by Chodera's criterion (2016, J. Chem. Theory Comput. 12, 1799)"},
                 Shape::other),
        [](Report r) { return of_transport(r, [](const Transport& t) -> Value { return t.since_found; }); }},
       {of_shape({"steady", unit::none, "viscosities: steady", "whether loss and dispersion are steady in that part"},
@@ -75,7 +77,7 @@ std::vector<QuantityRow<TransportReport>> transport_rows() {
          return of_transport(
              r, [](const Transport& t) { return t.waves ? value_of(t.waves->first_half.value) : Unknown{}; });
        }},
-      {{"epicyclic_wave_fraction_last_half", unit::none, "box-long waves: last half", "and over the last half",
+      {{"epicyclic_wave_fraction_last_half", unit::none, "box-long waves: last half", "mean of it over the last half",
         Spread::none, Forms::si, 2},
        [](Report r) {
          return of_transport(
@@ -93,7 +95,7 @@ std::vector<QuantityRow<TransportReport>> transport_rows() {
 
 } // namespace
 
-std::string words_of(const WaveGrowth& waves) {
+std::string describe(const WaveGrowth& waves) {
   const auto fraction = [](const Estimate& half) { return fmt::format("{:.2g}", std::max(0.0, half.value)); };
   return fmt::format("{} of the epicyclic energy in the first half of these orbits, {} in the last{}",
                      fraction(waves.first_half), fraction(waves.last_half),
@@ -120,7 +122,7 @@ TransportReport TransportReport::of_series(const SeriesTable& series, const Ring
     return report;
   try {
     report.transport_ = keeler::transport(series, scale, window);
-  } catch (const UsageError&) { // too few rows in the window: its snapshots may be enough for the rest
+  } catch (const UsageError&) { // too few rows in the window; its snapshots may suffice for the other quantities
   }
   return report;
 }
@@ -129,6 +131,7 @@ TransportReport TransportReport::of_snapshot(const Patch& patch, const std::opti
   TransportReport report;
   Transport& t = report.transport_.emplace();
   const double omega = patch.orbital_frequency;
+  assert(omega > 0.0);
   t.since_orbit = t.until_orbit = patch.time_orbits;
   t.translational = at_an_instant(translational_viscosity(patch) * omega);
   if (gravity && has_energy_meter(*gravity)) {

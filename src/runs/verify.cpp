@@ -26,40 +26,40 @@ namespace keeler {
 namespace fs = std::filesystem;
 namespace {
 
-// What a file says that others of its run say too; empty where it does not.
+// Values that all files of a run must agree on; empty if the file does not have them.
 struct Found {
   std::string motion;     // Scene::motion
-  std::string state_hash; // of the end of a run
+  std::string state_hash; // at the end of the run
 };
 
-bool near(double a, double b) {
-  constexpr double rounding = 1e-12; // texts of scenes have all digits
+bool nearly_equal(double a, double b) {
+  constexpr double rounding = 1e-12; // scene texts have all digits
   return std::abs(a - b) <= rounding * std::abs(b);
 }
 
-// The other finders miss contacts, so that particles may stand inside each other.
-bool misses_nothing(const Scene& scene) {
+// The other finders can miss contacts, so that particles overlap.
+bool forbids_overlap(const Scene& scene) {
   return scene.collisions.finder == "certified";
 }
 
 void require_fit(const Patch& patch, const Scene& scene, const std::string& file) {
   require_possible(patch, file);
   if (std::adjacent_find(patch.ids.begin(), patch.ids.end()) != patch.ids.end())
-    throw IoError(fmt::format("'{}' has two particles of one id", file));
-  if (!near(patch.orbital_frequency, scene.planet.orbital_frequency) ||
-      !near(patch.frequencies.kappa, scene.planet.frequencies.kappa) ||
-      !near(patch.frequencies.nu, scene.planet.frequencies.nu) ||
-      !near(patch.box.shear, scene.planet.frequencies.shear()))
+    throw IoError(fmt::format("'{}' has two particles with one id", file));
+  if (!nearly_equal(patch.orbital_frequency, scene.planet.orbital_frequency) ||
+      !nearly_equal(patch.frequencies.kappa, scene.planet.frequencies.kappa) ||
+      !nearly_equal(patch.frequencies.nu, scene.planet.frequencies.nu) ||
+      !nearly_equal(patch.box.shear, scene.planet.frequencies.shear()))
     throw IoError(fmt::format("'{}' has other frequencies than the scene in it", file));
   if (patch.size() < scene.moonlets.size())
     throw IoError(fmt::format("'{}' has fewer particles than the scene in it has moonlets", file));
   if (patch.spins.empty() == scene.collisions.friction.has_value())
     throw IoError(fmt::format("'{}' and the scene in it do not agree whether particles have spins", file));
-  if (misses_nothing(scene))
+  if (forbids_overlap(scene))
     require_no_overlap(patch, "'" + file + "'");
 }
 
-// A checkpoint's elements at the boundary where it was written.
+// Returns the particles of a checkpoint at the boundary where it was written.
 Patch patch_of(const StoredRun& run) {
   const SimulationState& state = run.state;
   Patch patch = make_patch(state.particles, state.box, state.boundary_offset(), run.scene.planet.frequencies,
@@ -102,22 +102,22 @@ Found check_contacts(const std::string& file) {
     const bool finite = std::isfinite(row.time_orbits) && row.position.allFinite() && std::isfinite(row.normal_speed) &&
                         std::isfinite(row.tangential_speed);
     if (!finite || row.step < last || row.low_id >= row.high_id)
-      throw IoError(fmt::format("row {} of '{}' is no contact, or not of its place",
+      throw IoError(fmt::format("row {} of '{}' is not a valid contact, or is out of order",
                                 contacts.meta.first_row + (&row - contacts.rows.data()), file));
     last = row.step;
   }
   return {parse_stored_scene(contacts.meta.scene, file).motion, {}};
 }
 
-// A row has the steps of the one before at least; of series.csv more.
+// Steps must not decrease from row to row; in series.csv they must increase.
 Found check_series(const std::string& file) {
   const SeriesTable table = read_series(file);
   const std::vector<double>& steps = table.columns.front();
-  const bool one_a_step = fs::path(file).filename() == "series.csv";
-  const auto follows = [&](double step, double last) { return one_a_step ? step > last : step >= last; };
+  const bool one_per_step = fs::path(file).filename() == "series.csv";
+  const auto follows = [&](double step, double last) { return one_per_step ? step > last : step >= last; };
   for (std::size_t k = 0; k < steps.size(); ++k)
     if (!std::isfinite(steps[k]) || (k > 0 && !follows(steps[k], steps[k - 1])))
-      throw IoError(fmt::format("line {} of '{}' is not of its place", k + 2, file));
+      throw IoError(fmt::format("line {} of '{}' is out of order", k + 2, file));
   return {};
 }
 
@@ -132,7 +132,7 @@ Found check_summary(const std::string& file) {
   return {{}, json["state_hash"].get<std::string>()};
 }
 
-// The last line may be one that the run is writing, or was when it was killed.
+// Checks the complete lines: the last one may be incomplete, in a run that is in progress or was killed.
 Found check_log(const std::string& file) {
   const std::string text = read_lines(file);
   std::size_t line = 0;
@@ -140,7 +140,7 @@ Found check_log(const std::string& file) {
     ++line;
     const auto json = json_of<nlohmann::json>(text.substr(begin, end - begin));
     if (!json.is_object() || !json.contains("event") || !json["event"].is_string())
-      throw IoError(fmt::format("line {} of '{}' is not one of a log", line, file));
+      throw IoError(fmt::format("line {} of '{}' is not an event of a log", line, file));
   }
   return {};
 }
@@ -153,7 +153,7 @@ struct Kind {
 constexpr Kind checkpoint = {"checkpoint", check_checkpoint}, snapshot = {"snapshot", check_snapshot},
                contacts = {"contacts", check_contacts}, series = {"series", check_series};
 
-// By the name that a run gives it, and else by what the file says it is.
+// Returns the kind by the name that a run gives the file, otherwise by its content.
 Kind kind_of(const fs::path& file) {
   static const std::map<std::string, Kind> texts = {{"scene.toml", {"scene", check_scene}},
                                                     {"summary.json", {"summary", check_summary}},
@@ -164,7 +164,7 @@ Kind kind_of(const fs::path& file) {
   const std::string name = file.filename().string();
   if (const auto text = texts.find(name); text != texts.end())
     return text->second;
-  if (RunFolder::is_own(name))
+  if (RunFolder::is_run_file(name))
     return name.starts_with("snap") ? snapshot : name.starts_with("checkpoint") ? checkpoint : contacts;
   switch (describe_file(file).kind) {
   case FileKind::checkpoint:
@@ -195,14 +195,14 @@ Verified verify(const fs::path& path) {
   return verified;
 }
 
-// Files that say something else than the scene and the newest checkpoint of their folder are of another run.
+// Reports files that disagree with scene.toml or the newest checkpoint: they belong to another run.
 void compare(std::vector<Verified>& files) {
   std::string motion, hash;
   for (const Verified& verified : files) {
     if (verified.file.kind == "scene")
       motion = verified.found.motion;
     if (verified.file.kind == "checkpoint")
-      hash = verified.found.state_hash; // the last one is the newest; empty where it is damaged
+      hash = verified.found.state_hash; // the last one is the newest; empty if it is damaged
   }
   for (auto& [file, found] : files) {
     if (!file.damage.empty())
@@ -223,12 +223,12 @@ std::vector<fs::path> sorted_entries(const fs::path& folder) {
   return entries;
 }
 
-// A run at work removes old checkpoints: what has gone meanwhile is not damaged.
+// A run in progress removes old checkpoints: a file that has disappeared meanwhile is not damaged.
 std::vector<VerifiedFile> verify_run(const fs::path& folder) {
   std::vector<Verified> files;
   for (const fs::path& path : sorted_entries(folder)) {
     const std::string name = path.filename().string();
-    if (!RunFolder::is_own(name))
+    if (!RunFolder::is_run_file(name))
       continue;
     Verified verified = verify(path);
     if (fs::exists(path))

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <limits>
 
 namespace keeler {
@@ -9,11 +10,12 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-// |t| is smaller in 95 % of all cases, by degrees of freedom, from one; beyond the table a little too large.
+// 95 % quantiles of |t|, for 1, 2, … degrees of freedom. Beyond the table the last one is used, a little too large.
 constexpr std::array<double, 20> student_95 = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228,
                                                2.201,  2.179, 2.160, 2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086};
 
 double student(std::size_t degrees) {
+  assert(degrees > 0);
   return student_95[std::min(degrees, student_95.size()) - 1];
 }
 

@@ -6,18 +6,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 
 namespace keeler {
 namespace {
 
-// Where x stands: its axis, and its place among the keys of all axes.
-struct PlaceOfX {
+// The index of the axis of x, and the index of x among the keys of all axes.
+struct IndexOfX {
   std::size_t axis = 0, key = 0;
 };
 
-PlaceOfX place_of_x(const Grid& grid) {
+IndexOfX index_of_x(const Grid& grid) {
   std::size_t first = 0;
   for (std::size_t axis = 0; axis < grid.axes.size(); ++axis) {
     const std::vector<std::string>& keys = grid.axes[axis].keys;
@@ -29,7 +30,7 @@ PlaceOfX place_of_x(const Grid& grid) {
   return {};
 }
 
-// What the other axes say: "density = 900, time.step = 0.001".
+// Returns the settings on the other axes: "density = 900, time.step = 0.001".
 std::string title_of(const Grid& grid, const Plan& plan, const GridPoint& point, std::size_t axis_of_x) {
   std::string title;
   std::size_t key = 0;
@@ -41,12 +42,12 @@ std::string title_of(const Grid& grid, const Plan& plan, const GridPoint& point,
 }
 
 bool x_is_number(const Grid& grid, const Plan& plan) {
-  const PlaceOfX x = place_of_x(grid);
+  const IndexOfX x = index_of_x(grid);
   return std::all_of(plan.points.begin(), plan.points.end(),
                      [&](const GridPoint& point) { return point.settings[x.key]->number.has_value(); });
 }
 
-// A text beside an axis, where gnuplot takes % for the beginning of a format.
+// Returns a tic label, with % escaped: gnuplot would take it as the beginning of a format.
 std::string label_string(const std::string& text) {
   std::string plain;
   for (const char c : text)
@@ -54,9 +55,9 @@ std::string label_string(const std::string& text) {
   return gnuplot_string(plain);
 }
 
-// Words in the place of numbers along x.
+// Returns settings that label x with words instead of numbers.
 std::string words_along_x(const Grid& grid) {
-  const PlaceOfX x = place_of_x(grid);
+  const IndexOfX x = index_of_x(grid);
   const GridAxis& axis = grid.axes[x.axis];
   const auto key =
       static_cast<std::size_t>(std::find(axis.keys.begin(), axis.keys.end(), grid.plot.x) - axis.keys.begin());
@@ -96,7 +97,7 @@ std::vector<PlotLine> plot_lines(const Grid& grid, const Plan& plan, const std::
   std::vector<PlotLine> lines;
   if (grid.plot.x.empty())
     return lines;
-  const PlaceOfX x = place_of_x(grid);
+  const IndexOfX x = index_of_x(grid);
   const std::size_t y = grid.quantities.find(grid.plot.y).value();
   const bool numbers = x_is_number(grid, plan);
   std::map<std::string, std::size_t> line_of; // by title
@@ -104,6 +105,7 @@ std::vector<PlotLine> plot_lines(const Grid& grid, const Plan& plan, const std::
     if (!row.values[y])
       continue;
     const GridPoint& point = *row.point;
+    assert(x.key < point.settings.size() && x.axis < point.on_axis.size());
     const std::string title = title_of(grid, plan, point, x.axis);
     const auto [entry, is_new] = line_of.try_emplace(title, lines.size());
     if (is_new)

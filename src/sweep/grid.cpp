@@ -11,6 +11,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <set>
 
@@ -22,8 +23,8 @@ using Names = std::vector<std::string>;
 
 constexpr const char* seed_key = "particles.seed";
 
-[[noreturn]] void fail_at(const std::string& place, const std::string& message) {
-  throw UsageError(place + ": " + message);
+[[noreturn]] void fail_at(const std::string& position, const std::string& message) {
+  throw UsageError(position + ": " + message);
 }
 
 std::string in_double_quotes(const std::string& text) {
@@ -35,7 +36,7 @@ std::string in_double_quotes(const std::string& text) {
   return out + '"';
 }
 
-// Whether the value of a key, if it is a text, names a file.
+// Returns true if a text value of the key names a file.
 bool names_file(const std::string& path) {
   const Key* const key = find_key(path);
   return key && (key->type == KeyType::path || key->type == KeyType::rows);
@@ -66,28 +67,28 @@ private:
     try {
       return toml::parse(text_, grid_.file.string());
     } catch (const toml::parse_error& error) {
-      fail_at(place(error.source().begin), toml_fault(error.description()));
+      fail_at(position(error.source().begin), toml_fault(error.description()));
     }
   }
 
-  std::string place(const toml::source_position& position) const {
-    return fmt::format("{}:{}:{}", grid_.file.string(), position.line, position.column);
+  std::string position(const toml::source_position& at) const {
+    return fmt::format("{}:{}:{}", grid_.file.string(), at.line, at.column);
   }
-  std::string place(const toml::node& node) const { return place(node.source().begin); }
+  std::string position(const toml::node& node) const { return position(node.source().begin); }
   std::string start() const { return grid_.file.string() + ":1:1"; }
 
-  void known(const toml::table& table, const Names& names, const char* whose) const {
+  void known(const toml::table& table, const Names& names, const char* owner) const {
     for (const auto& [key, node] : table)
       if (std::find(names.begin(), names.end(), key.str()) == names.end())
-        fail_at(place(key.source().begin), fmt::format("unknown key {} ({} has {}); correct or remove it", key.str(),
-                                                       whose, fmt::join(names, ", ")));
+        fail_at(position(key.source().begin), fmt::format("unknown key {} ({} has {}); correct or remove it", key.str(),
+                                                          owner, fmt::join(names, ", ")));
   }
 
-  // A key that is there must have a value of this kind.
+  // Returns the value of a key, null if it is missing. Fails if it has another type.
   template<class Type> const auto* find(const toml::table& table, const char* name, const char* kind) const {
     const toml::node* const node = table.get(name);
     if (node && !node->is<Type>())
-      fail_at(place(*node), fmt::format("{} must be {}; correct it", name, kind));
+      fail_at(position(*node), fmt::format("{} must be {}; correct it", name, kind));
     return node ? node->as<Type>() : nullptr;
   }
 
@@ -95,7 +96,7 @@ private:
     return fs::absolute(grid_.file.parent_path() / path).lexically_normal().string();
   }
 
-  // A value as TOML on one line; files are named relative to the grid.
+  // Returns a value as TOML on one line. File names, which are relative to the grid, are made absolute.
   std::string toml_of(const toml::node& node, const std::string& path) const {
     if (const auto* const text = node.as_string())
       return in_double_quotes(names_file(path) && !text->get().empty() ? absolute(text->get()) : text->get());
@@ -118,7 +119,7 @@ private:
         parts.push_back(fmt::format("{} = {}", key.str(), toml_of(inner, fmt::format("{}.{}", path, key.str()))));
       return fmt::format("{{ {} }}", fmt::join(parts, ", "));
     }
-    fail_at(place(node), fmt::format("{} is a date or time (no key takes one); correct it", path));
+    fail_at(position(node), fmt::format("{} is a date or time (no key takes one); correct it", path));
   }
 
   static std::string label_of(const toml::node& node, const std::string& toml) {
@@ -135,9 +136,9 @@ private:
     return fmt::format("[{}]", fmt::join(parts, ", "));
   }
 
-  GridValue value_of(const toml::node& node, const std::string& key, const std::string& key_place) const {
+  GridValue value_of(const toml::node& node, const std::string& key, const std::string& key_position) const {
     const std::string toml = toml_of(node, key);
-    return {{key, toml, key_place, place(node)},
+    return {{key, toml, key_position, position(node)},
             label_of(node, toml),
             node.is_number() ? node.value<double>() : std::nullopt};
   }
@@ -148,9 +149,9 @@ private:
       fail_at(start(), "scene is missing (the runs need one); add scene = \"FILE.toml\", relative to this file");
     grid_.scene = (grid_.file.parent_path() / scene->get()).lexically_normal();
     if (!fs::is_regular_file(grid_.scene))
-      fail_at(place(*scene),
-              fmt::format("the scene {} is not there (looked for as {}); correct the path, which is relative to this "
-                          "file",
+      fail_at(position(*scene),
+              fmt::format("the scene {} does not exist (searched as {}); correct the path, which is relative to "
+                          "this file",
                           in_double_quotes(scene->get()), grid_.scene.string()));
   }
 
@@ -158,11 +159,11 @@ private:
     const toml::node* const since = table.get("since");
     if (!since)
       return;
-    grid_.since_place = place(*since);
+    grid_.since_position = position(*since);
     grid_.since = since->is_number() ? since->value<double>() : std::nullopt;
     if (!grid_.since || !std::isfinite(*grid_.since) || *grid_.since < 0.0)
-      fail_at(grid_.since_place, "since must be a number of orbits, 0 or more; correct it, or remove it to have the "
-                                 "steady part found");
+      fail_at(grid_.since_position, "since must be a number of orbits, 0 or more; correct it, or remove it so that the "
+                                    "steady part is detected");
   }
 
   void read_seeds(const toml::table& table) {
@@ -170,9 +171,9 @@ private:
     if (!seeds)
       return;
     for (const toml::node& seed : *seeds)
-      grid_.seeds.push_back(value_of(seed, seed_key, place(*seeds)));
+      grid_.seeds.push_back(value_of(seed, seed_key, position(*seeds)));
     if (grid_.seeds.empty())
-      fail_at(place(*seeds), "seeds is empty (no run would be made); list one at least, or remove the key");
+      fail_at(position(*seeds), "seeds is empty (no run would be made); list at least one, or remove the key");
     refuse_twice(grid_.seeds, "seed");
   }
 
@@ -181,7 +182,7 @@ private:
     for (const GridValue& value : values)
       if (!seen.insert(value.label).second)
         fail_at(value.override.value_location,
-                fmt::format("the {} {} stands here twice (both would be one run); remove one", what, value.label));
+                fmt::format("the {} {} is listed twice (both would be one run); remove one", what, value.label));
   }
 
   void read_set(const toml::table& table) {
@@ -189,32 +190,33 @@ private:
       add_settings(*set, "");
   }
 
-  // "time.end" = 30.0 and time.end = 30.0 are the same; a table in braces is a value.
+  // Reads keys and sections: "time.end" = 30.0 and time.end = 30.0 are equivalent; an inline table is a value.
   void add_settings(const toml::table& table, const std::string& prefix) {
     for (const auto& [key, node] : table) {
       const std::string path = prefix + std::string(key.str());
-      refuse_long(path, place(key.source().begin));
+      refuse_long(path, position(key.source().begin));
       const toml::table* const inner = node.as_table();
       if (inner && !inner->is_inline())
         add_settings(*inner, path + ".");
       else
-        grid_.set.push_back(value_of(node, claimed(path, place(key.source().begin)), place(key.source().begin)));
+        grid_.set.push_back(value_of(node, claimed(path, position(key.source().begin)), position(key.source().begin)));
     }
   }
 
-  // What no scene has is found when its values are tried; but each value has its key, and each run all of them.
+  // Unknown keys are found later, when a scene is loaded. Their length is limited here, since every value of every run
+  // stores its key.
   static void refuse_long(const std::string& key, const std::string& at) {
-    constexpr std::size_t longest = 200;
-    if (key.size() > longest)
-      fail_at(at, fmt::format("unknown key of {} bytes (no scene has one so long); correct it", key.size()));
+    constexpr std::size_t max_length = 200;
+    if (key.size() > max_length)
+      fail_at(at, fmt::format("unknown key of {} bytes (no key of a scene is so long); correct it", key.size()));
   }
 
-  // Each key of the scene is given once.
+  // Registers a key of the scene, and returns it. Each key may be given only once.
   std::string claimed(const std::string& key, const std::string& at) {
-    constexpr std::size_t most = 1000;
+    constexpr std::size_t max_keys = 1000;
     refuse_long(key, at);
-    if (keys_.size() >= most)
-      fail_at(at, fmt::format("the grid has more than {} keys (no scene has so many); remove some", most));
+    if (keys_.size() >= max_keys)
+      fail_at(at, fmt::format("the grid has more than {} keys (no scene has so many); remove some", max_keys));
     if (key == seed_key)
       fail_at(at, "particles.seed is given by seeds (a run has one seed); write seeds = [...]");
     if (!keys_.insert(key).second)
@@ -227,7 +229,7 @@ private:
     if (!axes)
       return;
     if (!axes->is_array_of_tables())
-      fail_at(place(*axes), "axis must be a list of tables; write [[axis]] with a key and its values below");
+      fail_at(position(*axes), "axis must be a list of tables; write [[axis]] with a key and its values below");
     for (const toml::node& axis : *axes->as_array())
       grid_.axes.push_back(read_axis(*axis.as_table()));
   }
@@ -235,30 +237,30 @@ private:
   GridAxis read_axis(const toml::table& table) {
     known(table, {"key", "keys", "values"}, "an axis");
     GridAxis axis;
-    const std::vector<std::string> key_places = read_keys(table, axis);
+    const std::vector<std::string> key_positions = read_keys(table, axis);
     const auto* const values = find<toml::array>(table, "values", "a list of values");
     if (!values || values->empty())
-      fail_at(values ? place(*values) : place(table),
+      fail_at(values ? position(*values) : position(table),
               fmt::format("the axis of {} has no values (no run would be made); add values = [...]",
                           fmt::join(axis.keys, " and ")));
     const bool several = table.contains("keys");
     for (const toml::node& node : *values)
-      axis.points.push_back(read_point(node, axis.keys, key_places, several));
+      axis.points.push_back(read_point(node, axis.keys, key_positions, several));
     refuse_same_points(axis);
     return axis;
   }
 
   std::vector<std::string> read_keys(const toml::table& table, GridAxis& axis) {
-    std::vector<std::string> places;
+    std::vector<std::string> positions;
     const auto* const one = find<std::string>(table, "key", "a key of the scene, in quotes");
     const auto* const several = find<toml::array>(table, "keys", "a list of keys of the scene");
     if ((one != nullptr) == (several != nullptr))
-      fail_at(place(table), "an axis needs either key or keys; write for example key = \"particles.optical_depth\"");
+      fail_at(position(table), "an axis needs either key or keys; write for example key = \"particles.optical_depth\"");
     const auto add = [&](const toml::node& node) {
       if (!node.is_string())
-        fail_at(place(node), "a key of an axis must be a string; write for example \"particles.optical_depth\"");
-      axis.keys.push_back(claimed(node.as_string()->get(), place(node)));
-      places.push_back(place(node));
+        fail_at(position(node), "a key of an axis must be a string; write for example \"particles.optical_depth\"");
+      axis.keys.push_back(claimed(node.as_string()->get(), position(node)));
+      positions.push_back(position(node));
     };
     if (one)
       add(*one);
@@ -266,21 +268,22 @@ private:
       for (const toml::node& node : *several)
         add(node);
     if (axis.keys.empty())
-      fail_at(place(*several), "keys is empty (the axis changes nothing); list one at least");
-    return places;
+      fail_at(position(*several), "keys is empty (the axis changes nothing); list at least one");
+    return positions;
   }
 
-  std::vector<GridValue> read_point(const toml::node& node, const Names& keys, const Names& key_places,
+  std::vector<GridValue> read_point(const toml::node& node, const Names& keys, const Names& key_positions,
                                     bool several) const {
+    assert(keys.size() == key_positions.size() && !keys.empty());
     std::vector<GridValue> point;
     if (!several)
-      return {value_of(node, keys.front(), key_places.front())};
+      return {value_of(node, keys.front(), key_positions.front())};
     const toml::array* const list = node.as_array();
     if (!list || list->size() != keys.size())
-      fail_at(place(node), fmt::format("this must be a list of {} values, of {}; correct it", keys.size(),
-                                       fmt::join(keys, " and ")));
+      fail_at(position(node), fmt::format("this must be a list of {} values, of {}; correct it", keys.size(),
+                                          fmt::join(keys, " and ")));
     for (std::size_t k = 0; k < keys.size(); ++k)
-      point.push_back(value_of((*list)[k], keys[k], key_places[k]));
+      point.push_back(value_of((*list)[k], keys[k], key_positions[k]));
     return point;
   }
 
@@ -292,7 +295,7 @@ private:
         labels.push_back(value.label);
       if (!seen.insert(labels).second)
         fail_at(point.front().override.value_location,
-                fmt::format("{} stands here twice (both would be one run); remove one", fmt::join(labels, ", ")));
+                fmt::format("{} is listed twice (both would be one run); remove one", fmt::join(labels, ", ")));
     }
   }
 
@@ -309,12 +312,12 @@ private:
         return std::find(axis.keys.begin(), axis.keys.end(), x->get()) != axis.keys.end();
       });
       if (!on_axis)
-        fail_at(place(*x), fmt::format("x = {} is no key of an axis (only these change); name one of them",
-                                       in_double_quotes(x->get())));
+        fail_at(position(*x), fmt::format("x = {} is not a key of an axis (only these change); name one of them",
+                                          in_double_quotes(x->get())));
     }
     if (const auto* const y = find<std::string>(*plot, "y", "a column of sweep.csv, in quotes")) {
       grid_.plot.y = y->get();
-      grid_.plot.y_place = place(*y);
+      grid_.plot.y_position = position(*y);
     }
     if (const auto* const log = find<bool>(*plot, "x_log", "true or false"))
       grid_.plot.x_log = log->get();
@@ -327,7 +330,7 @@ private:
   std::set<std::string> keys_; // of [set] and the axes
 };
 
-// With the one that is plotted.
+// Returns the named quantities and the plotted one.
 RunQuantities quantities_of(const Grid& grid, std::vector<std::string> names) {
   RunQuantities all(names);
   if (all.find(grid.plot.y))
@@ -341,10 +344,9 @@ RunQuantities quantities_of(const Grid& grid, std::vector<std::string> names) {
   std::vector<std::string> columns;
   for (const RunColumn& column : all.columns())
     columns.push_back(column.name);
-  throw UsageError(
-      fmt::format("{}: y = \"{}\" is nothing that a sweep measures; choose one of {}, or a plain number of "
-                  "keeler analyze by its full name (\"keeler help numbers\" lists them)",
-                  grid.plot.y_place, grid.plot.y, fmt::join(columns, ", ")));
+  throw UsageError(fmt::format("{}: y = \"{}\" is not measured by a sweep; choose one of {}, or a plain number of "
+                               "keeler analyze by its full name (\"keeler help numbers\" lists them)",
+                               grid.plot.y_position, grid.plot.y, fmt::join(columns, ", ")));
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// What people look at after a sweep: figure.svg (with its data, gnuplot script and PNG) and report.md.
+// The readable output of a sweep: figure.svg (with its data, gnuplot script and PNG) and report.md.
 #pragma once
 
 #include "grid.hpp"
@@ -9,20 +9,21 @@
 
 namespace keeler {
 
-/// Lines of the plot: one for each combination of the axes that x is not on.
+/// A line of the plot, for one combination of values on the axes other than the axis of x.
 struct PlotLine {
-  std::string title; ///< empty: there is but one
+  std::string title; ///< empty if there is only one line
   struct Point {
-    double x = 0.0, y = 0.0, error = 0.0; ///< 0 where the error is not known
+    double x = 0.0, y = 0.0, error = 0.0; ///< 0 if the error is not known
   };
   std::vector<Point> points;
 };
 
-/// Of the points that have y. Where x is no number it is the place on the axis, from 0.
+/// Returns the lines through the points that have y. If x is not a number, its index on the axis is used.
 std::vector<PlotLine> plot_lines(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points);
 
 enum class Figure { drawn, nothing_to_draw, no_gnuplot, failed };
 
+/// Writes the data, the script and the figure. Throws IoError when gnuplot fails.
 Figure draw_figure(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points, const RunFolders& folders);
 
 /// Writes report.md.

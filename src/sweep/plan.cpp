@@ -13,6 +13,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cassert>
 #include <filesystem>
 #include <iterator>
 
@@ -23,7 +24,7 @@ std::string last_part(const std::string& key) {
   return key.substr(key.rfind('.') + 1);
 }
 
-// The keys by their last parts, where these differ.
+// Returns the last parts of the keys, or the whole key where its last part is not unique.
 std::vector<std::string> short_names(const std::vector<std::string>& keys) {
   std::vector<std::string> names;
   for (const std::string& key : keys) {
@@ -33,7 +34,7 @@ std::vector<std::string> short_names(const std::vector<std::string>& keys) {
   return names;
 }
 
-// "217x108" for "[217, 108]".
+// Returns "217x108" for "[217, 108]".
 std::string with_lists_by_x(std::string label) {
   if (label.starts_with("[") && label.ends_with("]"))
     label = label.substr(1, label.size() - 2);
@@ -42,22 +43,22 @@ std::string with_lists_by_x(std::string label) {
   return label;
 }
 
-// A value in the name of a folder: a plain number, word or list of numbers as it is. Anything else has its letters and
-// a fingerprint, so that no two are the same.
+// Returns a value as part of a folder's name: a plain number, word or list of numbers unchanged. Anything else becomes
+// its plain characters and a fingerprint, so that names are unique.
 std::string in_name(const std::string& label) {
-  constexpr std::size_t longest = 24;
+  constexpr std::size_t max_length = 24;
   const auto plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '+' ||
            c == '-';
   };
   const std::string text = with_lists_by_x(label);
-  if (text.size() <= longest && std::all_of(text.begin(), text.end(), plain))
+  if (text.size() <= max_length && std::all_of(text.begin(), text.end(), plain))
     return text;
   std::string name;
   std::copy_if(label.begin(), label.end(), std::back_inserter(name), plain);
   Hash hash;
   hash.add_text(label);
-  return name.substr(0, longest) + "~" + hash.hex().substr(0, 8);
+  return name.substr(0, max_length) + "~" + hash.hex().substr(0, 8);
 }
 
 std::vector<GridPoint> points_of(const std::vector<GridAxis>& axes) {
@@ -78,13 +79,14 @@ std::vector<GridPoint> points_of(const std::vector<GridAxis>& axes) {
 }
 
 std::string name_of(const GridPoint& point, const std::vector<std::string>& names) {
+  assert(names.size() == point.settings.size());
   std::string name;
   for (std::size_t k = 0; k < names.size(); ++k)
     name += fmt::format("{}-{}_", names[k], in_name(point.settings[k]->label));
   return name;
 }
 
-// A fault of the grid names its line; one of the scene's file says which run shows it.
+// Validates the scene of a run. A fault of the grid names its line; a fault of the scene file names the run.
 Scene checked_scene(const Grid& grid, const GridPoint& point, const GridValue* seed, const std::string& run) {
   std::vector<Override> overrides;
   for (const GridValue& value : grid.set)
@@ -114,28 +116,29 @@ void check_since(const Grid& grid, const PlannedRun& run) {
   if (grid.since && *grid.since >= end)
     throw UsageError(fmt::format("{}: since = {} is not before the end of the run {} (time.end = {:.6g}), so nothing "
                                  "would be measured; choose an earlier orbit",
-                                 grid.since_place, *grid.since, run.name, end));
+                                 grid.since_position, *grid.since, run.name, end));
 }
 
-// Counted before anything is made of them: axes are crossed.
+// Counts the runs before any is made: crossed axes can give very many.
 double number_of_runs(const Grid& grid) {
-  constexpr double most = 1e5;
+  constexpr double max_runs = 1e5;
   double runs = static_cast<double>(std::max<std::size_t>(1, grid.seeds.size()));
   for (const GridAxis& axis : grid.axes)
     runs *= static_cast<double>(axis.points.size());
-  if (runs > most)
+  if (runs > max_runs)
     throw UsageError(
         fmt::format("{}:1:1: the grid makes {} runs (a sweep takes {} at most); give it fewer seeds or values, "
                     "or make several grids",
-                    grid.file.string(), format_number(runs), format_number(most)));
+                    grid.file.string(), format_number(runs), format_number(max_runs)));
   return runs;
 }
 
-constexpr std::size_t runs_a_word = 1000;
+constexpr std::size_t runs_per_report = 1000;
 
 Progress checked(std::size_t runs, double all, double elapsed_s) {
-  const double share = static_cast<double>(runs) / all;
-  return {share, elapsed_s, elapsed_s * (1.0 / share - 1.0), fmt::format("checking {}", pluralize(runs, "run"))};
+  assert(runs > 0);
+  const double fraction = static_cast<double>(runs) / all;
+  return {fraction, elapsed_s, elapsed_s * (1.0 / fraction - 1.0), fmt::format("checking {}", pluralize(runs, "run"))};
 }
 
 } // namespace
@@ -166,9 +169,10 @@ Plan plan_runs(const Grid& grid, const std::function<void(const Progress&)>& pro
       check_start(grid, run);
       check_since(grid, run);
       plan.runs.push_back(std::move(run));
-      if (progress && plan.runs.size() % runs_a_word == 0)
+      if (progress && plan.runs.size() % runs_per_report == 0)
         progress(checked(plan.runs.size(), count, watch.elapsed()));
     }
+  assert(static_cast<double>(plan.runs.size()) == count);
   return plan;
 }
 

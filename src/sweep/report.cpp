@@ -14,7 +14,7 @@ namespace {
 
 using Table = std::vector<std::vector<std::string>>;
 
-// What the table of points shows; the rest stands in points.csv.
+// Returns the columns shown in the table of points; points.csv has all of them.
 std::vector<std::size_t> shown(const Grid& grid) {
   std::vector<std::size_t> columns;
   const auto add = [&](const std::string& name) {
@@ -68,18 +68,18 @@ void write_report(const Grid& grid, const Plan& plan, const std::vector<RunRow>&
                                pluralize(plan.points.size(), "point"), count_of(runs, RunStatus::finished),
                                count_of(runs, RunStatus::failed), count_of(runs, RunStatus::unfinished)));
   report.paragraph(fmt::format(
-      "Each run is measured {}. A number is the mean over the seeds, its error the standard error by the spread of the "
-      "seeds; of one seed it is that run's own error by blocks, where it has one. `steady` counts the runs that are "
-      "steady in the part "
-      "measured.",
-      grid.since ? fmt::format("from orbit {} on", format_number(*grid.since)) : "from where it becomes steady"));
+      "Each run is measured {}. Values are means over the seeds, errors the standard errors from the scatter of the "
+      "seeds, or for a single seed the error by blocks, if known. `steady` counts the runs that are steady in the "
+      "measured part.",
+      grid.since ? fmt::format("from orbit {} on", format_number(*grid.since))
+                 : "from the orbit where it becomes steady"));
   report.heading("Points");
   report.table(table_of_points(grid, plan, points));
   if (figure == Figure::drawn)
     report.paragraph("![figure](figure.svg)");
   if (count_of(runs, RunStatus::failed) > 0) {
     report.heading("Failed runs");
-    Table table = {{"run", "why"}};
+    Table table = {{"run", "reason"}};
     for (const RunRow& run : runs)
       if (run.status == RunStatus::failed)
         table.push_back({run.run->name, run.reason});

@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <set>
 
 namespace keeler {
@@ -24,20 +25,20 @@ namespace {
 namespace fs = std::filesystem;
 using Notice = std::function<void(const std::string&)>;
 
-// One program at a time writes what is the folder's and no run's.
-class SharedFiles {
+// Held while writing files of the folder that belong to no run: one program at a time.
+class FolderFilesLock {
 public:
-  explicit SharedFiles(Claims& claims) : claims_(claims) { claims_.wait_for(name); }
-  ~SharedFiles() { claims_.release(name); }
-  SharedFiles(const SharedFiles&) = delete;
-  SharedFiles& operator=(const SharedFiles&) = delete;
+  explicit FolderFilesLock(Claims& claims) : claims_(claims) { claims_.wait_for(name); }
+  ~FolderFilesLock() { claims_.release(name); }
+  FolderFilesLock(const FolderFilesLock&) = delete;
+  FolderFilesLock& operator=(const FolderFilesLock&) = delete;
 
 private:
-  static constexpr const char* name = "the folder"; // no run's name has a blank
+  static constexpr const char* name = "the folder"; // differs from every run's name: these have no blank
   Claims& claims_;
 };
 
-// The name is taken by a file, or by a folder that holds things and no sweep.
+// Throws if the path is a file, or a folder with other content than a sweep.
 void refuse_other_content(const RunFolders& folders) {
   std::error_code unknown;
   const fs::file_status status = fs::status(folders.path(), unknown);
@@ -45,28 +46,28 @@ void refuse_other_content(const RunFolders& folders) {
     throw UsageError(fmt::format("'{}' is a file (results go into a folder); name another", folders.path().string()));
   if (!fs::is_directory(status) || fs::is_empty(folders.path(), unknown))
     return;
-  // Asked after the contents: a program that makes this folder at the moment makes the file of claims first.
+  // Checked after is_empty(): another program that is making this folder makes the file of claims first.
   if (!fs::exists(folders.claims(), unknown) || fs::exists(folders.path() / "study.json", unknown))
     throw UsageError(fmt::format("'{}' is not empty and holds no sweep; name another folder", folders.path().string()));
 }
 
-// What the runs would say, each thing once.
-void tell_doubts(const Plan& plan, const Notice& notice) {
-  std::set<std::string> told;
-  const auto tell = [&](const PlannedRun& run, const std::string& text) {
-    if (told.insert(text).second)
+// Reports the notices and warnings of all runs, each text once.
+void report_warnings(const Plan& plan, const Notice& notice) {
+  std::set<std::string> reported;
+  const auto report = [&](const PlannedRun& run, const std::string& text) {
+    if (reported.insert(text).second)
       notice(fmt::format("note: {} ({})", text, run.name));
   };
   for (const PlannedRun& run : plan.runs) {
     for (const std::string& text : run.scene.notices)
-      tell(run, text);
+      report(run, text);
     for (const std::string& text : warnings(run.scene))
-      tell(run, text);
+      report(run, text);
   }
 }
 
-// The tables of this moment, without those of a former one that they do not replace. Returns why there is no figure,
-// where it failed: the tables and the report are written without it.
+// Writes the present tables, and removes earlier ones that are not replaced. Returns the reason if the figure failed:
+// the tables and the report are written without it.
 std::string write_tables(const Grid& grid, const Plan& plan, const RunFolders& folders, const std::vector<RunRow>& runs,
                          const std::vector<PointRow>& points, const Notice& notice) {
   const Json run_table = runs_as_json(grid, plan, runs), point_table = points_as_json(grid, plan, points);
@@ -87,7 +88,7 @@ std::string write_tables(const Grid& grid, const Plan& plan, const RunFolders& f
     fault = error.what();
   }
   if (figure == Figure::no_gnuplot)
-    notice("gnuplot is not there, so only the data of the figure are written (Debian: gnuplot-nox)");
+    notice("gnuplot is not installed, so only the data of the figure are written (Debian: gnuplot-nox)");
   if (figure == Figure::nothing_to_draw && !grid.plot.x.empty())
     notice(fmt::format("no run has {}, so there is no figure; name another y under [plot]", grid.plot.y));
   write_report(grid, plan, runs, points, folders, figure);
@@ -97,6 +98,7 @@ std::string write_tables(const Grid& grid, const Plan& plan, const RunFolders& f
 } // namespace
 
 SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
+  assert(settings.jobs > 0 && settings.notice);
   const Grid grid = read_grid(settings.grid, settings.quantities);
   SweepResult result;
   Plan plan;
@@ -113,15 +115,15 @@ SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
   folders.make();
   Claims claims(folders.claims());
   {
-    const SharedFiles lock(claims);
+    const FolderFilesLock lock(claims);
     write_text(folders.path() / "grid.toml", grid.text);
   }
-  if (const std::size_t beside = folders.runs_beside(plan.runs); beside > 0)
-    settings.notice(fmt::format("note: {} in '{}' that this grid does not have stay as they are and out of the tables",
-                                pluralize(beside, "run"), (folders.path() / "runs").string()));
+  if (const std::size_t others = folders.count_other_runs(plan.runs); others > 0)
+    settings.notice(fmt::format("note: {} in '{}' do not belong to this grid; they are kept, and not in the tables",
+                                pluralize(others, "run"), (folders.path() / "runs").string()));
   if (!settings.tables_only) {
     result.began = true;
-    tell_doubts(plan, settings.notice);
+    report_warnings(plan, settings.notice);
     work_on(plan.runs, folders, claims, {settings.jobs, settings.threads_per_run, settings.progress, settings.notice},
             requests);
   }
@@ -129,7 +131,7 @@ SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
   result.stopped = requests.stop;
   if (result.stopped)
     return result;
-  const SharedFiles lock(claims);
+  const FolderFilesLock lock(claims);
   const std::vector<RunRow> runs = run_rows(grid, plan, folders);
   const std::vector<PointRow> points = point_rows(grid, plan, runs);
   result.figure_fault = write_tables(grid, plan, folders, runs, points, settings.notice);

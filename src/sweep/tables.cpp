@@ -6,12 +6,14 @@
 #include <keeler/statistics/scatter.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
 void add_settings(Json& row, const Plan& plan, const GridPoint& point) {
+  assert(point.settings.size() == plan.keys.size());
   for (std::size_t k = 0; k < plan.keys.size(); ++k) {
     const GridValue& value = *point.settings[k];
     const Json number = Json::parse(value.label, nullptr, false);
@@ -34,7 +36,7 @@ RunRow measured_row(const Grid& grid, const PlannedRun& run, const RunFolders& f
     try {
       row.numbers = grid.quantities.measure(folders.run(run.name), run.scene, grid.since);
       row.status = RunStatus::finished;
-    } catch (const Error& error) { // a damaged file must not take the other runs from the table
+    } catch (const Error& error) { // a damaged run must not prevent the table of the others
       row.status = RunStatus::failed;
       row.reason = error.what();
       row.measurable = false;
@@ -49,6 +51,7 @@ RunRow measured_row(const Grid& grid, const PlannedRun& run, const RunFolders& f
 } // namespace
 
 Estimate seed_mean(std::span<const Estimate> seeds) {
+  assert(!seeds.empty());
   if (seeds.size() == 1)
     return seeds.front();
   std::vector<double> values;
@@ -77,6 +80,7 @@ std::vector<PointRow> point_rows(const Grid& grid, const Plan& plan, const std::
     rows[p].point = &plan.points[p];
   std::vector<std::vector<std::vector<Estimate>>> seeds(rows.size(), std::vector<std::vector<Estimate>>(columns));
   for (const RunRow& run : runs) {
+    assert(run.run->point < rows.size());
     PointRow& row = rows[run.run->point];
     row.finished += run.status == RunStatus::finished ? 1 : 0;
     row.failed += run.status == RunStatus::failed ? 1 : 0;

@@ -146,8 +146,8 @@ for number in nan -nan inf; do
   refuses "a footprint of $number" "--footprint" analyze "$work/taken" --elevation 20 --footprint $number
   refuses "an azimuth of $number" "--azimuth" analyze "$work/taken" --elevation 20 --azimuth $number
 done
-refuses "a part until nan" "is no number" analyze "$work/taken" --until nan
-refuses "a part since nan" "is no number" analyze "$work/taken" --since nan
+refuses "a part until nan" "is not a number" analyze "$work/taken" --until nan
+refuses "a part since nan" "is not a number" analyze "$work/taken" --since nan
 
 refuses "an elevation of 0" "'0' is not an elevation from 0.1 to 90" analyze "$work/taken" --elevation 0
 refuses "an elevation in words" "'steep' is not an elevation" analyze "$work/taken" --elevation 10,steep
@@ -164,7 +164,7 @@ for command in analyze render; do
   refuses_with 4 "$command, no snapshot" "no snapshot" $command "$work/empty"
   refuses_with 4 "$command of a checkpoint" "checkpoint_" $command "$(newest_checkpoint "$work/taken")"
 done
-refuses "a field that is not there" "'mass' is no field of a picture; choose one of height, size, speed, spin" \
+refuses "a field that is not there" "'mass' is not a field of a picture; choose one of height, size, speed, spin" \
   render "$work/taken" -o "$work/none.png" --colour mass
 refuses "spins of smooth particles" "choose another field" render "$work/taken" -o "$work/none.png" --colour spin
 refuses "a theme that is not there" "--theme" render "$work/taken" -o "$work/none.png" --theme green

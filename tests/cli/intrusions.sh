@@ -50,7 +50,7 @@ for change in "rm series.csv" "mv series.csv elsewhere.csv" "echo of another han
   kill -TERM "$process"
   ends 75 "$change"
   every_row "$change" "$work/run/series.csv"
-  grep -q "series.csv' was removed or replaced while the run wrote to it; it is written anew" "$work/err" ||
+  grep -q "series.csv' was removed or replaced while the run wrote to it; it is rewritten" "$work/err" ||
     fail "$change: not said: $(cat "$work/err")"
   grep -q '"restored","file":"series.csv"' "$work/run/log.jsonl" || fail "$change: not in the log"
   rm -rf "$work/run"
@@ -83,7 +83,7 @@ for change in "rm series.csv" "sed -i 4q series.csv"; do
   (cd "$work/run" && eval "$change")
   runs 0 resume "$work/run" --until 0.4
   one_line "resumed after $change" "series.csv' from step"
-  one_line "resumed after $change" "to 150 are missing; it goes on without them"
+  one_line "resumed after $change" "to 150 are missing; the file continues without them"
   [ "$(tail -n 1 "$work/run/series.csv" | cut -d , -f 1)" -eq 200 ] || fail "resumed after $change: no new rows"
   rm -rf "$work/run"
 done

@@ -69,7 +69,7 @@ runs 0 run "$work/scene.toml" --set time.end=0.1 -o "$work/books"
   fail "the checkpoint could not be changed"
 cp -r "$work/books" "$work/full"
 runs 3 resume "$work/books" --until 0.2
-grep -q 'the energy budget leaves .* of its sums open' "$work/err" || fail "changed books: $(tail -n 1 "$work/err")"
+grep -q 'the energy budget does not close: residual .* of its sums' "$work/err" || fail "changed books: $(tail -n 1 "$work/err")"
 looked_at "changed books" "$work/books"
 
 # No space for the broken state: one line reports both faults, and no partial file is left. A file-size limit simulates the

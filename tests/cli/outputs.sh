@@ -33,7 +33,7 @@ runs 0 run "$work/scene.toml" -o "$work/text"
 prints "run" "$(state_hash "$work/run")"
 prints "run" "error of gravity"
 runs 0 run "$work/scene.toml" -o "$work/mean-field" --set gravity.solver=mesh --set particles.count=30 --set time.end=0.02
-prints "a mean field" "left out of gravity: 9"
+prints "a mean field" "omitted by the gravity solver: 9"
 for name in scene.toml series.csv summary.json log.jsonl snap_000000.hdf snap_000001.hdf snap_000002.hdf \
   checkpoint_000001.h5 checkpoint_000002.h5; do
   [ -s "$work/run/$name" ] || fail "no $name in the folder of a run"
@@ -95,7 +95,7 @@ prints "analyze one particle" "wakes: radial spacing              not known beca
 runs 0 run "$work/scene.toml" -o "$work/crowd" --threads 1 --set time.end=0.1 --set particles.density=3e4
 prints "run" "particles                          400"
 prints "run" "threads                            1"
-grep -qE '^collisions a particle and orbit +[0-9]{4,}$' "$work/out" || fail "more than 1000 collisions: $(cat "$work/out")"
+grep -qE '^collisions per particle and orbit +[0-9]{4,}$' "$work/out" || fail "more than 1000 collisions: $(cat "$work/out")"
 grep -qE '[0-9]e\+' "$work/out" && fail "a summary with exponents: $(cat "$work/out")"
 grep -q "^keeler: note: 400 particles are few" "$work/err" || fail "a run does not say that its patch is small"
 

@@ -52,7 +52,7 @@ cp "$work/edited/scene.toml" "$work/written.toml"
 sed -i 's/^end = .*/end = 1.0 # longer/' "$work/edited/scene.toml"
 cp "$work/edited/scene.toml" "$work/longer.toml"
 runs 0 resume "$work/edited"
-grep -qF "'$work/edited/scene.toml' was edited, and a run goes on with the scene that it began with: \"keeler resume $work/edited --until 1\"" \
+grep -qF "'$work/edited/scene.toml' was edited, but a run continues with the scene that it began with: \"keeler resume $work/edited --until 1\"" \
   "$work/err" || fail "an edited scene of a finished run: $(cat "$work/err")"
 cmp "$work/edited/scene.toml" "$work/longer.toml" || fail "a finished run: its edited scene was changed"
 runs 0 resume "$work/edited" --until 1

@@ -69,7 +69,7 @@ for count in 1 2; do
     runs 0 analyze "$work/$name"
     cat "$work/printed" "$work/out" >"$work/all"
     runs 0 report "$work/$name"
-    ratios='[^a-z]-?(nan|inf)([^a-z]|$)|left out of gravity'
+    ratios='[^a-z]-?(nan|inf)([^a-z]|$)|omitted by the gravity solver'
     [ "$count" -eq 1 ] && ratios+='|energy balance +[-0-9]|error of gravity +[0-9]' # of two it may be right
     grep -qE "$ratios" "$work/all" && fail "$name: $(cat "$work/all")"
     grep -qiE '>-?(nan|inf)<' "$work/$name"/report.html && fail "$name: the report"

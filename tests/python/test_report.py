@@ -65,7 +65,7 @@ class Report(unittest.TestCase):
         for link in re.findall(r'(?:src|href)="([^"]*)"', markup):
             self.assertTrue(link.startswith("data:image/png;base64,"), link[:80])
         self.assertIn("A ring of &lt;/script&gt; &amp; spins", markup)
-        for title in ("The patch", "In three dimensions", "Through time", "Measured", "Accuracy and its price",
+        for title in ("The patch", "In three dimensions", "Through time", "Measured", "Accuracy and cost",
                       "The scene", "Provenance"):
             self.assertIn(f"<h2>{title}</h2>", markup)
 
@@ -171,7 +171,7 @@ class Report(unittest.TestCase):
         try:
             page = self.results.parent / "broken.html"
             self.assertEqual(keeler("report", self.results, "-o", page, "--snapshots", 1).returncode, 0)
-            self.assertIn("broken off", page.read_text())
+            self.assertIn("interrupted", page.read_text())
             self.assertIn("no account yet", page.read_text())
         finally:
             summary.write_text(kept)

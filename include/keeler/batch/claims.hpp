@@ -1,5 +1,5 @@
-// Who of several processes in one folder does what: a name is claimed by one process at a time. The system lets go of
-// all claims of a process when it ends, however it ends.
+// Division of work among several processes in one folder: each name is claimed by one process at a time. The system
+// releases the claims of a process when it ends, also when it is killed.
 #pragma once
 
 #include <filesystem>
@@ -7,22 +7,23 @@
 
 namespace keeler {
 
-/// Claims are locks on single bytes of one file, a byte a name (fcntl(2), "open file description locks"), so that
-/// nothing is left behind. On a file system without locks every claim is granted.
+/// A claim is a lock on one byte of a file, at an offset hashed from the name (fcntl(2), "open file description
+/// locks"), so no stale claims remain. On a file system without locks every claim is granted.
 class Claims {
 public:
-  /// Makes the file if it is not there. Throws IoError.
+  /// Opens the file, or creates it. Throws IoError.
   explicit Claims(const std::filesystem::path& file);
   ~Claims();
   Claims(const Claims&) = delete;
   Claims& operator=(const Claims&) = delete;
 
-  /// Whether the name is now this object's: false when another process (or object) has it.
+  /// Tries to claim a name without waiting. Returns false if another process or object holds it.
   bool take(const std::string& name);
 
-  /// Waits until the name is this object's.
+  /// Claims a name; waits while another process or object holds it.
   void wait_for(const std::string& name);
 
+  /// Releases a claim of this object.
   void release(const std::string& name);
 
 private:

@@ -1,4 +1,4 @@
-// A run that a list of runs asks for: its name, its checked scene, and which of the list's settings it shows.
+// A run of a sweep or study: its name, its validated scene, and the point of the parameter grid that it belongs to.
 #pragma once
 
 #include <keeler/scene/scene.hpp>
@@ -10,8 +10,8 @@
 namespace keeler {
 
 struct PlannedRun {
-  std::string name;      ///< of its folder: the same settings and seed have the same name in every list
-  std::size_t point = 0; ///< which settings; runs of one point differ in their seed
+  std::string name;      ///< name of its folder; determined by the settings and the seed alone
+  std::size_t point = 0; ///< index of the settings; runs of one point differ only in their seeds
   std::uint64_t seed = 0;
   Scene scene;
 };

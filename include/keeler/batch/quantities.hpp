@@ -1,5 +1,5 @@
-// What sweeps and studies measure in each finished run: columns of their tables, made of the quantities of keeler
-// analyze and of the columns of series.csv. Names, units and meanings are theirs.
+// The quantities that sweeps and studies measure in each finished run, as columns of their tables. Names, units and
+// meanings are taken from keeler analyze and from the columns of series.csv.
 #pragma once
 
 #include <keeler/quantities/quantity.hpp>
@@ -16,32 +16,32 @@ namespace keeler {
 /// A quantity in one unit.
 struct RunColumn {
   std::string name, error_name; ///< NAME_UNIT and NAME_error_UNIT, as `keeler analyze` names them
-  std::string meaning;          ///< with its unit
+  std::string meaning;          ///< including the unit
 };
 
 struct RunNumbers {
   std::size_t particle_count = 0;
-  std::optional<double> since_orbit, until_orbit; ///< none: the series is too short for a mean
+  std::optional<double> since_orbit, until_orbit; ///< measured part; none: the series is too short for a mean
   bool steady = false;
-  std::vector<std::optional<Estimate>> values; ///< in the order of the columns; none: not measured. Error NaN: unknown
+  std::vector<std::optional<Estimate>> values; ///< one per column; none: not measured; NaN error: unknown
 };
 
-/// The numbers of every batch, and others of keeler analyze that are asked for by name.
+/// The default quantities of every batch, and further ones of keeler analyze, requested by name.
 class RunQuantities {
 public:
-  /// A name as Quantity::is_called() takes it. Throws UsageError for one that keeler analyze does not have, or that is
-  /// no plain number.
-  explicit RunQuantities(const std::vector<std::string>& more = {});
+  /// Names are matched by Quantity::is_called(). Throws UsageError for a name that keeler analyze does not have, or
+  /// that is not a plain number.
+  explicit RunQuantities(const std::vector<std::string>& extra = {});
 
   const std::vector<RunColumn>& columns() const { return columns_; }
-  /// The place of the column of that name; none where there is none.
+  /// Returns the index of the column with that name; none if there is none.
   std::optional<std::size_t> find(const std::string& name) const;
 
-  /// Of a finished run: means over its rows from orbit `since` on, or over the part that is steady, and over the
-  /// snapshots there. Throws IoError.
+  /// Measures a finished run: means over the rows and snapshots from orbit `since` on, by default over the steady part.
+  /// Throws IoError.
   RunNumbers measure(const std::filesystem::path& folder, const Scene& scene, std::optional<double> since) const;
 
-  struct Source; ///< what is read of a run
+  struct Source; ///< the data read from a run
 
 private:
   using Reading = std::function<std::optional<Estimate>(const Source&)>;
@@ -52,7 +52,7 @@ private:
 
   std::vector<RunColumn> columns_;
   std::vector<Reading> readings_;
-  bool analyzes_ = false; ///< something is asked for that needs all that keeler analyze measures
+  bool analyzes_ = false; ///< a requested quantity needs the full analysis
 };
 
 } // namespace keeler

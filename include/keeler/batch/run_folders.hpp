@@ -1,6 +1,5 @@
-// The folders of many runs below one folder: runs/NAME, an ordinary run's folder each; scenes/NAME.toml, the scene that
-// a run was started with; failed/NAME.txt, why a run failed; claims, which processes lock to divide the runs among
-// them.
+// The folder of many runs: runs/NAME, the folder of a run; scenes/NAME.toml, the scene that it was started with;
+// failed/NAME.txt, the reason if it failed; claims, locked by processes to divide the runs among them.
 #pragma once
 
 #include <keeler/batch/planned_run.hpp>
@@ -22,16 +21,17 @@ public:
   std::filesystem::path failure(const std::string& name) const { return path_ / "failed" / (name + ".txt"); }
   std::filesystem::path claims() const { return path_ / "claims"; }
 
-  /// Throws UsageError when a run was made with other settings than the list's; the message begins with `place`.
-  void refuse_changed(std::span<const PlannedRun> runs, const std::string& place) const;
+  /// Throws UsageError if an existing run was made with other settings than the planned one. The message begins with
+  /// `location`, the position in the user's file.
+  void refuse_changed(std::span<const PlannedRun> runs, const std::string& location) const;
 
-  /// Runs that the folder holds and the list does not.
-  std::size_t runs_beside(std::span<const PlannedRun> runs) const;
+  /// Returns the number of runs in the folder that are not planned.
+  std::size_t count_other_runs(std::span<const PlannedRun> runs) const;
 
-  /// Makes the folders, and the file of claims before the others. Throws IoError.
+  /// Makes the folder, then the file of claims, then the other folders. Throws IoError.
   void make() const;
 
-  /// Why the run failed when it was last tried; none when it did not.
+  /// Returns the reason why the last attempt of the run failed; none if it did not.
   std::optional<std::string> failure_of(const std::string& name) const;
 
 private:

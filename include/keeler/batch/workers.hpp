@@ -1,5 +1,5 @@
-// Carries out a list of runs, several at once, each as a process of its own. Any number of programs may do so in one
-// folder: each takes the next run that is not finished and that nobody holds.
+// Execution of a list of runs, several at once, each in a separate process. Any number of programs may work in one
+// folder: each takes the next run that is neither finished nor claimed.
 #pragma once
 
 #include <keeler/batch/claims.hpp>
@@ -16,14 +16,15 @@ namespace keeler {
 
 struct WorkOptions {
   std::size_t jobs = 1; ///< runs at once
-  int threads = 1;      ///< of each run
+  int threads = 1;      ///< per run
   std::function<void(const Progress&)> progress;
   std::function<void(const std::string&)> notice;
 };
 
-/// Returns when there is nothing left to take: all is finished, has failed or is held by other programs. A run that
-/// fails is noted in the folder; it is not tried again, here or by a program that works beside, until the next call.
-/// When the requests ask to stop, the runs are stopped with a checkpoint first. Throws IoError, Error.
+/// Executes runs until every run is finished, has failed or is held by another program. A failure is recorded in the
+/// folder, and the run is not tried again before the next call, neither here nor by concurrent programs. On a stop
+/// request the runs are stopped, each with a checkpoint. Precondition: options.jobs > 0, and `progress` and `notice`
+/// are set. Throws IoError, Error.
 void work_on(std::span<const PlannedRun> runs, const RunFolders& folders, Claims& claims, const WorkOptions& options,
              const RunRequests& requests);
 

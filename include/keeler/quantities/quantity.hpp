@@ -1,11 +1,13 @@
-// A number that Keeler reports: what it is called, its unit and what it means, said once, beside how it is read from
-// typed results. Text, JSON, tables, pages, Python and the manual are views of it (views.hpp). docs/dev/quantities.md.
+// Quantities that Keeler reports: name, unit and meaning, declared once, next to the function that computes the value
+// from typed results. Text, JSON, tables, pages, Python and the manual are views of them (views.hpp).
+// docs/dev/quantities.md.
 #pragma once
 
 #include <keeler/quantities/unit.hpp>
 #include <keeler/statistics/measured.hpp>
 #include <keeler/statistics/time_series.hpp>
 
+#include <cassert>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -16,49 +18,50 @@
 
 namespace keeler {
 
-/// What stands beside a number: the standard error of a mean, or the standard deviation of single snapshots.
+/// The uncertainty given with a number: the standard error of a mean, or the standard deviation of single snapshots.
 enum class Spread { none, error, scatter };
 
-/// In which systems of units JSON and tables give a number where nothing is asked for.
+/// The systems of units in which JSON and tables give a number by default.
 enum class Forms { si, si_and_radius, all };
 
-/// Several numbers that are no vector, words and lists have no column of a table.
+/// The shape of a value. `other` (words, lists, several numbers that are not a vector) has no column in tables.
 enum class Shape { number, vector, other };
 
 struct Quantity {
   std::string name;    ///< without its unit; "clusters.count" is `count` of the object `clusters`
-  Unit unit{};         ///< SI, or what the name says
-  std::string label{}; ///< for texts and pages; empty: only under its name
+  Unit unit{};         ///< SI, or implied by the name
+  std::string label{}; ///< for texts and pages; empty: not shown there by default
   std::string meaning{};
   Spread spread = Spread::none;
   Forms forms = Forms::si;
-  int digits = 4; ///< significant ones in texts
+  int digits = 4; ///< significant digits in texts
   Shape shape = Shape::number;
 
-  /// The component of a vector along x, y or z: "dispersion_x".
+  /// Returns the component of a vector along axis 0, 1 or 2, that is x, y or z: "dispersion_x".
   Quantity along(std::size_t axis) const;
-  /// "total_viscosity_m2_s", "total_viscosity_r2_omega".
+  /// Returns the name with its unit: "total_viscosity_m2_s", "total_viscosity_r2_omega".
   std::string full_name(UnitSystem system = UnitSystem::si) const;
-  /// "total_viscosity_error_m2_s".
+  /// Returns the name of the uncertainty: "total_viscosity_error_m2_s".
   std::string spread_name(UnitSystem system = UnitSystem::si) const;
-  /// Whether it has the name: full, without its unit, that of its error, or that of the object which holds it.
+  /// Returns true if `asked` is its name with or without unit, the name of its error, or of the object that contains
+  /// it.
   bool is_called(const std::string& asked) const;
-  /// The systems of `forms`, or the one that is asked for.
+  /// Returns the systems of `forms`, or only `asked`.
   std::vector<UnitSystem> systems(std::optional<UnitSystem> asked = std::nullopt) const;
 };
 
-/// A quantity that is no plain number.
+/// Returns the quantity with another shape.
 Quantity of_shape(Quantity quantity, Shape shape);
 
-/// A word, yes or no, a list or an object.
+/// Returns a quantity of shape `other`, without unit: a word, a truth value, a list or an object.
 Quantity word(const std::string& name, const std::string& label, const std::string& meaning);
 
-/// Not known or not there, and why: a part of a sentence, or nothing.
+/// An unknown or missing value, and optionally the reason, as part of a sentence.
 struct Unknown {
   std::string reason{};
 };
 
-/// A number and what its quantity has beside it.
+/// A number and its uncertainty (Quantity::spread).
 struct Uncertain {
   double value = 0.0;
   std::optional<double> spread{};
@@ -66,7 +69,7 @@ struct Uncertain {
 
 struct Record;
 
-/// Numbers under names that only the results know: an object.
+/// An object of numbers with names that depend on the results.
 using NamedNumbers = std::vector<std::pair<std::string, double>>;
 
 using Value = std::variant<Unknown, bool, std::uint64_t, double, Uncertain, std::vector<double>, NamedNumbers,
@@ -77,19 +80,19 @@ struct Entry {
   Value value;
 };
 
-/// Numbers that belong together, in the order in which they are shown, and the units of the patch that they are of.
+/// Numbers that belong together, in display order, and the natural units of their patch.
 struct Record {
   std::vector<Entry> entries{};
   PatchUnits units{};
-  bool asked = false; ///< for by name: texts then tell numbers without a label and empty lists too
+  bool asked = false; ///< requested by name: texts also show numbers without a label, and empty lists
 };
 
-/// A number that is not finite is not known.
+/// Returns a value; a number that is not finite is unknown.
 Value value_of(const std::optional<double>& number, const std::string& why_not = {});
 Value value_of(const Measured& number, const std::string& why_not = {});
 Value value_of(const std::optional<Estimate>& number);
 
-/// A quantity, and how it is read from results.
+/// A quantity, and the function that computes its value from results.
 template<class Source> struct QuantityRow {
   Quantity quantity;
   Value (*value)(const Source&);
@@ -99,9 +102,11 @@ template<class Source> struct QuantityRow {
 template<class Source>
 std::vector<Entry> entries_of(const std::vector<QuantityRow<Source>>& rows, const Source& source) {
   std::vector<Entry> entries;
-  for (const QuantityRow<Source>& row : rows)
+  for (const QuantityRow<Source>& row : rows) {
+    assert(row.value != nullptr);
     if (!row.present || row.present(source))
       entries.push_back({row.quantity, row.value(source)});
+  }
   return entries;
 }
 
@@ -117,21 +122,21 @@ template<class Element> std::vector<Element> joined(std::vector<Element> first, 
   return first;
 }
 
-/// The value of the quantity of that name, with or without its unit; null where the record has none.
+/// Returns the value of the quantity with that name, with or without its unit; null if there is none.
 const Value* find_value(const Record& record, const std::string& name);
 
-/// The number of that name; none where it is not there, not known or no number.
+/// Returns the number with that name; none if it is missing, unknown or not a number.
 std::optional<double> number_in(const Record& record, const std::string& name);
 
 std::vector<Quantity> quantities_of(const Record& record);
 
-/// Throws UsageError for a name that none of the quantities has (Quantity::is_called()).
+/// Throws UsageError for a name that matches none of the quantities (Quantity::is_called()).
 void require_names(std::span<const Quantity> quantities, std::span<const std::string> names);
 
-/// The entries that are named so, in the order of the names. Throws UsageError as require_names().
+/// Returns the entries with the names, in the order of the names. Throws UsageError as require_names().
 Record only(const Record& record, std::span<const std::string> names);
 
-/// The first quantity of that name; null where there is none.
+/// Returns the first quantity that matches the name; null if there is none.
 const Quantity* find_quantity(std::span<const Quantity> quantities, const std::string& name);
 
 } // namespace keeler

@@ -1,4 +1,4 @@
-// Units of the numbers that Keeler reports, and the systems in which velocities and viscosities are given.
+// Units of the reported numbers, and the systems of units for velocities and viscosities.
 #pragma once
 
 #include <string>
@@ -6,9 +6,9 @@
 
 namespace keeler {
 
-/// A unit as names of numbers end in it, and as people read it. A pure number has neither.
+/// A unit: the suffix of names, and the text for display. A pure number has neither.
 struct Unit {
-  std::string_view suffix; ///< "m2_s"; empty where names do not have it
+  std::string_view suffix; ///< "m2_s"; empty if names do not include it
   std::string_view text;   ///< "m²/s", UTF-8
 
   friend bool operator==(const Unit&, const Unit&) = default;
@@ -21,16 +21,16 @@ inline constexpr Unit none{}, metres{"m", "m"}, metres_per_second{"m_s", "m/s"},
     per_radius_speed{"r_omega", "r Ω"}, per_gravity_speed{"g_sigma_omega", "G Σ/Ω"},
     per_radius_viscosity{"r2_omega", "r² Ω"}, per_gravity_viscosity{"g2_sigma2_omega3", "G² Σ²/Ω³"};
 
-/// Those that only people see: the name says it, or has always been without.
+/// Returns a unit that is displayed but not part of the name.
 inline constexpr Unit unnamed(std::string_view text) {
   return {"", text};
 }
 } // namespace unit
 
-/// SI; ⟨r⟩ and Ω; G, Σ and Ω.
+/// SI; natural units from ⟨r⟩ and Ω; natural units from G, Σ and Ω.
 enum class UnitSystem { si, radius, gravity };
 
-/// What a patch's own units of velocity and viscosity are in SI.
+/// The natural units of a patch, in SI.
 struct PatchUnits {
   double radius = 1.0;    ///< plain mean of the radii, m
   double frequency = 1.0; ///< Ω, rad/s
@@ -40,13 +40,13 @@ struct PatchUnits {
   double viscosity(UnitSystem system) const; ///< 1, r² Ω or G² Σ²/Ω³ (Daisaka, Tanaka & Ida 2001); m²/s
 };
 
-/// The unit in which numbers in `si` are given in a system: another one for velocities and viscosities alone.
+/// Returns the unit of a system that replaces `si`; only velocities and viscosities have another one.
 Unit unit_in(const Unit& si, UnitSystem system);
 
-/// What a number in `si` is divided by there.
+/// Returns the size of that unit: numbers in `si` are divided by it.
 double size_of_unit(const Unit& si, UnitSystem system, const PatchUnits& units);
 
-/// A text without letters and signs that terminals may lack: "G^2 Sigma^2/Omega^3".
+/// Returns a text without characters that terminals may lack: "G^2 Sigma^2/Omega^3".
 std::string ascii(std::string_view text);
 
 } // namespace keeler

@@ -1,4 +1,4 @@
-// How records are shown: JSON, rows of CSV, text for terminals, tables of pages and of the manual.
+// Views of records: JSON, rows of CSV, text for terminals, tables of pages and of the manual.
 #pragma once
 
 #include <keeler/quantities/quantity.hpp>
@@ -7,30 +7,30 @@
 
 namespace keeler {
 
-/// Null where it is not known or not finite.
+/// Returns null if the number is missing or not finite.
 nlohmann::ordered_json or_null(const std::optional<double>& number);
 
-/// An object; names with a dot are objects in it, and what is not known is null.
+/// Returns an object. Names with a dot become nested objects, unknown values null.
 nlohmann::ordered_json json_of(const Record& record, std::optional<UnitSystem> system = std::nullopt);
 
-/// What json_of() made of a record: numbers, words and lists of words. Quantities that the JSON does not have are left
-/// out; what it has besides is there under its name alone. Throws UsageError for a value of another kind.
+/// Reads back a record from json_of(): numbers, words and lists of words. Quantities missing in the JSON are omitted;
+/// unknown names become entries without unit and label. Throws UsageError for a value of another type.
 Record record_of(const nlohmann::ordered_json& json, std::span<const Quantity> quantities);
 
-/// A row of a table with a column for each plain number: a vector has one for each axis ("dispersion_x_m_s"), what is
-/// not known is null, and lists, errors and scatters are left out.
+/// Returns a row of a table with a column per plain number: a vector has one per axis ("dispersion_x_m_s"), unknown
+/// numbers are null, and lists, errors and scatters are omitted.
 nlohmann::ordered_json row_of(const Record& record, std::optional<UnitSystem> system = std::nullopt);
 
-/// "0.00146 ± 0.0002 m/s = 2.5 r Ω", in the systems of the quantity, or in the one asked for.
+/// Returns "0.00146 ± 0.0002 m/s = 2.5 r Ω", in the systems of the quantity, or only in `system`.
 std::string text_of(const Entry& entry, const PatchUnits& units, std::optional<UnitSystem> system = std::nullopt);
 
-/// For terminals: a line for each number that has a label, and for each record of a list.
+/// Returns text for terminals: one line per number with a label, and per record of a list.
 std::string lines_of(const Record& record, std::optional<UnitSystem> system = std::nullopt);
 
-/// Rows (label, value with unit) of those with a label.
+/// Returns rows (label, value with unit) of the entries with a label.
 std::vector<std::vector<std::string>> table_of(const Record& record);
 
-/// As a Markdown table: name, unit, meaning.
+/// Returns a Markdown table: name, unit, meaning.
 std::string markdown_of(std::span<const Quantity> quantities);
 
 } // namespace keeler

@@ -1,5 +1,5 @@
-// A picture of the autocorrelation of the surface density: the map with the ridge that gives the pitch, and the profile
-// along the radius that gives the spacing.
+// A picture of the autocorrelation of the surface density: the map with the ridge that defines the pitch, and the
+// radial profile that defines the spacing.
 #pragma once
 
 #include <keeler/diagnostics/wakes.hpp>

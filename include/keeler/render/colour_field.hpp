@@ -1,4 +1,4 @@
-// What the colours of a picture say: a number of each particle, or the surface density where it stands.
+// The quantity that the colours of a picture show: a number per particle, or the surface density.
 #pragma once
 
 #include <keeler/particles/patch.hpp>
@@ -12,42 +12,43 @@
 namespace keeler {
 
 enum class ColourField {
-  height,  ///< how high a particle stands, as shades of one colour without a bar
+  height,  ///< z of a particle, as shades of one colour without a bar
   size,    ///< radius, m
-  speed,   ///< of the motion relative to the local shear, mm/s
-  spin,    ///< about the vertical, against the stars, in units of Ω
-  cluster, ///< members of the cluster of touching spheres that it belongs to; 1: it stands alone
+  speed,   ///< speed relative to the local shear, mm/s
+  spin,    ///< inertial spin about the vertical, in units of Ω
+  cluster, ///< size of the particle's cluster of touching spheres; 1: isolated
   density  ///< a map of the surface density instead of the view from above, kg/m²
 };
 
-/// As above, in this order.
+/// Returns the names of all fields, in the order of the enumeration.
 std::vector<std::string> colour_field_names();
 
-/// The field of a name as above. Throws UsageError that lists them.
+/// Returns the field with a name. Throws UsageError that lists all names.
 ColourField colour_field_named(const std::string& name);
 
-/// The ends of a colour bar; what lies outside has the colour of the end.
+/// The ends of a colour bar; values outside have the colour of the nearer end.
 struct ColourRange {
   double low = 0.0, high = 0.0;
   bool logarithmic = false;
 
-  /// 0 at the low end, 1 at the high one; 1/2 where both are the same.
-  double share(double value) const;
-  /// Half way in colour.
+  /// Returns the position of a value on the bar: 0 at the low end, 1 at the high one; 1/2 if the ends are equal.
+  double position(double value) const;
+  /// Returns the value at the middle of the bar.
   double middle() const;
 };
 
-/// A value a particle; of `density`, a value a node of the map. Throws UsageError when the patch does not have the
-/// field.
+/// Returns one value per particle; for `density`, one per node of the map. Throws UsageError when the patch does not
+/// have the field.
 std::vector<double> field_values(const Patch& patch, ColourField field);
 
-/// All but the outermost two in a hundred of the values; at least one value.
+/// Returns the range from the 1st to the 99th percentile, or the full range of sizes and clusters. Precondition:
+/// `values` is not empty.
 ColourRange colour_range(std::vector<double> values, ColourField field);
 
-/// The colours of the bar from its low end to its high one: red, green and blue of each, from 0 to 255.
+/// Returns `count` colours of the bar, from its low to its high end, as red, green and blue from 0 to 255.
 std::vector<std::array<std::uint8_t, 3>> bar_colours(std::size_t count);
 
-/// What stands below the bar: the quantity and its unit.
+/// Returns the label of the bar: the quantity and its unit.
 std::string label_of(ColourField field);
 
 } // namespace keeler

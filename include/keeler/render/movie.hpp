@@ -1,4 +1,4 @@
-// A movie of a run: its pictures at one scale, an MP4 by the program ffmpeg, or an animated PNG without it.
+// A movie of a run: pictures at a common scale, as an MP4 by the program ffmpeg, or as an animated PNG.
 #pragma once
 
 #include <keeler/core/progress.hpp>
@@ -10,17 +10,17 @@
 
 namespace keeler {
 
-inline constexpr int movie_frames_a_second = 12;
+inline constexpr int movie_frames_per_second = 12;
 
-/// Whether the program ffmpeg is on PATH.
+/// Returns true if the program ffmpeg is on PATH.
 bool has_ffmpeg();
 
-/// Throws UsageError unless `path` ends in .png, or in .mp4 where there is ffmpeg.
+/// Throws UsageError unless `path` ends in .png, or in .mp4 if ffmpeg is installed.
 void require_movie_name(const std::string& path);
 
-/// Writes a movie of patch(0) … patch(count − 1), each asked for twice: first for the scale that all share. Frame,
-/// height of the edge view and colours stay. Throws as render_patch, UsageError as above or when the box changes; a
-/// failure leaves no file. Interrupted between two pictures when that is asked for (interrupt.hpp).
+/// Writes a movie of patch(0) … patch(count − 1). Each patch is requested twice: first for the common scale, so that
+/// frame, height of the edge view and colours are constant. Throws as render_patch, UsageError as above or when the box
+/// changes, Interrupted between two pictures (interrupt.hpp). A failure leaves no file.
 void render_movie(std::size_t count, const std::function<Patch(std::size_t)>& patch, const std::string& path,
                   const PictureOptions& options, const std::function<void(const Progress&)>& progress = {});
 

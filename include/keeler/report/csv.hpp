@@ -7,11 +7,11 @@
 
 namespace keeler {
 
-/// Objects of plain values as CSV: the keys of the first as a header, then a line each. Texts with commas, quotes
-/// or line breaks are quoted. At least one object.
+/// Returns a list of objects of plain values as CSV: the keys of the first as a header, then one line per object. Texts
+/// with commas, quotes or line breaks are quoted. Precondition: `rows` is not empty.
 std::string csv_of(const nlohmann::ordered_json& rows);
 
-/// The same, null as nothing.
+/// As csv_of(), with empty fields for null.
 std::string csv_with_gaps(nlohmann::ordered_json rows);
 
 } // namespace keeler

@@ -1,4 +1,4 @@
-// A report written once and kept in two forms: Markdown, and one HTML page that needs no other file.
+// A report composed once and output in two forms: Markdown, and a self-contained HTML page.
 #pragma once
 
 #include <filesystem>
@@ -12,11 +12,12 @@ public:
   explicit Document(const std::string& title);
 
   void heading(const std::string& text);
-  /// Markdown's `code` and **bold** are understood.
+  /// Adds a paragraph. `code` and **bold** are interpreted as in Markdown.
   void paragraph(const std::string& text);
-  /// The first row names the columns.
+  /// Adds a table. The first row has the names of the columns.
   void table(const std::vector<std::vector<std::string>>& rows);
-  /// A picture beside the report, NAME.png; the page holds the picture itself. NAME.svg is taken where it is there.
+  /// Adds the picture NAME.svg of the folder, or NAME.png if there is none. The HTML page embeds it. Throws IoError
+  /// when it cannot be read.
   void figure(const std::filesystem::path& folder, const std::string& name, const std::string& caption);
 
   const std::string& markdown() const { return markdown_; }

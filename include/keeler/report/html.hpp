@@ -8,16 +8,16 @@
 
 namespace keeler {
 
-/// Text as it stands between tags: &, < and > are written as entities.
+/// Returns text escaped for use between tags: &, < and > become entities.
 std::string html_text(const std::string& text);
 
-/// The same, and Markdown's `code` and **bold** are understood.
+/// As html_text(), with `code` and **bold** interpreted as in Markdown.
 std::string html_inline(const std::string& text);
 
-/// The first row names the columns. Cells as html_inline().
+/// Returns a table. The first row has the names of the columns; cells are as html_inline().
 std::string html_table(const std::vector<std::vector<std::string>>& rows);
 
-/// Bytes in the digits of RFC 4648.
+/// Returns bytes in the base-64 encoding of RFC 4648.
 std::string base64(std::span<const std::byte> bytes);
 
 } // namespace keeler

@@ -1,4 +1,4 @@
-// The series of a run as one figure in SVG: the plots of its page, with numbers on their axes, for a paper or a talk.
+// The series of a run as one SVG figure for a paper or a talk: the plots of its page, with numbers on their axes.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,16 +9,16 @@
 namespace keeler {
 
 struct SeriesFigureLook {
-  int width = 1600; ///< pixels, where the viewer does not scale it
+  int width = 1600; ///< pixels, if the viewer does not scale the figure
   bool light = false;
 };
 
-/// Each plot with its curves, the standard errors as bands, and the steady part shaded with its means. `plots` as
-/// series_plots() makes them; at least one.
+/// Returns the figure: each plot with its curves, standard errors as bands, and the steady part shaded, with its means.
+/// Precondition: `plots` is a result of series_plots() with at least one plot.
 std::string series_svg(const nlohmann::ordered_json& plots, const std::string& title, const SeriesFigureLook& look);
 
-/// The same of a run's folder. Throws IoError when it holds no run or no snapshot, UsageError when its series has
-/// fewer than two rows.
+/// Returns the figure of a run's folder. Throws IoError when it holds no run or no snapshot, UsageError when its series
+/// has fewer than two rows.
 std::string run_series_svg(const std::filesystem::path& folder, const SeriesFigureLook& look);
 
 } // namespace keeler

@@ -1,11 +1,11 @@
-// One process at a time works in a run's folder.
+// An advisory lock on a run's folder: at most one process writes to it.
 #pragma once
 
 #include <filesystem>
 
 namespace keeler {
 
-/// Holds a folder for as long as it lives; the system lets go of it when the process ends, however it ends.
+/// Locks a folder during its lifetime. The system releases the lock when the process ends, also when it is killed.
 class FolderLock {
 public:
   /// Throws UsageError when another process holds the folder, IoError when it cannot be opened.
@@ -14,8 +14,8 @@ public:
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
-  /// Throws IoError when the name stands for another folder by now, or for none: what is written under it would not be
-  /// beside the rest.
+  /// Throws IoError when the path no longer names the locked folder: files written to that path would be separated from
+  /// the earlier ones.
   void require_in_place() const;
 
 private:
@@ -23,7 +23,7 @@ private:
   int descriptor_;
 };
 
-/// Whether a process holds the folder now. False of one that is not there.
+/// Returns true if a process holds the folder's lock now; false if the folder does not exist.
 bool folder_is_held(const std::filesystem::path& folder);
 
 } // namespace keeler

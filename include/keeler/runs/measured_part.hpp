@@ -1,4 +1,4 @@
-// The part of a run that is measured: where it is steady, or what was asked for.
+// The part of a run that is measured: its steady part, or a requested window of orbits.
 #pragma once
 
 #include <keeler/runs/stored_patches.hpp>
@@ -9,13 +9,13 @@
 namespace keeler {
 
 struct MeasuredPart {
-  StoredPatches stored; ///< its snapshots
+  StoredPatches stored; ///< the snapshots in that part
   TransportReport transport;
 };
 
-/// Of a run's folder: the series says from where on it is steady, and snapshots are taken from there; or the window's
-/// orbits. A snapshot stands for itself. Throws UsageError for a window of a snapshot, or one without a snapshot in it;
-/// IoError.
+/// Loads the snapshots of a run's folder inside the window, and their transport. A missing bound is taken from the
+/// series: the orbit at which it becomes steady, the last row. If `path` is a snapshot file, that snapshot is measured.
+/// Throws UsageError for a window of a snapshot file, or a window without snapshots; IoError.
 MeasuredPart measured_part(const std::filesystem::path& path, const OrbitWindow& window);
 
 } // namespace keeler

@@ -1,5 +1,5 @@
-// What is measured on snapshots and of a run's series, as numbers with names: all that `keeler analyze`, its pages,
-// sweeps and Python tell of a patch. A new number is one more row of the table in measurement.cpp.
+// The measured quantities of snapshots and of a run's series, as named numbers: everything that `keeler analyze`, its
+// pages, sweeps and Python report on a patch. A new quantity is one more row of the table in measurement.cpp.
 #pragma once
 
 #include <keeler/diagnostics/analysis.hpp>
@@ -10,28 +10,30 @@
 
 namespace keeler {
 
-/// Typed results. Rows of the table may look at the patches too.
+/// Typed results. Rows of the table may also compute from the patches.
 struct Measurement {
   std::span<const Patch> patches;
   Analysis analysis;
-  double largest_overlap = 0.0; ///< in any of the patches, of a radius sum
+  double largest_overlap = 0.0; ///< of any pair in any patch, as a fraction of the radius sum
   TransportReport transport;
   PatchUnits units; ///< of the last patch
 
-  /// A number of one snapshot, as the mean over all of them.
-  double mean_over_snapshots(double (*of)(const Patch&)) const;
+  /// Returns the mean of a function of one snapshot over all snapshots. Precondition: `patches` is not empty.
+  double mean_over_snapshots(double (*value)(const Patch&)) const;
 };
 
-/// Refers to the patches, which must outlive it. `looked_at` is called after each one. Throws UsageError as analyze().
+/// Measures patches, oldest first; the result refers to them, so they must outlive it. `patch_done` is called after
+/// each patch. Precondition: `patches` is not empty. Throws UsageError as analyze().
 Measurement measure(std::span<const Patch> patches, const TransportReport& transport,
-                    const AnalysisSettings& settings = {}, const std::function<void()>& looked_at = {});
+                    const AnalysisSettings& settings = {}, const std::function<void()>& patch_done = {});
 
+/// Returns all measured quantities as a record.
 Record record_of(const Measurement& measurement);
 
-/// The wakes alone, of one patch at least.
+/// Returns the wake quantities alone. Precondition: `patches` is not empty.
 Record wakes_of(std::span<const Patch> patches);
 
-/// Names, units and meanings, in the order of a record.
+/// Returns names, units and meanings, in the order of a record.
 std::vector<Quantity> measured_quantities();
 
 } // namespace keeler

@@ -6,7 +6,7 @@
 
 namespace keeler {
 
-/// ⟨r⟩, Ω and G Σ. The patch must hold a particle.
+/// Returns ⟨r⟩, Ω and G Σ. Precondition: the patch holds a particle.
 PatchUnits units_of(const Patch& patch);
 
 } // namespace keeler

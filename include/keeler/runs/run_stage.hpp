@@ -1,4 +1,4 @@
-// How far the run in a folder has come, by its files alone: for whoever looks on while another process may work there.
+// The stage of the run in a folder, from its files alone: safe while another process writes there.
 #pragma once
 
 #include <cstdint>
@@ -7,16 +7,16 @@
 namespace keeler {
 
 enum class RunStage {
-  absent,    ///< no folder, or nothing in it
-  begun,     ///< without a checkpoint: it can only begin again
-  resumable, ///< with a checkpoint
-  finished,  ///< its summary says so
+  absent,    ///< the folder is missing or empty
+  begun,     ///< no checkpoint yet: it can only be started again
+  resumable, ///< has a checkpoint
+  finished,  ///< according to its summary
 };
 
 /// Throws IoError when the folder cannot be read.
 RunStage run_stage(const std::filesystem::path& folder);
 
-/// The step of the last whole row of the series; 0 without one.
-std::int64_t steps_on_record(const std::filesystem::path& folder);
+/// Returns the step of the last complete row of the series; 0 without one.
+std::int64_t last_recorded_step(const std::filesystem::path& folder);
 
 } // namespace keeler

@@ -1,5 +1,5 @@
-// The columns of series.csv. Each is declared once, with its name, unit, meaning and how it is computed: the header,
-// the rows and the table in docs/formats.md come from here. A new column is one more entry in series_columns.cpp.
+// The columns of series.csv. Each is declared once, with its name, unit, meaning and function: the header, the rows and
+// the table in docs/formats.md are views of this declaration. A new column is one more entry in series_columns.cpp.
 #pragma once
 
 #include <keeler/diagnostics/epicyclic_waves.hpp>
@@ -16,7 +16,7 @@
 
 namespace keeler {
 
-/// One instant of a run, between two steps, and what its particles give.
+/// One instant of a run, between two steps, with the means over its particles that several columns need.
 struct SeriesSample {
   const Scene& scene;
   const Simulation& simulation;
@@ -25,34 +25,35 @@ struct SeriesSample {
   std::optional<EpicyclicWaves> waves;  ///< none: too few particles
   std::optional<GravityEnergy> gravity; ///< none: not measured at this instant
 
-  /// Both must outlive it. Collective.
+  /// Both must outlive the sample. Collective.
   SeriesSample(const Scene& of_scene, const Simulation& of_simulation,
                std::optional<GravityEnergy> of_gravity = std::nullopt);
 };
 
-/// What a column is at an instant: a value; a sum or a number of events since the run began; the integral of a stress.
-enum class Course { value, sum, count, flux };
+/// What a column holds: an instantaneous value; a sum or a count of events since the run began; the time integral of a
+/// stress.
+enum class ColumnKind { value, sum, count, flux };
 
 struct SeriesColumn {
-  const char* name; ///< in the header: what and unit
+  const char* name; ///< in the header: quantity and unit
   const char* unit;
   const char* plot; ///< "TITLE: CURVE" in plots; columns of one title are curves of one plot
-  Course course;
+  ColumnKind kind;
   const char* meaning;
   double (*value)(const SeriesSample&);
-  bool (*in)(const Scene&) = nullptr; ///< scenes that have the column; null: all
+  bool (*in)(const Scene&) = nullptr; ///< true for scenes that have the column; null: all scenes
 };
 
-/// All columns, in their order. The step, which every row begins with, is none of them.
+/// Returns all columns, in their order, without the step with which every row begins.
 std::span<const SeriesColumn> series_columns();
 
-/// Their names, units and meanings.
+/// Returns the names, units and meanings of all columns.
 std::vector<Quantity> series_quantities();
 
-/// Those that a scene has.
+/// Returns the columns that a scene has.
 std::vector<SeriesColumn> series_columns_of(const Scene& scene);
 
-/// Whether rows of the series have the energy and the stress of gravity.
+/// Returns true if the series has the energy and the stress of gravity.
 bool measures_gravity(const Scene& scene);
 
 std::vector<std::string> names_of(std::span<const SeriesColumn> columns);

@@ -1,4 +1,5 @@
-// A fingerprint of what a run has become: two runs with the same hash are the same run, however they got there.
+// A fingerprint of a run's state: runs with equal hashes have bitwise equal states, whatever their restarts, threads
+// and ranks.
 #pragma once
 
 #include <keeler/comm/communicator.hpp>
@@ -9,9 +10,10 @@
 
 namespace keeler {
 
-/// 32 hexadecimal digits over, in the order of the ids, the particles' elements, radii and masses, the step number and
-/// length, the box with its shear offset, the seed, and the scene's keys that change the physics. Not over end time,
-/// schedules, threads, memory order, counters or provenance. Collective: of the particles of all ranks, on all.
+/// Returns a hash of 32 hexadecimal digits over the particles' elements, radii and masses (in the order of their ids),
+/// the step number and length, the box with its shear offset, the seed, and the scene's keys that change the physics;
+/// not over end time, schedules, threads, memory order, counters or provenance. Collective: every rank gets the hash of
+/// the particles of all ranks.
 std::string state_hash(const SimulationState& state, const Scene& scene, const Communicator& ranks = {});
 
 } // namespace keeler

@@ -1,4 +1,4 @@
-// The snapshots of a file or of a run's folder, for whoever looks at results.
+// The snapshots of a file or of a run's folder, as the commands that analyse results read them.
 #pragma once
 
 #include <keeler/gravity/solver.hpp>
@@ -15,21 +15,21 @@ namespace keeler {
 struct StoredPatches {
   std::vector<Patch> patches;
   std::string title;
-  std::optional<GravitySettings> gravity; ///< of that scene
-  bool driven = false;                    ///< it has other forces besides
+  std::optional<GravitySettings> gravity; ///< gravity of that scene
+  bool driven = false;                    ///< the scene has external forces
 };
 
-/// The snapshots of a run's folder, oldest first. Throws IoError when there is none.
+/// Returns the snapshots of a run's folder, oldest first. Throws IoError when there is none.
 std::vector<std::filesystem::path> snapshots_in(const std::filesystem::path& folder);
 
-/// A snapshot file gives that snapshot; a run's folder gives those of its last `orbits` orbits, the newest always among
-/// them. Throws IoError when there is none.
+/// Loads a snapshot file, or from a run's folder the snapshots of its last `orbits` orbits, always including the
+/// newest. Throws IoError when there is none.
 StoredPatches load_patches(const std::filesystem::path& path, double orbits);
 
-/// Those of a run's folder from one orbit to another. Throws UsageError when there is none between them.
+/// Loads the snapshots of a run's folder from orbit `since` to orbit `until`. Throws UsageError when there is none.
 StoredPatches load_patches_between(const std::filesystem::path& folder, double since, double until);
 
-/// The newest one.
+/// Loads a snapshot file, or the newest snapshot of a run's folder.
 StoredPatches load_newest_patch(const std::filesystem::path& path);
 
 } // namespace keeler

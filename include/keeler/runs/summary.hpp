@@ -1,4 +1,4 @@
-// summary.json: what a run came to, as numbers with names.
+// summary.json: the results and costs of a run, as named numbers.
 #pragma once
 
 #include <keeler/quantities/quantity.hpp>
@@ -7,12 +7,10 @@
 
 namespace keeler {
 
-/// Names, units and meanings, in the order of a summary. Runs with external forces have a `split.NAME_s` for each
-/// besides.
+/// Returns names, units and meanings, in the order of a summary. For each external force a run also has `split.NAME_s`.
 std::vector<Quantity> summary_quantities();
 
-/// Of a run's folder, also one of former versions. Throws IoError where there is none, or where it holds something
-/// else.
+/// Reads the summary in a run's folder, also one of an earlier version. Throws IoError when it is missing or invalid.
 Record read_summary(const std::filesystem::path& folder);
 
 } // namespace keeler

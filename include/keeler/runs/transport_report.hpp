@@ -1,5 +1,5 @@
-// The transport of angular momentum as `keeler analyze` reports it: the viscosities of a run from its series, or those
-// of a snapshot at its instant.
+// Angular momentum transport as `keeler analyze` reports it: the viscosities of a run from its series, or the
+// instantaneous ones of a snapshot.
 #pragma once
 
 #include <keeler/particles/patch.hpp>
@@ -13,21 +13,21 @@
 
 namespace keeler {
 
-/// Returns what the waves hold in the two halves, and what it means where that is not steady; a part of a sentence.
-std::string words_of(const WaveGrowth& waves);
+/// Returns part of a sentence: the energy fractions of the waves in both halves, and the consequence if they differ.
+std::string describe(const WaveGrowth& waves);
 
 class TransportReport {
 public:
-  /// Of a run's folder: from its series. Without a viscosity when that has too few rows in the window.
+  /// Reads the series of a run's folder. The report has no viscosity if the window has too few rows.
   static TransportReport of_run(const std::filesystem::path& folder, const RingScale& scale, const OrbitWindow& window);
 
-  /// Of a run's series, which has been read.
+  /// As of_run(), from a series that was already read.
   static TransportReport of_series(const SeriesTable& series, const RingScale& scale, const OrbitWindow& window);
 
-  /// Of a snapshot of a scene with these settings of gravity.
+  /// Reports a snapshot of a scene with these gravity settings.
   static TransportReport of_snapshot(const Patch& patch, const std::optional<GravitySettings>& gravity);
 
-  /// None: the series has too few rows for a viscosity.
+  /// Returns none if the series has too few rows for a viscosity.
   const std::optional<Transport>& transport() const { return transport_; }
 
   bool is_of_run() const { return of_run_; }
@@ -37,7 +37,7 @@ private:
   bool of_run_ = false;
 };
 
-/// The viscosities and the balance of energy, under their names.
+/// Returns the viscosities and the energy balance as named numbers.
 Record record_of(const TransportReport& transport, const PatchUnits& units);
 std::vector<Quantity> transport_quantities();
 

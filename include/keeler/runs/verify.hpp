@@ -1,5 +1,5 @@
-// Whether files of results are whole and hold what can be: seal and checksums, format version, finite numbers within
-// their ranges, ids, overlaps, and the scene against the state. For `keeler info --verify`.
+// Verification of result files, for `keeler info --verify`: seal and checksums, format version, finite numbers within
+// their ranges, ids, overlaps, and the scene against the state.
 #pragma once
 
 #include <filesystem>
@@ -9,17 +9,18 @@
 namespace keeler {
 
 struct VerifiedFile {
-  std::string file;    ///< its path
+  std::string file;    ///< path of the file
   std::string kind;    ///< "checkpoint", "snapshot", "contacts", "series", "scene", "summary" or "log"
-  std::string damage;  ///< the first that was found, a line; empty where there is none
-  bool sealed = false; ///< a seal vouches for every byte; texts have none, nor what another program has changed
+  std::string damage;  ///< description of the first damage found; empty if there is none
+  bool sealed = false; ///< a seal covers every byte; text files and files changed by other programs have none
 };
 
-/// A snapshot, a checkpoint, a file of contacts, or a text of a run by its name. Nothing is thrown for damage.
+/// Verifies a snapshot, a checkpoint, a file of contacts, or a text file of a run, known by its name. Damage is
+/// reported, never thrown.
 VerifiedFile verify_file(const std::filesystem::path& file);
 
-/// All files of a run, which must also fit to each other; of a sweep or a study those of its runs. In the order of
-/// their names. Throws IoError where there is no run in the folder.
+/// Verifies all files of a run, in the order of their names, and their consistency with each other; in the folder of a
+/// sweep or a study, the files of all its runs. Throws IoError when the folder holds no run.
 std::vector<VerifiedFile> verify_folder(const std::filesystem::path& folder);
 
 } // namespace keeler

@@ -1,4 +1,4 @@
-// A number measured on several snapshots, and how far single snapshots scatter about it.
+// A number measured on several snapshots, and the scatter of the single snapshots.
 #pragma once
 
 #include <optional>
@@ -7,15 +7,15 @@
 namespace keeler {
 
 struct Measured {
-  std::optional<double> value;   ///< of all snapshots together; none where there is nothing to measure
-  std::optional<double> scatter; ///< standard deviation of single snapshots about their mean; none of fewer than two
+  std::optional<double> value;   ///< of all snapshots together; none if it cannot be measured
+  std::optional<double> scatter; ///< standard deviation of single snapshots about their mean; none if fewer than two
 };
 
-/// `singles` holds the values of the snapshots that have one.
+/// Returns `value` and the scatter of `singles`, the values of the snapshots that have one.
 Measured measured(std::optional<double> value, std::span<const double> singles);
 
-/// The same for the directions of lines (degrees), which are the same after half a turn: values are taken within 90° of
-/// `value`.
+/// As measured(), for directions of lines (degrees), which are equivalent modulo 180°: single values are shifted to
+/// within 90° of `value`.
 Measured measured_direction(std::optional<double> value, std::span<const double> singles);
 
 } // namespace keeler

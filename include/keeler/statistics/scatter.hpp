@@ -1,4 +1,4 @@
-// Whether two samples of a scattering number differ by more than their scatter explains.
+// Mean and scatter of a sample, and the comparison of the means of two samples.
 #pragma once
 
 #include <cmath>
@@ -8,25 +8,24 @@ namespace keeler {
 
 struct Scatter {
   std::size_t count = 0;
-  double mean = 0.0;      ///< NaN of nothing
-  double deviation = 0.0; ///< standard deviation of one value, n − 1 in its denominator; NaN of fewer than two
+  double mean = 0.0;      ///< NaN if count is 0
+  double deviation = 0.0; ///< standard deviation of one value, with n − 1; NaN if count < 2
 
-  double mean_error() const {
-    return deviation / std::sqrt(static_cast<double>(count));
-  } ///< standard error of the mean
+  /// Returns the standard error of the mean.
+  double mean_error() const { return deviation / std::sqrt(static_cast<double>(count)); }
 };
 
+/// Returns the mean and the standard deviation of values.
 Scatter scatter_of(const std::vector<double>& values);
 
-/// Half the width of the interval about the mean that holds the true one in 95 % of all cases, by Student's t. NaN of
-/// fewer than two values.
+/// Returns half the width of the 95 % confidence interval of the mean, by Student's t; NaN for fewer than two values.
 double mean_bound(const Scatter& scatter);
 
-/// Student's t for two samples of the same variance. Equal means differ by less than the bound in 95 % of all cases.
-/// NaN when either sample has fewer than two values.
+/// Student's t test for two samples of equal variance. If their true means are equal, the difference is below the bound
+/// in 95 % of all cases.
 struct MeanDifference {
   double difference = 0.0; ///< of the means, second − first
-  double bound = 0.0;
+  double bound = 0.0;      ///< NaN if either sample has fewer than two values
 
   bool known() const { return !std::isnan(bound); }
   bool within() const { return std::fabs(difference) <= bound; }

@@ -16,7 +16,7 @@ TEST_CASE("a name is claimed by one at a time, and free again when its claimant 
   Claims first(work / "claims");
   auto second = std::make_unique<Claims>(work / "claims");
   CHECK(first.take("a"));
-  CHECK(first.take("a")); // it has it
+  CHECK(first.take("a")); // already claimed by this object
   CHECK_FALSE(second->take("a"));
   CHECK(second->take("b"));
   CHECK_FALSE(first.take("b"));

@@ -41,7 +41,7 @@ TEST_CASE("the fields of a picture have their values and units") {
   CHECK(field_values(patch, ColourField::size) == patch.radii);
   const std::vector<double> speeds = field_values(patch, ColourField::speed);
   CHECK(speeds[0] == doctest::Approx(0.0)); // it moves with the shear
-  CHECK(speeds[1] == doctest::Approx(1.0)); // |(3, 4)| m a radian × 2e-4 /s = 1 mm/s
+  CHECK(speeds[1] == doctest::Approx(1.0)); // |(3, 4)| m per radian × 2e-4 /s = 1 mm/s
   CHECK(field_values(patch, ColourField::cluster) == std::vector<double>{1.0, 2.0, 2.0});
   CHECK_THROWS_WITH_AS(field_values(patch, ColourField::spin), doctest::Contains("smooth"), UsageError);
   patch.spins = {Vec3(1, 0, 0.5), Vec3(0, 0, -1), Vec3(0, 0, 0)};
@@ -56,13 +56,13 @@ TEST_CASE("a colour bar spans nearly all values") {
   const ColourRange linear = colour_range(values, ColourField::speed);
   CHECK(linear.low == 10.0);
   CHECK(linear.high == 990.0);
-  CHECK(linear.share(500.0) == 0.5);
-  CHECK(linear.share(-5.0) == 0.0);
-  CHECK(linear.share(1e6) == 1.0);
+  CHECK(linear.position(500.0) == 0.5);
+  CHECK(linear.position(-5.0) == 0.0);
+  CHECK(linear.position(1e6) == 1.0);
   const ColourRange logarithmic = colour_range({1.0, 10.0, 100.0}, ColourField::cluster);
-  CHECK(logarithmic.share(10.0) == doctest::Approx(0.5));
+  CHECK(logarithmic.position(10.0) == doctest::Approx(0.5));
   CHECK(logarithmic.middle() == doctest::Approx(10.0));
-  CHECK(colour_range({2.0, 2.0}, ColourField::size).share(2.0) == 0.5); // particles of one size
+  CHECK(colour_range({2.0, 2.0}, ColourField::size).position(2.0) == 0.5); // particles of one size
 }
 
 TEST_CASE("the map of surface density holds the mass of the patch at any shear offset") {
@@ -70,7 +70,7 @@ TEST_CASE("the map of surface density holds the mass of the patch at any shear o
     Patch patch = test::uniform(box, offset, 5000, 3);
     const std::vector<double> values = field_values(patch, ColourField::density);
     const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-    CHECK(mean == doctest::Approx(surface_density(patch)).epsilon(1e-12)); // clouds share out their mass exactly
+    CHECK(mean == doctest::Approx(surface_density(patch)).epsilon(1e-12)); // the cloud-in-cell weights conserve mass
   }
 }
 
@@ -121,7 +121,7 @@ TEST_CASE("colours show the field; the bar lies below the views") {
 TEST_CASE("an oblique view shortens lengths along the orbit and lifts what is high") {
   Patch patch = three();
   patch.positions[0].z() = 12.0;
-  patch.positions[1] = {40.0, 29.5, 11.0}; // above the frame, so its image from below shows: y − L_y
+  patch.positions[1] = {40.0, 29.5, 11.0}; // above the frame, so its image at y − L_y is visible below
   PictureOptions options;
   options.width = 800;
   options.oblique = true;

@@ -28,7 +28,7 @@ PictureOptions small() {
   return options;
 }
 
-// How often a chunk of this name begins.
+// Returns the number of chunks with a name.
 std::size_t chunks(const std::string& png, const std::string& name) {
   std::size_t count = 0;
   for (std::size_t at = 8; at + 8 < png.size(); ++count) {

@@ -40,7 +40,7 @@ PictureOptions named(const std::string& title, int width) {
 
 constexpr double bright = 90.0, dark = 10.0;
 
-// Brightness where (x, y) of the top view or (x, z) of the edge view is.
+// Returns the brightness at (x, y) of the top view or (x, z) of the edge view.
 double shown(const Picture& picture, const PixelFrame& f, const PictureLayout& layout, double x, double up) {
   const int column = f.left + static_cast<int>(0.5 * f.width + layout.pixels_per_metre * x);
   const int row = f.top + static_cast<int>(0.5 * f.height - layout.pixels_per_metre * up);
@@ -81,7 +81,7 @@ TEST_CASE("axes have marks at round lengths from the middle") {
   const Picture picture(file.path());
   const PictureLayout layout = layout_of(patch, options);
   const PixelFrame& f = layout.top_view;
-  // The brightest of three pixels: a mark is a pixel and a half wide, and stands where it stands.
+  // The brightest of three pixels: a tick is 1.5 pixels wide, at a fractional position.
   const auto brightest = [&](double x, double y, int aside, int up) {
     double most = 0.0;
     for (const int k : {-1, 0, 1})
@@ -106,8 +106,8 @@ TEST_CASE("axes have marks at round lengths from the middle") {
 
 TEST_CASE("images fill the edges, across the shear as well") {
   const TemporaryPng file("images");
-  // The first reaches over the outer edge, 20 m farther back there; the second over the upper edge; the third stands
-  // outside the cell by its eccentricity and shows as the image that is inside.
+  // The first reaches over the outer edge, 20 m farther back there; the second over the upper edge; the third is
+  // outside the box because of its eccentricity, and is visible as the image inside.
   const Patch patch = spheres({{49.5, -5.0, 0.0}, {10.0, 29.5, 0.0}, {-60.0, 0.0, 0.0}});
   const PictureOptions options = named("Images", 1600);
   render_patch(patch, file.path(), options);

@@ -19,7 +19,7 @@ using namespace keeler::test;
 
 namespace {
 
-/// All that happened, one call a contact.
+/// Records all contacts, one call per contact.
 struct Onlooker final : DriftObserver {
   std::vector<CollisionRecord> records;
   void collided(const CollisionRecord& record) override { records.push_back(record); }
@@ -54,7 +54,7 @@ ContactLog new_log(const RunFolder& folder, const Scene& scene, std::int64_t fil
   return {folder, scene, {}, resume, file_rows};
 }
 
-// All rows of a log of small files.
+// Returns all rows of a log of small files.
 std::vector<ContactRow> table_in(const RunFolder& folder, std::int64_t file_rows) {
   std::vector<ContactRow> all;
   for (std::int64_t number = 0; std::filesystem::exists(folder.contacts(number)); ++number) {
@@ -125,7 +125,7 @@ TEST_CASE("a bin holds the speeds from its lower edge to below its upper one") {
   for (std::size_t bin = 0; bin < speeds.bins(); ++bin) {
     count += speeds.count(bin);
     CHECK(speeds.energy_lost(bin) == 2.0 * static_cast<double>(speeds.count(bin)));
-    CHECK((bin == 0 || speeds.from(bin) == speeds.to(bin - 1)));
+    CHECK((bin == 0 || speeds.lower_edge(bin) == speeds.upper_edge(bin - 1)));
   }
   CHECK(count == 6);
   CHECK(speeds.count(0) == 1);
@@ -227,7 +227,7 @@ TEST_CASE("files of a log are cut back to the rows of a checkpoint, wherever tha
 
     Simulation second(scene, state);
     ContactLog after = new_log(cut, scene, file_rows, checkpoint);
-    CHECK(after.lost() == 0);
+    CHECK(after.lost_rows() == 0);
     evolve(after, second, 30);
     after.write_all();
     const std::vector<ContactRow> rows = table_in(whole, file_rows);

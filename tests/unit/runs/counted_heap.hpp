@@ -1,5 +1,5 @@
-// Counts what the whole program has allocated by new and not yet deleted. For one source file of an executable: it
-// takes the place of the allocation functions.
+// Counts the bytes that the whole program has allocated by new and not yet deleted. Include it in only one source file
+// of an executable: it replaces the allocation functions.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace keeler::test {
 
 inline std::atomic<std::int64_t> bytes_held{0};
 
-/// Null when there is no memory. The size of a block stands right before it.
+/// Returns null when there is no memory. The size of a block is stored directly before it.
 inline void* try_to_allocate(std::size_t size, std::size_t alignment) noexcept {
   const std::size_t head = std::max(alignment, alignof(std::max_align_t));
   void* const whole = std::aligned_alloc(head, (size + 2 * head - 1) / head * head);

@@ -1,4 +1,4 @@
-// Quantities against the page of the manual that must hold their table.
+// Compares quantities with the page of the manual that must contain their table.
 #pragma once
 
 #include <keeler/files/files.hpp>

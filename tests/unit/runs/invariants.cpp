@@ -1,5 +1,5 @@
-// The checks of `keeler run --check`: silent in sound runs of all kinds, and each breaks on a state that is broken in
-// its way on purpose.
+// The checks of `keeler run --check`: none fails in correct runs of all kinds, and each fails on a state that violates
+// its invariant.
 #include "invariants.hpp"
 #include "step_check.hpp"
 
@@ -22,7 +22,7 @@ namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-// A scene some steps on, with the state before its last step.
+// A simulation after some steps, with the state before its last step.
 struct Stepped {
   Scene scene;
   Simulation simulation;
@@ -78,7 +78,7 @@ TEST_CASE("all invariants hold at each step of sound runs, and to look at them c
     const SimulationState& state = checked.state();
     contacts += state.collisions.fast + state.collisions.slow;
     CHECK(state_hash(state, scene) == state_hash(plain.state(), scene));
-    CHECK(fault_of_books(state, checked.means(), scene.planet.frequencies).empty());
+    CHECK(fault_of_budget(state, checked.means(), scene.planet.frequencies).empty());
   }
   CHECK(contacts > 100);
 }
@@ -93,7 +93,7 @@ TEST_CASE("a number that is not finite is told, with its particle") {
   state = run.simulation.state();
   state.particles.spins[40].y() = not_a_number;
   CHECK(fault_of_numbers(state) == "particle " + id + " has a spin that is not finite");
-  CHECK(fault_of_books(state, run.means_of(state), run.frequencies()) == fault_of_numbers(state));
+  CHECK(fault_of_budget(state, run.means_of(state), run.frequencies()) == fault_of_numbers(state));
   state = run.simulation.state();
   state.forces[0].accelerations[40].z() = 1.0 / 0.0;
   CHECK(fault_of_numbers(state) == "particle " + id + " has an acceleration by gravity that is not finite");
@@ -146,14 +146,14 @@ TEST_CASE("a contact whose energy is booked twice, or never, is told by the ener
   CHECK_FALSE(run.energy(state).empty());
   CHECK(run.energy(run.simulation.state()).empty());
   state.collisions.energy_lost *= 1.001;
-  CHECK(fault_of_books(state, run.means_of(state), run.frequencies()).find("the energy budget leaves ") == 0);
+  CHECK(fault_of_budget(state, run.means_of(state), run.frequencies()).find("the energy budget does not close") == 0);
 }
 
 TEST_CASE("wraps with a wrong shift, and kicks of half the size, are told by the sums") {
   const Stepped run({"constant_acceleration.azimuthal=1e-9"});
   SimulationState state = run.simulation.state();
   Elements& wrapped = state.particles.bodies[11].elements;
-  wrapped = state.box.image_of(wrapped, {1, 0}, state.epoch_offset()); // another image: as good as before
+  wrapped = state.box.image_of(wrapped, {1, 0}, state.epoch_offset()); // another image: equivalent
   CHECK(run.sums(state).empty());
   wrapped.guiding_y += 1e-3 * state.box.size_y; // as if the shear offset were that of another time
   CHECK(run.sums(state).find("collisions changed the sum of m Y") == 0);
@@ -174,7 +174,7 @@ TEST_CASE("forces that err by more than the solver may are told, with the partic
       acceleration *= 1.0 + 1.3 * forces_factor * force_tolerance(*run.scene.gravity);
     CHECK(fault_of_forces(run.scene, boundary, state).find("the forces of 32 particles err by ") == 0);
   }
-  const Stepped mean_field({"gravity.solver=mesh"}); // is not to be the sum over pairs
+  const Stepped mean_field({"gravity.solver=mesh"}); // does not approximate the sum over pairs
   CHECK(force_tolerance(*mean_field.scene.gravity) == 0.0);
   CHECK(fault_of_forces(mean_field.scene, mean_field.simulation.boundary(), mean_field.simulation.state()).empty());
 }

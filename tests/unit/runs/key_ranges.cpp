@@ -1,5 +1,5 @@
-// Every number of a scene, with values that are absurd, not finite or at the ends of its range: it is refused with its
-// place when the scene is read, or a run of two steps ends well or says what is not possible in it.
+// Every number of a scene, with values that are absurd, not finite or at the ends of its range: either it is refused
+// with its position when the scene is read, or a run of two steps ends normally or with a message.
 #include "unit/files/disk.hpp"
 
 #include <keeler/core/error.hpp>
@@ -28,7 +28,7 @@ namespace {
 // TOML by table and key.
 using Tables = std::map<std::string, std::map<std::string, std::string>>;
 
-// Where the example of a key is none for so small a scene.
+// Replacements for example values that do not suit so small a scene.
 const std::map<std::string, std::string> fitting = {
     {"moonlet.radius", "2.0"},
     {"moonlet.mass", "3e4"},
@@ -63,7 +63,7 @@ void put(Tables& tables, const Key& key, const std::string& value) {
   tables[key.section()][key.name()] = value;
 }
 
-// Whatever else the table of a key, and what the key belongs to, needs.
+// Returns the other keys that the table of a key requires.
 void put_around(Tables& tables, const Key& key) {
   const KeyCondition& needs = key.only_with;
   if (!needs.key.empty()) {
@@ -119,7 +119,7 @@ std::string text_of(const Tables& tables) {
   return text;
 }
 
-// A list with one of its numbers replaced, for each of them; a number by itself.
+// Returns a list once per element, with that number replaced; for a plain number the replacement.
 std::vector<std::string> with_each_replaced(const std::string& list, const std::string& number) {
   constexpr const char* digits = "-+.0123456789e";
   std::vector<std::string> all;
@@ -150,7 +150,7 @@ bool is_about_the_scene(const std::string& fault) {
   return fault.starts_with("s.toml:");
 }
 
-// What a user would be told, or nothing when all is well.
+// Returns the message for the user, empty if there is none.
 std::string outcome(const std::string& text, const std::filesystem::path& folder) {
   Scene scene;
   try {
@@ -187,7 +187,7 @@ TEST_CASE("every number has both ends of a range") {
 }
 
 TEST_CASE("an absurd number is refused with its place, or two steps go well") {
-  set_threads(1); // hundreds of runs of an instant
+  set_threads(1); // hundreds of very short runs
   const TemporaryFolder work;
   const std::string snapshot = (work / "start.hdf").string();
   const Key& size = *find_key("box.size");

@@ -30,7 +30,7 @@ TEST_CASE("a number of a snapshot is the mean over the snapshots") {
   const nlohmann::ordered_json json = json_of(record_of(m));
   CHECK(json["snapshots"] == 2);
   CHECK(json["particle_count"] == patch.size());
-  CHECK(json["collisional_viscosity_m2_s"].is_null()); // a snapshot does not show it
+  CHECK(json["collisional_viscosity_m2_s"].is_null()); // a single snapshot does not determine it
   CHECK(json["translational_viscosity_r2_omega"].is_number());
 }
 

@@ -1,4 +1,4 @@
-// What a run records of its moonlets.
+// The rows that a run records for its moonlets.
 #include "moonlet_columns.hpp"
 
 #include "scenes.hpp"
@@ -65,7 +65,7 @@ TEST_CASE("a moonlet's guiding centre is followed through all wraps, and its mom
   CHECK(row_of(scene, simulation, 0).at("collision_momentum_kg_m_s") != 0.0);
 }
 
-// Momentum along the orbit is kept by collisions: what one moonlet gains another body loses.
+// Collisions conserve momentum along the orbit: the gain of one moonlet is the loss of another body.
 TEST_CASE("the momentum that collisions give a moonlet is what they take from the body it met") {
   const Scene scene = parse_scene("planet.orbital_frequency = 2e-4\nbox.size = [200.0, 60.0]\ntime.end = 1.0\n"
                                   "particles = { count = 1, density = 900.0, sizes = { law = \"equal\", radius = 0.01 "
@@ -80,7 +80,7 @@ TEST_CASE("the momentum that collisions give a moonlet is what they take from th
   const double first = row_of(scene, simulation, 0).at("collision_momentum_kg_m_s"),
                second = row_of(scene, simulation, 1).at("collision_momentum_kg_m_s");
   CHECK(std::fabs(first) > 0.0);
-  CHECK(first == doctest::Approx(-second).epsilon(1e-6)); // but for what the grain may have given
+  CHECK(first == doctest::Approx(-second).epsilon(1e-6)); // except for collisions with the grain
 }
 
 TEST_CASE("an accelerated moonlet has that from the external forces") {

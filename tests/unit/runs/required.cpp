@@ -1,5 +1,5 @@
-// Only what a scene requires: an option that is off holds no memory, makes no object and does no work. What is held is
-// counted by the program's allocations, work by its own counters: a stopwatch that never ran stands at 0.
+// A disabled option uses no memory, makes no object and does no work. Memory is counted by the program's allocations,
+// work by its counters: a stopwatch that never ran reads 0.
 #include "counted_heap.hpp"
 #include "recorder.hpp"
 
@@ -43,8 +43,8 @@ Scene bare_scene(std::size_t count, const std::vector<std::string>& more = {}) {
 // After some steps.
 struct Held {
   std::size_t particles = 0;
-  double all = 0.0;   // bytes a particle by the simulation
-  double drift = 0.0; // of these what the drift tells of itself, the particles included
+  double all = 0.0;   // bytes per particle of the simulation
+  double drift = 0.0; // part of it reported by the drift, including the particles
   TimeSplit split;
   std::size_t forces = 0;
 };
@@ -70,7 +70,7 @@ struct TakesRecords final : DriftObserver {
 };
 
 constexpr std::size_t many = 20000;
-constexpr double slack = 2.0; // bytes a particle: what does not grow with their number, and rounding
+constexpr double tolerance = 2.0; // bytes per particle: parts that do not grow with their number, and rounding
 
 } // namespace
 
@@ -79,7 +79,7 @@ TEST_CASE("a scene that asks for nothing more holds what the drift tells, and no
   const Held bare = held_by(bare_scene(many));
   CAPTURE(bare.all);
   CAPTURE(bare.drift);
-  CHECK(std::fabs(bare.all - bare.drift) < slack);
+  CHECK(std::fabs(bare.all - bare.drift) < tolerance);
   CHECK(bare.forces == 0);
   CHECK(bare.split.forces.empty());
   CHECK(bare.split.kick == 0.0);
@@ -88,7 +88,7 @@ TEST_CASE("a scene that asks for nothing more holds what the drift tells, and no
 TEST_CASE("a force holds one acceleration a particle, which a scene without it does not") {
   set_threads(1);
   const Held pushed = held_by(bare_scene(many, {"constant_acceleration.radial=1e-9"}));
-  CHECK(pushed.all - pushed.drift == doctest::Approx(sizeof(Vec3)).epsilon(slack / sizeof(Vec3)));
+  CHECK(pushed.all - pushed.drift == doctest::Approx(sizeof(Vec3)).epsilon(tolerance / sizeof(Vec3)));
   CHECK(pushed.split.forces.size() == 1);
   CHECK(pushed.split.kick > 0.0);
   CHECK(pushed.split.force("gravity") == 0.0);
@@ -99,18 +99,18 @@ TEST_CASE("records of contacts are held for whom asks, and for nobody else") {
   TakesRecords observer;
   const Held recorded = held_by(bare_scene(many), &observer);
   CHECK(observer.count > many / 4);
-  CHECK(recorded.all - recorded.drift > 2.0 * slack);
+  CHECK(recorded.all - recorded.drift > 2.0 * tolerance);
   struct Idle final : DriftObserver {
     bool looks_on() const override { return false; }
     void recorded(std::span<const CollisionRecord>) override { FAIL("nobody asked"); }
   } idle;
   const Held unrecorded = held_by(bare_scene(many), &idle);
-  CHECK(std::fabs(unrecorded.all - unrecorded.drift) < slack);
+  CHECK(std::fabs(unrecorded.all - unrecorded.drift) < tolerance);
 }
 
 namespace {
 
-// What a recorder holds after some steps, as a run asks it: bytes that are free when it is gone.
+// Returns the bytes that are freed when a recorder is destroyed after some steps of a run.
 double held_by_recorder(const std::filesystem::path& folder, const Scene& scene) {
   RunFolder run(folder);
   run.make();

@@ -1,4 +1,4 @@
-// The scene of these tests: a patch that collides and clumps a little in a fraction of a second.
+// The scene of these tests: a patch with collisions and some clumping that runs in a fraction of a second.
 #pragma once
 
 #include <keeler/scene/load.hpp>

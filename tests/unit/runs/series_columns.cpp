@@ -62,7 +62,7 @@ TEST_CASE("a row is what the patch says, measured particle by particle") {
   CHECK(row["slow_contacts"] == static_cast<double>(state.collisions.slow));
   CHECK(row["collisional_flux_kg_m2_s"] == state.collisions.momentum_flux * omega);
   CHECK(row["translational_viscosity_m2_s"] == doctest::Approx(translational_viscosity(patch) * omega).epsilon(1e-12));
-  // the energy of the random motions is the Cartesian sum, and what it has become is what was booked
+  // the energy of the random motions is the Cartesian sum, and its change is the accounted work
   double now = 0.0;
   for (std::size_t k = 0; k < patch.size(); ++k) {
     const double height = patch.frequencies.nu * patch.positions[k].z();

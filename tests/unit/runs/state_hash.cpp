@@ -60,7 +60,7 @@ TEST_CASE("the hash sees the state and the physics, not memory order, schedules 
 }
 
 TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
-  // everything that the other test scene leaves at its default is another value here
+  // every key that the other test scene leaves at its default has another value here
   using enum KeyEffect;
   const std::map<std::string, std::pair<std::string, KeyEffect>> others = {
       {"title", {"other", output}},
@@ -130,7 +130,7 @@ TEST_CASE("the hash sees each key that has a say in the motion, and no other") {
   std::size_t seen = 0;
   for (const Key& key : scene_keys()) {
     const auto other = others.find(key.path);
-    if (other == others.end()) { // has no place in this scene beside the others
+    if (other == others.end()) { // cannot be combined with the other keys of this scene
       CHECK((needless.count(key.path) == 1 || key.section() == "particles.streamlines" ||
              key.section() == "particles.modes" || key.section() == "particles.step" ||
              key.section() == "particles.wake" || key.section() == "particles.aggregate" ||
@@ -226,7 +226,7 @@ TEST_CASE("the field table holds all that a run needs to go on to the bit") {
   steps(straight, 10);
   CHECK(state_hash(resumed.state(), scene) == state_hash(straight.state(), scene));
   CHECK(resumed.state().control.steps == straight.state().control.steps);
-  // the books too
+  // the energy budget too
   const std::vector<double> row = values_of(series_columns(), SeriesSample(scene, straight)),
                             again = values_of(series_columns(), SeriesSample(scene, resumed));
   for (std::size_t c = 0; c < row.size(); ++c) {

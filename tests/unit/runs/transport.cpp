@@ -28,7 +28,7 @@ SeriesTable series_of(const std::vector<std::string>& overrides) {
   return read_series(work / "run" / "series.csv");
 }
 
-// A series made up: rates of 3, 2 and 1 m²/s and a loss that balances them, after a transient of two orbits.
+// A synthetic series: rates of 3, 2 and 1 m²/s and a loss that balances them, after a transient of two orbits.
 SeriesTable made_up(std::size_t rows, double omega, double mass, double shear) {
   SeriesTable t;
   t.names = {"step",
@@ -105,7 +105,7 @@ TEST_CASE("a balance whose error is larger than it, or that is nothing over noth
                                                    series.names.begin())];
   };
   const std::vector<double> dispersions = column("dispersion_x_m_s");
-  std::fill(column("dispersion_x_m_s").begin(), column("dispersion_x_m_s").end(), 0.0); // of a particle alone
+  std::fill(column("dispersion_x_m_s").begin(), column("dispersion_x_m_s").end(), 0.0); // of a single particle
   CHECK(!balanced(series));
   column("dispersion_x_m_s") = dispersions;
   for (std::size_t k = 0; k < series.rows(); ++k) // a loss of either sign
@@ -130,7 +130,7 @@ TEST_CASE("waves that grow are told, and do not make a steady ring unsteady") {
     whole.push_back(random[k] / std::sqrt(1.0 - fractions[k]));
   }
   series.columns[2] = whole;
-  CHECK_FALSE(transport(series, scale, {}).steady); // as it was while nothing but c_x was looked at
+  CHECK_FALSE(transport(series, scale, {}).steady); // as with c_x of the whole motion
   series.names.insert(series.names.end(), {"epicyclic_wave_fraction", "dispersion_without_waves_x_m_s"});
   series.columns.push_back(fractions);
   series.columns.push_back(random);
@@ -161,7 +161,7 @@ TEST_CASE("gravity's energy and stress are in the rows that are due, and a scene
   const SeriesTable without = series_of({"time.end=0.4", "output.stress_every=0"});
   CHECK(without.find("potential_energy_j") == nullptr);
   const Transport t = transport(without, {1.0, 1.9565e-4, 1.5}, {.since = 0.0, .until = {}});
-  CHECK_FALSE(t.gravitational); // there was gravity, and nobody looked
+  CHECK_FALSE(t.gravitational); // there was gravity, but its stress was not measured
   CHECK_FALSE(t.balance);
 }
 

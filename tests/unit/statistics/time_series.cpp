@@ -61,8 +61,8 @@ TEST_CASE("what begins with a transient is steady after it, and noise is from it
     for (std::size_t k = 0; k < values.size(); ++k)
       values[k] += 30.0 * std::exp(-static_cast<double>(k) / 50.0);
     const std::size_t start = steady_start(values);
-    CHECK(start >= 100); // the transient has sunk below 4 standard deviations
-    CHECK(start < 700);  // by luck of the noise
+    CHECK(start >= 100); // the transient has decayed below 4 standard deviations
+    CHECK(start < 700);  // by chance
     CHECK_FALSE(is_steady(std::span(values).first(200)));
   }
   CHECK(early >= 17);

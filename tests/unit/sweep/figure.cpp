@@ -10,7 +10,7 @@ using namespace keeler::test;
 
 namespace {
 
-// The chosen y is 10 times the place of the point in the plan.
+// The chosen y is 10 times the position of the point in the plan.
 std::vector<PointRow> made_up_points(const Plan& plan) {
   std::vector<PointRow> points(plan.points.size());
   for (std::size_t p = 0; p < points.size(); ++p) {

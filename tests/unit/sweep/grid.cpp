@@ -56,11 +56,11 @@ y_log = true
   CHECK_FALSE(grid.plot.x_log);
 }
 
-TEST_CASE("each fault of a grid is one line with its place and what to do") {
+TEST_CASE("each fault of a grid is one line with its position and what to do") {
   const std::string scene = "scene = \"scene.toml\"\n";
   const std::string axis = "[[axis]]\nkey = \"particles.optical_depth\"\n";
   struct Case {
-    std::string text, place, words;
+    std::string text, position, words;
   };
   const Case cases[] = {
       {"scene = ", "grid.toml:1:", "not TOML"},
@@ -70,7 +70,7 @@ TEST_CASE("each fault of a grid is one line with its place and what to do") {
       {scene + "seed = [1]\n", "grid.toml:2:1: ", "unknown key seed"},
       {scene + "seeds = []\n", "grid.toml:2:9: ", "seeds is empty"},
       {scene + "seeds = 3\n", "grid.toml:2:9: ", "a list of whole numbers"},
-      {scene + "seeds = [1, 2, 1]\n", "grid.toml:2:16: ", "the seed 1 stands here twice"},
+      {scene + "seeds = [1, 2, 1]\n", "grid.toml:2:16: ", "the seed 1 is listed twice"},
       {scene + "seeds = [1.5]\n", "grid.toml:2:10: ", "particles.seed is a number with a fraction"},
       {scene + "since = \"10\"\n", "grid.toml:2:9: ", "since must be a number"},
       {scene + "since = 1.0\n", "grid.toml:2:9: ", "not before the end"},
@@ -84,14 +84,14 @@ TEST_CASE("each fault of a grid is one line with its place and what to do") {
       {scene + axis + "values = []\n", "grid.toml:4:10: ", "the axis of particles.optical_depth has no values"},
       {scene + axis, "grid.toml:2:1: ", "the axis of particles.optical_depth has no values"},
       {scene + axis + "value = [1]\n", "grid.toml:4:1: ", "unknown key value"},
-      {scene + axis + "values = [0.5, 0.50]\n", "grid.toml:4:16: ", "0.5 stands here twice"},
+      {scene + axis + "values = [0.5, 0.50]\n", "grid.toml:4:16: ", "0.5 is listed twice"},
       {scene + axis + "values = [0.5, -1]\n", "grid.toml:4:16: ", "particles.optical_depth is -1"},
       {scene + "[[axis]]\nkey = \"particles.optcal_depth\"\nvalues = [1]\n",
        "grid.toml:3:7: ", "did you mean \"optical_depth\"?"},
       {scene + "[[axis]]\nkeys = [\"time.end\", \"time.step\"]\nvalues = [[1.0]]\n",
        "grid.toml:4:11: ", "a list of 2 values"},
       {scene + axis + "values = [1]\n" + axis + "values = [2]\n", "grid.toml:6:7: ", "given twice"},
-      {scene + axis + "values = [1]\n[plot]\nx = \"time.end\"\n", "grid.toml:6:5: ", "is no key of an axis"},
+      {scene + axis + "values = [1]\n[plot]\nx = \"time.end\"\n", "grid.toml:6:5: ", "is not a key of an axis"},
       {scene + axis + "values = [1]\n[plot]\ny = \"viscosity\"\n", "grid.toml:6:5: ", "choose one of"},
       {scene + "[[axis]]\nkey = \"particles.sizes.radius\"\nvalues = [100]\n",
        "scene.toml:", "in the run radius-100_seed"},
@@ -100,7 +100,7 @@ TEST_CASE("each fault of a grid is one line with its place and what to do") {
     CAPTURE(c.text);
     const std::string fault = GridFile(c.text).fault();
     CAPTURE(fault);
-    CHECK(fault.starts_with(c.place));
+    CHECK(fault.starts_with(c.position));
     CHECK(fault.find(c.words) != fault.npos);
     CHECK(fault.find('\n') == fault.npos);
   }

@@ -32,7 +32,7 @@ end = 1.0
   std::filesystem::path path() const { return folder_ / "grid.toml"; }
   Grid grid() const { return read_grid(path()); }
 
-  /// What is wrong with it, without the folder; empty: nothing.
+  /// Returns the message of its first fault, without the folder; empty if there is none.
   std::string fault() const {
     try {
       const Grid read = grid();

@@ -30,7 +30,7 @@ key = "time.step"
 values = [1e-3, 2e-3]
 )";
 
-// A number for each run and quantity; some runs have failed, some quantities are not known.
+// Makes a number for each run and quantity; some runs have failed, some quantities are unknown.
 std::vector<RunRow> made_up_rows(const Plan& plan) {
   std::vector<RunRow> rows;
   for (std::size_t k = 0; k < plan.runs.size(); ++k) {
@@ -54,7 +54,8 @@ std::vector<RunRow> made_up_rows(const Plan& plan) {
   return rows;
 }
 
-// The same by plain sums over all pairs: Σ (a − b)² over pairs is n times the sum of squares about the mean.
+// The brute-force mean and error, by sums over all pairs: Σ (a − b)² over pairs is n times the sum of squares about the
+// mean.
 Estimate plain_mean(const std::vector<Estimate>& seeds) {
   const double n = static_cast<double>(seeds.size());
   if (seeds.size() == 1)
