@@ -105,7 +105,7 @@ void warn_of_no_equilibrium(const Scene& scene, const PatchScale& patch, Lines& 
   const double kept = scene.collisions.restitution({fast, radius, radius}), critical = critical_restitution(depth);
   if (kept >= critical) {
     lines.push_back(fmt::format(
-        "the coefficient of restitution is at least {} at all speeds: above {} at an optical depth of {} collisions "
+        "the coefficient of restitution is {} even in fast impacts: above {} at an optical depth of {} collisions "
         "lose "
         "less energy than the shear supplies, so that there is no equilibrium and the velocity dispersion grows "
         "without "

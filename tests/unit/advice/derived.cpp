@@ -14,7 +14,7 @@ namespace derived_test {
 using namespace keeler;
 using namespace keeler::test;
 
-TEST_CASE("the A-ring example has the numbers that the design gives for it") {
+TEST_CASE("the A-ring example has the numbers of the design") {
   const Scene scene = load_scene(KEELER_SOURCE_DIR "/examples/a-ring-wakes/scene.toml");
   const Derived d = derive(scene);
   CHECK(scene.notices.empty());
@@ -50,7 +50,7 @@ end = 1.0
   const double nodes = 0x1p27, radial = megabytes("[gravity]\nsolver = 'axisymmetric'\nshortest_wavelength = 1e-4\n");
   CHECK(radial - without > 1e-6 * 24 * nodes); // one number a node, half a complex one, a whole one on each thread
   CHECK(radial - without < 1e-6 * 64 * nodes * threads());
-  // at most 2²¹ nodes and 64 a particle, 8 bytes each
+  // at most 2²¹ nodes and 64 per particle, 8 bytes each
   const double fine = megabytes("[gravity]\nsolver = 'mesh'\nmesh_spacing = 0.1\n"),
                coarse = megabytes("[gravity]\nsolver = 'mesh'\n");
   CHECK(fine - coarse > 5.0);
@@ -64,7 +64,7 @@ TEST_CASE("the equilibrium example has about 1500 particles and no gravity") {
   CHECK(scene.time.end_step == 15000);
 }
 
-TEST_CASE("of a start file only the steps are known") {
+TEST_CASE("with a start file only the steps are known") {
   const Scene scene =
       parse_scene("planet.preset = \"saturn-b-ring\"\ntime.end = 1\nstart.from = \"wakes.hdf\"\n", "s.toml");
   CHECK(!derive(scene).particles_known);

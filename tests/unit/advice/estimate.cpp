@@ -17,7 +17,7 @@ using namespace keeler::test;
 
 namespace {
 
-// Steps of 1e-3 orbit, each with a kick by the tree.
+// Adds: steps of 1e-3 orbit, each with a kick by the tree.
 std::vector<std::string> custom(std::vector<std::string> overrides) {
   overrides.insert(overrides.begin(), "quality=custom");
   return overrides;
@@ -31,7 +31,7 @@ Scene a_ring(const std::vector<std::string>& overrides = {}) {
   return load_scene(KEELER_SOURCE_DIR "/examples/a-ring-wakes/scene.toml", custom(overrides));
 }
 
-// Within a factor.
+// Checks a value within a factor.
 void check_near(double value, double expected, double factor) {
   CAPTURE(value);
   CAPTURE(expected);
@@ -41,9 +41,9 @@ void check_near(double value, double expected, double factor) {
 
 } // namespace
 
-TEST_CASE("grains gather on a moonlet and in aggregates, and make most of the work there") {
+TEST_CASE("grains collect on a moonlet and in aggregates, and dominate the cost") {
   const Scene scene = load_scene(KEELER_SOURCE_DIR "/examples/moonlet/scene.toml");
-  // pairs at rest after 0.25, 0.5 and 1 orbit, 2.5 a grain
+  // pairs at rest after 0.25, 0.5 and 1 orbit, 2.5 per grain
   check_near(GrainPiles(scene).grains(0.25), 1775 / 2.5, 1.5);
   check_near(GrainPiles(scene).grains(0.5), 5379 / 2.5, 1.5);
   check_near(GrainPiles(scene).grains(1.0), 10757 / 2.5, 1.5);
@@ -54,7 +54,7 @@ TEST_CASE("grains gather on a moonlet and in aggregates, and make most of the wo
   check_near(GrainPiles(ring).grains(2.0), 481 / 2.5, 1.5);
 }
 
-TEST_CASE("a mesh costs more the thicker a layer is against the distances of its particles") {
+TEST_CASE("a mesh costs more for a layer that is thick compared with its particles' distances") {
   const auto gravity = [](const std::vector<std::string>& overrides) {
     const Scene scene = a_ring(overrides);
     return estimate_run(scene).gravity / static_cast<double>(scene.particles.count);
@@ -89,7 +89,7 @@ TEST_CASE("the estimate follows settings that make gravity expensive") {
   check_near(tree(0.01) / tree(0.7), 8.9, 2.0);
 }
 
-TEST_CASE("the estimate follows what is asked for") {
+TEST_CASE("the estimate follows the settings") {
   const RunEstimate one = estimate_run(with({}));
   const RunEstimate longer = estimate_run(with({"time.end=4"}));
   CHECK(longer.drift == doctest::Approx(2.0 * one.drift));
@@ -112,7 +112,7 @@ TEST_CASE("the estimate follows what is asked for") {
   check_near(estimate_run(a_ring(direct_larger)).gravity, 16.0 * estimate_run(a_ring(direct)).gravity, 1.01);
 }
 
-TEST_CASE("a slower machine takes longer in proportion, and the parts make the whole") {
+TEST_CASE("the estimate is proportional to the yardstick, and its parts sum up to the total") {
   const RunEstimate here = estimate_run(a_ring()), there = estimate_run(a_ring(), 2.0 * reference_pair_ns);
   double sum = 0.0;
   for (std::size_t k = 0; k < here.parts().size(); ++k) {
@@ -124,7 +124,7 @@ TEST_CASE("a slower machine takes longer in proportion, and the parts make the w
   CHECK(std::string(estimate_run(a_ring({"gravity.kick_every=20"})).dominating()) == "drift");
 }
 
-TEST_CASE("a moonlet neither makes its patch collide as one of its optical depth would, nor fills levels of cells") {
+TEST_CASE("a moonlet's area adds few contacts and no levels of cells") {
   // 10,000 grains of 1 m and as much area in one sphere of 100 m: grains meet 1.5 times τ = 0.5, not twice
   std::vector<double> radii(10000, 1.0);
   radii.push_back(100.0);
@@ -136,7 +136,7 @@ TEST_CASE("a moonlet neither makes its patch collide as one of its optical depth
   check_near(estimate_run(scene).drift, 2.0 * grains.drift, 1.5);
 }
 
-TEST_CASE("a start takes time with the number of particles, and more where it is dense") {
+TEST_CASE("the cost of a start grows with the number of particles and with the optical depth") {
   const auto start = [](const std::vector<std::string>& overrides) {
     return estimate_run(load_scene(KEELER_SOURCE_DIR "/examples/a-ring-wakes/scene.toml", overrides)).start;
   };

@@ -11,7 +11,7 @@ namespace edit_test {
 using namespace keeler;
 using keeler::test::schema;
 
-TEST_CASE("values change where they stand, new keys go below their header, comments stay") {
+TEST_CASE("values change in place, new keys go below their header, comments are kept") {
   const std::string text = "title = \"Δ ring\" # mine\n[gravity] # of the particles\nsolver = \"tree\" # slow\n"
                            "opening_angle = 0.6\n\n[time]\nend = 3.0\n";
   const std::string edited = edit_document(schema(), text, "s.toml",
@@ -39,7 +39,7 @@ TEST_CASE("tables on one line and dotted keys are edited too") {
   CHECK(edit_document(schema(), "[time]", "s", {{"time.end", "3", ""}}) == "[time]\nend = 3\n");
 }
 
-TEST_CASE("a comment takes the place of the former one") {
+TEST_CASE("a comment replaces an earlier one of its kind") {
   const std::string once = edit_document(schema(), "[time]\n  step = 1\n", "s", {{"time.step", "2", "tune: cheaper"}});
   CHECK(once == "[time]\n  # tune: cheaper\n  step = 2\n");
   CHECK(edit_document(schema(), once, "s", {{"time.step", "3", "tune: cheapest"}}) ==
@@ -47,7 +47,7 @@ TEST_CASE("a comment takes the place of the former one") {
   CHECK(edit_document(schema(), "step = 1", "s", {{"step", "3", "mine"}}) == "# mine\nstep = 3");
 }
 
-TEST_CASE("keys without a table stand at the top and go") {
+TEST_CASE("keys without a table are inserted at the top, and removed") {
   CHECK(edit_document(schema(), "# a scene\n[time]\nend = 1\n", "s", {{"title", "\"a\"", "named"}}) ==
         "# named\ntitle = \"a\"\n# a scene\n[time]\nend = 1\n");
   CHECK(edit_document(schema(), "quality = \"fast\"\ntitle = \"a\"\n", "s", {{"quality", std::nullopt, ""}}) ==
@@ -55,7 +55,7 @@ TEST_CASE("keys without a table stand at the top and go") {
   CHECK(edit_document(schema(), "title = \"a\"\n", "s", {{"quality", std::nullopt, ""}}) == "title = \"a\"\n");
 }
 
-TEST_CASE("what cannot be edited is refused, and what is no TOML") {
+TEST_CASE("texts that cannot be edited, or are not TOML, are refused") {
   CHECK_THROWS_WITH_AS(edit_document(schema(), "title = \"a\"\n", "s.toml", {{"time.step", "1", ""}}),
                        doctest::Contains("write time.step = 1"), UsageError);
   CHECK_THROWS_WITH_AS(edit_document(schema(), "title = \n", "s.toml", {}), doctest::Contains("s.toml:1"), UsageError);

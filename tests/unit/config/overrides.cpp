@@ -33,7 +33,7 @@ TEST_CASE("a text is taken verbatim, and is overridden") {
   CHECK(title->overridden);
 }
 
-TEST_CASE("what is no override is refused") {
+TEST_CASE("texts that are not overrides are refused") {
   TomlDocument document(schema());
   std::vector<std::string> notices;
   for (const char* const bad : {"title", "=1", ".a=1", "a b=1"})

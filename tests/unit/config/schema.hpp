@@ -1,4 +1,4 @@
-// A small schema that the tests share: no scene has it.
+// A small schema for the tests of this folder.
 #pragma once
 
 #include <keeler/config/schema.hpp>

@@ -23,7 +23,7 @@ std::string with_two(const std::string& part, const std::string& by) {
 
 } // namespace
 
-TEST_CASE("aggregates take the last particles of the scene, and leave all numbers of the whole as they are") {
+TEST_CASE("aggregates take the last particles of the scene and change no total") {
   const Scene scene = parse_scene(least + two, "s.toml"), without = parse_scene(least, "s.toml");
   const std::vector<AggregateSettings>& a = scene.particles.aggregates;
   REQUIRE(a.size() == 2);
@@ -49,7 +49,7 @@ TEST_CASE("aggregates take the last particles of the scene, and leave all number
   CHECK_NOTHROW(parse_stored_scene(scene.resolved, "r.toml"));
 }
 
-TEST_CASE("what is in aggregates does not crowd the layer") {
+TEST_CASE("particles in aggregates do not count for the filling of the layer") {
   const std::string dense = changed(least, "count = 300", "count = 3000"); // an optical depth of 1.9
   const auto crowd = [&](int count) {
     return changed(changed(dense, "count = 3000", "optical_depth = 5.0"), "radius = 1.0", "radius = 0.5") +
@@ -59,7 +59,7 @@ TEST_CASE("what is in aggregates does not crowd the layer") {
   CHECK(fault(crowd(20000)).empty());
 }
 
-TEST_CASE("what is wrong with an aggregate is told with its number and line") {
+TEST_CASE("faults of an aggregate are reported with its number and line") {
   CHECK(with_two("count = 64", "count = 201") ==
         "s.toml:15:9: particles.aggregate[2].count = 100 is too large (the scene has 300 particles, of which "
         "201 are in earlier aggregates); lower it or give the scene more particles");

@@ -13,7 +13,7 @@ using namespace keeler::test;
 
 namespace {
 
-// Steps of 1e-3 orbit, each with a kick by the tree.
+// Adds: steps of 1e-3 orbit, each with a kick by the tree.
 std::vector<std::string> custom(std::vector<std::string> overrides) {
   overrides.insert(overrides.begin(), "quality=custom");
   return overrides;
@@ -23,7 +23,7 @@ Scene a_ring(const std::vector<std::string>& overrides = {}) {
   return load_scene(KEELER_SOURCE_DIR "/examples/a-ring-wakes/scene.toml", custom(overrides));
 }
 
-// Within a factor.
+// Checks a value within a factor.
 void check_near(double value, double expected, double factor) {
   CAPTURE(value);
   CAPTURE(expected);
@@ -33,8 +33,8 @@ void check_near(double value, double expected, double factor) {
 
 } // namespace
 
-TEST_CASE("contact rates are those of equilibria without self-gravity") {
-  // collisions of a particle in an orbit, restitution 0.5, by REBOUND 6c44115f; all contacts, slow ones are few
+TEST_CASE("contact rates agree with equilibria without self-gravity") {
+  // collisions per particle and orbit, restitution 0.5, by REBOUND 6c44115f; all contacts, few of them slow
   const double reference[][2] = {{0.1, 1.92}, {0.5, 9.97}, {1.0, 21.6}};
   for (const auto& [depth, rate] : reference)
     check_near(contact_rates(depth, 0.5, layer_crowding(depth)).all(), rate, 1.1);
@@ -59,15 +59,15 @@ TEST_CASE("contact rates follow the vertical frequency") {
   check_near(scene_contacts(waves).smooth.all(), 1100.0, 1.5);
 }
 
-TEST_CASE("contact rates in wakes are those of the study of solvers") {
-  // docs/theory/gravity.md: 218 to 247 collisions a particle and orbit, over orbits 1 to 4
+TEST_CASE("contact rates in wakes agree with the study of solvers") {
+  // docs/theory/gravity.md: 218 to 247 collisions per particle and orbit, over orbits 1 to 4
   check_near(scene_contacts(a_ring()).wakes.fast, 230.0, 1.25);
-  // far below the Roche density gravity only gathers particles a little
+  // far below the Roche density self-gravity adds few contacts
   const SceneContacts light = scene_contacts(a_ring({"particles.density=20"}));
   check_near(light.wakes.fast, light.smooth.fast, 1.2);
 }
 
-TEST_CASE("contact rates in layers that self-gravity presses together are those counted") {
+TEST_CASE("contact rates in layers compressed by self-gravity agree with counted rates") {
   // docs/dev/estimate.md: fast and slow together, counted in runs of 500 particles
   struct Case {
     const char* density;
@@ -93,7 +93,7 @@ TEST_CASE("wakes need a box of half their critical wavelength") {
   CHECK(wide.wakes.fast > 2.0 * wide.smooth.fast);
 }
 
-TEST_CASE("particles that keep less of their speed collide more often, and slowly") {
+TEST_CASE("a lower restitution gives more contacts, above all slow ones") {
   for (const double depth : {0.1, 1.0, 3.0}) {
     ContactRates elastic = contact_rates(depth, 0.9, layer_crowding(depth));
     CHECK(elastic.slow < 0.01 * elastic.fast);

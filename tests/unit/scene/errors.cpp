@@ -19,7 +19,7 @@ std::string with(const std::string& part, const std::string& by) {
 
 } // namespace
 
-TEST_CASE("unknown names are told with a suggestion") {
+TEST_CASE("unknown names are reported with a suggestion") {
   CHECK(with("density", "densty") ==
         "s.toml:7:1: unknown key particles.densty (no scene has it); did you mean \"density\"?");
   CHECK(with("density", "dnesity") ==
@@ -36,7 +36,7 @@ TEST_CASE("unknown names are told with a suggestion") {
         "s.toml:1:1: unknown key \"box.size\" (no scene has it); did you mean \"box.size\"?");
 }
 
-TEST_CASE("wrong types are told with what is needed") {
+TEST_CASE("wrong types are reported with the type that is needed") {
   CHECK(with("900", "\"900\"") ==
         "s.toml:7:11: particles.density is a string, but must be a number from 0.01 to 30000 (density of the "
         "particles' material, in kg/m^3); write for example density = 600.0");
@@ -54,7 +54,7 @@ TEST_CASE("wrong types are told with what is needed") {
   CHECK(with("300", "{ a = 1 }").rfind("s.toml:6:9: particles.count is a table, but must be", 0) == 0);
 }
 
-TEST_CASE("a whole number may be written with an exponent, and too large a one is called that") {
+TEST_CASE("whole numbers may have an exponent; too large ones are reported as such") {
   for (const char* const three_hundred : {"3e2", "300.0", "3.0e+2", "300"})
     CHECK(parse_scene(changed(least, "300", three_hundred), "s.toml").particles.count == 300);
   CHECK(parse_scene(least, "s.toml", {"particles.count=3e2"}).resolved == parse_scene(least, "s.toml").resolved);
@@ -75,7 +75,7 @@ TEST_CASE("a whole number may be written with an exponent, and too large a one i
   CHECK(parse_scene(least, "s.toml", {"particles.seed=9223372036854775807"}).particles.seed == 9223372036854775807U);
 }
 
-TEST_CASE("depth and number of things in a scene are bounded") {
+TEST_CASE("nesting depth and number of entries of a scene are bounded") {
   const auto repeated = [](const std::string& part, std::size_t count) {
     std::string text;
     for (std::size_t k = 0; k < count; ++k)
@@ -99,7 +99,7 @@ TEST_CASE("depth and number of things in a scene are bounded") {
   CHECK(fault(least, {"moonlet=[" + repeated("{radius=1.0,density=900.0},", 20000) + "]"}).size() < 1000);
 }
 
-TEST_CASE("values out of range are told with the range") {
+TEST_CASE("values out of range are reported with the range") {
   CHECK(with("radius = 1.0", "radius = -1.0") ==
         "s.toml:8:35: particles.sizes.radius is -1.0, but must be a number from 1e-6 to 1000000 (radius of every "
         "particle, in m); write for example radius = 1.0");
@@ -131,7 +131,7 @@ TEST_CASE("values out of range are told with the range") {
   CHECK(fault(least + "[start]\nfrom = \"\"\n").find("must be the path of a file") != std::string::npos);
 }
 
-TEST_CASE("what is missing is told with an example") {
+TEST_CASE("missing keys are reported with an example") {
   CHECK(with("[time]\nend = 2\n", "") ==
         "s.toml:1:1: [time] is missing (it sets the length of the run); add a table [time]");
   CHECK(with("end = 2\n", "") ==
@@ -153,7 +153,7 @@ TEST_CASE("what is missing is told with an example") {
         std::string::npos);
 }
 
-TEST_CASE("contradictions are told") {
+TEST_CASE("contradictions are reported") {
   CHECK(with("count = 300", "count = 300\noptical_depth = 0.5") ==
         "s.toml:7:1: particles.optical_depth cannot be combined with particles.count (each determines the other); keep "
         "one of "
@@ -169,7 +169,7 @@ TEST_CASE("contradictions are told") {
                                                             "of the two");
 }
 
-TEST_CASE("impossible requests are told") {
+TEST_CASE("impossible requests are reported") {
   CHECK(
       with("[100, 50.0]", "[100, 1.5]") ==
       "s.toml:4:8: the box of 100 m x 1.5 m is smaller than a particle (the largest is 2 m across); enlarge the box or "
@@ -205,7 +205,7 @@ TEST_CASE("impossible requests are told") {
   CHECK(with("end = 2", "end = 1e12\nstep = 1e-9").find("time.end = 1000000000000 is too long") != std::string::npos);
 }
 
-TEST_CASE("modes that fit no box, or would make streamlines cross, are told") {
+TEST_CASE("modes that do not fit the box, or would make streamlines cross, are refused") {
   const auto modes = [](const std::string& keys) { return fault(least + "[particles.modes]\n" + keys + "\n"); };
   CHECK(modes("outward = [[1, 0.1, 0]]").empty());
   CHECK(modes("outward = [[1, 0.1, 0], [0, 0.1, 0]]") ==
@@ -250,7 +250,7 @@ TEST_CASE("waves at the start are longer than particles are across") {
               .find("particles.modes." + direction + " has waves of 1.961 m") != std::string::npos);
 }
 
-TEST_CASE("what follows from other keys has its range as well") {
+TEST_CASE("values that follow from other keys are checked for their range") {
   CHECK(
       with("size = [100, 50.0]\n[particles]\ncount = 300",
            "size_in_wavelengths = [9000, 9000]\n[particles]\nsurface_density = 1e5") ==
@@ -261,7 +261,7 @@ TEST_CASE("what follows from other keys has its range as well") {
             .find("particles.count makes particles.surface_density 3.22e9") != std::string::npos);
 }
 
-TEST_CASE("a text that is not TOML, and a file that is not there") {
+TEST_CASE("texts that are not TOML and absent files are refused") {
   CHECK(with("size = [100, 50.0]", "size = [100, 50.0").rfind("s.toml:5:", 0) == 0);
   CHECK(with("size = [100, 50.0]", "size = [100, 50.0").find("not TOML (") != std::string::npos);
   CHECK(with("density = 900", "density 900").rfind("s.toml:7:9: not TOML (", 0) == 0);
@@ -272,7 +272,7 @@ TEST_CASE("a text that is not TOML, and a file that is not there") {
   CHECK_THROWS_AS(load_scene("."), UsageError);
 }
 
-TEST_CASE("the first fault of the file is the one that is told") {
+TEST_CASE("the first fault of the file is reported") {
   CHECK(fault("[time]\nend = \"x\"\n[box]\nsiz = 1\n").rfind("s.toml:2:7: time.end", 0) == 0);
   CHECK(fault("[box]\nsiz = 1\n[time]\nend = \"x\"\n").rfind("s.toml:2:1: unknown key box.siz", 0) == 0);
 }
@@ -306,7 +306,7 @@ TEST_CASE("every key refuses every wrong type, with one line that names the key"
     }
 }
 
-TEST_CASE("whatever is cut from a scene, it is refused or read, never anything else") {
+TEST_CASE("damaged scenes are refused or read, with no other outcome") {
   // every prefix of a text, and every text with one character changed: parse_scene may throw nothing but UsageError
   for (std::size_t k = 0; k < least.size(); ++k) {
     CHECK(fault(least.substr(0, k)).find('\n') == std::string::npos);

@@ -34,14 +34,14 @@ TEST_CASE("the key table is consistent") {
   }
 }
 
-TEST_CASE("the manual's table of keys is the program's") {
+TEST_CASE("the manual's table of keys equals the program's") {
   std::ifstream file(KEELER_SOURCE_DIR "/docs/manual/scene.md");
   std::ostringstream text;
   text << file.rdbuf();
   CHECK(text.str().find("\n\n" + describe_keys(true) + "\n") != std::string::npos);
 }
 
-TEST_CASE("the text table has a line a key") {
+TEST_CASE("the text table has one line per key") {
   const std::string table = describe_keys(false);
   for (const Key& key : scene_keys())
     CHECK(table.find("\n" + key.path + " ") != std::string::npos);

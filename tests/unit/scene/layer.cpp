@@ -11,8 +11,8 @@ namespace layer_test {
 
 using namespace keeler;
 
-TEST_CASE("the mid-plane filling is that of sampled particles") {
-  // the slow twin: particles of a power law in a Gaussian layer, the volume of the slices of each at z = 0
+TEST_CASE("the mid-plane filling agrees with sampled particles") {
+  // brute force: particles of a power law in a Gaussian layer, the volume of the slices of each at z = 0
   const SizeLaw sizes = power_sizes(3.0, 0.5, 3.0);
   const LayerSizes layer = layer_sizes(sizes, 20000);
   const double depth = 0.4, dispersion = 20.0, nu = 1.3; // thick compared with a particle, as the formula has it
@@ -32,8 +32,8 @@ TEST_CASE("the mid-plane filling is that of sampled particles") {
   CHECK(midplane_filling(depth, layer, dispersion, nu) == doctest::Approx(depth * sliced / area_sum).epsilon(0.01));
 }
 
-TEST_CASE("a single body counts by the mass of the others, however many times a list is drawn") {
-  // the slow twin: R = Σ m (1 − m/M) / Σ area, over the particles themselves
+TEST_CASE("a single body is weighted with the mass of the others, for any number of repetitions of a list") {
+  // brute force: R = Σ m (1 − m/M) / Σ area, over the particles themselves
   const auto drawn = [](const SizeLaw& sizes, std::size_t count) {
     double cubes = 0.0, sixths = 0.0, squares = 0.0;
     for (const double r : draw_radii(sizes, count, 1)) {
@@ -53,7 +53,7 @@ TEST_CASE("a single body counts by the mass of the others, however many times a 
   CHECK(layer_sizes(moonlet, 50000).effective_radius > 9.0); // a hundred moonlets are a crowd
 }
 
-TEST_CASE("the layer's height is that of the reference equilibria, and the filling can be inverted") {
+TEST_CASE("the layer's height agrees with reference equilibria, and the filling can be inverted") {
   // REBOUND 6c44115f, equal spheres of 1 m without self-gravity: c_z and H; 5 %
   const LayerSizes equal{1.0, 1.0};
   const double reference[][3] = {{0.1, 1.80, 1.86}, {0.5, 1.45, 1.73}, {1.0, 1.17, 1.74}};

@@ -1,4 +1,4 @@
-// Lists of tables in a scene, by the one that there is: [[moonlet]].
+// Lists of tables in a scene: [[moonlet]].
 #include "scenes.hpp"
 
 #include <keeler/core/units.hpp>
@@ -22,7 +22,7 @@ std::string with_two(const std::string& part, const std::string& by) {
 
 } // namespace
 
-TEST_CASE("moonlets reach their place, in the order of the scene") {
+TEST_CASE("moonlets are read in the order of the scene") {
   const Scene scene = parse_scene(least + two, "s.toml");
   REQUIRE(scene.moonlets.size() == 2);
   CHECK(scene.moonlets[0].radius == 5.0);
@@ -38,7 +38,7 @@ TEST_CASE("moonlets reach their place, in the order of the scene") {
   CHECK(scene.optical_depth() == parse_scene(least, "s.toml").optical_depth());
 }
 
-TEST_CASE("the resolved scene has each moonlet, and reads back to the same") {
+TEST_CASE("the resolved scene has each moonlet and reads back to an equal scene") {
   const Scene scene = parse_scene(least + two, "s.toml");
   CHECK(scene.resolved.find("\n[[moonlet]]\nradius = 5.0\ndensity = 450.0\nplace = [0.0, 0.0, 0.0]\n") !=
         std::string::npos);
@@ -57,7 +57,7 @@ TEST_CASE("overrides replace all moonlets") {
   CHECK(parse_scene(least, "s.toml", one).moonlets.size() == 1);
 }
 
-TEST_CASE("what is wrong with a moonlet is told with its number and line") {
+TEST_CASE("faults of a moonlet are reported with its number and line") {
   CHECK(with_two("radius = 2", "radius = -2") ==
         "s.toml:16:10: moonlet[2].radius is -2, but must be a number from 1e-6 to 1000000 (radius of a body among the "
         "particles, one per table [[moonlet]], in m); write for example radius = 30.0");

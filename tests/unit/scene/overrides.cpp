@@ -26,7 +26,7 @@ TEST_CASE("overrides take TOML values and bare words") {
   CHECK(parse_scene(least, "s.toml", {"particles.count=42", "particles.count=43"}).particles.count == 43);
 }
 
-TEST_CASE("no scene takes more overrides than it can have keys") {
+TEST_CASE("the number of overrides is bounded") {
   std::vector<std::string> overrides(1000, "particles.count=42");
   CHECK(parse_scene(least, "s.toml", overrides).particles.count == 42);
   overrides.emplace_back("particles.count=43");
@@ -59,7 +59,7 @@ TEST_CASE("an override replaces what the file says against it, with a notice") {
   CHECK(start.notices.size() == 2);
 }
 
-TEST_CASE("--from is called by its own name") {
+TEST_CASE("messages on --from name it") {
   const Scene start = parse_scene(least, "s.toml", {}, "wakes.hdf");
   CHECK(*start.start_from == (std::filesystem::current_path() / "wakes.hdf").string());
   CHECK(start.notices == std::vector<std::string>{"box of the scene is ignored: --from wakes.hdf replaces it",
@@ -72,7 +72,7 @@ TEST_CASE("--from is called by its own name") {
   }
 }
 
-TEST_CASE("a faulty override is told by its own text") {
+TEST_CASE("a faulty override is reported by its text") {
   CHECK(fault(least, {"particles.cuont=5"}) ==
         "--set particles.cuont=5: unknown key particles.cuont (no scene has it); did you mean \"count\"?");
   CHECK(fault(least, {"particles.count=many"}) ==

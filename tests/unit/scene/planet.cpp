@@ -22,7 +22,7 @@ Scene preset_scene(const std::string& preset) {
 
 } // namespace
 
-TEST_CASE("the presets stand at their places") {
+TEST_CASE("the presets' frequencies give their distances") {
   // Distances for which the frequencies were computed. 3e-4: five digits of the frequencies, and J4, which the formula
   // leaves out and which is largest for the C ring.
   const std::vector<std::pair<std::string, double>> places = {
@@ -42,7 +42,7 @@ TEST_CASE("the presets stand at their places") {
 // κ² + ν² = 2Ω² is broken only by rounding where J2 alone is taken; the distance follows from the mass,
 // a³ = 2GM/(Ω² + κ²) (for J2 alone). Masses: of Haumea Ragozzine & Brown 2009, of Quaoar Morgado et al. 2023.
 // Chariklo's must be in the range of Leiva et al. 2017, to 5 %.
-TEST_CASE("the presets of small bodies stand at their places") {
+TEST_CASE("the presets of small bodies give the masses of the bodies") {
   const auto mass_at = [](const std::string& preset, double distance) {
     const PlanetSettings planet = preset_scene(preset).planet;
     const Frequencies& f = planet.frequencies;
@@ -57,7 +57,7 @@ TEST_CASE("the presets of small bodies stand at their places") {
   CHECK(chariklo < 8e18);
 }
 
-TEST_CASE("Toomre's Q and wavelength belong together") {
+TEST_CASE("Toomre's Q and wavelength are consistent") {
   // c_x = Q × 3.36 G Σ / κ and λ = 4π²GΣ/κ²: at Q = 1 the ratio c_x / (κ λ) is 3.36 / 4π²
   const PlanetSettings planet = preset_scene("saturn-a-ring").planet;
   const double kappa = planet.orbital_frequency * planet.frequencies.kappa;

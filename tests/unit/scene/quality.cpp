@@ -12,7 +12,7 @@ using namespace keeler;
 
 namespace {
 
-// A patch of the A ring; without a step and what else a quality decides.
+// Returns a patch of the A ring without the keys that a quality sets.
 Scene a_ring(const std::vector<std::string>& overrides) {
   return parse_scene(R"(
 planet.preset = "saturn-a-ring"
@@ -36,7 +36,7 @@ time.end = 1
 
 } // namespace
 
-TEST_CASE("each quality gives a scene its numbers") {
+TEST_CASE("each quality sets the values of its table") {
   for (const Quality& quality : qualities) {
     CAPTURE(quality.name);
     const Scene scene = a_ring({std::string("quality=") + quality.name});
@@ -54,7 +54,7 @@ TEST_CASE("a scene that names no quality is balanced") {
   CHECK(a_ring({}).gravity->solver == GravitySettings::Solver::automatic);
 }
 
-TEST_CASE("custom gives the keys their own defaults") {
+TEST_CASE("custom leaves the keys at their defaults") {
   const Scene custom = a_ring({"quality=custom"});
   CHECK(custom.time.step == 1e-3);
   CHECK(custom.gravity->kick_every == 1);
@@ -63,8 +63,7 @@ TEST_CASE("custom gives the keys their own defaults") {
   CHECK(a_ring({"quality=custom", "gravity.solver=fft"}).gravity->force_error == 2e-3);
 }
 
-// A scene that names all that a quality gives has the same bits under any.
-TEST_CASE("a scene that names its choices is the same by any quality") {
+TEST_CASE("a scene that gives all keys of a quality does not depend on the quality") {
   const std::vector<std::string> named = {"time.step=1e-3", "gravity={solver=\"tree\",opening_angle=0.6,kick_every=1}"};
   const Scene before = a_ring({"quality=custom", named[0], named[1]});
   for (const char* const quality : {"fast", "balanced", "strict"})
@@ -72,7 +71,7 @@ TEST_CASE("a scene that names its choices is the same by any quality") {
   CHECK(a_ring(named).motion == before.motion);
 }
 
-TEST_CASE("what a scene says itself stands") {
+TEST_CASE("keys that a scene gives override its quality") {
   const Scene step = a_ring({"quality=balanced", "time.step=5e-4"});
   CHECK(step.time.step == 5e-4);
   CHECK(step.gravity->kick_every == 10);
@@ -92,14 +91,14 @@ TEST_CASE("what a scene says itself stands") {
   CHECK(a_ring({"quality=strict", "gravity.solver=fft", "gravity.force_error=5e-3"}).gravity->force_error == 5e-3);
 }
 
-TEST_CASE("particles that attract each other more are kicked more often") {
+TEST_CASE("a larger Hill parameter shortens the kick interval") {
   const Scene dense = a_ring({"quality=balanced", "particles.density=900"}); // r_h 1.17
   CHECK(dense.time.step * dense.gravity->kick_every == doctest::Approx(2e-3));
   const Scene light = a_ring({"quality=balanced", "particles.density=200"});
   CHECK(light.time.step * light.gravity->kick_every == doctest::Approx(5e-3));
 }
 
-TEST_CASE("without self-gravity all qualities are one, a step that is cheap") {
+TEST_CASE("without self-gravity all qualities give one cheap step") {
   const Scene fast = without_gravity({"quality=fast"}), strict = without_gravity({"quality=strict"});
   CHECK(fast.time.step == strict.time.step);
   CHECK(fast.time.step == 5e-3);
@@ -107,7 +106,7 @@ TEST_CASE("without self-gravity all qualities are one, a step that is cheap") {
   CHECK(forced.time.step == doctest::Approx(2e-3));
 }
 
-TEST_CASE("the resolved scene holds the numbers and reads back to the same scene") {
+TEST_CASE("the resolved scene holds the values and reads back to an equal scene") {
   for (const char* const quality : {"fast", "balanced", "strict"}) {
     const Scene scene = a_ring({std::string("quality=") + quality});
     const Scene again = parse_scene(scene.resolved, "r.toml"), stored = parse_stored_scene(scene.resolved, "r.toml");
@@ -117,7 +116,7 @@ TEST_CASE("the resolved scene holds the numbers and reads back to the same scene
   }
 }
 
-TEST_CASE("a quality that is none is refused where it stands") {
+TEST_CASE("an unknown quality is refused at its location") {
   CHECK_THROWS_WITH_AS(a_ring({"quality=best"}), doctest::Contains("quality"), UsageError);
   CHECK_THROWS_AS(a_ring({"quality=3"}), UsageError);
   CHECK_THROWS_AS(a_ring({"quality=fast", "gravity.solver=3"}), UsageError);

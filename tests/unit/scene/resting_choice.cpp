@@ -36,7 +36,7 @@ std::string moonlet(double radius, double density) {
 
 } // namespace
 
-TEST_CASE("the excess of bouncing is that of docs/hard-spheres.md within a factor of 2.2") {
+TEST_CASE("the excess of bouncing agrees with docs/hard-spheres.md within a factor of 2.2") {
   struct Row {
     double optical_depth, r_h, interval, excess; // the excess: lost over the work of the shear − 1
   };
@@ -73,10 +73,10 @@ TEST_CASE("grains stay on a moonlet below the r_h at which they stay on each oth
   CHECK_FALSE(carries(0.3, 0.75, 1e-3, moonlet(1.5, 900.0))); // a particle like others
 }
 
-TEST_CASE("what is chosen stands in the resolved scene, and a run that goes on keeps it") {
+TEST_CASE("the resolved scene holds the choice, and a continued run keeps it") {
   const Scene scene = parse_scene(ring(3.0, 0.93, 5e-3), "s.toml");
   CHECK(scene.resolved.find("\nresting_contacts = \"carried\"\n") != std::string::npos);
-  // another kick interval does not change what a run began with
+  // another kick interval does not change the choice of a run
   const std::string later = changed(scene.resolved, "step = 0.005", "step = 0.0001");
   CHECK(parse_stored_scene(later, "stored").gravity->carries());
   const std::string named =
@@ -90,7 +90,7 @@ TEST_CASE("a scene of a program without contacts at rest goes on without them") 
   CHECK_FALSE(parse_stored_scene(old, "stored").gravity->carries());
 }
 
-TEST_CASE("a start from a file decides by what it holds, as a fresh start of the same does") {
+TEST_CASE("a start from a file gives the choice of a fresh start with equal particles") {
   for (const double r_h : {0.65, 0.93, 1.1}) {
     const Scene fresh = parse_scene(ring(3.0, r_h, 5e-3), "s.toml");
     const Scene open = parse_scene(ring(3.0, r_h, 5e-3), "s.toml", {}, "/no/such.hdf");

@@ -48,7 +48,7 @@ TEST_CASE("the least scene has the documented defaults") {
   CHECK(scene.surface_density() == doctest::Approx(300 * 900 * (4.0 / 3) * pi / 5000).epsilon(1e-14));
 }
 
-TEST_CASE("every key reaches its place") {
+TEST_CASE("every key reaches its member of the scene") {
   const Scene scene = parse_scene(R"(
 title = "all \"keys\""
 [planet]
@@ -92,7 +92,7 @@ checkpoint_every = 0.25
   CHECK(scene.particles.sizes.largest == 5.0);
   CHECK(scene.particles.sizes.mean_power(3) == power.mean_power(3));
   CHECK(scene.particles.sizes.radius(0.3, 0) == power.radius(0.3, 0));
-  // N is whole: the surface density that results is within half a particle of what was asked
+  // N is an integer: the surface density is within half a particle of the requested one
   CHECK(std::fabs(scene.surface_density() / 100 - 1) <= 0.5 / static_cast<double>(scene.particles.count));
   CHECK(scene.particles.velocity_dispersion == 12.5);
   CHECK(scene.particles.seed == 42);
@@ -113,7 +113,7 @@ checkpoint_every = 0.25
   CHECK(scene.output.checkpoint_every == 25);
 }
 
-TEST_CASE("modes reach their place") {
+TEST_CASE("modes reach the scene") {
   const Scene scene = parse_scene(
       least + "[particles.modes]\noutward = [[2, 0.1, 30.0]]\nstanding = [[1, 0.25, -90], [3, 0.05, 0]]\n", "s.toml");
   const std::vector<ModeSettings>& modes = scene.particles.modes;
@@ -189,7 +189,7 @@ TEST_CASE("a preset brings its three frequencies") {
   CHECK(scene.planet.frequencies.nu == 1.00539);
 }
 
-TEST_CASE("a start file takes the place of box and particles") {
+TEST_CASE("a start file replaces box and particles") {
   const std::string text = "planet.preset = \"saturn-b-ring\"\ntime.end = 1\nstart.from = \"../wakes.hdf\"\n";
   const Scene scene = parse_scene(text, "/some/where/s.toml");
   REQUIRE(scene.start_from);
@@ -233,7 +233,7 @@ TEST_CASE("radii come from a table in the scene") {
   CHECK_THROWS_WITH_AS(with("[]"), doctest::Contains("particles.sizes"), UsageError);
 }
 
-TEST_CASE("radii come from a file beside the scene") {
+TEST_CASE("radii are read from a file next to the scene") {
   const auto folder = std::filesystem::temp_directory_path() / "keeler_test_scene_radii";
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "radii.txt") << "# metres\n1.0\n  2.5 # the largest\r\n\n0.5\n";
@@ -282,13 +282,13 @@ TEST_CASE("times are rounded to whole kicks, and a change is reported") {
           "output.snapshot_every = 0.1 is rounded to 0.104 orbits (whole kicks, one every 8 steps of 0.001 orbits)",
           "output.checkpoint_every = 1e-09 is rounded to 0.008 orbits (whole kicks, one every 8 steps of 0.001 orbits)",
       });
-  // rounding of the decimal fractions themselves is no change: 0.7 / 1e-3 is not 700 in binary
+  // rounding errors of decimal fractions are not reported: 0.7 / 1e-3 is not 700 in binary
   CHECK(parse_scene(changed(least, "end = 2", "end = 0.7"), "s.toml", {"quality=custom"}).notices.empty());
   CHECK(parse_scene(changed(least, "end = 2", "end = 0.0042"), "s.toml", {"quality=custom"}).notices ==
         std::vector<std::string>{"time.end = 0.0042 is rounded to 0.004 orbits (whole steps of 0.001 orbits)"});
 }
 
-TEST_CASE("a default schedule is rounded too, but nobody is told what nobody wrote") {
+TEST_CASE("a default schedule is rounded without a notice") {
   const Scene scene = parse_scene(least + "step = 3e-3\n", "s.toml"); // 0.02 is 6.7 steps, and 2 is 666.7
   CHECK(scene.output.series_every == 7);
   CHECK(scene.notices ==
@@ -296,7 +296,7 @@ TEST_CASE("a default schedule is rounded too, but nobody is told what nobody wro
   CHECK(parse_scene(least + "[output]\nseries_every = 0\n", "s.toml").output.series_every == 0);
 }
 
-TEST_CASE("the resolved scene has every key in force and reads back to the same scene") {
+TEST_CASE("the resolved scene has every key in force and reads back to an equal scene") {
   const std::string text = R"(
 title = "line\nbreak"
 planet.preset = "saturn-c-ring"

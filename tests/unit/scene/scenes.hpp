@@ -10,7 +10,7 @@
 
 namespace keeler::test {
 
-/// The least that a scene needs; the line numbers are part of the expected messages.
+/// A scene with only the needed keys; the line numbers are part of the expected messages.
 inline const std::string least = "[planet]\n"                                  // 1
                                  "orbital_frequency = 2e-4\n"                  // 2
                                  "[box]\n"                                     // 3
@@ -22,12 +22,12 @@ inline const std::string least = "[planet]\n"                                  /
                                  "[time]\n"                                    // 9
                                  "end = 2\n";                                  // 10
 
-/// The text with the first occurrence of a part changed; the part must be there.
+/// Returns the text with the first occurrence of a part changed. Precondition: the part is there.
 inline std::string changed(std::string text, const std::string& part, const std::string& by) {
   return text.replace(text.find(part), part.size(), by); // throws out_of_range when absent
 }
 
-/// What the user is told, or "" when the scene is accepted.
+/// Returns the message for the user, or "" if the scene is accepted.
 inline std::string fault(const std::string& text, const std::vector<std::string>& overrides = {}) {
   try {
     parse_scene(text, "s.toml", overrides);
