@@ -1,6 +1,6 @@
 // Whether contacts at rest carry the kicks or bounce, where a scene leaves that open (gravity.resting_contacts =
 // "auto"). The choice follows from what is in the patch and from the kick interval: it is the same of a fresh start, of
-// a snapshot and of a table. docs/dev/resting.md has the measurements behind it.
+// a snapshot and of a table. docs/dev/contact-solver.md has the measurements behind it.
 #pragma once
 
 #include <keeler/scene/scene.hpp>
