@@ -134,7 +134,7 @@ TEST_CASE("a patch that does not settle is given up at the limit, not written") 
   const Scene light = scene({"particles.density=110", "box.size=[60,60]", "gravity.kick_every=10"});
   SettleCriterion criterion = lenient();
   criterion.max_orbits = 4.0;
-  refused(light, criterion, "no wakes stand");
+  refused(light, criterion, "no wakes in the patch");
   criterion.viscosity = {.error = 1e-9, .change = 1e-9};
   criterion.standard_errors = 0.0;
   refused(scene(), criterion, "did not settle in 4 orbits");

@@ -188,12 +188,12 @@ TEST_CASE("the same state for the same seed, whatever the threads") {
 TEST_CASE("progress rises to the end, and a stop is obeyed at the next sweep") {
   const UniformRequest request = layer(power_law(0.2, 2.0, 1000), 1.0, 0.4, 3);
   std::atomic<bool> stop = false;
-  std::vector<double> shares;
-  const auto note = [&](const StartProgress& p) { shares.push_back(p.share); };
+  std::vector<double> fractions;
+  const auto note = [&](const StartProgress& p) { fractions.push_back(p.fraction); };
   const Interruptible by_stop(stop);
   CHECK(uniform_patch(request, note).size() == 1000);
-  CHECK(std::is_sorted(shares.begin(), shares.end()));
-  CHECK(shares.back() == 1.0);
+  CHECK(std::is_sorted(fractions.begin(), fractions.end()));
+  CHECK(fractions.back() == 1.0);
   int sweeps = 0;
   const auto stop_at_third = [&](const StartProgress&) { stop = ++sweeps == 3; };
   CHECK_THROWS_AS(uniform_patch(request, stop_at_third), Interrupted);
