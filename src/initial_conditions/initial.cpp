@@ -98,7 +98,7 @@ Streamlines streamlines_of(const Scene& scene) {
   return streamlines;
 }
 
-// Adds the aggregates, whose particles are the last ones; other particles are placed around their balls.
+// Adds the aggregates; their particles are the last ones; other particles are placed around their balls.
 void hold_aggregates(const Scene& scene, const DrawnSizes& sizes, UniformRequest& request) {
   std::size_t number = 0;
   for (const AggregateSettings& aggregate : scene.particles.aggregates) {

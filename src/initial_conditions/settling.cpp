@@ -18,7 +18,7 @@ struct Window {
   std::size_t standing = 0; // samples
 };
 
-// Returns the wavelength of the summed spectra, with its error from those of single samples.
+// Returns the wavelength of the summed spectra, with the error from single samples.
 Estimate length_of(const std::optional<double>& sum, std::span<const double> singles) {
   return {sum.value_or(unknown), singles.empty() ? unknown : block_mean(singles).error};
 }

@@ -20,7 +20,7 @@ struct Neighbour {
 
 class SphereNeighbours {
 public:
-  /// Lists all pairs of the first `own` spheres with each other and with the rest whose distance is below (1 + skin) ×
+  /// Lists all pairs of the first `own` spheres with each other and with the rest at a distance below (1 + skin) ×
   /// (sum of their radii). Complete until a sphere has moved by `skin` of its radius.
   void build(const std::vector<Sphere>& spheres, std::size_t own, const ShearingBox& box, double offset, double skin);
 

@@ -6,7 +6,7 @@
 
 namespace keeler {
 
-// Visits the ranks whose slabs intersect [low, high], each once.
+// Visits the ranks with slabs that intersect [low, high], each once.
 template<class Visit> void SphereSlabs::visit_slabs(double low, double high, const Visit& visit) const {
   const auto slab = [&](double x) {
     return static_cast<std::int64_t>(std::floor((x + 0.5 * box_.size_x) / slab_width()));

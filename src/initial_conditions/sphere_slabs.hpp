@@ -1,5 +1,5 @@
-// Distribution of spheres over ranks while a start is made: each rank has those placed in its slab of the box, and
-// copies of spheres of other ranks that may touch them.
+// Distribution of spheres over ranks while a start is made: each rank has the spheres placed in its slab of the box,
+// and copies of spheres of other ranks that may touch them.
 //
 // Slabs are equally wide. A sphere stays with its rank wherever it is pushed, and the range of copies grows by the
 // distance of the farthest sphere outside its slab. Held spheres are on all ranks and never copied.
@@ -19,7 +19,7 @@ public:
   SphereSlabs(const Communicator& ranks, const ShearingBox& box) : ranks_(ranks), box_(box) {}
 
   const Communicator& ranks() const { return ranks_; }
-  /// Returns the rank whose slab contains the position, in any image.
+  /// Returns the owner of the slab that contains the position, in any image.
   std::size_t owner(const Vec3& position) const;
   bool has(const Vec3& position) const { return !ranks_.distributed() || owner(position) == ranks_.rank(); }
 

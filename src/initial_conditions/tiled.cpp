@@ -68,8 +68,8 @@ struct Tiles {
 } // namespace
 
 // The images (n, m) of all particles form one infinite ring, periodic under (L_x, −d) and (0, L_y). So it is periodic
-// under (N_x L_x, −N_x d) and (0, N_y L_y): a shearing box with the offset N_x d, whose rate S N_x L_x is that of the
-// larger box. Its cell holds N_x N_y images of each particle. If the origin moves outward by s, as between two columns,
+// under (N_x L_x, −N_x d) and (0, N_y L_y): a shearing box with the offset N_x d, at the rate S N_x L_x of the larger
+// box. Its cell holds N_x N_y images of each particle. If the origin moves outward by s, as between two columns,
 // all velocities change by −S s: Hill's equations are invariant under shifts of x.
 Patch TiledPatch::some(std::size_t first, std::size_t count) const {
   assert(first + count <= size());

@@ -151,7 +151,7 @@ Rows local_rows() {
       {{"local_toomre_q", unit::none, "local: Toomre Q", "by the local c_x and the mean Σ of the patch"},
        [](Source m) -> Value { return m.analysis.local.toomre_q; }},
       {{"local_share", unit::none, "", "share of the mass in particles that have a neighbour"},
-       [](Source m) -> Value { return m.analysis.local.share; }},
+       [](Source m) -> Value { return m.analysis.local.fraction; }},
       {{"crowding_radius", unit::metres, "mean particle: within",
         "radius of the disc about each particle in which density is counted: 6 r or λ_cr/10, the larger"},
        [](Source m) -> Value { return m.analysis.local.crowding_radius_m; }},

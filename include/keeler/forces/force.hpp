@@ -73,7 +73,7 @@ struct ForceEntry {
   void (*check)(const Parameters& parameters, double size_x) = nullptr;
 };
 
-/// Returns all forces but self-gravity, whose settings have a type of their own (self_gravity.hpp) because solvers are
+/// Returns all forces but self-gravity, which has settings of a separate type (self_gravity.hpp) because solvers are
 /// selected, measured and tuned by them. A new force needs one more entry here.
 const std::vector<ForceEntry>& external_forces();
 

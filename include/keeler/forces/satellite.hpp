@@ -23,7 +23,7 @@ struct SatellitePassage {
 /// Above this drag a passage is not reliable; at 0.52 a ringlet is sound (docs/theory/satellite.md).
 inline constexpr double doubtful_drag = 0.6;
 
-/// Returns the first passage from `from` to `until` (orbits, both included) whose drag is at least `min_drag`.
+/// Returns the first passage from `from` to `until` (orbits, both included) with a drag of at least `min_drag`.
 /// `parameters` has the keys of the table [satellite]. Precondition: a box and a distance that `check` accepts.
 std::optional<SatellitePassage> dragging_passage(const Parameters& parameters, double orbital_frequency,
                                                  const Frequencies& frequencies, double min_drag, double from,

@@ -13,7 +13,7 @@
 
 namespace keeler {
 
-/// How a clumped state was made.
+/// The record of how a clumped state was made.
 struct Clumping {
   SettleCriterion criterion;
   double sample_every_orbits = 0.0; ///< 1 / samples_per_orbit, rounded to whole kick intervals

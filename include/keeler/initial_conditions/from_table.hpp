@@ -10,7 +10,7 @@
 namespace keeler {
 
 /// Returns the particles of a table in the scene's box, with a shear offset of zero. Particle k of the table gets the
-/// id k. Missing masses follow from the scene's density, missing velocities are those of circular orbits. Throws
+/// id k. Missing masses follow from the scene's density, missing velocities from circular orbits. Throws
 /// UsageError, naming the row, for an invalid particle, one farther outside the box than its epicycle explains, or
 /// without a mass, and for spins if the scene has no friction; InvariantError for heaps of overlapping particles.
 Patch patch_from_table(const ParticleTable& table, const TableScene& scene);

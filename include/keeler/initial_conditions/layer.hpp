@@ -9,8 +9,8 @@ struct LayerProfile {
   double slab = 0.0;  ///< m
   double sigma = 0.0; ///< m
 
-  /// Returns a Gaussian of this height √⟨z²⟩ (m), whose mid-plane has the filling factor `filling`. If that exceeds
-  /// `largest`, returns the profile of this height whose mid-plane has the filling factor `largest`; the limit is a
+  /// Returns a Gaussian of this height √⟨z²⟩ (m) with the filling factor `filling` in the mid-plane. If that exceeds
+  /// `largest`, returns the profile of this height with the filling factor `largest` there; the limit is a
   /// slab, with 0.72 of the filling factor of a Gaussian.
   static LayerProfile of_height(double height, double filling, double largest);
 

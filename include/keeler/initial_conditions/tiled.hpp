@@ -8,7 +8,7 @@
 namespace keeler {
 
 /// Returns nx × ny copies of a patch, one particle for each image: the same ring at the same instant, so all distances,
-/// accelerations and relative velocities equal those of the patch to rounding. The box grows in proportion; its shear
+/// accelerations and relative velocities are unchanged to rounding. The box grows in proportion; its shear
 /// offset is nx times the patch's, and its time is zero. A single copy is bit-identical to the patch.
 ///
 /// Copies are counted column by column, outward, and within a column forward along the orbit. Copy c of the particle

@@ -26,7 +26,7 @@ struct ClosedBall {
 };
 
 /// Input of uniform_patch(), in internal units. In a distributed start each rank gives the radii of some particles,
-/// whose ids follow those of the rank before; the root gives the held bodies; all ranks give all other values.
+/// with ids that follow the rank before; the root gives the held bodies; all ranks give all other values.
 struct UniformRequest {
   ShearingBox box;
   Frequencies frequencies;
@@ -38,7 +38,7 @@ struct UniformRequest {
   double dispersion_z = 0.65;                           ///< c_z, m rad⁻¹
   double own_room = 0.0;                                ///< m²: the layer's height is √(c_z²/ν² + own_room)
   Streamlines streamlines;                              ///< of the mean motion; circles by default
-  std::vector<HeldBody> held;                           ///< their ids follow those of the particles
+  std::vector<HeldBody> held;                           ///< their ids follow the particles' ids
   std::vector<ClosedBall> closed;                       ///< contain all held bodies; must not overlap
   DensityPattern pattern;                               ///< of the guiding centres on the streamlines
   std::uint64_t seed = 1;
@@ -46,7 +46,7 @@ struct UniformRequest {
 
 /// Returns a patch that is uniform in x and y (in X, if streamlines bunch), or follows the pattern. The profile in z is
 /// Gaussian, or flat-topped with equal height if the mid-plane would exceed largest_filling (scene/derived.hpp).
-/// Eccentricity vectors are Gaussian about those of the streamlines, so that c_y = c_x κ/2, and so are vertical
+/// Eccentricity vectors are Gaussian about the streamlines', so that c_y = c_x κ/2, and so are vertical
 /// velocities. Their random parts and the heights have a mass-weighted mean of zero (of the particles alone if bodies
 /// are held, apart from what these push aside). The gap of each pair is at least 2 × 10⁻⁵ of the smaller radius. Sizes
 /// may differ by 10⁴ and more; time and memory are proportional to the number of particles. The result depends on the

@@ -55,7 +55,7 @@ public:
 
   /// Replaces elements, radii, masses or spins by values from outside; counts the change of energy as part of the
   /// start. Preconditions: one rank, the step is a multiple of the scene's kick_interval(), and ids and order equal
-  /// those of the state. Throws InvariantError, and then changes nothing, if a number is not finite or particles
+  /// to the state. Throws InvariantError, and then changes nothing, if a number is not finite or particles
   /// overlap by more than rounding.
   void replace(Particles particles);
 

@@ -39,7 +39,7 @@ struct EnergyBalance {
   double residual = 0.0; ///< change of Σ m (½κ²e² + ½ν²i²) and of the spins' energy, less all accounts: rounding
 };
 
-/// The path of a moonlet, from which its drift follows. X and Y minus the shift are those of the body itself, never
+/// The path of a moonlet, from which its drift follows. X and Y minus the shift belong to the body itself, never
 /// wrapped.
 struct MoonletTrack {
   double start_x = 0.0;                ///< X when the run began, m
@@ -93,7 +93,7 @@ struct SimulationState {
   /// Returns the energy gained from the kicks of all forces, kg m² rad⁻².
   double kick_work() const;
 
-  /// Precondition: `means` are those of the particles at this boundary.
+  /// Precondition: `means` of the particles at this boundary.
   EnergyBalance balance(const ParticleMeans& means, const Frequencies& frequencies) const;
 };
 

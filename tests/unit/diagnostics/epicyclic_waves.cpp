@@ -128,7 +128,8 @@ TEST_CASE("an imposed wave has the share of the energy that its amplitude says")
     if (n == 5)
       continue;
     const Patch patch = make_patch(particles, box, 7.0, frequencies, 0.0);
-    const Vec3 dispersion = velocity_dispersion(patch), rest_of_it = epicyclic_waves(patch)->taken_out_of(dispersion);
+    const Vec3 dispersion = velocity_dispersion(patch),
+               rest_of_it = epicyclic_waves(patch)->residual_dispersion(dispersion);
     CHECK(dispersion.x() == doctest::Approx(frequencies.kappa * std::sqrt(wave + rest)).epsilon(1e-9));
     CHECK(rest_of_it.x() == doctest::Approx(frequencies.kappa * random / std::sqrt(1.0 - noise)).epsilon(1e-9));
     CHECK(rest_of_it.y() ==

@@ -37,7 +37,7 @@ TEST_CASE("a sample of forces holds different particles, and those near each edg
   const Patch patch = scattered(5000);
   const GravityProblem problem = gravity_problem(patch);
   const ForceSample sample = draw_force_sample(problem, 1000, 50, 3.0);
-  CHECK(sample.even == 1000);
+  CHECK(sample.uniform == 1000);
   CHECK(sample.edges == std::array<std::size_t, 4>{50, 50, 50, 50});
   REQUIRE(sample.targets.size() == 1200);
   CHECK(std::set<std::size_t>(sample.targets.begin(), sample.targets.begin() + 1000).size() == 1000);
@@ -72,7 +72,7 @@ TEST_CASE("a sample of more than there are is all of them") {
   const Patch patch = scattered(30);
   const ForceSample sample = draw_force_sample(gravity_problem(patch), 100, 100, 0.0);
   CHECK(std::set<std::size_t>(sample.targets.begin(), sample.targets.end()).size() == 30);
-  CHECK(sample.even == 30);
+  CHECK(sample.uniform == 30);
   CHECK(sample.edges == std::array<std::size_t, 4>{});
 }
 
