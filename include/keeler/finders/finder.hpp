@@ -118,7 +118,7 @@ public:
   }
 
   /// True if the finder stores nothing per particle, never gives up and never errs. Only such a finder may be called
-  /// for orbits that are not those of the step, by several threads.
+  /// for orbits other than the step's, by several threads.
   virtual bool exact() const { return false; }
   /// As find(), for these orbits in place of the step's. Precondition: exact().
   virtual FinderResult find_between(const Query&, const Body& /*low*/, const Body& /*high*/) const {

@@ -24,8 +24,8 @@ double wave_number(int n) {
   return two_pi * n / box.size_x;
 }
 
-// Guiding centres at equal distances, whose eccentricity vectors are a wave of `amplitude` (m) in mode `n` of one
-// component and 3 of the other, a common part, and ± `random` (m) in turns, which no mode below the last one sees.
+// Guiding centres at equal distances, with eccentricity vectors in a wave of `amplitude` (m) in mode `n` of one
+// component and 3 of the other, a common part, and ± `random` (m) alternating, which affects only the last mode.
 Particles imposed(std::size_t count, int n, double amplitude, double random) {
   Particles particles;
   for (std::size_t k = 0; k < count; ++k) {
@@ -66,8 +66,8 @@ std::optional<EpicyclicWaves> of_patch(const Particles& particles, double after)
   return epicyclic_waves(make_patch(particles, box, 7.0, frequencies, after));
 }
 
-// By definition, mode by mode and particle by particle: half of the squared amplitudes over the mean square, and what
-// is expected of particles at random, 2 Σm²/(Σm)² a mode, taken out.
+// Brute force, mode by mode and particle by particle: half of the squared amplitudes over the mean square, minus the
+// expectation for random particles, 2 Σm²/(Σm)² per mode.
 EpicyclicWaves by_definition(const Particles& particles, double after) {
   const Rotation rotation(frequencies, after);
   double mass = 0.0, mass_squares = 0.0, mean_x = 0.0, mean_y = 0.0;

@@ -85,7 +85,7 @@ TEST_CASE("errors of forces") {
   std::vector<Vec3> wrong = exact;
   for (std::size_t k = 0; k < 1000; ++k)
     wrong[k] += Vec3(0.1, -0.2, k % 2 ? 0.2 : -0.2);
-  for (std::size_t k = 1000; k < 1500; ++k) // at the edges in x alternating errors, which pull nobody
+  for (std::size_t k = 1000; k < 1500; ++k) // at the edges in x alternating errors, with zero mean
     wrong[k].x() += k % 2 ? 0.5 : -0.5;
   for (std::size_t k = 1750; k < 2000; ++k) // at the last edge always the same
     wrong[k] += Vec3(0.3, 0.4, 1.0);

@@ -27,7 +27,7 @@ Patch moving(Patch patch, std::uint64_t seed) {
   return patch;
 }
 
-// Calls visit(j, distance vector) for every particle and image but i itself, by trying all.
+// Calls visit(j, distance vector) for every particle and image but i itself, by brute force.
 template<class Visit> void for_all_others(const Patch& patch, std::size_t i, const Visit& visit) {
   for (std::size_t j = 0; j < patch.size(); ++j)
     for (int nx = -3; nx <= 3; ++nx)

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double degree = pi / 180.0;
 
-// Whether a sphere or an image of one is nearer to the ray than its radius, by trying all in space.
+// Brute force: true if a sphere or one of its images is closer to the ray than its radius.
 bool blocked_in_space(const Patch& patch, const LineOfSight& sight, const Vec3& place, int most) {
   const Vec3 d(std::cos(sight.elevation) * std::cos(sight.azimuth), std::cos(sight.elevation) * std::sin(sight.azimuth),
                std::sin(sight.elevation));

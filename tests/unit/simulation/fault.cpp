@@ -1,4 +1,4 @@
-// A state from a file is the scene's, or it is refused: a step would read beyond arrays.
+// A state from a file that does not fit the scene is refused: a step could read beyond arrays.
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/simulation/simulation.hpp>
 
