@@ -199,7 +199,7 @@ Rows spin_rows() {
 std::vector<Record> spectrum_of(Source m) {
   using Class = ClusterAnalysis::Class;
   static const std::vector<QuantityRow<Class>> rows = {
-      {{"least_members"}, [](const Class& c) -> Value { return c.least; }},
+      {{"least_members"}, [](const Class& c) -> Value { return c.min_members; }},
       {{"count"}, [](const Class& c) -> Value { return c.count; }},
       {{"mass_share"}, [](const Class& c) -> Value { return c.mass_fraction; }}};
   std::vector<Record> classes;

@@ -34,9 +34,9 @@ std::vector<Cluster> find_clusters(const Patch& patch, double gap = default_clus
 
 /// Means over snapshots.
 struct ClusterAnalysis {
-  /// Clusters of `least` … 2 × `least` − 1 members.
+  /// Clusters of `min_members` … 2 × `min_members` − 1 members.
   struct Class {
-    std::size_t least = 0;
+    std::size_t min_members = 0;
     double count = 0.0;         ///< clusters per snapshot
     double mass_fraction = 0.0; ///< of the total mass
   };
@@ -47,7 +47,7 @@ struct ClusterAnalysis {
   double largest_mass_fraction = 0.0;                     ///< of the total mass, in the heaviest cluster
   std::optional<std::array<double, 3>> largest_half_axes; ///< m, mean over snapshots with a finite heaviest cluster
   std::optional<double> spin;                             ///< mass-weighted mean of the clusters that have one
-  std::vector<Class> spectrum;                            ///< from `least` = 2 up to the largest
+  std::vector<Class> spectrum;                            ///< from `min_members` = 2 up to the largest
 };
 
 /// Precondition: at least one patch, none of them empty.

@@ -147,9 +147,9 @@ TEST_CASE("the analysis counts clusters by size") {
   CHECK(a.mass_fraction == doctest::Approx(0.7));
   CHECK(a.largest_mass_fraction == doctest::Approx(0.5));
   REQUIRE(a.spectrum.size() == 2);
-  CHECK(a.spectrum[0].least == 2);
+  CHECK(a.spectrum[0].min_members == 2);
   CHECK(a.spectrum[0].count == doctest::Approx(1.0));
-  CHECK(a.spectrum[1].least == 4);
+  CHECK(a.spectrum[1].min_members == 4);
   CHECK(a.spectrum[1].mass_fraction == doctest::Approx(0.5));
   REQUIRE(a.largest_half_axes);
   CHECK((*a.largest_half_axes)[0] == doctest::Approx(std::sqrt(5.0 * (8.0 + 0.2))).epsilon(1e-9));
