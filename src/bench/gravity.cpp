@@ -109,7 +109,7 @@ GravityBench bench_gravity_of(const Patch& state, const std::vector<GravityChoic
   bench.size_x_m = patch.box.size_x;
   bench.size_y_m = patch.box.size_y;
   bench.offset_m = patch.offset;
-  bench.sample = sample.even;
+  bench.sample = sample.uniform;
   bench.edge_sample = std::accumulate(sample.edges.begin(), sample.edges.end(), std::size_t{0});
   bench.edge_width_m = edge_width;
 

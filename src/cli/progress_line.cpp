@@ -82,9 +82,9 @@ double ProgressLine::patience_s() const {
 // Shows nothing for short starts.
 void ProgressLine::show(const StartProgress& p) {
   begin_phase("the start", 0.0);
-  if (p.elapsed_s >= patience_s() && due(p.elapsed_s, p.share == 1.0))
-    print(p.share, {fmt::format("{:3.0f} % of the start", 100.0 * p.share), clock(p.remaining_s) + " left"});
-  if (p.share == 1.0)
+  if (p.elapsed_s >= patience_s() && due(p.elapsed_s, p.fraction == 1.0))
+    print(p.fraction, {fmt::format("{:3.0f} % of the start", 100.0 * p.fraction), clock(p.remaining_s) + " left"});
+  if (p.fraction == 1.0)
     next_s_ = 0.0; // what follows has a clock of its own
 }
 

@@ -16,24 +16,26 @@ constexpr std::size_t max_iterations = 100'000;
 
 BoundedImpulses::BoundedImpulses(std::span<const Joint> joints, std::span<const double> inverse_masses)
     : joints_(joints), inverse_masses_(inverse_masses), changes_(inverse_masses.size()) {
-  std::vector<double> weight(inverse_masses.size()); // of a body: its joints, over its mass
+  std::vector<double> weight(inverse_masses.size()); // of a body: number of its joints / mass
   for (const Joint& j : joints_) {
     weight[j.low] += inverse_masses_[j.low];
     weight[j.high] += inverse_masses_[j.high];
   }
-  double largest = 1.0; // bound on the eigenvalues, by the inequality of Cauchy and Schwarz at each body
+  double largest = 1.0; // bound on the eigenvalues, by the Cauchy-Schwarz inequality at each body
   for (const Joint& j : joints_) {
-    assert(j.low != j.high);
+    assert(j.low != j.high && j.low < inverse_masses_.size() && j.high < inverse_masses_.size());
     const double both = inverse_masses_[j.low] + inverse_masses_[j.high], scale = 1.0 / std::sqrt(both);
+    assert(both > 0.0);
     scales_.push_back(scale);
     rows_.push_back({j.low, j.high, scale * std::sqrt(inverse_masses_[j.low]),
                      scale * std::sqrt(inverse_masses_[j.high]), j.normal});
     largest = std::max(largest, (weight[j.low] + weight[j.high]) / both);
   }
-  length_ = 1.9 / largest;
+  step_length_ = 1.9 / largest;
 }
 
-void BoundedImpulses::push(std::span<const double> impulses, std::span<Vec3> changes) const {
+void BoundedImpulses::apply(std::span<const double> impulses, std::span<Vec3> changes) const {
+  assert(impulses.size() == joints_.size() && changes.size() == inverse_masses_.size());
   std::fill(changes.begin(), changes.end(), Vec3::Zero());
   for (std::size_t c = 0; c < joints_.size(); ++c) {
     const Joint& j = joints_[c];
@@ -42,11 +44,11 @@ void BoundedImpulses::push(std::span<const double> impulses, std::span<Vec3> cha
   }
 }
 
-// Velocity changes by impulses x.
-void BoundedImpulses::push_along(const std::vector<double>& x) {
+// Computes velocity changes by the impulses x.
+void BoundedImpulses::apply_scaled(const std::vector<double>& x) {
   std::fill(changes_.begin(), changes_.end(), Vec3::Zero());
   for (std::size_t c = 0; c < rows_.size();) {
-    const std::uint32_t low = rows_[c].low; // of several joints in a row, which do not wait for each other's stores
+    const std::uint32_t low = rows_[c].low; // consecutive joints of one body: summed in registers
     Vec3 change = changes_[low];
     for (; c < rows_.size() && rows_[c].low == low; ++c) {
       const Row& row = rows_[c];
@@ -57,7 +59,7 @@ void BoundedImpulses::push_along(const std::vector<double>& x) {
   }
 }
 
-// By these changes.
+// Returns the speed at which changes_ opens the joint.
 double BoundedImpulses::opening(const Row& row) const {
   return row.normal.dot(row.at_high * changes_[row.high] - row.at_low * changes_[row.low]);
 }
@@ -73,34 +75,34 @@ void BoundedImpulses::start(std::span<const double> required, std::span<const do
     required_[c] = scales_[c] * required[c];
     tolerances_[c] = scales_[c] * tolerances[c];
   }
-  renew_gradient();
+  recompute_gradient();
 }
 
-// From scratch; the direction is then the gradient of the joints that push.
-void BoundedImpulses::renew_gradient() {
-  push_along(x_);
+// Recomputes the gradient from x; the direction becomes the gradient on the free set.
+void BoundedImpulses::recompute_gradient() {
+  apply_scaled(x_);
   for (std::size_t c = 0; c < x_.size(); ++c) {
     gradient_[c] = opening(rows_[c]) - required_[c];
     direction_[c] = x_[c] > 0.0 ? gradient_[c] : 0.0;
   }
 }
 
-BoundedImpulses::Rest BoundedImpulses::rest() const {
-  const double per_length = 1.0 / length_;
-  Rest rest;
+BoundedImpulses::Residual BoundedImpulses::residual() const {
+  const double per_length = 1.0 / step_length_;
+  Residual residual;
   for (std::size_t c = 0; c < x_.size(); ++c) {
     const double slope = gradient_[c];
     const bool pushes = x_[c] > 0.0;
-    const double closing = std::min(0.0, slope);
-    rest.pushing += pushes ? std::min(x_[c] * per_length, slope) * slope : 0.0;
-    rest.closing += pushes ? 0.0 : closing * closing;
-    rest.settled &= std::abs(pushes ? slope : closing) <= tolerances_[c];
+    const double bound = std::min(0.0, slope);
+    residual.free += pushes ? std::min(x_[c] * per_length, slope) * slope : 0.0;
+    residual.bound += pushes ? 0.0 : bound * bound;
+    residual.converged &= std::abs(pushes ? slope : bound) <= tolerances_[c];
   }
-  return rest;
+  return residual;
 }
 
-BoundedImpulses::Along BoundedImpulses::look_along() {
-  push_along(direction_);
+BoundedImpulses::LineSearch BoundedImpulses::line_search() {
+  apply_scaled(direction_);
   double curvature = 0.0, fall = 0.0;
   for (std::size_t c = 0; c < x_.size(); ++c) {
     applied_[c] = opening(rows_[c]);
@@ -110,16 +112,16 @@ BoundedImpulses::Along BoundedImpulses::look_along() {
   return {curvature, fall / curvature};
 }
 
-// Whether all impulses still push so far along the direction; not if it leads on for ever.
-bool BoundedImpulses::keeps_pushing(double length) const {
+// True if all impulses stay positive over this length; false for an infinite one.
+bool BoundedImpulses::stays_feasible(double length) const {
   bool keeps = std::isfinite(length);
   for (std::size_t c = 0; c < x_.size(); ++c)
     keeps &= length * direction_[c] <= x_[c];
   return keeps;
 }
 
-// How far along the direction all impulses push.
-double BoundedImpulses::feasible() const {
+// Returns the largest length along the direction at which no impulse is negative.
+double BoundedImpulses::max_feasible_length() const {
   double length = std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < x_.size(); ++c)
     if (direction_[c] > 0.0)
@@ -127,37 +129,37 @@ double BoundedImpulses::feasible() const {
   return length;
 }
 
-// All the way, and on in the next conjugate direction.
-void BoundedImpulses::conjugate(const Along& along) {
+// Takes the full conjugate gradient step.
+void BoundedImpulses::conjugate_step(const LineSearch& line) {
   double overlap = 0.0;
   for (std::size_t c = 0; c < x_.size(); ++c) {
-    x_[c] = x_[c] > 0.0 ? std::max(0.0, x_[c] - along.best * direction_[c]) : 0.0;
-    gradient_[c] -= along.best * applied_[c];
+    x_[c] = x_[c] > 0.0 ? std::max(0.0, x_[c] - line.best * direction_[c]) : 0.0;
+    gradient_[c] -= line.best * applied_[c];
     overlap += x_[c] > 0.0 ? gradient_[c] * applied_[c] : 0.0;
   }
-  const double turn = overlap / along.curvature;
+  const double turn = overlap / line.curvature;
   for (std::size_t c = 0; c < x_.size(); ++c)
     direction_[c] = x_[c] > 0.0 ? gradient_[c] - turn * direction_[c] : 0.0;
 }
 
-// So far along the direction, then a projected gradient step: joints may stop pushing.
-void BoundedImpulses::expand(double length) {
+// Goes this far along the direction, then takes a projected gradient step: joints may leave the free set.
+void BoundedImpulses::expansion_step(double length) {
   for (std::size_t c = 0; c < x_.size(); ++c) {
     const double there = std::max(0.0, x_[c] - length * direction_[c]);
     const double slope = gradient_[c] - length * applied_[c];
-    x_[c] = there > 0.0 ? std::max(0.0, there - length_ * slope) : 0.0;
+    x_[c] = there > 0.0 ? std::max(0.0, there - step_length_ * slope) : 0.0;
   }
-  renew_gradient();
+  recompute_gradient();
 }
 
-// Joints that close and do not push begin to push.
-void BoundedImpulses::proportion() {
+// Lets joints that close without an impulse enter the free set.
+void BoundedImpulses::proportioning_step() {
   for (std::size_t c = 0; c < x_.size(); ++c)
     direction_[c] = x_[c] > 0.0 ? 0.0 : std::min(0.0, gradient_[c]);
-  const Along along = look_along();
+  const LineSearch line = line_search();
   for (std::size_t c = 0; c < x_.size(); ++c) {
-    x_[c] -= along.best * direction_[c];
-    gradient_[c] -= along.best * applied_[c];
+    x_[c] -= line.best * direction_[c];
+    gradient_[c] -= line.best * applied_[c];
     direction_[c] = x_[c] > 0.0 ? gradient_[c] : 0.0;
   }
 }
@@ -166,26 +168,26 @@ bool BoundedImpulses::solve(std::span<const double> required, std::span<const do
                             std::span<double> impulses) {
   start(required, tolerances, impulses);
   for (std::size_t k = 0;; ++k) {
-    const Rest rest = this->rest();
-    if (rest.settled)
+    const Residual residual = this->residual();
+    if (residual.converged)
       break;
     if (k == max_iterations)
       return false;
     throw_if_interrupted();
     ++iterations_;
-    if (rest.closing > rest.pushing) {
-      proportion();
+    if (residual.bound > residual.free) {
+      proportioning_step();
       continue;
     }
-    const Along along = look_along();
-    if (keeps_pushing(along.best)) {
-      conjugate(along);
+    const LineSearch line = line_search();
+    if (stays_feasible(line.best)) {
+      conjugate_step(line);
       continue;
     }
-    const double length = feasible();
+    const double length = max_feasible_length();
     if (!std::isfinite(length))
       return false; // jammed: no impulses open it
-    expand(length);
+    expansion_step(length);
   }
   for (std::size_t c = 0; c < x_.size(); ++c)
     impulses[c] = scales_[c] * x_[c];

@@ -13,34 +13,34 @@
 namespace keeler {
 namespace {
 
-constexpr double min_gap = 0.05;      // that a pair is given, in what the kick of its own gravity moves it by
-constexpr double gap_tolerance = 0.4; // of that
-constexpr double longest_fall = 0.12; // of a pair between two kicks, in radius sums: a longer one is not at rest
-constexpr int max_corrections = 10;   // of the linear prediction of gaps
+constexpr double min_gap_kicks = 0.05; // smallest target gap, in the displacement by a kick of the pair's gravity
+constexpr double gap_tolerance = 0.4;  // fraction of it
+constexpr double longest_fall = 0.12;  // in radius sums per kick interval: a pair that falls farther is not at rest
+constexpr int max_corrections = 10;    // of the linear prediction of gaps
 
-/// A particle that rests, or may.
+/// A particle that may rest.
 struct Member {
   std::uint64_t id = 0;
-  std::uint32_t place = 0; // in memory
+  std::uint32_t index = 0; // in the store
 };
 
 /// A pair at this boundary.
 struct PairAtRest {
   RestingPair ids;
-  std::uint32_t low = 0, high = 0; // members
+  std::uint32_t low = 0, high = 0; // indices of members
   double impulse = 0.0;            // at the last boundary
   bool is_new = false;
 
-  Image image;                    // of the high one, the nearest
-  Elements relative;              // of the high one against the low one, with the kicks of the interval to come
+  Image image;                    // of the higher id, nearest to the lower one
+  Elements relative;              // of the higher id to the lower one, with the kicks of the next interval
   Vec3 separation = Vec3::Zero(); // m
   Vec3 normal = Vec3::Zero();
   double radius_sum = 0.0, gap = 0.0; // m
-  double speed = 0.0;                 // along the normal before the kick, positive where they part, m rad⁻¹
-  double kick = 0.0;                  // what the kick adds to it
-  double pull = 0.0;                  // of the pair's own gravity: what a kick adds, m rad⁻¹
-  double least = 0.0, target = 0.0;   // gap at the next boundary: beyond the room for the curvature, and in all, m
-  double allowed = 0.0;               // closing speed before the kick up to which it rests, m rad⁻¹
+  double speed = 0.0;                 // along the normal before the kick, positive if they separate, m rad⁻¹
+  double kick = 0.0;                  // change of the speed by the kick
+  double pull = 0.0;                  // kick by the pair's gravity, m rad⁻¹
+  double min_gap = 0.0, target = 0.0; // gap at the next boundary, without and with room for the curvature, m
+  double max_closing_speed = 0.0;     // largest closing speed before the kick of a pair at rest, m rad⁻¹
 };
 
 } // namespace
@@ -56,29 +56,29 @@ struct RestingContacts::Work {
   std::vector<Member> members; // sorted by id
   std::vector<double> inverse_masses;
   std::vector<Vec3> kicks_before, kicks_after; // of each member, m rad⁻¹
-  std::vector<Vec3> pushes;                    // by all impulses
+  std::vector<Vec3> velocity_changes;          // velocity change of each member by all impulses
   std::vector<PairAtRest> pairs;
   RestingCosts costs;
 
   void find_members(const RestingState& state, const std::vector<Noted>& noted, const Particles& particles,
-                    bool places_known);
+                    bool indices_known);
   void read_kicks(const RestingStep& step);
   void list_pairs(const RestingState& state, std::vector<Noted>& noted);
-  void look(const RestingStep& step);
-  void rub(const RestingStep& step, const Friction& friction, CollisionTally& tally);
-  void judge(const RestingStep& step);
+  void update_geometry(const RestingStep& step);
+  void apply_friction(const RestingStep& step, const Friction& friction, CollisionTally& tally);
+  void classify_pairs(const RestingStep& step);
   void solve(const RestingStep& step);
-  void give(RestingState& state, const RestingStep& step, const std::vector<Vec3>& kicks, bool after,
-            CollisionTally& tally);
+  void distribute(RestingState& state, const RestingStep& step, const std::vector<Vec3>& kicks, bool after,
+                  CollisionTally& tally);
 
-  void forget_others();
+  void drop_free_members();
 
   const Body& body(const RestingStep& step, std::uint32_t member) const {
-    return step.particles.bodies[members[member].place];
+    return step.particles.bodies[members[member].index];
   }
   std::vector<Member>::const_iterator find(std::uint64_t id) const {
     return std::lower_bound(members.begin(), members.end(), id,
-                            [](const Member& m, std::uint64_t wanted) { return m.id < wanted; });
+                            [](const Member& m, std::uint64_t sought) { return m.id < sought; });
   }
   bool rests(std::uint64_t id) const {
     const auto found = find(id);
@@ -88,14 +88,15 @@ struct RestingContacts::Work {
     assert(rests(id));
     return static_cast<std::uint32_t>(find(id) - members.begin());
   }
-  // Along the line of centres, how fast the members part by `changes` of their velocities.
-  static double parting(const PairAtRest& p, const std::vector<Vec3>& changes) {
+  // Returns the relative speed along the line of centres, positive if they separate, by these velocity changes.
+  static double separation_speed(const PairAtRest& p, const std::vector<Vec3>& changes) {
     return p.normal.dot(changes[p.high] - changes[p.low]);
   }
-  // At the next kick, when the members get these pushes.
-  double gap_then(const PairAtRest& p, const RestingStep& step, const Rotation& now, const Rotation& then) const {
+  // Returns the gap at the next kick, after the velocity changes `velocity_changes`.
+  double gap_at_next_kick(const PairAtRest& p, const RestingStep& step, const Rotation& now,
+                          const Rotation& then) const {
     Elements relative = p.relative;
-    keeler::kick(relative, pushes[p.high] - pushes[p.low], step.frequencies, now);
+    keeler::kick(relative, velocity_changes[p.high] - velocity_changes[p.low], step.frequencies, now);
     return state_at(relative, step.frequencies, then).position.norm() - p.radius_sum;
   }
 };
@@ -107,6 +108,7 @@ RestingContacts& RestingContacts::operator=(RestingContacts&& other) noexcept = 
 
 void RestingContacts::note(const Particles& particles, const SlowPair& pair) {
   const std::uint64_t low = particles.ids[pair.low], high = particles.ids[pair.high];
+  assert(low < high);
   if (pair.kicks < RestingState::slow || (work_ && (work_->rests(low) || work_->rests(high))))
     noted_.push_back({{low, high}, pair.low, pair.high});
 }
@@ -116,17 +118,19 @@ const RestingCosts& RestingContacts::costs() const {
   return work_ ? work_->costs : none;
 }
 
-// Whoever rests or was noted, and where they are in memory. Only another memory order asks all particles.
+// Lists the particles of pairs at rest and of noted pairs, with their indices. Visits all particles only after a change
+// of the memory order.
 void RestingContacts::Work::find_members(const RestingState& state, const std::vector<Noted>& noted,
-                                         const Particles& particles, bool places_known) {
+                                         const Particles& particles, bool indices_known) {
+  assert(state.pairs.size() == state.loads.size());
   const auto by_id = [](const Member& a, const Member& b) { return a.id < b.id; };
-  if (!places_known)
+  if (!indices_known)
     members.clear();
   for (const Noted& n : noted) {
     members.push_back({n.ids.low, n.low});
     members.push_back({n.ids.high, n.high});
   }
-  if (!places_known)
+  if (!indices_known)
     for (const RestingPair& p : state.pairs) {
       members.push_back({p.low, 0});
       members.push_back({p.high, 0});
@@ -135,31 +139,34 @@ void RestingContacts::Work::find_members(const RestingState& state, const std::v
   members.erase(
       std::unique(members.begin(), members.end(), [](const Member& a, const Member& b) { return a.id == b.id; }),
       members.end());
-  if (!places_known)
-    for (std::size_t place = 0; place < particles.size(); ++place) {
-      const auto found = std::lower_bound(members.begin(), members.end(), Member{particles.ids[place], 0}, by_id);
-      if (found != members.end() && found->id == particles.ids[place])
-        found->place = static_cast<std::uint32_t>(place);
+  if (!indices_known)
+    for (std::size_t index = 0; index < particles.size(); ++index) {
+      const auto found = std::lower_bound(members.begin(), members.end(), Member{particles.ids[index], 0}, by_id);
+      if (found != members.end() && found->id == particles.ids[index])
+        found->index = static_cast<std::uint32_t>(index);
     }
   inverse_masses.clear();
   for (const Member& m : members) {
-    assert(particles.ids[m.place] == m.id);
-    inverse_masses.push_back(1.0 / particles.bodies[m.place].mass);
+    assert(particles.ids[m.index] == m.id);
+    inverse_masses.push_back(1.0 / particles.bodies[m.index].mass);
   }
 }
 
 void RestingContacts::Work::read_kicks(const RestingStep& step) {
   kicks_before.assign(members.size(), Vec3::Zero());
   kicks_after.assign(members.size(), Vec3::Zero());
-  for (const KickPart& part : step.kicks)
+  for (const KickPart& part : step.kicks) {
+    assert(part.accelerations.size() == step.particles.size() && part.work && part.azimuthal_gain);
     for (std::size_t m = 0; m < members.size(); ++m) {
-      kicks_before[m] += part.before * part.accelerations[members[m].place];
-      kicks_after[m] += part.after * part.accelerations[members[m].place];
+      kicks_before[m] += part.before * part.accelerations[members[m].index];
+      kicks_after[m] += part.after * part.accelerations[members[m].index];
     }
+  }
 }
 
-// Those at rest and those noted, each once, in the order of the ids.
+// Merges the pairs at rest with the noted ones, each once, in the order of the ids.
 void RestingContacts::Work::list_pairs(const RestingState& state, std::vector<Noted>& noted) {
+  assert(std::is_sorted(state.pairs.begin(), state.pairs.end()));
   std::sort(noted.begin(), noted.end(), [](const Noted& a, const Noted& b) { return a.ids < b.ids; });
   pairs.clear();
   const auto add = [&](const RestingPair& ids, double impulse, bool is_new) {
@@ -182,15 +189,16 @@ void RestingContacts::Work::list_pairs(const RestingState& state, std::vector<No
   }
 }
 
-// Where the pairs are, and what the kick does to them.
-void RestingContacts::Work::look(const RestingStep& step) {
+// Computes the geometry of each pair and the change of its relative speed by the kick.
+void RestingContacts::Work::update_geometry(const RestingStep& step) {
+  assert(step.interval > 0.0);
   const Frequencies& f = step.frequencies;
   const Rotation now(f, -step.to_epoch);
   for (PairAtRest& p : pairs) {
     const Body &a = body(step, p.low), &b = body(step, p.high);
     p.relative = b.elements - a.elements;
     const Vec3 apart = state_at(p.relative, f, now).position;
-    // the offset of now that the images of the epoch have; no whole box along the orbit is dropped from it
+    // the offset at this boundary of the images that the epoch has: not reduced modulo the box
     const double offset = step.epoch_offset - step.box.shear * step.box.size_x * step.to_epoch;
     p.image = step.box.image_into_cell(apart.x(), apart.y(), offset);
     p.relative = step.box.image_of(p.relative, p.image, step.epoch_offset);
@@ -201,22 +209,22 @@ void RestingContacts::Work::look(const RestingStep& step) {
     p.radius_sum = a.radius + b.radius;
     p.gap = distance - p.radius_sum;
     p.pull = step.gravity * step.interval * (a.mass + b.mass) / (p.radius_sum * p.radius_sum);
-    p.least = min_gap * p.pull * step.interval;
-    p.speed = p.normal.dot(relative.velocity) - parting(p, kicks_before);
-    p.kick = parting(p, kicks_before) + parting(p, kicks_after);
+    p.min_gap = min_gap_kicks * p.pull * step.interval;
+    p.speed = p.normal.dot(relative.velocity) - separation_speed(p, kicks_before);
+    p.kick = separation_speed(p, kicks_before) + separation_speed(p, kicks_after);
     kick(p.relative, kicks_after[p.high] - kicks_after[p.low], f, now);
   }
 }
 
-// The surfaces of those that carried something rub, as in a collision with that impulse.
-void RestingContacts::Work::rub(const RestingStep& step, const Friction& friction, CollisionTally& tally) {
+// Applies friction to the pairs that had an impulse, as in a collision with that normal impulse.
+void RestingContacts::Work::apply_friction(const RestingStep& step, const Friction& friction, CollisionTally& tally) {
   const Frequencies& f = step.frequencies;
   const Rotation now(f, -step.to_epoch);
   const SpinTurn turn(-step.to_epoch);
   for (const PairAtRest& p : pairs) {
     if (!(p.impulse > 0.0))
       continue;
-    const std::uint32_t low = members[p.low].place, high = members[p.high].place;
+    const std::uint32_t low = members[p.low].index, high = members[p.high].index;
     Body &a = step.particles.bodies[low], &b = step.particles.bodies[high];
     Vec3 &spin_a = step.particles.spins[low], &spin_b = step.particles.spins[high];
     const Elements relative = step.box.image_of(b.elements - a.elements, p.image, step.epoch_offset);
@@ -235,20 +243,23 @@ void RestingContacts::Work::rub(const RestingStep& step, const Friction& frictio
   }
 }
 
-// Who rests: whose rebound the kick undoes, and who is not hit so hard that the drift has to see it. Others go.
-void RestingContacts::Work::judge(const RestingStep& step) {
+// Keeps the pairs at rest: the kick reverses their rebound, and they approach too slowly to be a collision, which is
+// left to the drift. Other pairs are dropped.
+void RestingContacts::Work::classify_pairs(const RestingStep& step) {
   const Rotation now(step.frequencies, -step.to_epoch), then(step.frequencies, step.interval - step.to_epoch);
   const auto rests = [&](PairAtRest& p) {
-    const double own = p.impulse * (inverse_masses[p.low] + inverse_masses[p.high]);
-    const double pushed = parting(p, pushes), predicted = gap_then(p, step, now, then);
+    const double by_itself = p.impulse * (inverse_masses[p.low] + inverse_masses[p.high]);
+    const double pushed = separation_speed(p, velocity_changes), predicted = gap_at_next_kick(p, step, now, then);
     const double curvature = predicted - p.gap - (p.speed + p.kick + pushed) * step.interval; // ½ a Δt²
-    p.target = p.least + 0.25 * std::max(0.0, curvature);
-    p.allowed = std::max(p.pull, own - pushed - p.kick); // what presses them together, all others' impulses included
+    p.target = p.min_gap + 0.25 * std::max(0.0, curvature);
+    p.max_closing_speed =
+        std::max(p.pull, by_itself - pushed - p.kick); // pressure on the pair, by all other impulses too
     if (predicted < -longest_fall * p.radius_sum)
       return false;
-    if (-p.speed > p.allowed)
+    if (-p.speed > p.max_closing_speed)
       p.impulse = 0.0;
-    return p.is_new ? predicted < p.target && -p.speed <= p.allowed : p.gap < p.target + p.allowed * step.interval;
+    return p.is_new ? predicted < p.target && -p.speed <= p.max_closing_speed
+                    : p.gap < p.target + p.max_closing_speed * step.interval;
   };
   std::vector<PairAtRest> resting;
   for (PairAtRest& p : pairs)
@@ -257,39 +268,39 @@ void RestingContacts::Work::judge(const RestingStep& step) {
   pairs = std::move(resting);
 }
 
-// The impulses with which all pairs are where they should be at the next kick. Predicted to first order in the
-// impulses, and corrected by what they do.
+// Finds the impulses that bring all pairs to their targets at the next kick: a prediction to first order in the
+// impulses, corrected with exact epicycles.
 void RestingContacts::Work::solve(const RestingStep& step) {
   const Rotation now(step.frequencies, -step.to_epoch), then(step.frequencies, step.interval - step.to_epoch);
   std::vector<Joint> joints;
   std::vector<PairAtRest*> held;
   std::vector<double> impulses, required, tolerances;
   for (PairAtRest& p : pairs)
-    if (-p.speed <= p.allowed) {
+    if (-p.speed <= p.max_closing_speed) {
       joints.push_back({p.low, p.high, p.normal});
       held.push_back(&p);
       impulses.push_back(p.impulse);
-      tolerances.push_back(gap_tolerance * p.least / step.interval);
+      tolerances.push_back(gap_tolerance * p.min_gap / step.interval);
     }
   required.resize(held.size());
   BoundedImpulses network(joints, inverse_masses);
-  network.push(impulses, pushes);
+  network.apply(impulses, velocity_changes);
   for (int correction = 0; correction < max_corrections; ++correction) {
     bool done = correction > 0;
     for (std::size_t c = 0; c < held.size(); ++c) {
       const PairAtRest& p = *held[c];
-      const double open = (gap_then(p, step, now, then) - p.target) / step.interval;
+      const double open = (gap_at_next_kick(p, step, now, then) - p.target) / step.interval;
       done = done && open >= -2.0 * tolerances[c] && (impulses[c] == 0.0 || open <= 2.0 * tolerances[c]);
-      required[c] = parting(p, pushes) - open;
+      required[c] = separation_speed(p, velocity_changes) - open;
     }
     if (done)
       break;
     if (!network.solve(required, tolerances, impulses))
-      throw InvariantError(
-          fmt::format("no impulses carry the kick of {} contacts at rest; the particles are jammed in the box: make it "
-                      "larger, or set gravity.resting_contacts to \"bounced\"",
-                      held.size()));
-    network.push(impulses, pushes);
+      throw InvariantError(fmt::format(
+          "no impulses balance the kick of {} contacts at rest (the particles are jammed in the box); make the box "
+          "larger, or set gravity.resting_contacts to \"bounced\"",
+          held.size()));
+    network.apply(impulses, velocity_changes);
   }
   for (std::size_t c = 0; c < held.size(); ++c)
     held[c]->impulse = impulses[c];
@@ -297,22 +308,23 @@ void RestingContacts::Work::solve(const RestingStep& step) {
   costs.iterations = network.iterations();
 }
 
-// Half of the impulses, beside half kicks that have just been given. The work of a kick is that at the mean velocity of
-// all that acts with it: so each takes half of the cross terms, which went to what came later.
-void RestingContacts::Work::give(RestingState& state, const RestingStep& step, const std::vector<Vec3>& kicks,
-                                 bool after, CollisionTally& tally) {
+// Applies half of the impulses, next to the half kicks. Impulses and kicks act together and do their work at the mean
+// velocity: so each takes half of the cross terms, which a sequence would book to the later one.
+void RestingContacts::Work::distribute(RestingState& state, const RestingStep& step, const std::vector<Vec3>& kicks,
+                                       bool after, CollisionTally& tally) {
   const Frequencies& f = step.frequencies;
   const Rotation now(f, -step.to_epoch);
   double work = 0.0, azimuthal = 0.0, flux = 0.0;
+  assert(kicks.size() == members.size() && velocity_changes.size() == members.size());
   for (std::size_t m = 0; m < members.size(); ++m) {
-    Body& body = step.particles.bodies[members[m].place];
-    const Vec3 dv = 0.5 * pushes[m];
+    Body& body = step.particles.bodies[members[m].index];
+    const Vec3 dv = 0.5 * velocity_changes[m];
     work += body.mass * dv.dot(peculiar_velocity(body.elements, f, now) + 0.5 * dv - 0.5 * kicks[m]);
     azimuthal += keeler::azimuthal_gain(body, dv, f, now) - body.mass * dv.y() * kicks[m].y();
     for (const KickPart& part : step.kicks) {
-      const Vec3 its = (after ? part.after : part.before) * part.accelerations[members[m].place];
-      *part.work += 0.5 * body.mass * dv.dot(its);
-      *part.azimuthal_gain += body.mass * dv.y() * its.y();
+      const Vec3 dv_force = (after ? part.after : part.before) * part.accelerations[members[m].index];
+      *part.work += 0.5 * body.mass * dv.dot(dv_force);
+      *part.azimuthal_gain += body.mass * dv.y() * dv_force.y();
     }
     kick(body.elements, dv, f, now);
   }
@@ -323,8 +335,8 @@ void RestingContacts::Work::give(RestingState& state, const RestingStep& step, c
   state.work += work - f.shear() * flux;
 }
 
-// Members that are in no pair.
-void RestingContacts::Work::forget_others() {
+// Drops the members without a pair.
+void RestingContacts::Work::drop_free_members() {
   std::vector<std::uint8_t> rests(members.size());
   for (const PairAtRest& p : pairs)
     rests[p.low] = rests[p.high] = 1;
@@ -336,27 +348,27 @@ void RestingContacts::Work::forget_others() {
   pairs.clear();
 }
 
-void RestingContacts::carry(RestingState& state, const RestingStep& step, const std::optional<Friction>& friction,
-                            CollisionTally& tally) {
+void RestingContacts::persist(RestingState& state, const RestingStep& step, const std::optional<Friction>& friction,
+                              CollisionTally& tally) {
   if (!work_)
     work_ = std::make_unique<Work>();
   Work& w = *work_;
-  w.find_members(state, noted_, step.particles, places_known_);
-  places_known_ = true;
+  w.find_members(state, noted_, step.particles, indices_known_);
+  indices_known_ = true;
   w.read_kicks(step);
   w.list_pairs(state, noted_);
   noted_.clear();
-  w.look(step);
+  w.update_geometry(step);
   if (friction && friction->tangential_restitution < 1.0) {
-    w.rub(step, *friction, tally);
-    w.look(step);
+    w.apply_friction(step, *friction, tally);
+    w.update_geometry(step);
   }
-  w.pushes.assign(w.members.size(), Vec3::Zero());
+  w.velocity_changes.assign(w.members.size(), Vec3::Zero());
   for (const PairAtRest& p : w.pairs) {
-    w.pushes[p.low] -= (p.impulse * w.inverse_masses[p.low]) * p.normal;
-    w.pushes[p.high] += (p.impulse * w.inverse_masses[p.high]) * p.normal;
+    w.velocity_changes[p.low] -= (p.impulse * w.inverse_masses[p.low]) * p.normal;
+    w.velocity_changes[p.high] += (p.impulse * w.inverse_masses[p.high]) * p.normal;
   }
-  w.judge(step);
+  w.classify_pairs(step);
   w.solve(step);
   state.pairs.clear();
   state.loads.clear();
@@ -367,29 +379,30 @@ void RestingContacts::carry(RestingState& state, const RestingStep& step, const 
     state.strongest =
         std::max(state.strongest, p.impulse * (w.inverse_masses[p.low] + w.inverse_masses[p.high]) / p.pull);
   }
-  w.give(state, step, w.kicks_before, false, tally);
-  w.forget_others();
+  w.distribute(state, step, w.kicks_before, false, tally);
+  w.drop_free_members();
   if (state.pairs.empty())
     work_.reset();
 }
 
-void RestingContacts::carry_on(RestingState& state, const RestingStep& step, CollisionTally& tally) {
+void RestingContacts::persist_second_half(RestingState& state, const RestingStep& step, CollisionTally& tally) {
   if (state.pairs.empty())
     return;
+  assert(state.pairs.size() == state.loads.size() && step.interval > 0.0);
   if (!work_)
     work_ = std::make_unique<Work>();
   Work& w = *work_;
-  w.find_members(state, {}, step.particles, places_known_);
-  places_known_ = true;
+  w.find_members(state, {}, step.particles, indices_known_);
+  indices_known_ = true;
   w.read_kicks(step);
-  w.pushes.assign(w.members.size(), Vec3::Zero());
+  w.velocity_changes.assign(w.members.size(), Vec3::Zero());
   for (std::size_t k = 0; k < state.pairs.size(); ++k) {
     const std::uint32_t low = w.member(state.pairs[k].low), high = w.member(state.pairs[k].high);
     const Vec3 impulse = (state.loads[k].impulse / state.loads[k].separation.norm()) * state.loads[k].separation;
-    w.pushes[low] -= w.inverse_masses[low] * impulse;
-    w.pushes[high] += w.inverse_masses[high] * impulse;
+    w.velocity_changes[low] -= w.inverse_masses[low] * impulse;
+    w.velocity_changes[high] += w.inverse_masses[high] * impulse;
   }
-  w.give(state, step, w.kicks_after, true, tally);
+  w.distribute(state, step, w.kicks_after, true, tally);
 }
 
 } // namespace keeler

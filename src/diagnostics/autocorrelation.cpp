@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <complex>
 
@@ -29,6 +30,7 @@ double AutocorrelationMap::at(double dx, double dy) const {
 
 Autocorrelation::Autocorrelation(const ShearingBox& box, int columns, int rows)
     : box_(box), columns_(columns), rows_(rows) {
+  assert(columns > 0 && columns % 2 == 0 && rows > 0 && rows % 2 == 0);
   sum_.reach = 3 * columns / 4;
   sum_.rows = rows;
   sum_.spacing_x = box.size_x / columns;
@@ -39,7 +41,7 @@ Autocorrelation::Autocorrelation(const ShearingBox& box, int columns, int rows)
 void Autocorrelation::add(const Patch& patch) {
   if (patch.box.size_x != box_.size_x || patch.box.size_y != box_.size_y)
     throw UsageError(
-        fmt::format("snapshots of boxes {} x {} m and {} x {} m cannot be averaged; analyze each run alone",
+        fmt::format("snapshots of boxes {} x {} m and {} x {} m cannot be averaged; analyze each run separately",
                     box_.size_x, box_.size_y, patch.box.size_x, patch.box.size_y));
   MeshTransform mesh(columns_, rows_);
   const SelfPairs self = density_waves(patch, mesh);
@@ -70,6 +72,7 @@ void Autocorrelation::add(const Patch& patch) {
 }
 
 AutocorrelationMap Autocorrelation::map() const {
+  assert(count_ > 0);
   AutocorrelationMap mean = sum_;
   for (double& value : mean.values)
     value /= count_;
@@ -78,6 +81,7 @@ AutocorrelationMap Autocorrelation::map() const {
 }
 
 AutocorrelationMap mean_autocorrelation(std::span<const Patch> patches) {
+  assert(!patches.empty());
   const MeshSize size = mesh_size(patches.front());
   Autocorrelation sum(patches.front().box, size.columns, size.rows);
   for (const Patch& patch : patches)

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
@@ -17,7 +18,7 @@ Image operator+(const Image& a, const Image& b) {
   return {a.nx + b.nx, a.ny + b.ny};
 }
 
-// Union and find (Tarjan 1975) of particles that know which image of them stands beside their cluster's root.
+// Union-find (Tarjan 1975) of particles, which stores the image of each that is adjacent to its cluster's root.
 class Unions {
 public:
   explicit Unions(std::size_t count) : nodes_(count) {
@@ -25,36 +26,36 @@ public:
       nodes_[k].parent = static_cast<std::uint32_t>(k);
   }
 
-  struct Place {
+  struct RootImage {
     std::uint32_t root;
-    Image image; // of the particle, next to its root
+    Image image; // of the particle, adjacent to its root
   };
 
-  Place find(std::uint32_t k) {
-    Place place{k, {}};
-    while (nodes_[place.root].parent != place.root) {
-      place.image = place.image + nodes_[place.root].image;
-      place.root = nodes_[place.root].parent;
+  RootImage find(std::uint32_t k) {
+    RootImage found{k, {}};
+    while (nodes_[found.root].parent != found.root) {
+      found.image = found.image + nodes_[found.root].image;
+      found.root = nodes_[found.root].parent;
     }
-    for (Image rest = place.image; nodes_[k].parent != k;) { // now all on the way know the root
+    for (Image rest = found.image; nodes_[k].parent != k;) { // path compression
       const Node old = nodes_[k];
-      nodes_[k] = {place.root, rest, old.endless};
+      nodes_[k] = {found.root, rest, old.endless};
       rest = rest + -old.image;
       k = old.parent;
     }
-    return place;
+    return found;
   }
 
-  // The image of j touches i. The lower index becomes the root.
+  // Joins i and the image of j, which touches it. The lower index becomes the root.
   void unite(std::uint32_t i, std::uint32_t j, const Image& image) {
-    const Place at_i = find(i), at_j = find(j);
-    const Image j_beside_i = at_i.image + image; // j in the frame of i's root
+    const RootImage at_i = find(i), at_j = find(j);
+    const Image image_of_j = at_i.image + image; // j in the frame of i's root
     if (at_i.root == at_j.root) {
-      if (!(j_beside_i == at_j.image))
+      if (!(image_of_j == at_j.image))
         nodes_[at_i.root].endless = true;
       return;
     }
-    const Image root_j = j_beside_i + -at_j.image; // the root of j in that frame
+    const Image root_j = image_of_j + -at_j.image; // the root of j in that frame
     const auto low = std::min(at_i.root, at_j.root), high = std::max(at_i.root, at_j.root);
     nodes_[low].endless = nodes_[low].endless || nodes_[high].endless;
     nodes_[high] = {low, high == at_j.root ? root_j : -root_j, false};
@@ -65,7 +66,7 @@ public:
 private:
   struct Node {
     std::uint32_t parent = 0;
-    Image image; // beside the parent
+    Image image; // adjacent to the parent
     bool endless = false;
   };
   std::vector<Node> nodes_;
@@ -76,7 +77,7 @@ struct Friend {
   Image image;
 };
 
-// The friends of each particle that are smaller, or as large and later: each pair stands once.
+// Returns the friends of each particle that are smaller, or equal and later: each pair appears once.
 std::vector<std::vector<Friend>> friends(const Patch& patch, double gap) {
   const std::vector<double>& radii = patch.radii;
   PeriodicGrid grid;
@@ -96,33 +97,33 @@ std::vector<std::vector<Friend>> friends(const Patch& patch, double gap) {
   return friends;
 }
 
-// Shape and spin from the members' images next to each other, about the first of them so that nothing cancels.
+// Measures shape and spin from the members' adjacent images, relative to the first member to avoid cancellation.
 void measure(Cluster& cluster, const Patch& patch, std::span<const Image> images) {
-  const auto place = [&](std::size_t m) -> Vec3 {
+  const auto position = [&](std::size_t m) -> Vec3 {
     return patch.positions[cluster.members[m]] + patch.box.displacement(images[m], patch.offset);
   };
   const auto velocity = [&](std::size_t m) -> Vec3 {
     return patch.velocities[cluster.members[m]] - Vec3(0.0, patch.box.shear * patch.box.size_x * images[m].nx, 0.0);
   };
-  const Vec3 near = place(0), slow = velocity(0);
+  const Vec3 reference = position(0), reference_velocity = velocity(0);
   Vec3 centre = Vec3::Zero(), drift = Vec3::Zero();
   for (std::size_t m = 0; m < images.size(); ++m) {
-    const double share = patch.masses[cluster.members[m]] / cluster.mass;
-    centre += share * (place(m) - near);
-    drift += share * (velocity(m) - slow);
+    const double fraction = patch.masses[cluster.members[m]] / cluster.mass;
+    centre += fraction * (position(m) - reference);
+    drift += fraction * (velocity(m) - reference_velocity);
   }
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
   double angular_momentum = 0.0, inertia = 0.0;
   for (std::size_t m = 0; m < images.size(); ++m) {
     const std::uint32_t k = cluster.members[m];
-    const double share = patch.masses[k] / cluster.mass;
-    const Vec3 d = place(m) - near - centre, v = velocity(m) - slow - drift;
-    moments += share * (d * d.transpose() + patch.radii[k] * patch.radii[k] / 5.0 * Eigen::Matrix3d::Identity());
-    angular_momentum += share * (d.x() * v.y() - d.y() * v.x());
-    inertia += share * (d.x() * d.x() + d.y() * d.y());
+    const double fraction = patch.masses[k] / cluster.mass;
+    const Vec3 d = position(m) - reference - centre, v = velocity(m) - reference_velocity - drift;
+    moments += fraction * (d * d.transpose() + patch.radii[k] * patch.radii[k] / 5.0 * Eigen::Matrix3d::Identity());
+    angular_momentum += fraction * (d.x() * v.y() - d.y() * v.x());
+    inertia += fraction * (d.x() * d.x() + d.y() * d.y());
   }
   const Vec3 principal =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments, Eigen::EigenvaluesOnly).eigenvalues(); // rising
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments, Eigen::EigenvaluesOnly).eigenvalues(); // ascending
   const auto half_axis = [&](int axis) { return std::sqrt(5.0 * std::max(0.0, principal[axis])); };
   cluster.half_axes = {half_axis(2), half_axis(1), half_axis(0)};
   const double r = patch.radii[cluster.members[0]];
@@ -133,6 +134,7 @@ void measure(Cluster& cluster, const Patch& patch, std::span<const Image> images
 } // namespace
 
 std::vector<Cluster> find_clusters(const Patch& patch, double gap) {
+  assert(gap >= 0.0);
   if (patch.size() == 0)
     return {};
   Unions unions(patch.size());
@@ -173,23 +175,24 @@ std::vector<Cluster> find_clusters(const Patch& patch, double gap) {
 }
 
 ClusterAnalysis analyze_clusters(std::span<const Patch> patches, double gap) {
+  assert(!patches.empty());
   ClusterAnalysis mean;
   mean.gap = gap;
-  const double share = 1.0 / static_cast<double>(patches.size());
+  const double weight = 1.0 / static_cast<double>(patches.size());
   double spinning = 0.0, spin = 0.0;
   std::array<double, 3> axes{};
   int with_axes = 0;
   for (const Patch& patch : patches) {
     const double mass = total_mass(patch);
     const std::vector<Cluster> clusters = find_clusters(patch, gap);
-    mean.count += share * static_cast<double>(clusters.size());
+    mean.count += weight * static_cast<double>(clusters.size());
     for (const Cluster& cluster : clusters) {
-      const double mass_fraction = share * cluster.mass / mass;
+      const double mass_fraction = weight * cluster.mass / mass;
       mean.mass_fraction += mass_fraction;
       const auto power = static_cast<std::size_t>(std::bit_width(cluster.members.size())) - 2; // 0: two or three
       while (mean.spectrum.size() <= power)
         mean.spectrum.push_back({std::size_t{2} << mean.spectrum.size(), 0.0, 0.0});
-      mean.spectrum[power].count += share;
+      mean.spectrum[power].count += weight;
       mean.spectrum[power].mass_fraction += mass_fraction;
       if (cluster.spin) {
         spinning += mass_fraction;
@@ -198,7 +201,7 @@ ClusterAnalysis analyze_clusters(std::span<const Patch> patches, double gap) {
     }
     if (clusters.empty())
       continue;
-    mean.largest_mass_fraction += share * clusters[0].mass / mass;
+    mean.largest_mass_fraction += weight * clusters[0].mass / mass;
     if (clusters[0].half_axes) {
       ++with_axes;
       for (std::size_t axis = 0; axis < 3; ++axis)

@@ -5,18 +5,19 @@
 #include <keeler/diagnostics/surface.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <complex>
 
 namespace keeler {
 namespace {
 
-// Cloud-in-cell along one axis: two neighbouring nodes share a unit.
-struct Share {
+// Cloud-in-cell weights along one axis: of two neighbouring nodes, with sum 1.
+struct CloudWeights {
   int node;
   double here, next;
 
-  Share(double position, double half_size, double spacing, int nodes) {
+  CloudWeights(double position, double half_size, double spacing, int nodes) {
     const double u = (position + half_size) / spacing;
     const double floor = std::floor(u);
     node = ((static_cast<int>(floor) % nodes) + nodes) % nodes;
@@ -25,7 +26,7 @@ struct Share {
   }
 };
 
-void add(SelfPairs& sum, const Share& x, const Share& y, double weight) {
+void add(SelfPairs& sum, const CloudWeights& x, const CloudWeights& y, double weight) {
   const double x0 = x.here * x.here + x.next * x.next, x1 = x.here * x.next;
   const double y0 = y.here * y.here + y.next * y.next, y1 = y.here * y.next;
   sum.centre += weight * x0 * y0;
@@ -34,8 +35,8 @@ void add(SelfPairs& sum, const Share& x, const Share& y, double weight) {
   sum.diagonal += weight * x1 * y1;
 }
 
-// Lays Σ/⟨Σ⟩ on the mesh, node (i, j) at (−L_x/2 + i Δx, −L_y/2 + j Δy). The column after the last is the first one of
-// the next box, which lags by the shear offset.
+// Deposits Σ/⟨Σ⟩ on the mesh, node (i, j) at (−L_x/2 + i Δx, −L_y/2 + j Δy). The column after the last is the first one
+// of the next box, which lags by the shear offset.
 SelfPairs deposit(const Patch& patch, MeshTransform& mesh) {
   const ShearingBox& box = patch.box;
   const int columns = mesh.columns(), rows = mesh.rows();
@@ -48,11 +49,11 @@ SelfPairs deposit(const Patch& patch, MeshTransform& mesh) {
     const Vec3& p = patch.positions[k];
     const Image image = box.image_into_cell(p.x(), p.y(), patch.offset);
     const Vec3 inside = p + box.displacement(image, patch.offset);
-    const Share x(inside.x(), 0.5 * box.size_x, dx, columns);
+    const CloudWeights x(inside.x(), 0.5 * box.size_x, dx, columns);
     const double q = patch.masses[k] / cell_mass;
     for (const int side : {0, 1}) {
       const bool crosses = x.node + side == columns;
-      const Share y(inside.y() + (crosses ? patch.offset : 0.0), 0.5 * box.size_y, dy, rows);
+      const CloudWeights y(inside.y() + (crosses ? patch.offset : 0.0), 0.5 * box.size_y, dy, rows);
       const double part = q * (side == 0 ? x.here : x.next);
       double* column = mesh.real() + static_cast<std::ptrdiff_t>(crosses ? 0 : x.node + side) * rows;
       column[y.node] += part * y.here;
@@ -74,6 +75,7 @@ void shear_columns(MeshTransform& mesh, double turns_per_column) {
 } // namespace
 
 MeshSize mesh_size(const Patch& patch) {
+  assert(patch.size() > 0);
   const double between = std::sqrt(patch.box.area() / static_cast<double>(patch.size()));
   const double spacing = std::max(critical_wavelength(patch) / 32.0, between);
   const auto nodes = [&](double size) { return 2 * static_cast<int>(std::clamp(size / (2.0 * spacing), 4.0, 512.0)); };

@@ -1,5 +1,5 @@
 // The surface density of a patch on a mesh, and its waves. The box is periodic only in y' = y + (d/L_x) x; that shear
-// is applied as a phase between the transforms along y and x, so nothing is interpolated.
+// is applied as a phase between the transforms along y and x, so no interpolation is needed.
 #pragma once
 
 #include "mesh_transform.hpp"
@@ -13,11 +13,11 @@ struct MeshSize {
   int columns, rows;
 };
 
-/// A mesh that resolves λ_cr/32 or the mean distance of particles, whichever is coarser.
+/// Returns a mesh that resolves the larger of λ_cr/32 and the mean distance of particles.
 MeshSize mesh_size(const Patch& patch);
 
-/// A particle's correlation with itself, summed over particles: at lags (0, 0), (±1, 0), (0, ±1) and (±1, ±1) of the
-/// mesh, with Σ/⟨Σ⟩ as density and the mean over nodes.
+/// The correlation of particles with themselves, summed: at lags (0, 0), (±1, 0), (0, ±1) and (±1, ±1) of the mesh,
+/// with Σ/⟨Σ⟩ as density and the mean over nodes.
 struct SelfPairs {
   double centre = 0, along_x = 0, along_y = 0, diagonal = 0;
 
@@ -27,16 +27,16 @@ struct SelfPairs {
     return i == 0 ? (j == 0 ? centre : along_y) : (j == 0 ? along_x : diagonal);
   }
 
-  /// Its transform at a wave that turns by these angles (rad) from node to node. Over the number of nodes, it is what
-  /// self-pairs add to the power of that wave.
+  /// Returns its transform at a wave with these phase differences (rad) from node to node. Divided by the number of
+  /// nodes, it is the contribution of self-pairs to the power of that wave.
   double wave(double turn_x, double turn_y) const;
 };
 
-/// Lays Σ/⟨Σ⟩ on the mesh by cloud-in-cell and transforms it. Column i, wave j holds the sum over nodes of
+/// Deposits Σ/⟨Σ⟩ on the mesh by cloud-in-cell and transforms it. Column i, wave j holds the sum over nodes of
 /// Σ/⟨Σ⟩ exp(−i k·r), with k_y = 2πj/L_y and k_x = (2πi + k_y d)/L_x plus any multiple of 2π columns/L_x.
 SelfPairs density_waves(const Patch& patch, MeshTransform& mesh);
 
-/// Σm²/(Σm)²: the power of a wave if particles stood at random; 1/N for equal masses.
+/// Returns Σm²/(Σm)²: the power of a wave of random particles; 1/N for equal masses.
 double shot_power(const Patch& patch);
 
 } // namespace keeler

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <complex>
 #include <cstdint>
@@ -17,8 +18,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Fraction of the mean square `all` that is in waves whose squared amplitudes add up to `squares`; particles at random
-// would show `noise` of it. The mean square of a wave is half of the square of its amplitude.
+// Returns the fraction of the mean square `all` in waves with squared amplitudes that add up to `squares`, corrected
+// for the fraction `noise` of random particles. The mean square of a wave is half of the square of its amplitude.
 double fraction(double squares, double all, double noise) {
   return all > 0.0 ? (0.5 * squares / all - noise) / (1.0 - noise) : 0.0;
 }
@@ -46,9 +47,9 @@ std::optional<EpicyclicWaves> waves_of(const Squares& squares, const Vec3& dispe
                         fraction(squares.y, yy, noise)};
 }
 
-constexpr std::size_t bins = 256; // of the guiding radius; a mode has 64 or more
+constexpr std::size_t bins = 256; // of the guiding radius; a wavelength spans 64 or more
 
-// Whole numbers of units: sums in any order, and over ranks modulo 2⁶⁴, are the same.
+// Integer numbers of units: sums do not depend on their order, nor, modulo 2⁶⁴, on the ranks.
 struct Binned {
   using Numbers = std::array<std::uint64_t, bins>;
   Numbers mass{}, cosine{}, sine{}; // Σ m, Σ m e cos φ, Σ m e sin φ
@@ -73,7 +74,7 @@ struct Binned {
   }
 };
 
-// Of sums whose terms' absolute values add up to no more than `bound`: they stay below 2⁶² units.
+// Units for sums of terms whose absolute values add up to no more than `bound`: they stay below 2⁶² units.
 class FixedPoint {
 public:
   explicit FixedPoint(double bound) : per_one_(std::ldexp(1.0, 61 - std::ilogb(bound))) {}
@@ -91,7 +92,7 @@ std::size_t bin_of(double guiding_x, double box_length) {
   return static_cast<std::size_t>(std::min(width - 1.0, (turns - std::floor(turns)) * width));
 }
 
-// Σ m (e cos φ, e sin φ) of each bin about the mean motion, kg m, at the epoch.
+// Σ m (e cos φ, e sin φ) of each bin relative to the mean motion, kg m, at the epoch.
 struct EccentricityField {
   std::array<double, bins> cosine{}, sine{};
 };
@@ -112,8 +113,8 @@ EccentricityField about_mean(const Binned& sums, const FixedPoint& kilogram, con
   return field;
 }
 
-// Of the velocities in the modes after a rotation. An amplitude is (2/M) Σ exp(−ikX) over the bins, whose width is
-// divided out.
+// Returns the squares of the velocities in the modes after a rotation. An amplitude is (2/M) Σ exp(−ikX) over the bins,
+// corrected for their width.
 Squares squares_of(const EccentricityField& field, double mass, double kappa, const Rotation& rotation) {
   Squares squares;
   for (int n = 1; n <= box_long_modes; ++n) {
@@ -136,7 +137,7 @@ Squares squares_of(const EccentricityField& field, double mass, double kappa, co
 
 } // namespace
 
-Vec3 EpicyclicWaves::taken_out_of(const Vec3& dispersion) const {
+Vec3 EpicyclicWaves::residual_dispersion(const Vec3& dispersion) const {
   const auto rest = [](double part) { return std::sqrt(std::max(0.0, 1.0 - part)); };
   return {dispersion.x() * rest(x), dispersion.y() * rest(y), dispersion.z()};
 }
@@ -148,10 +149,11 @@ std::optional<EpicyclicWaves> epicyclic_waves(const Patch& patch) {
   return waves_of(squares, velocity_dispersion(patch), patch.frequencies.kappa, radial_mode_noise(patch));
 }
 
-// By Cauchy and Schwarz Σ m |e cos φ| ≤ √(Σ m Σ m e²), which bounds the sums before they are made.
+// Bounds the sums in advance by the Cauchy-Schwarz inequality, Σ m |e cos φ| ≤ √(Σ m Σ m e²).
 std::optional<EpicyclicWaves> epicyclic_waves(const Particles& particles, double box_length,
                                               const Frequencies& frequencies, double after, const ParticleMeans& means,
                                               const Communicator& ranks) {
+  assert(box_length > 0.0 && frequencies.kappa > 0.0);
   const double bound = std::sqrt(2.0 * means.mass * means.epicyclic_energy) / frequencies.kappa;
   if (!std::isfinite(bound) || !(bound > 0.0))
     return std::nullopt;

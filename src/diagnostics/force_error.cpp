@@ -6,6 +6,7 @@
 #include <keeler/particles/order.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -13,7 +14,7 @@
 namespace keeler {
 namespace {
 
-// The first `count` of the candidates when they are shuffled (Fisher and Yates).
+// Draws `count` of the candidates by a partial shuffle (Fisher and Yates).
 void draw(std::vector<std::size_t> candidates, std::size_t count, RandomStream& random,
           std::vector<std::size_t>& drawn) {
   for (std::size_t k = 0; k < std::min(count, candidates.size()); ++k) {
@@ -23,7 +24,7 @@ void draw(std::vector<std::size_t> candidates, std::size_t count, RandomStream& 
   }
 }
 
-// How far inside the cell's edges x < 0, x > 0, y < 0, y > 0 a particle stands, m.
+// Returns the distance of a particle from the cell's edges x < 0, x > 0, y < 0, y > 0, m.
 std::array<double, 4> depths(const GravityProblem& problem, double offset, std::size_t k) {
   const Vec3 p = into_cell(problem.box, offset, problem.positions[k]);
   const double half_x = 0.5 * problem.box.size_x, half_y = 0.5 * problem.box.size_y;
@@ -53,8 +54,9 @@ GravityProblem gravity_problem(const Patch& patch) {
   return {patch.positions, patch.masses, patch.ids, patch.box, patch.offset, newton_g(patch.orbital_frequency)};
 }
 
-ForceSample draw_force_sample(const GravityProblem& problem, std::size_t even, std::size_t at_each_edge,
+ForceSample draw_force_sample(const GravityProblem& problem, std::size_t uniform, std::size_t at_each_edge,
                               double edge_width) {
+  assert(problem.ids.size() == problem.positions.size());
   ForceSample sample;
   RandomStream random(1, RandomPurpose::sample, 0);
   const std::vector<std::uint32_t> order = order_by_id(problem.ids);
@@ -67,8 +69,8 @@ ForceSample draw_force_sample(const GravityProblem& problem, std::size_t even, s
       if (depth[edge] < edge_width)
         beside[edge].push_back(k);
   }
-  draw(std::move(all), even, random, sample.targets);
-  sample.even = sample.targets.size();
+  draw(std::move(all), uniform, random, sample.targets);
+  sample.uniform = sample.targets.size();
   for (std::size_t edge = 0; edge < 4; ++edge) {
     const std::size_t before = sample.targets.size();
     draw(std::move(beside[edge]), at_each_edge, random, sample.targets);
@@ -78,24 +80,25 @@ ForceSample draw_force_sample(const GravityProblem& problem, std::size_t even, s
 }
 
 ForceErrors force_errors(const ForceSample& sample, std::span<const Vec3> exact, std::span<const Vec3> accelerations) {
+  assert(exact.size() == sample.targets.size() && sample.uniform <= sample.targets.size());
   std::vector<Vec3> errors;
   for (std::size_t k = 0; k < sample.targets.size(); ++k)
     errors.push_back(accelerations[sample.targets[k]] - exact[k]);
-  const std::size_t even = sample.even, all = errors.size();
-  const double size = std::sqrt(mean_over(0, even, [&](std::size_t k) { return exact[k].squaredNorm(); }));
+  const std::size_t uniform = sample.uniform, all = errors.size();
+  const double size = std::sqrt(mean_over(0, uniform, [&](std::size_t k) { return exact[k].squaredNorm(); }));
   const double in_plane =
-      std::sqrt(mean_over(0, even, [&](std::size_t k) { return exact[k].head<2>().squaredNorm(); }));
+      std::sqrt(mean_over(0, uniform, [&](std::size_t k) { return exact[k].head<2>().squaredNorm(); }));
   if (!(in_plane > 0.0))
     return {};
   const auto squares = [&](std::size_t k) { return errors[k].squaredNorm(); };
   ForceErrors result;
-  result.rms = std::sqrt(mean_over(0, even, squares)) / size;
-  result.p999 = percentile_999(errors, even) / size;
+  result.rms = std::sqrt(mean_over(0, uniform, squares)) / size;
+  result.p999 = percentile_999(errors, uniform) / size;
   for (int axis = 0; axis < 3; ++axis)
     result.component_rms[static_cast<std::size_t>(axis)] =
-        std::sqrt(mean_over(0, even, [&](std::size_t k) { return errors[k][axis] * errors[k][axis]; })) / size;
-  result.edge_rms = std::sqrt(mean_over(even, all, squares)) / size;
-  std::size_t begin = even;
+        std::sqrt(mean_over(0, uniform, [&](std::size_t k) { return errors[k][axis] * errors[k][axis]; })) / size;
+  result.edge_rms = std::sqrt(mean_over(uniform, all, squares)) / size;
+  std::size_t begin = uniform;
   for (const std::size_t count : sample.edges) {
     const double pull_x = mean_over(begin, begin + count, [&](std::size_t k) { return errors[k].x(); });
     const double pull_y = mean_over(begin, begin + count, [&](std::size_t k) { return errors[k].y(); });
@@ -106,6 +109,7 @@ ForceErrors force_errors(const ForceSample& sample, std::span<const Vec3> exact,
 }
 
 double net_force(std::span<const double> masses, std::span<const Vec3> accelerations) {
+  assert(masses.size() == accelerations.size());
   Vec3 sum = Vec3::Zero();
   double sizes = 0.0;
   for (std::size_t k = 0; k < masses.size(); ++k) {

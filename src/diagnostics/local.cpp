@@ -7,12 +7,13 @@
 #include <keeler/diagnostics/surface.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <vector>
 
 namespace keeler {
 namespace {
 
-// Of a particle and its neighbours; velocities relative to the particle's own, so that nothing cancels.
+// Sums over a particle and its neighbours; velocities relative to the particle, to avoid cancellation.
 struct Neighbourhood {
   double mass, mass_squares;
   Vec3 momentum = Vec3::Zero(), squares = Vec3::Zero();
@@ -35,12 +36,12 @@ struct Neighbourhood {
 };
 
 struct MotionSums {
-  double mass = 0.0, company = 0.0;
+  double mass = 0.0, with_neighbours = 0.0;
   Vec3 squares = Vec3::Zero();
 
   MotionSums& operator+=(const MotionSums& more) {
     mass += more.mass;
-    company += more.company;
+    with_neighbours += more.with_neighbours;
     squares += more.squares;
     return *this;
   }
@@ -67,18 +68,18 @@ bool itself(std::size_t i, std::size_t j, const Image& image) {
   return i == j && image == Image{};
 }
 
-// Share of the cells, all of one size, whose discs cover less than thin_optical_depth.
+// Returns the fraction of the cells, all of one size, with an optical depth below thin_optical_depth.
 double thin_fraction(const Patch& patch, int columns, int rows) {
   const ShearingBox& box = patch.box;
   std::vector<double> discs(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), 0.0);
-  const auto cell = [](double place, double size, int cells) {
-    return std::clamp(static_cast<int>((place / size + 0.5) * cells), 0, cells - 1);
+  const auto cell = [](double x, double size, int cells) {
+    return std::clamp(static_cast<int>((x / size + 0.5) * cells), 0, cells - 1);
   };
   for (std::size_t k = 0; k < patch.size(); ++k) {
     const Vec3& p = patch.positions[k];
     const Vec3 inside = p + box.displacement(box.image_into_cell(p.x(), p.y(), patch.offset), patch.offset);
-    const int place = cell(inside.x(), box.size_x, columns) * rows + cell(inside.y(), box.size_y, rows);
-    discs[static_cast<std::size_t>(place)] += pi * patch.radii[k] * patch.radii[k];
+    const int index = cell(inside.x(), box.size_x, columns) * rows + cell(inside.y(), box.size_y, rows);
+    discs[static_cast<std::size_t>(index)] += pi * patch.radii[k] * patch.radii[k];
   }
   const double limit = thin_optical_depth * box.area() / static_cast<double>(discs.size());
   const auto thin = std::count_if(discs.begin(), discs.end(), [&](double area) { return area < limit; });
@@ -92,25 +93,26 @@ double local_radius(const Patch& patch) {
 }
 
 LocalMotion local_motion(const Patch& patch, double radius) {
+  assert(radius > 0.0);
   const PeriodicGrid grid = grid_of(patch, radius);
   const auto sums = ordered_total<MotionSums>(patch.size(), [&](MotionSums& total, std::size_t i) {
-    const Vec3 &place = patch.positions[i], velocity = peculiar_velocity(patch, i);
+    const Vec3 &position = patch.positions[i], velocity = peculiar_velocity(patch, i);
     Neighbourhood near(patch.masses[i]);
-    grid.visit_near(place, radius, radius, [&](std::size_t j, const Image& image) {
-      const Vec3 d = patch.positions[j] + patch.box.displacement(image, patch.offset) - place;
+    grid.visit_near(position, radius, radius, [&](std::size_t j, const Image& image) {
+      const Vec3 d = patch.positions[j] + patch.box.displacement(image, patch.offset) - position;
       if (d.squaredNorm() <= radius * radius && !itself(i, j, image))
         near.add(patch.masses[j], peculiar_velocity(patch, j) - velocity);
     });
     total.mass += patch.masses[i];
     if (near.alone())
       return;
-    total.company += patch.masses[i];
+    total.with_neighbours += patch.masses[i];
     total.squares += patch.masses[i] * near.variance();
   });
   LocalMotion motion;
-  motion.share = sums.company / sums.mass;
-  if (sums.company > 0.0)
-    motion.dispersion = (sums.squares / sums.company).cwiseSqrt();
+  motion.fraction = sums.with_neighbours / sums.mass;
+  if (sums.with_neighbours > 0.0)
+    motion.dispersion = (sums.squares / sums.with_neighbours).cwiseSqrt();
   return motion;
 }
 
@@ -119,12 +121,13 @@ double crowding_radius(const Patch& patch) {
 }
 
 Crowding crowding(const Patch& patch, double radius) {
+  assert(radius > 0.0);
   const PeriodicGrid grid = grid_of(patch, radius);
   const auto sums = ordered_total<CrowdingSums>(patch.size(), [&](CrowdingSums& total, std::size_t i) {
-    const Vec3& place = patch.positions[i];
+    const Vec3& position = patch.positions[i];
     double discs = 0.0, cuts = 0.0;
-    grid.visit_near(place, radius, radius, [&](std::size_t j, const Image& image) {
-      const Vec3 d = patch.positions[j] + patch.box.displacement(image, patch.offset) - place;
+    grid.visit_near(position, radius, radius, [&](std::size_t j, const Image& image) {
+      const Vec3 d = patch.positions[j] + patch.box.displacement(image, patch.offset) - position;
       if (d.x() * d.x() + d.y() * d.y() > radius * radius || itself(i, j, image))
         return;
       const double r = patch.radii[j], z = patch.positions[j].z();

@@ -3,6 +3,7 @@
 #include <fftw3.h>
 
 #include <algorithm>
+#include <cassert>
 #include <memory>
 #include <new>
 
@@ -22,7 +23,7 @@ struct Plan {
 };
 
 fftw_complex* fftw(std::complex<double>* numbers) {
-  return reinterpret_cast<fftw_complex*>(numbers); // the layout that FFTW and the C++ standard both promise
+  return reinterpret_cast<fftw_complex*>(numbers); // FFTW and the C++ standard both guarantee this layout
 }
 
 void transform_x(std::complex<double>* spectrum, int columns, int waves, int sign) {
@@ -34,6 +35,7 @@ void transform_x(std::complex<double>* spectrum, int columns, int waves, int sig
 } // namespace
 
 MeshTransform::MeshTransform(int columns, int rows) : columns_(columns), rows_(rows) {
+  assert(columns > 0 && rows > 0 && rows % 2 == 0);
   const auto nodes = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   const auto numbers = static_cast<std::size_t>(columns) * static_cast<std::size_t>(waves());
   real_ = fftw_alloc_real(nodes);

@@ -1,5 +1,5 @@
-// Fourier transforms of a real mesh, along y first and then along x, with the half-way stage open to the caller: there
-// the shear of the box is a phase. Plans by FFTW_ESTIMATE, so the bits do not depend on what ran before.
+// Fourier transforms of a real mesh, along y first and then along x, with access to the intermediate stage, where the
+// shear of the box is a phase. Plans are made by FFTW_ESTIMATE, so the bits do not depend on earlier plans.
 #pragma once
 
 #include <complex>
@@ -22,9 +22,9 @@ public:
 
   void forward_y();  ///< real() → waves
   void forward_x();  ///< waves → waves, in place
-  void backward_x(); ///< the same back, times columns
+  void backward_x(); ///< inverse, times columns
 
-  /// One column back: waves() numbers → rows() numbers, times rows.
+  /// Transforms one column back: waves() numbers → rows() numbers, times rows.
   void column_backward_y(const std::complex<double>* from, double* to);
 
 private:

@@ -1,11 +1,13 @@
 #include <keeler/diagnostics/occultation.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 
 FlickerMoments flicker_moments(std::span<const double> transmissions) {
+  assert(!transmissions.empty());
   const auto count = static_cast<double>(transmissions.size());
   double mean = 0.0, second = 0.0, third = 0.0, fourth = 0.0;
   for (const double t : transmissions)
@@ -26,6 +28,7 @@ FlickerMoments flicker_moments(std::span<const double> transmissions) {
 }
 
 Occultation occultation(std::span<const Patch> patches, const RayLattice& rays, const LineOfSight& sight) {
+  assert(!patches.empty());
   Occultation result;
   result.sight = sight;
   std::vector<double> singles, footprints;
@@ -37,8 +40,8 @@ Occultation occultation(std::span<const Patch> patches, const RayLattice& rays, 
     singles.push_back(one.transmission);
     mean += one.transmission / count;
     error_squares += one.error * one.error;
-    const std::vector<double> shares = rays.shares(blocked);
-    footprints.insert(footprints.end(), shares.begin(), shares.end());
+    const std::vector<double> transmissions = rays.transmissions(blocked);
+    footprints.insert(footprints.end(), transmissions.begin(), transmissions.end());
   }
   result.transmission = measured(mean, singles);
   result.ray_error = std::sqrt(error_squares) / count;
@@ -58,10 +61,10 @@ std::optional<AzimuthalAsymmetry> azimuthal_asymmetry(std::span<const Occultatio
   if (of_one_elevation.size() < 2)
     return std::nullopt;
   const auto [darkest, brightest] = std::minmax_element(of_one_elevation.begin(), of_one_elevation.end(), less);
-  const double least = *darkest->transmission.value, most = *brightest->transmission.value;
-  if (!(most > 0.0))
+  const double min_t = *darkest->transmission.value, max_t = *brightest->transmission.value;
+  if (!(max_t > 0.0))
     return std::nullopt;
-  return AzimuthalAsymmetry{(most - least) / (most + least), brightest->sight.azimuth};
+  return AzimuthalAsymmetry{(max_t - min_t) / (max_t + min_t), brightest->sight.azimuth};
 }
 
 } // namespace keeler

@@ -3,6 +3,7 @@
 #include <keeler/core/exact_sum.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -67,18 +68,18 @@ SpinMeans spin_means(const Particles& particles, double after, const Communicato
           std::sqrt(std::max(0.0, sums.squares.value() / mass - mean.squaredNorm()))};
 }
 
-// Of the particle with the least id: all ranks have the same.
+// Returns the velocity of the particle with the smallest id, on all ranks.
 Vec3 one_velocity(const Particles& particles, const Frequencies& frequencies, const Rotation& rotation,
                   const Communicator& ranks) {
   struct One {
     std::uint64_t id = std::numeric_limits<std::uint64_t>::max();
     double x = 0.0, y = 0.0, z = 0.0;
   } one;
-  const auto least = std::min_element(particles.ids.begin(), particles.ids.end());
-  if (least != particles.ids.end()) {
-    const std::size_t k = static_cast<std::size_t>(least - particles.ids.begin());
+  const auto first = std::min_element(particles.ids.begin(), particles.ids.end());
+  if (first != particles.ids.end()) {
+    const std::size_t k = static_cast<std::size_t>(first - particles.ids.begin());
     const Vec3 c = peculiar_velocity(particles.bodies[k].elements, frequencies, rotation);
-    one = {*least, c.x(), c.y(), c.z()};
+    one = {*first, c.x(), c.y(), c.z()};
   }
   for (const std::vector<One>& other : ranks.exchange(std::vector(ranks.size(), std::vector{one})))
     if (other.front().id < one.id)
@@ -88,19 +89,20 @@ Vec3 one_velocity(const Particles& particles, const Frequencies& frequencies, co
 
 } // namespace
 
-// Variances in one pass: squares are taken about the velocity of one of the particles, so that a common motion of all
-// does not cancel digits.
+// Computes variances in one pass: squares are taken relative to the velocity of one of the particles, so that a common
+// motion of all does not cancel digits.
 ParticleMeans particle_means(const Particles& particles, const Frequencies& frequencies, double after,
                              const Communicator& ranks) {
   if (particles.size() == 0 && !ranks.distributed())
     return {};
+  assert(particles.ids.size() == particles.size());
   const Rotation rotation(frequencies, after);
-  const Vec3 near = one_velocity(particles, frequencies, rotation, ranks);
+  const Vec3 reference = one_velocity(particles, frequencies, rotation, ranks);
   PatchSums sums = exact_total<PatchSums>(particles.size(), [&](PatchSums& total, std::size_t k) {
     particles.prefetch_after(k);
     const Body& body = particles.bodies[k];
     const Elements& el = body.elements;
-    const Vec3 c = peculiar_velocity(el, frequencies, rotation), v = c - near, momentum = body.mass * v;
+    const Vec3 c = peculiar_velocity(el, frequencies, rotation), v = c - reference, momentum = body.mass * v;
     const double height = el.i_sin * rotation.cos_i + el.i_cos * rotation.sin_i;
     total.mass += body.mass;
     total.energy += body.mass * epicyclic_energy(el, frequencies);

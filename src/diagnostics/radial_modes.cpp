@@ -5,6 +5,7 @@
 #include <keeler/diagnostics/mean.hpp>
 #include <keeler/statistics/time_series.hpp>
 
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
@@ -21,8 +22,9 @@ struct Sums {
   }
 };
 
-// radius(p) is that of particle p in the waves.
+// `radius(p)`: the radial coordinate of particle p.
 template<class Radius> std::vector<RadialMode> modes_over(const Radius& radius, const Patch& patch, int count) {
+  assert(count >= 0 && patch.box.size_x > 0.0);
   const Vec3 mean = mean_velocity(patch);
   const double mass = total_mass(patch);
   std::vector<RadialMode> modes;
@@ -46,8 +48,8 @@ double RadialMode::epicyclic_speed(double kappa) const {
   return std::sqrt(std::norm(velocity_x) + std::norm(2.0 / kappa * velocity_y));
 }
 
-// With φ = κt ∓ kx, v_x = κ e sin φ and 2 v_y/κ = κ e cos φ are the real parts of ±i and 1 times κ e exp(∓iκt)
-// exp(ikx).
+// Derivation: with φ = κt ∓ kx, v_x = κ e sin φ and 2 v_y/κ = κ e cos φ are the real parts of ±i and 1 times κ e
+// exp(∓iκt) exp(ikx).
 std::complex<double> RadialMode::outward(double kappa) const {
   return velocity_y / kappa - std::complex(0.0, 0.5) * velocity_x;
 }
@@ -73,6 +75,7 @@ double radial_mode_noise(const Patch& patch) {
 }
 
 std::optional<Growth> growth(std::span<const double> times, std::span<const double> values) {
+  assert(times.size() == values.size());
   const auto count = static_cast<double>(values.size());
   double mean_time = 0.0, mean_log = 0.0;
   for (std::size_t k = 0; k < values.size(); ++k) {
@@ -106,7 +109,7 @@ std::vector<RadialModeAnalysis> analyze_radial_modes(std::span<const Patch> patc
   std::vector<RadialModeAnalysis> result(static_cast<std::size_t>(count));
   std::vector<std::vector<double>> speeds(result.size());
   std::vector<double> times; // rad
-  const double share = 1.0 / static_cast<double>(patches.size());
+  const double weight = 1.0 / static_cast<double>(patches.size());
   for (const Patch& patch : patches) {
     times.push_back(two_pi * patch.time_orbits);
     const std::vector<RadialMode> modes = radial_modes(patch, count);
@@ -115,9 +118,9 @@ std::vector<RadialModeAnalysis> analyze_radial_modes(std::span<const Patch> patc
       speeds[k].push_back(speed);
       result[k].n = modes[k].n;
       result[k].wavelength = patch.box.size_x / modes[k].n;
-      result[k].density_amplitude += share * std::abs(modes[k].density);
+      result[k].density_amplitude += weight * std::abs(modes[k].density);
       result[k].density_phase_degrees = std::arg(modes[k].density) * 180.0 / pi;
-      result[k].speed += share * speed * patch.orbital_frequency;
+      result[k].speed += weight * speed * patch.orbital_frequency;
     }
   }
   for (std::size_t k = 0; k < result.size(); ++k)

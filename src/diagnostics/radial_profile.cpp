@@ -4,11 +4,13 @@
 #include <keeler/diagnostics/dispersion.hpp>
 
 #include <algorithm>
+#include <cassert>
 
 namespace keeler {
 
-// In the order of the particles, twice: means first, so that a common motion does not cancel digits.
+// Two passes in the order of the particles: means first, so that a common motion does not cancel digits.
 std::vector<RadialBin> radial_profile(const Patch& patch, std::size_t bins) {
+  assert(bins > 0);
   const ShearingBox& box = patch.box;
   const double width = box.size_x / static_cast<double>(bins), area = width * box.size_y;
   std::vector<RadialBin> profile(bins);

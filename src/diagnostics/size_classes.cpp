@@ -5,6 +5,7 @@
 #include <keeler/diagnostics/mean.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
@@ -50,6 +51,7 @@ SizeClass size_class(const Patch& patch, double smallest, double largest, bool l
 } // namespace
 
 std::vector<SizeClass> size_classes(const Patch& patch, int classes) {
+  assert(classes > 0);
   if (patch.radii.empty())
     return {};
   const double smallest = *std::min_element(patch.radii.begin(), patch.radii.end());
@@ -59,7 +61,7 @@ std::vector<SizeClass> size_classes(const Patch& patch, int classes) {
   const Vec3 mean = mean_velocity(patch);
   const double step = std::log(largest / smallest) / classes;
   std::vector<SizeClass> result;
-  for (int c = 0; c < classes; ++c) { // neighbours share their limit to the bit
+  for (int c = 0; c < classes; ++c) { // neighbours have bit-identical limits
     const auto limit = [&](int edge) {
       return edge == 0 ? smallest : edge == classes ? largest : smallest * std::exp(step * edge);
     };

@@ -3,6 +3,7 @@
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/mean.hpp>
 
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
@@ -10,6 +11,7 @@ namespace keeler {
 std::optional<SpinState> spin_state(const Patch& patch) {
   if (patch.spins.empty())
     return std::nullopt;
+  assert(patch.spins.size() == patch.size());
   SpinState state;
   for (int axis = 0; axis < 3; ++axis)
     state.mean[axis] = mass_mean(patch, [&](std::size_t k) { return patch.spins[k][axis]; });

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
@@ -37,7 +38,7 @@ public:
   double low_x() const { return x_ - half_x_; }
   double high_x() const { return x_ + half_x_; }
 
-  // The range of y where 0 ≤ x − begin ≤ width.
+  // Returns the range of y of the shadow where 0 ≤ x − begin ≤ width.
   std::pair<double, double> rows(double begin, double width) const {
     const double from = std::max(begin - x_, -half_x_), to = std::min(begin + width - x_, half_x_);
     return {y_ - upper_edge(closest(-to, -from)), y_ + upper_edge(closest(from, to))};
@@ -49,12 +50,12 @@ public:
   }
 
 private:
-  // The edge with the larger y at Δx, relative to the centre; the other one is its reflection.
+  // Returns the edge with the larger y at Δx, relative to the centre; the other one is its reflection.
   double upper_edge(double dx) const {
     return (std::sqrt(std::max(0.0, c_ * radius2_ - sine_ * sine_ * dx * dx)) - b_ * dx) / c_;
   }
 
-  // Where that edge is highest: it is concave with its top at top_dx_.
+  // Returns the Δx where that edge is highest: it is concave with its top at top_dx_.
   double closest(double from, double to) const { return std::max(from, std::min(top_dx_, to)); }
 
   double sine_, tilt_x_, tilt_y_, a_ = 0, b_ = 0, c_ = 0;
@@ -68,33 +69,36 @@ double at_least_one(double number) {
 } // namespace
 
 RayLattice::RayLattice(const ShearingBox& box, std::size_t rays, double footprint, std::uint64_t seed) : box_(box) {
+  assert(rays > 0 && footprint > 0.0 && box.area() > 0.0);
   const double across = at_least_one(box.size_x / footprint), along = at_least_one(box.size_y / footprint);
   const double side = std::sqrt(box.area() / static_cast<double>(rays)); // of a ray's cell
   const double columns = across * at_least_one(box.size_x / across / side),
                rows = along * at_least_one(box.size_y / along / side);
-  // a ray also has marks, and at least one a footprint has its share
-  constexpr double bytes = sizeof(Place) + 2 * sizeof(std::uint8_t) + sizeof(double);
-  places_.resize(affordable_size(columns * rows, bytes,
-                                 fmt::format("a lattice of {} rays, at least one in each footprint of {} m,",
-                                             format_number(columns * rows, 4), format_number(footprint, 4)),
-                                 "lower --rays or raise --footprint"));
+  // memory per ray: also two marks, and at most one footprint
+  constexpr double bytes = sizeof(Position) + 2 * sizeof(std::uint8_t) + sizeof(double);
+  positions_.resize(affordable_size(columns * rows, bytes,
+                                    fmt::format("a lattice of {} rays, at least one in each footprint of {} m,",
+                                                format_number(columns * rows, 4), format_number(footprint, 4)),
+                                    "lower --rays or raise --footprint"));
   across_ = static_cast<std::size_t>(across), along_ = static_cast<std::size_t>(along);
   columns_ = static_cast<std::size_t>(columns), rows_ = static_cast<std::size_t>(rows);
   const double dx = box.size_x / static_cast<double>(columns_), dy = box.size_y / static_cast<double>(rows_);
-  parallel_for(places_.size(), [&](std::size_t k) {
+  parallel_for(positions_.size(), [&](std::size_t k) {
     RandomStream random(seed, RandomPurpose::sample, k);
     const std::size_t column = k / rows_, row = k % rows_;
-    places_[k].x = -0.5 * box.size_x + (static_cast<double>(column) + random.uniform()) * dx;
-    places_[k].y = -0.5 * box.size_y + (static_cast<double>(row) + random.uniform()) * dy;
+    positions_[k].x = -0.5 * box.size_x + (static_cast<double>(column) + random.uniform()) * dx;
+    positions_[k].y = -0.5 * box.size_y + (static_cast<double>(row) + random.uniform()) * dy;
   });
 }
 
 std::vector<std::uint8_t> RayLattice::blocked(const Patch& patch, const LineOfSight& sight) const {
+  assert(patch.box.size_x == box_.size_x && patch.box.size_y == box_.size_y);
+  assert(std::sin(sight.elevation) > 0.0);
   const ShearedCells cells{patch.box, patch.offset,
                            CellAxis(box_.size_x, box_.size_x / static_cast<double>(columns_), columns_),
                            CellAxis(box_.size_y, box_.size_y / static_cast<double>(rows_), rows_)};
-  const double slack = 1e-9 * (box_.size_x + box_.size_y); // where rounding may put a ray beside its cell
-  std::vector<std::atomic<std::uint8_t>> marks(places_.size());
+  const double margin = 1e-9 * (box_.size_x + box_.size_y); // rounding may put a ray beside its cell
+  std::vector<std::atomic<std::uint8_t>> marks(positions_.size());
   const Shadow plane(sight);
   parallel_for(
       patch.size(),
@@ -102,14 +106,14 @@ std::vector<std::uint8_t> RayLattice::blocked(const Patch& patch, const LineOfSi
         Shadow shadow = plane;
         shadow.cast(patch.positions[k], patch.radii[k]);
         const auto rows_at = [&](double begin) {
-          const auto [low, high] = shadow.rows(begin - slack, cells.x.width + 2.0 * slack);
-          return std::pair(low - slack, high + slack);
+          const auto [low, high] = shadow.rows(begin - margin, cells.x.width + 2.0 * margin);
+          return std::pair(low - margin, high + margin);
         };
-        cells.visit_window(shadow.low_x() - slack, shadow.high_x() + slack, rows_at,
+        cells.visit_window(shadow.low_x() - margin, shadow.high_x() + margin, rows_at,
                            [&](std::size_t first, std::size_t last, const Image& image) {
                              const Vec3 shift = patch.box.displacement(image, patch.offset);
                              for (std::size_t ray = first; ray <= last; ++ray)
-                               if (shadow.covers(places_[ray].x + shift.x(), places_[ray].y + shift.y()))
+                               if (shadow.covers(positions_[ray].x + shift.x(), positions_[ray].y + shift.y()))
                                  marks[ray].store(1, std::memory_order_relaxed);
                            });
       },
@@ -117,22 +121,24 @@ std::vector<std::uint8_t> RayLattice::blocked(const Patch& patch, const LineOfSi
   return {marks.begin(), marks.end()};
 }
 
-std::vector<double> RayLattice::shares(const std::vector<std::uint8_t>& blocked) const {
+std::vector<double> RayLattice::transmissions(const std::vector<std::uint8_t>& blocked) const {
+  assert(blocked.size() == size());
   const std::size_t block_columns = columns_ / across_, block_rows = rows_ / along_;
-  std::vector<double> shares(footprints());
-  parallel_for(shares.size(), [&](std::size_t f) {
+  std::vector<double> transmissions(footprints());
+  parallel_for(transmissions.size(), [&](std::size_t f) {
     std::size_t passed = 0;
     for (std::size_t i = 0; i < block_columns; ++i)
       for (std::size_t j = 0; j < block_rows; ++j)
         passed += blocked[(f / along_ * block_columns + i) * rows_ + f % along_ * block_rows + j] == 0 ? 1 : 0;
-    shares[f] = static_cast<double>(passed) / static_cast<double>(rays_a_footprint());
+    transmissions[f] = static_cast<double>(passed) / static_cast<double>(rays_per_footprint());
   });
-  return shares;
+  return transmissions;
 }
 
-// A ray in a cell where a share t passes has the variance t (1 − t). Half the square of the difference of two
-// neighbours has that mean, and a little more where t differs between them.
+// A ray in a cell with the transmission t has the variance t (1 − t). Half the squared difference of two neighbours has
+// that mean, and slightly more if t differs between them.
 RayMean ray_mean(const std::vector<std::uint8_t>& blocked) {
+  assert(!blocked.empty());
   const auto rays = static_cast<double>(blocked.size());
   std::size_t passed = 0, differences = 0;
   for (std::size_t k = 0; k < blocked.size(); ++k) {

@@ -20,7 +20,7 @@ VelocityMoments velocity_moments(const Patch& patch) {
   return {moment(0, 0), moment(0, 1), moment(1, 1), moment(2, 2)};
 }
 
-// With m = (xx + yy)/2 and d = |((xx − yy)/2, xy)| the principal variances are m ± d.
+// The principal variances are m ± d, with m = (xx + yy)/2 and d = |((xx − yy)/2, xy)|.
 VelocityEllipsoid velocity_ellipsoid(const VelocityMoments& v) {
   const double middle = 0.5 * (v.xx + v.yy), difference = std::hypot(0.5 * (v.xx - v.yy), v.xy);
   const double longer = middle + difference;

@@ -2,10 +2,12 @@
 
 #include <keeler/diagnostics/wake_spectrum.hpp>
 
+#include <cassert>
+
 namespace keeler {
 namespace {
 
-// Values of the snapshots that have one.
+// Values of the snapshots that have one, to measure their scatter.
 struct Singles {
   std::vector<double> values;
   void add(const std::optional<double>& value) {
@@ -17,6 +19,7 @@ struct Singles {
 } // namespace
 
 WakeGeometry wake_geometry(std::span<const Patch> patches, double critical_wavelength) {
+  assert(!patches.empty());
   WakePower sums;
   Singles wavelengths, radial_wavelengths, angles, inner, outer;
   for (const Patch& patch : patches) {

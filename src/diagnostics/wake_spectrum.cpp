@@ -5,6 +5,7 @@
 #include <keeler/core/units.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
@@ -12,14 +13,14 @@ namespace {
 
 constexpr double min_significance = 5.0;
 
-// What a cloud leaves of the amplitude of a wave that turns by `turn` from node to node.
+// Returns the attenuation by a cloud of a wave with this phase difference from node to node.
 double cloud_window(double turn) {
   const double half = 0.5 * turn;
   const double sinc = half == 0.0 ? 1.0 : std::sin(half) / half;
   return sinc * sinc;
 }
 
-// Bins of 0.25 × 2π/λ_cr, the last without end, and of 15° about multiples of 15°, since many waves lie along x.
+// Bins of 0.25 × 2π/λ_cr, the last unbounded, and of 15° about multiples of 15°, since many waves are along x.
 std::size_t bin_of(double kx, double ky, double critical_wavelength) {
   const double length = 4.0 * std::hypot(kx, ky) * critical_wavelength / two_pi;
   const double turns = std::atan2(ky, kx) / pi * WakePower::directions + 0.5; // ky ≥ 0
@@ -63,7 +64,7 @@ WakePower wake_power(const Patch& patch, double critical_wavelength) {
       const double ky = two_pi * j / box.size_y, shear = ky * patch.offset / box.size_x;
       double kx = two_pi * i / box.size_x + shear;
       const double period = two_pi / dx;
-      kx -= period * std::round(kx / period); // of all waves that look the same on the mesh, the longest
+      kx -= period * std::round(kx / period); // the longest of all waves that are equal on the mesh
       const double k = std::hypot(kx, ky), filter = std::exp(-k * k * length * length);
       if (filter < 1e-9)
         continue;
@@ -86,6 +87,7 @@ WakeWaves wake_waves(const WakePower& sums) {
   WakeWaves waves;
   if (sums.snapshots == 0)
     return waves;
+  assert(sums.noise_squares >= 0.0);
   waves.contrast = std::sqrt(2.0 * std::max(0.0, sums.power) / sums.snapshots);
   if (std::hypot(sums.cosine, sums.sine) <= min_significance * std::sqrt(sums.noise_squares))
     return waves;

@@ -3,18 +3,19 @@
 #include <keeler/core/units.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <span>
 
 namespace keeler {
 namespace {
 
-constexpr double min_amplitude = 0.02; // relative density waves of 20 %: no published wake is weaker
+constexpr double min_amplitude = 0.02; // that of density waves of 20 %: no published wake is weaker
 constexpr double min_ridge_significance = 5.0;
 constexpr double inner_end = 0.5, outer_end = 1.5; // parts of the crest, in λ_cr from zero lag
-constexpr std::size_t min_rows = 3;                // of a part whose direction is fitted
+constexpr std::size_t min_rows = 3;                // for a fit of the direction of a part
 
-// Mean of ξ over a line of half-length `reach` through (dx, 0), turned by `pitch` (rad) from the y axis.
+// Returns the mean of ξ over a line of half-length `reach` through (dx, 0), at an angle `pitch` (rad) to the y axis.
 double line_mean(const AutocorrelationMap& map, double dx, double pitch, double reach) {
   const double step = 0.5 * std::min(map.spacing_x, map.spacing_y);
   const int half = static_cast<int>(std::ceil(reach / step));
@@ -26,7 +27,7 @@ double line_mean(const AutocorrelationMap& map, double dx, double pitch, double 
   return sum / (2 * half + 1);
 }
 
-// Where a parabola through three equally spaced values has its top, in steps from the middle one.
+// Returns the top of a parabola through three equally spaced values, in steps from the middle one.
 double parabola_top(double before, double middle, double after) {
   const double curvature = before - 2.0 * middle + after;
   return curvature < 0.0 ? std::clamp(0.5 * (before - after) / curvature, -0.5, 0.5) : 0.0;
@@ -37,7 +38,7 @@ struct Ridge {
 };
 
 Ridge find_ridge(const AutocorrelationMap& map, double reach) {
-  constexpr int steps = 180; // of a degree
+  constexpr int steps = 180; // of one degree
   std::vector<double> means(steps);
   double all = 0.0;
   for (int k = 0; k < steps; ++k) {
@@ -55,11 +56,11 @@ struct CrestPoint {
   double distance() const { return std::hypot(dx, dy); }
 };
 
-// Follows the crest outward, row by row of Δy, from the direction in which it leaves zero lag to where it drowns in the
+// Follows the crest outward, row by row of Δy, from its direction at zero lag to the point where it falls below the
 // noise.
 std::vector<CrestPoint> follow_crest(const AutocorrelationMap& map, double first_guess, double reach) {
   const double step = 0.25 * map.spacing_x;
-  const double lean = -std::tan(first_guess) * map.spacing_y; // of the crest from one row to the next
+  const double lean = -std::tan(first_guess) * map.spacing_y; // Δx of the crest from one row to the next
   double crest = 0.0;
   std::vector<CrestPoint> points;
   for (double dy = map.spacing_y; dy <= reach; dy += map.spacing_y) {
@@ -77,9 +78,9 @@ std::vector<CrestPoint> follow_crest(const AutocorrelationMap& map, double first
   return points;
 }
 
-// Pitch (rad) of a line through the origin fitted to the crest, which is Δx = −tan(pitch) Δy. A row counts as its ξ
-// times Δy², as in a fit of Δx: the far part of the ridge decides, and not the clumps at its centre, which lean more
-// than the wake does.
+// Returns the pitch (rad) of a line through the origin fitted to the crest, Δx = −tan(pitch) Δy. A row has the weight
+// ξ Δy², as in a fit of Δx: the far part of the ridge decides, not the clumps at its centre, which lean more than the
+// wake does.
 double pitch_through_centre(std::span<const CrestPoint> crest, double first_guess) {
   double xy = 0.0, yy = 0.0;
   for (const CrestPoint& p : crest) {
@@ -89,8 +90,9 @@ double pitch_through_centre(std::span<const CrestPoint> crest, double first_gues
   return yy > 0.0 ? -std::atan(xy / yy) : first_guess;
 }
 
-// Pitch (rad) of a line anywhere: the direction of that part of the crest.
+// Returns the pitch (rad) of a line with free intercept fitted to a part of the crest. Precondition: two rows or more.
 double pitch_of_part(std::span<const CrestPoint> crest) {
+  assert(crest.size() >= 2);
   double weight = 0.0, x = 0.0, y = 0.0;
   for (const CrestPoint& p : crest) {
     weight += p.xi;
@@ -105,15 +107,16 @@ double pitch_of_part(std::span<const CrestPoint> crest) {
   return -std::atan(xy / yy);
 }
 
-// The crest up to a distance from zero lag: it rises from row to row.
+// Returns the crest up to a distance from zero lag, which increases from row to row.
 std::span<const CrestPoint> within(std::span<const CrestPoint> crest, double distance) {
   const auto end =
       std::find_if(crest.begin(), crest.end(), [&](const CrestPoint& p) { return p.distance() > distance; });
   return crest.first(static_cast<std::size_t>(end - crest.begin()));
 }
 
-// Gaussian smoothing of a profile that is even about its first entry.
+// Smooths a profile that is even about its first entry by a Gaussian.
 std::vector<double> smooth(const std::vector<double>& profile, double sigma) {
+  assert(sigma > 0.0);
   const int count = static_cast<int>(profile.size()),
             half = static_cast<int>(std::min(std::ceil(3.0 * sigma), 2.0 * count));
   std::vector<double> smoothed(profile.size());
@@ -131,12 +134,13 @@ std::vector<double> smooth(const std::vector<double>& profile, double sigma) {
   return smoothed;
 }
 
-// The first maximum beyond the first valley, in entries: above its valleys on both sides by `prominence`, and risen at
-// least half way from the deepest valley to the mean density, since a shoulder in the empty lane is not the next wake.
+// Returns the first maximum beyond the first valley, in entries: it exceeds its valleys on both sides by `prominence`,
+// and half of the rise from the deepest valley to the mean density, since a shoulder in the empty lane is not a wake.
 std::optional<double> first_side_maximum(const std::vector<double>& profile, double prominence) {
+  assert(!profile.empty());
   const double risen = 0.5 * std::min(0.0, *std::min_element(profile.begin(), profile.end()));
   double lowest = profile[0];
-  std::size_t top = 0; // 0: no rise seen yet
+  std::size_t top = 0; // 0: no rise yet
   for (std::size_t k = 1; k < profile.size(); ++k) {
     lowest = std::min(lowest, profile[k]);
     if (top == 0 ? profile[k] > std::max(risen, lowest + prominence) : profile[k] > profile[top])
@@ -150,6 +154,7 @@ std::optional<double> first_side_maximum(const std::vector<double>& profile, dou
 } // namespace
 
 Wakes find_wakes(const AutocorrelationMap& map, double critical_wavelength) {
+  assert(map.values.size() == static_cast<std::size_t>(2 * map.reach + 1) * static_cast<std::size_t>(map.rows));
   Wakes wakes;
   const double spacing = std::max(map.spacing_x, map.spacing_y);
   // A line that starts at half a box must stay on the map, which ends at three quarters of it.
@@ -160,10 +165,10 @@ Wakes find_wakes(const AutocorrelationMap& map, double critical_wavelength) {
 
   const Ridge ridge = find_ridge(map, wakes.reach);
   wakes.amplitude = ridge.amplitude;
-  const double line_noise = map.noise / std::sqrt(wakes.reach / spacing); // ξ is even: half a line is independent
+  const double line_noise = map.noise / std::sqrt(wakes.reach / spacing); // ξ is even: half of a line is independent
   double pitch = ridge.pitch_degrees * pi / 180.0;
   std::vector<CrestPoint> crest;
-  if (std::fabs(pitch) < pi / 4.0) { // else rows of Δy do not cross the ridge but run along it
+  if (std::fabs(pitch) < pi / 4.0) { // else the ridge is nearly parallel to the rows of Δy
     const double first_guess = pitch;
     crest = follow_crest(map, first_guess, std::min(outer_end * critical_wavelength, map.half_height()));
     const double fitted = std::min(critical_wavelength, map.half_height());

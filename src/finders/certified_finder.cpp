@@ -13,7 +13,7 @@
 namespace keeler {
 namespace {
 
-// The kernels read a body as eight numbers, and three of a query.
+// The kernels read a body as eight numbers, and a query as three.
 static_assert(offsetof(Body, elements) == 0 && offsetof(Body, radius) == 6 * sizeof(double));
 static_assert(offsetof(Query, shift_y) == offsetof(Query, shift_x) + sizeof(double) &&
               offsetof(Query, start) == offsetof(Query, shift_x) + 2 * sizeof(double));
@@ -28,7 +28,7 @@ MonotoneStep monotone_step(const DriftStep& step) {
   return {f.kappa, f.nu, f.shear(), 2.0 / f.kappa, step.begin, step.end, largest_angle};
 }
 
-// Field by field: a result made elsewhere and copied is slow to read again.
+// Writes field by field: a copied result would be slow to read (store forwarding).
 void write(const MonotoneAnswer& answer, FinderResult& result) {
   constexpr FinderExit exits[] = {FinderExit::gave_up, FinderExit::hit, FinderExit::overlapping, FinderExit::receding,
                                   FinderExit::missed}; // in the order of MonotoneExit
@@ -48,13 +48,14 @@ public:
   void begin(const DriftStep& step) override {
     step_ = &step;
     monotone_step_ = monotone_step(step);
-    served_ = monotone_step_.largest_angle <= monotone_angle && step.frequencies.kappa <= monotone_kappa;
+    newton_applies_ = monotone_step_.largest_angle <= monotone_angle && step.frequencies.kappa <= monotone_kappa;
     search_.begin(step);
   }
 
   void changed(std::size_t) override {}
 
   FinderResult find(const Query& query) const override {
+    assert(step_ != nullptr && query.low < step_->bodies.size() && query.high < step_->bodies.size());
     return find_between(query, step_->bodies[query.low], step_->bodies[query.high]);
   }
 
@@ -63,7 +64,7 @@ public:
   FinderResult find_between(const Query& query, const Body& low, const Body& high) const override {
     if (BoundedMotion::surely_apart(query, low, high, *step_))
       return {};
-    if (!served_)
+    if (!newton_applies_)
       return search_.find_between(query, low, high);
     const MonotonePair pair = monotone_pair(query, low, high);
     MonotoneAnswer answer;
@@ -75,7 +76,7 @@ public:
 
   void find_all(std::span<const Query> queries, std::span<FinderResult> results) const override {
     assert(results.size() == queries.size());
-    if (!served_)
+    if (!newton_applies_)
       return Finder::find_all(queries, results);
     Lanes lanes;
     for (std::size_t k = 0; k < queries.size(); ++k) {
@@ -87,7 +88,7 @@ public:
         continue;
       }
       lanes.pairs[lanes.used] = monotone_pair(q, low, high);
-      lanes.places[lanes.used++] = k;
+      lanes.indices[lanes.used++] = k;
       if (lanes.used == many_.lanes)
         find_in(lanes, queries, results);
     }
@@ -98,10 +99,10 @@ public:
   std::size_t bytes_per_particle() const override { return 0; }
 
 private:
-  // Pairs that wait for a lane each, and their places among the queries.
+  // Pairs waiting for a lane, with their indices among the queries.
   struct Lanes {
     std::array<MonotonePair, max_lanes> pairs;
-    std::array<std::size_t, max_lanes> places;
+    std::array<std::size_t, max_lanes> indices;
     std::size_t used = 0;
   };
 
@@ -112,14 +113,15 @@ private:
   }
 
   void find_in(Lanes& lanes, std::span<const Query> queries, std::span<FinderResult> results) const {
+    assert(lanes.used > 0 && lanes.used <= max_lanes);
     const MonotoneNewton& kernel = lanes.used == 1 ? one_ : lanes.used <= few_.lanes ? few_ : many_; // the same bits
     for (std::size_t k = lanes.used; k < kernel.lanes; ++k)
       lanes.pairs[k] = lanes.pairs[0];
     std::array<MonotoneAnswer, max_lanes> answers;
     kernel.find(lanes.pairs.data(), monotone_step_, answers.data());
     for (std::size_t k = 0; k < lanes.used; ++k) {
-      const Query& q = queries[lanes.places[k]];
-      finish(answers[k], q, step_->bodies[q.low], step_->bodies[q.high], results[lanes.places[k]]);
+      const Query& q = queries[lanes.indices[k]];
+      finish(answers[k], q, step_->bodies[q.low], step_->bodies[q.high], results[lanes.indices[k]]);
     }
     lanes.used = 0;
   }
@@ -136,8 +138,8 @@ private:
 
   const DriftStep* step_ = nullptr;
   MonotoneStep monotone_step_ = {};
-  bool served_ = false;             // by Newton's method: its series and bounds hold in this step
-  MonotoneNewton one_, few_, many_; // for so many pairs
+  bool newton_applies_ = false;     // true if the series and bounds of Newton's method hold in this step
+  MonotoneNewton one_, few_, many_; // by number of pairs
   MotionSearch<BoundedMotion, CertifiedSearch> search_;
 };
 

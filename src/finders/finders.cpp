@@ -7,6 +7,8 @@
 #include <keeler/finders/search/linear.hpp>
 #include <keeler/finders/search/newton.hpp>
 
+#include <cassert>
+
 namespace keeler {
 namespace {
 
@@ -30,12 +32,12 @@ constexpr FinderEntry table[] = {
     {"linear-relative", "relative epicycle, straight-line guesses", make<RelativeMotion, Linear>},
     {"original", "own epicycles, Newton steps of half length", make<FullMotion, OriginalNewton>},
     {"newton-full", "own epicycles, damped Newton", make<FullMotion, Newton>},
-    {"newton-full-as-coded", "the same, with trials at the old guess as published", make<FullMotion, NewtonAsCoded>},
+    {"newton-full-as-coded", "newton-full, with trials at the old guess as published", make<FullMotion, NewtonAsCoded>},
     {"newton-cubic", "cubics fitted for each pair, damped Newton", make<CubicMotion, Newton>},
     {"newton-cubic-cached", "cubics kept for each particle, damped Newton", make<CachedCubicMotion, Newton>},
     {"linear-full", "own epicycles with the start's states kept, straight-line guesses (the paper's fastest)",
      make<StoredStartMotion, Linear>},
-    {"linear-full-no-start", "the same with nothing kept", make<FullMotion, Linear>},
+    {"linear-full-no-start", "linear-full without stored states", make<FullMotion, Linear>},
     {"linear-cubic", "cubics fitted for each pair that approaches, straight-line guesses",
      make<LateCubicMotion, LinearOnCubic>},
     {"linear-cubic-cached", "cubics kept for each particle, straight-line guesses",
@@ -48,6 +50,7 @@ constexpr const char* exit_names[finder_exits] = {"hit",     "overlapping", "rec
 } // namespace
 
 const char* name_of(FinderExit exit) {
+  assert(static_cast<int>(exit) >= 0 && static_cast<int>(exit) < finder_exits);
   return exit_names[static_cast<int>(exit)];
 }
 

@@ -1,16 +1,16 @@
-// Text of the search; see monotone_newton.hpp. The including file sets KEELER_KERNEL_SPACE and defines Reals and Masks
+// Source of the search; see monotone_newton.hpp. The including file sets KEELER_KERNEL_SPACE and defines Reals and Masks
 // of `lanes` lanes (a double and a bool, or vectors), `PairElements load(pairs)`, `square_root`, `any(mask)`, `none()`
 // and `lane(values, k)`. Everything here has internal linkage except `kernel`.
 //
-// Only + − * / and square roots, in this order: the same bits on every instruction set. A comparison with a number that
-// is not one proves nothing, so such pairs stay undecided.
+// Only + − * / and square roots, in this order: the same bits on every instruction set. A comparison with NaN proves
+// nothing, so such pairs stay undecided.
 
 namespace keeler::KEELER_KERNEL_SPACE {
 namespace {
 
 constexpr double ulp = 2.220446049250313e-16;
 constexpr double up = 1.0 + 1e-9; // for the roundings of bounds
-constexpr int most_passes = 4;
+constexpr int max_passes = 4;
 
 inline Reals all(double value) {
   return Reals{} + value;
@@ -25,7 +25,7 @@ inline Reals magnitude(Reals a) {
   return a < 0.0 ? -a : a;
 }
 
-// Taylor series of sin x and 1 − cos x with so many terms after the first of the sine, and in all.
+// Taylor series of sin x and 1 − cos x: number of terms after the first of the sine, and in all of the cosine.
 template<int SineTerms, int CosineTerms> struct Series {
   static void evaluate(Reals x, Reals& sine, Reals& one_minus_cosine) {
     constexpr double odd[] = {-1.0 / 6,        1.0 / 120,          -1.0 / 5040,           1.0 / 362880,
@@ -75,15 +75,15 @@ template<class Terms> inline Moment at(const PairElements& p, const MonotoneStep
   return m;
 }
 
-// What holds from the start of the search to its horizon.
+// Bounds from the start of the search to its horizon.
 struct Bounds {
   Reals span;
-  Reals contact;         // gap_error at contact: |f| no larger is contact
+  Reals contact;         // gap_error at contact: a smaller |f| is contact
   Reals gap, slope;      // errors of f and f′ as evaluated
-  Reals least_curvature; // of f″
-  Reals third;           // of |f‴|
-  Reals curvature_error; // of f″ as evaluated
-  Reals rise;            // f′ falls no faster backward in time than at this rate
+  Reals min_curvature; // lower bound on f″
+  Reals third;           // bound on |f‴|
+  Reals curvature_error; // error of f″ as evaluated
+  Reals rise;            // bound on the decrease of f′ per time, backwards
 };
 
 inline Bounds bounds(const PairElements& p, const MonotoneStep& step, const Moment& first, Reals curvature, Reals third,
@@ -94,7 +94,7 @@ inline Bounds bounds(const PairElements& p, const MonotoneStep& step, const Mome
   const Reals acceleration = up * square_root((4.0 * k2) * e2 + (n2 * n2) * i2);
   const Reals scale = square_root(larger(larger(p.guiding_x * p.guiding_x, p.guiding_y * p.guiding_y),
                                          larger((step.two_over_kappa * step.two_over_kappa) * e2, i2)));
-  const Reals speed_scale = (step.shear + step.kappa + step.nu) * scale; // |v| is no larger at any time
+  const Reals speed_scale = (step.shear + step.kappa + step.nu) * scale; // bound on |v| at all times
   Bounds b;
   b.span = up * (horizon - p.start);
   const Reals speed = up * square_root(first.vx * first.vx + first.vy * first.vy + first.vz * first.vz) +
@@ -108,30 +108,30 @@ inline Bounds bounds(const PairElements& p, const MonotoneStep& step, const Mome
   const Reals fourth =
       (2.0 * up) * acceleration * (4.0 * fastest * speed + 3.0 * acceleration + (fastest * fastest) * distance);
   b.third = magnitude(third) + fourth * b.span + fastest * b.curvature_error;
-  b.least_curvature =
+  b.min_curvature =
       curvature + smaller(third, Reals{}) * b.span - 0.5 * fourth * (b.span * b.span) - b.curvature_error;
-  b.rise = up * larger(-b.least_curvature, Reals{});
+  b.rise = up * larger(-b.min_curvature, Reals{});
   return b;
 }
 
-// f′ > 0 all the while.
+// True if f′ > 0 on the whole span.
 inline Masks recedes(const Moment& first, const Bounds& b) {
   return first.slope - b.slope - b.rise * b.span > 0.0;
 }
 
-// The parabola below f has no root: its least value lies in the span, or at the span's ends.
+// True if the parabola below f has no root: its minimum is in the span, or at an end.
 inline Masks stays_apart(const Moment& first, const Bounds& b) {
-  const Reals m = b.least_curvature, above = first.gap - b.gap, steepest = magnitude(first.slope) + b.slope;
+  const Reals m = b.min_curvature, above = first.gap - b.gap, steepest = magnitude(first.slope) + b.slope;
   const Reals low_slope = first.slope - b.slope;
   const Reals last = above + (low_slope + 0.5 * m * b.span) * b.span;
   const Masks nowhere_zero = steepest * steepest * up < 2.0 * m * above;
-  const Masks least_at_ends = (m <= 0.0) | (low_slope + m * b.span <= 0.0);
+  const Masks minimum_at_ends = (m <= 0.0) | (low_slope + m * b.span <= 0.0);
   const Masks ends_apart = (above > 0.0) & (last > 1e-12 * (steepest + magnitude(m) * b.span) * b.span);
-  return ((m > 0.0) & nowhere_zero) | (least_at_ends & ends_apart);
+  return ((m > 0.0) & nowhere_zero) | (minimum_at_ends & ends_apart);
 }
 
-// How long after the start a parabola with the acceleration of the start has its first root, moved by the change of the
-// acceleration. Not a number when there is none.
+// Returns the time from the start to the first root of a parabola with the initial acceleration, corrected for the
+// change of the acceleration. NaN if there is none.
 inline Reals first_guess(const Moment& first, Reals half_curvature, Reals third) {
   const Reals square = first.slope * first.slope - 4.0 * half_curvature * first.gap;
   const Reals root = square_root(larger(square, Reals{}));
@@ -139,7 +139,7 @@ inline Reals first_guess(const Moment& first, Reals half_curvature, Reals third)
   return after * (1.0 + third * (after * after) / (6.0 * root));
 }
 
-// Bounds are tighter the nearer they need to hold: a little beyond the guess where there is one in the span.
+// Returns the horizon, slightly beyond the guess if that is in the span: bounds over shorter spans are tighter.
 inline Reals horizon_of(const PairElements& p, const MonotoneStep& step, Reals guess) {
   const Reals beyond = p.start + 1.25 * guess, end = all(step.end);
   return ((guess > 0.0) & (beyond < end)) ? beyond : end;
@@ -178,7 +178,7 @@ inline void find_with(const PairElements& p, const MonotoneStep& step, Verdicts&
 
   const Reals target = 0.5 * b.contact;
   Reals t = p.start + guess;
-  for (int pass = 0; pass < most_passes; ++pass) {
+  for (int pass = 0; pass < max_passes; ++pass) {
     verdicts.open = verdicts.open & (t > p.start);
     if (!any(verdicts.open))
       return;
@@ -189,7 +189,7 @@ inline void find_with(const PairElements& p, const MonotoneStep& step, Verdicts&
     verdicts.open = verdicts.open & falls;
     verdicts.settle((t == step.end) & (now.gap > b.gap), MonotoneExit::missed);
 
-    // the root, by the tangent and the curvature; how far f is from its target there, and its slope there
+    // the root, by tangent and curvature; the distance of f from its target there, and its slope there
     const Reals above = now.gap - target, inverse = 1.0 / now.slope, k = now.half_curvature();
     const Reals tangent = above * inverse;
     const Reals next = t - (tangent + k * (tangent * tangent) * inverse);

@@ -1,4 +1,4 @@
-// The search for AVX2: four pairs. Compiled with -mavx2.
+// The kernel for AVX2: four pairs. Compiled with -mavx2.
 #include "monotone_newton.hpp"
 
 #include <immintrin.h>
@@ -16,7 +16,7 @@ struct PairElements {
   Reals guiding_x, guiding_y, e_cos, e_sin, i_sin, i_cos, radius_sum, start;
 };
 
-// Four rows of four numbers become four columns.
+// Transposes four rows of four numbers.
 inline void transpose(const __m256d* row, Reals* column) {
   const __m256d a = _mm256_unpacklo_pd(row[0], row[1]), b = _mm256_unpackhi_pd(row[0], row[1]);
   const __m256d c = _mm256_unpacklo_pd(row[2], row[3]), d = _mm256_unpackhi_pd(row[2], row[3]);
@@ -27,7 +27,7 @@ inline void transpose(const __m256d* row, Reals* column) {
 }
 
 inline PairElements load(const MonotonePair* pairs) {
-  const __m256d radius_sign = _mm256_setr_pd(0.0, 0.0, -0.0, 0.0); // radii are added: the lower one is negated first
+  const __m256d radius_sign = _mm256_setr_pd(0.0, 0.0, -0.0, 0.0); // negates a radius: radii are added
   __m256d front[4], back[4];
   for (std::size_t k = 0; k < lanes; ++k) {
     const __m256d high = _mm256_load_pd(pairs[k].high);

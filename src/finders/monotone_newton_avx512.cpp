@@ -1,4 +1,4 @@
-// The search for AVX-512: eight pairs. Compiled with -mavx512f.
+// The kernel for AVX-512: eight pairs. Compiled with -mavx512f.
 #include "monotone_newton.hpp"
 
 #include <immintrin.h>
@@ -16,7 +16,7 @@ struct PairElements {
   Reals guiding_x, guiding_y, e_cos, e_sin, i_sin, i_cos, radius_sum, start;
 };
 
-// Eight rows of eight numbers become eight columns, in place.
+// Transposes eight rows of eight numbers, in place.
 inline void transpose(__m512d* row) {
   __m512d t[8];
   for (int k = 0; k < 8; k += 2) {

@@ -1,4 +1,4 @@
-// The search for any processor: one pair at a time.
+// The kernel for any processor: one pair at a time.
 #include "monotone_newton.hpp"
 
 #define KEELER_KERNEL_SPACE monotone_newton_portable

@@ -1,11 +1,11 @@
-// The same acceleration for every particle: a distant disturber, a drag that never lets up, or a test of the step.
+// A constant acceleration of all particles: a distant perturber, a steady drag, or a test of the step.
 #pragma once
 
 #include <keeler/forces/force.hpp>
 
 namespace keeler {
 
-/// The scene's table [constant_acceleration].
+/// The entry of the scene's table [constant_acceleration].
 ForceEntry constant_acceleration_entry();
 
 } // namespace keeler

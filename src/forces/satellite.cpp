@@ -1,16 +1,16 @@
 // The satellite is on an epicycle about a guiding centre X_s, which passes the particles at the rate of the shear. A
-// cell is short beside 3π |X_s|, over which an epicycle turns once, so all particles of a streamline are taken to be
-// where the column of the cell's particles is: the force depends on X, the epicycle and the time, never on Y, and the
-// box stays periodic along the orbit. The column stands upright at t_u: then, and only then, neighbouring streamlines
-// side by side have met the satellite at the times at which they do in a ring. In units of Ω:
+// cell is short compared with 3π |X_s|, over which an epicycle turns once, so all particles of a streamline are taken
+// to be at the column of the cell's particles: the force depends on X, the epicycle and the time, never on Y, and the
+// box stays periodic along the orbit. The column is upright at t_u: only then have neighbouring streamlines, side by
+// side, met the satellite at the times at which they do in a ring. In units of Ω:
 //
 //   t_n(X) = (X_s t_0 − X t_u) / (X_s − X) + n T X_s / (X_s − X)     passage n of a streamline
 //   y_s − y = −S (X_s − X) (t − t_n) + (2/κ) (e_s sin φ_s − e sin φ)
 //
-// With a particle's own X in t_n, what the passage does to X would shift the passage: a change of X would act as if it
-// had always been there. So t_n takes the X before the passage, to first order in the satellite's mass:
+// With a particle's current X in t_n, the change of X by the passage would shift the passage, as if X had always had
+// that value. So t_n uses the X before the passage, to first order in the satellite's mass:
 //   X − 2 G m / (κ² S d |d| √(1 + S² τ²)),  d = X_s − X, τ = t − t_n(X)
-// This keeps |ΔX| = e²/(S |d|) right to second order (docs/theory/satellite.md).
+// This keeps |ΔX| = e²/(S |d|) correct to second order (docs/theory/satellite.md).
 #include <keeler/forces/satellite.hpp>
 
 #include <keeler/core/error.hpp>
@@ -21,6 +21,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
@@ -42,41 +43,43 @@ public:
   std::string name() const override { return "satellite"; }
 
   void accelerate(const Boundary& boundary, std::span<Vec3> accelerations) override {
+    assert(accelerations.size() == boundary.particles.size());
     const Frequencies& f = boundary.frequencies;
     const Rotation rotation = boundary.rotation();
     const double turned = f.kappa * (boundary.time - orbit_.passage) + orbit_.phase;
     const double raised = f.nu * (boundary.time - orbit_.passage) + orbit_.vertical_phase;
-    // its own epicycle, beside the guiding centre
-    const Vec3 own(-orbit_.eccentricity * std::cos(turned), 2.0 / f.kappa * orbit_.eccentricity * std::sin(turned),
-                   orbit_.inclination * std::sin(raised));
+    // the satellite's epicycle, relative to its guiding centre
+    const Vec3 epicycle_of_satellite(-orbit_.eccentricity * std::cos(turned),
+                                     2.0 / f.kappa * orbit_.eccentricity * std::sin(turned),
+                                     orbit_.inclination * std::sin(raised));
     parallel_for(accelerations.size(), [&](std::size_t k) {
       boundary.particles.prefetch_after(k);
       const Elements& el = boundary.particles.bodies[k].elements;
       const Vec3 swing = epicycle(el, f, rotation);
       const double d = orbit_.guiding_x - el.guiding_x;
-      const double since = boundary.time - passage_of(el.guiding_x, boundary.time, f);
-      const Vec3 away = Vec3(d, -f.shear() * d * since, 0.0) + own - swing;
+      const double since = boundary.time - passage_time(el.guiding_x, boundary.time, f);
+      const Vec3 away = Vec3(d, -f.shear() * d * since, 0.0) + epicycle_of_satellite - swing;
       const double square = away.squaredNorm();
       accelerations[k] = orbit_.pull / (square * std::sqrt(square)) * away;
     });
   }
 
 private:
-  // Of a particle, beside its guiding centre.
+  // Returns a particle's position relative to its guiding centre.
   static Vec3 epicycle(const Elements& el, const Frequencies& f, const Rotation& r) {
     return {-(el.e_cos * r.cos_e - el.e_sin * r.sin_e), 2.0 / f.kappa * (el.e_sin * r.cos_e + el.e_cos * r.sin_e),
             el.i_sin * r.cos_i + el.i_cos * r.sin_i};
   }
 
-  // The time of the nearest passage of a streamline.
+  // Returns the time of the nearest passage of a streamline.
   double nearest_passage(double x, double time) const {
     const double d = orbit_.guiding_x - x, first = (orbit_.guiding_x * orbit_.passage - x * orbit_.upright) / d;
     const double period = orbit_.every * orbit_.guiding_x / d;
     return period > 0.0 ? first + period * std::round((time - first) / period) : first;
   }
 
-  // The same for a particle, by its X before the passage.
-  double passage_of(double x, double time, const Frequencies& f) const {
+  // Returns this time for a particle, by its X before the passage.
+  double passage_time(double x, double time, const Frequencies& f) const {
     const double d = orbit_.guiding_x - x, at = f.shear() * (time - nearest_passage(x, time));
     const double gained = 2.0 * orbit_.pull / (f.kappa * f.kappa * f.shear() * d * std::fabs(d) * std::hypot(1.0, at));
     return nearest_passage(x - gained, time);
@@ -85,7 +88,7 @@ private:
   SatelliteOrbit orbit_;
 };
 
-// G m of internal units.
+// Returns G m in internal units.
 double pull_of(const Parameters& p, double orbital_frequency) {
   return newton_g(orbital_frequency) * p.number("mass");
 }
@@ -99,31 +102,31 @@ void require_outside(const Parameters& p, double size_x) {
                     format_number(distance, 4), format_number(eccentricity, 4), format_number(0.5 * size_x, 4)));
 }
 
-// An encounter at d moves a particle by about 2.24 G m/(Ω² d²): at two Hill radii by as much as it is away.
+// An encounter at d moves a particle by about 2.24 G m/(Ω² d²): at two Hill radii by as much as its distance.
 void require_weak(const Parameters& p, const ForceContext& context) {
   const double hill_radius = std::cbrt(pull_of(p, context.orbital_frequency) / 3.0);
   const double apart = std::fabs(p.number("distance")) - p.number("eccentricity") - 0.5 * context.box.size_x;
   if (!(apart >= 2.0 * hill_radius))
     throw UsageError(
-        fmt::format("satellite.mass = {} kg is too much (its Hill radius is {} m, and it comes within {} m of "
-                    "the box; nearer than two Hill radii it throws particles out of the ring); lower it, or "
+        fmt::format("satellite.mass = {} kg is too large (its Hill radius is {} m, and it comes within {} m of "
+                    "the box; closer than two Hill radii it throws particles out of the ring); lower it, or "
                     "move the satellite out",
                     format_number(p.number("mass"), 4), format_number(hill_radius, 4), format_number(apart, 4)));
 }
 
-// Where the run begins; a run that goes on may have passed it.
+// Checks a run from its beginning; a continued run may have passed the last passage.
 void require_passages(const Parameters& p) {
   constexpr double shortest = 0.1; // orbits; a / (S |d|) is above 1 / (3 π), for a is above |d|
   const double every = p.number("every"), passage = p.number("passage");
   if (every > 0.0 && every < shortest)
     throw UsageError(
-        fmt::format("satellite.every = {} orbits is too short (no satellite comes back before {}); raise it, or "
-                    "give 0 for one passage alone",
+        fmt::format("satellite.every = {} orbits is too short (no satellite returns before {}); raise it, or "
+                    "give 0 for a single passage",
                     format_number(every, 4), shortest));
   if (every == 0.0 && passage < 0.0)
     throw UsageError(
-        fmt::format("satellite.passage = {} orbits is before the run begins, and every = 0 lets it pass only "
-                    "once (the run would not see it); give a passage from 0 up, or every",
+        fmt::format("satellite.passage = {} orbits is before the run begins, and every = 0 allows only one passage "
+                    "(the run would not see it); give a passage from 0 up, or every",
                     format_number(passage, 4)));
 }
 
@@ -163,15 +166,16 @@ Key needed(Key key) {
 } // namespace
 
 std::optional<SatellitePassage> dragging_passage(const Parameters& parameters, double orbital_frequency,
-                                                 const Frequencies& frequencies, double least, double from,
+                                                 const Frequencies& frequencies, double min_drag, double from,
                                                  double until) {
+  assert(from <= until && parameters.number("distance") != 0.0);
   const double first = parameters.number("passage"), every = parameters.number("every");
   const double upright = first + parameters.number("upright_after");
   const double h =
       newton_g(orbital_frequency) * parameters.number("mass") / std::pow(std::fabs(parameters.number("distance")), 3);
   const double drag_per_orbit = 4.0 / (3.0 * std::sqrt(3.0)) * h * two_pi / (frequencies.kappa * frequencies.kappa);
-  const double apart = least / drag_per_orbit; // orbits from upright
-  const auto not_before = [&](double time) {   // the first passage
+  const double apart = min_drag / drag_per_orbit; // orbits from upright
+  const auto not_before = [&](double time) {      // returns the first passage from then on
     return every > 0.0 ? first + every * std::ceil((time - first) / every) : first;
   };
   for (const double passage : {not_before(from), not_before(std::max(from, upright + apart))})
@@ -186,21 +190,22 @@ ForceEntry satellite_entry() {
       "satellite",
       {needed(number("mass", "1.6e17", "kg", "mass of a satellite that passes outside the box",
                      {.low = 0, .high = 1e24, .low_open = true})),
-       needed(number("distance", "1e6", "m", "of its guiding centre from the middle of the box, outward",
+       needed(number("distance", "1e6", "m", "distance of its guiding centre from the middle of the box, outward",
                      {.low = -1e7, .high = 1e7})),
-       needed(number("passage", "2.0", "orbits", "when it passes the middle of the box", {.low = -1e6, .high = 1e6})),
+       needed(number("passage", "2.0", "orbits", "time at which it passes the middle of the box",
+                     {.low = -1e6, .high = 1e6})),
        number("every", "0.0", "orbits",
-              "its synodic period, a / (S |distance|): from passage to passage; 0: one passage alone",
+              "its synodic period, a / (S |distance|), from passage to passage; 0: a single passage",
               {.low = 0, .high = 1e6}),
        number("upright_after", "0.0", "orbits",
-              "how long after the passage neighbouring streamlines have the phases that they have side by side in a "
-              "ring",
+              "time after the passage at which neighbouring streamlines have the phases that they have side by side "
+              "in a ring",
               {.low = -1e6, .high = 1e6}),
        number("eccentricity", "0.0", "m", "its eccentricity times its distance from the planet", lengths),
-       number("eccentricity_phase", "0.0", "degrees", "of its epicycle at the passage; 0: at its innermost place",
+       number("eccentricity_phase", "0.0", "degrees", "phase of its epicycle at the passage; 0: at its innermost point",
               turn),
        number("inclination", "0.0", "m", "its inclination times its distance from the planet", lengths),
-       number("inclination_phase", "0.0", "degrees", "of its vertical motion at the passage; 0: rising", turn)},
+       number("inclination_phase", "0.0", "degrees", "phase of its vertical motion at the passage; 0: rising", turn)},
       make,
       check};
 }

@@ -4,6 +4,7 @@
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 
+#include <cassert>
 #include <map>
 
 namespace keeler {
@@ -19,6 +20,7 @@ public:
   std::int64_t kick_every() const override { return settings_.kick_every; }
 
   void accelerate(const Boundary& boundary, std::span<Vec3> accelerations) override {
+    assert(accelerations.size() == boundary.particles.size());
     const GravityProblem problem = gravity_problem(boundary, orbital_frequency_, positions_, masses_);
     if (settings_.images.far) {
       const Vec3 origin = random_origin(boundary);
@@ -49,7 +51,7 @@ private:
   double orbital_frequency_;
   std::uint64_t seed_;
   std::unique_ptr<GravitySolver> solver_;
-  std::unique_ptr<EnergyMeter> meter_; // where the solver is none; null: not yet
+  std::unique_ptr<EnergyMeter> meter_; // made when needed, if the solver is none
   // scratch
   std::vector<Vec3> positions_;
   std::vector<double> masses_;
@@ -59,6 +61,7 @@ private:
 
 GravityProblem gravity_problem(const Boundary& boundary, double orbital_frequency, std::vector<Vec3>& positions,
                                std::vector<double>& masses) {
+  assert(orbital_frequency > 0.0);
   const Particles& particles = boundary.particles;
   const Rotation rotation = boundary.rotation();
   positions.resize(particles.size());
@@ -88,14 +91,14 @@ std::vector<Key> gravity_keys() {
        .type = number,
        .fallback = "2e-3",
        .unit = "rms force",
-       .meaning = "rms error of the force asked for",
+       .meaning = "target rms error of the force",
        .range = {.low = 1e-5, .high = 0.1},
        .only_with = {"solver", {"fft", "auto"}}},
       {.path = "mesh_spacing",
        .type = number,
        .fallback = "1.6",
        .unit = "mean distance",
-       .meaning = "spacing of the mesh, in (particles an area)^-1/2",
+       .meaning = "spacing of the mesh, in (particles per area)^-1/2",
        .range = {.low = 0.1, .high = 100},
        .only_with = {"solver", {"mesh"}}},
       {.path = "shortest_wavelength",
@@ -110,7 +113,7 @@ std::vector<Key> gravity_keys() {
        .fallback = "0.6",
        .unit = "1",
        .meaning = "a cell is opened when its size exceeds this times its distance",
-       .range = {.low = 0.01, .high = 1}, // below, it is the sum over all pairs, and dearer
+       .range = {.low = 0.01, .high = 1}, // below, it equals the sum over all pairs, at a higher cost
        .only_with = {"solver", {"tree"}}},
       {.path = "images",
        .type = choice,

@@ -1,4 +1,4 @@
-// A ball of particles, packed at random: a rubble pile, as a start has them.
+// A randomly packed ball of particles: a rubble pile in an initial state.
 #pragma once
 
 #include <keeler/hill/elements.hpp>
@@ -11,18 +11,19 @@
 
 namespace keeler {
 
-/// One entry a particle.
+/// One entry per particle.
 struct Material {
   std::span<const double> radii;     ///< m
   std::span<const double> densities; ///< kg m⁻³
 };
 
-/// Places of spheres inside a ball about the origin, each pair apart by at least 2 × 10⁻⁵ of the smaller radius; empty
-/// where the ball is too small for them, packed at random. Same bits for any number of threads. Throws Interrupted.
+/// Returns positions of spheres inside a ball about the origin; the gap of each pair is at least 2 × 10⁻⁵ of the
+/// smaller radius. Returns nothing if the ball is too small for a random packing. Same bits for any number of threads.
+/// Throws Interrupted.
 std::vector<Vec3> pack_ball(std::span<const double> radii, double ball_radius, std::uint64_t seed, std::uint64_t first);
 
-/// The particles of the scene's aggregate `number`, from 1: its centre of mass is on a circular orbit, about which it
-/// turns as one body. Throws UsageError where they cannot be packed so.
+/// Returns the particles of the scene's aggregate `number`, from 1. Its centre of mass is on a circular orbit, about
+/// which it rotates rigidly. Throws UsageError if the particles cannot be packed.
 std::vector<HeldBody> aggregate_bodies(const AggregateSettings& aggregate, std::size_t number, const Material& material,
                                        const Frequencies& frequencies, std::uint64_t seed);
 

@@ -8,7 +8,7 @@
 namespace keeler {
 namespace {
 
-// "the state is in …", or why it is not.
+// Returns "the state is in …", or the reason why it is not.
 std::string save(Patch patch, const std::filesystem::path& file, const SnapshotMeta& meta) {
   const std::size_t left_out = keep_possible(patch);
   if (patch.size() == 0)
@@ -19,7 +19,7 @@ std::string save(Patch patch, const std::filesystem::path& file, const SnapshotM
     return fmt::format("the state could not be saved: {}", not_saved.what());
   }
   return fmt::format(
-      "the state is in '{}'{}; look at it with keeler info, render or analyze", file.string(),
+      "the state is in '{}'{}; inspect it with keeler info, render or analyze", file.string(),
       left_out > 0 ? fmt::format(", without {} that no snapshot may have", pluralize(left_out, "particle")) : "");
 }
 

@@ -20,9 +20,9 @@ namespace {
 
 void require_gravity(const Scene& scene) {
   if (!scene.gravity)
-    throw UsageError("the scene has no [gravity] (only their own gravity clumps particles); add [gravity] to it");
+    throw UsageError("the scene has no [gravity] (wakes are due to self-gravity); add [gravity] to it");
   if (!scene.gravity->by_pairs())
-    throw UsageError("the scene's gravity is axisymmetric (radial waves make no wakes); take another gravity.solver");
+    throw UsageError("the scene's gravity is axisymmetric (radial waves make no wakes); choose another gravity.solver");
 }
 
 void require_room_to_settle(const SettleCriterion& criterion) {
@@ -35,12 +35,12 @@ void require_room_to_settle(const SettleCriterion& criterion) {
 
 void require_visible_wakes(const Patch& patch) {
   if (patch.size() == 0 || wake_power(patch, critical_wavelength(patch)).snapshots == 0)
-    throw UsageError(fmt::format("wakes could not be seen in this patch ({} particles; lambda_cr, {:.3g} m, spans too "
-                                 "few of them); take more particles, a higher optical depth or a larger box",
+    throw UsageError(fmt::format("wakes would not be visible in this patch ({} particles; lambda_cr, {:.3g} m, spans "
+                                 "too few of them); use more particles, a higher optical depth or a larger box",
                                  patch.size(), patch.size() ? critical_wavelength(patch) : 0.0));
 }
 
-// A whole number of kick intervals: within one the closing half kick is missing.
+// Returns a whole number of kick intervals: within an interval the closing half kick is missing.
 std::int64_t steps_between_samples(const Scene& scene, const SettleCriterion& criterion) {
   const std::int64_t kicks = scene.kick_interval();
   const double interval = static_cast<double>(kicks) * scene.time.step;
@@ -74,15 +74,15 @@ std::string difference(const char* name, const WindowMeans& means, const MeanBou
   const Settling& s = c.settling;
   if (s.standing < c.criterion.min_standing)
     throw Error(ExitCode::run_time,
-                fmt::format("no wakes stand in the patch after {:.3g} orbits (they stand out of the noise in {:.0f} % "
-                            "of the samples): it is too light or too hot to clump (Toomre's Q is {:.3g}); raise the "
+                fmt::format("no wakes in the patch after {:.3g} orbits (they exceed the noise in {:.0f} % of the "
+                            "samples): it is too light or too hot to clump (Toomre's Q is {:.3g}); raise the "
                             "optical depth or the density of the particles",
                             c.orbits, 100.0 * s.standing, toomre_q(patch)));
   throw Error(
       ExitCode::run_time,
-      fmt::format("the wakes did not settle in {:.3g} orbits (of the last {} orbits and of the {} before, these "
-                  "means differ: {}; {}; {}); take a larger box, whose means scatter less, allow more orbits, "
-                  "or take a snapshot of a run",
+      fmt::format("the wakes did not settle in {:.3g} orbits (between the last {} orbits and the {} before, these "
+                  "means differ: {}; {}; {}); use a larger box, whose means scatter less, allow more orbits, "
+                  "or start from a snapshot of a run",
                   c.orbits, s.window_orbits, s.window_orbits,
                   difference("viscosity", s.viscosity, c.criterion.viscosity),
                   difference("lambda_perp", s.wavelength, c.criterion.wavelengths),

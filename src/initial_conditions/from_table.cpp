@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -26,7 +27,7 @@ namespace {
 void require_fitting(const ParticleTable& table, const TableScene& of) {
   if (table.masses.empty() && !of.density)
     throw UsageError(
-        fmt::format("{}: no column m, and the scene has no particles.density (one of them gives the masses); "
+        fmt::format("{}: no column m, and the scene has no particles.density (one of them is needed for the masses); "
                     "add either",
                     table.file));
   if (!table.spins.empty() && !of.scene.collisions.friction)
@@ -39,6 +40,7 @@ void require_fitting(const ParticleTable& table, const TableScene& of) {
 } // namespace
 
 Patch patch_from_table(const ParticleTable& table, const TableScene& of) {
+  assert(table.places.size() == table.size() && table.radii.size() == table.size());
   require_fitting(table, of);
   const Scene& scene = of.scene;
   Patch patch;
@@ -70,31 +72,32 @@ Patch patch_from_table(const ParticleTable& table, const TableScene& of) {
 }
 
 Relaxation relax(Patch& patch) {
+  assert(patch.positions.size() == patch.size() && patch.velocities.size() == patch.size());
   constexpr int max_sweeps = 4000;
   constexpr std::size_t max_each = 50; // an equal sphere has room for 12 neighbours
   if (const std::size_t overlaps = count_overlaps(patch, allowed_overlap); overlaps > max_each * patch.size())
     throw InvariantError(
-        fmt::format("{} overlap in {} pairs (more than {} each are a heap, for which no room can be made); "
+        fmt::format("{} overlap in {} pairs (more than {} per particle are a heap, for which no room can be made); "
                     "spread them out",
                     pluralize(patch.size(), "particle"), overlaps, max_each));
   std::vector<Sphere> spheres(patch.size());
   for (std::size_t k = 0; k < patch.size(); ++k)
     spheres[k] = {patch.positions[k], patch.radii[k], patch.positions[k].z(), static_cast<std::uint32_t>(k)};
-  sort_by_place(spheres, patch.box);
+  sort_by_position(spheres, patch.box);
   SphereSlabs alone({}, patch.box);
   if (!separate(spheres, patch.box, patch.offset, alone, max_sweeps, [](int) {}))
     throw InvariantError(
         fmt::format("particles still overlap after {} sweeps of moving them apart (the patch is too dense "
-                    "somewhere); thin it out there or take smaller radii",
+                    "somewhere); remove particles there or reduce their radii",
                     max_sweeps));
   Relaxation result;
   for (const Sphere& sphere : spheres) {
-    Vec3& place = patch.positions[sphere.particle];
-    const Vec3 shift = sphere.place - place;
+    Vec3& position = patch.positions[sphere.particle];
+    const Vec3 shift = sphere.position - position;
     result.moved += shift != Vec3::Zero();
     result.farthest = std::max(result.farthest, shift.norm());
     patch.velocities[sphere.particle].y() -= patch.box.shear * shift.x();
-    place = sphere.place;
+    position = sphere.position;
   }
   return result;
 }

@@ -22,27 +22,29 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-// Epicycles of one planet are no epicycles of another: the shear would be wrong everywhere.
+// Epicycles around one planet are not epicycles around another: the shear would be wrong everywhere.
 void require_same_planet(const Patch& patch, const Scene& scene, const std::string& path) {
   const PlanetSettings& planet = scene.planet;
   const auto differ = [](double a, double b) { return !(std::fabs(a - b) <= 1e-6 * std::fabs(b)); };
   if (differ(patch.orbital_frequency, planet.orbital_frequency) ||
       differ(patch.frequencies.kappa, planet.frequencies.kappa) || differ(patch.frequencies.nu, planet.frequencies.nu))
     throw UsageError(
-        fmt::format("'{}' was made at another place (Omega {:.6g} rad/s, kappa/Omega {:.6g}, nu/Omega {:.6g}; the "
+        fmt::format("'{}' was made for another orbit (Omega {:.6g} rad/s, kappa/Omega {:.6g}, nu/Omega {:.6g}; the "
                     "scene has {:.6g}, {:.6g}, {:.6g}); give the scene the same [planet]",
                     path, patch.orbital_frequency, patch.frequencies.kappa, patch.frequencies.nu,
                     planet.orbital_frequency, planet.frequencies.kappa, planet.frequencies.nu));
 }
 
-// A particle is kept or not by its id alone: the same of any state that it is in, and fewer of the same at a lower
-// share. Collective.
+// Keeps each particle with probability start.keep. The decision depends on id and seed only: equal for all states of a
+// run, and a lower probability keeps a subset. Collective.
 Patch thinned(Patch patch, const Scene& scene, const Communicator& ranks) {
+  assert(patch.ids.size() == patch.size());
   std::vector<bool> keeps(patch.size());
   for (std::size_t k = 0; k < keeps.size(); ++k)
     keeps[k] = RandomStream(scene.start_keep_seed, RandomPurpose::thinning, patch.ids[k]).uniform() < scene.start_keep;
@@ -54,7 +56,7 @@ Patch thinned(Patch patch, const Scene& scene, const Communicator& ranks) {
           fmt::format("start.keep = {} keeps none of the {} of '{}'; raise it, or try another start.keep_seed",
                       format_number(scene.start_keep), pluralize(count, "particle"), *scene.start_from));
   });
-  const auto thin = [&](auto& rows) { // none where there are no spins
+  const auto thin = [&](auto& rows) { // also for empty spins
     std::size_t kept = 0;
     for (std::size_t k = 0; k < rows.size(); ++k)
       if (keeps[k])
@@ -70,7 +72,7 @@ Patch thinned(Patch patch, const Scene& scene, const Communicator& ranks) {
   return patch;
 }
 
-// What the radii that were drawn add to the layer's height²: 1.7 τ R², with the R of the crowd.
+// Returns the contribution of the drawn radii to the layer's height²: 1.7 τ R², with R of the typical particles.
 double own_room(const UniformRequest& request, const Communicator& ranks) {
   ExactSum squares;
   for (const double r : request.radii)
@@ -97,7 +99,7 @@ Streamlines streamlines_of(const Scene& scene) {
   return streamlines;
 }
 
-// The last particles are those of aggregates; they are no crowd, which is placed around their balls.
+// Adds the aggregates; their particles are the last ones; other particles are placed around their balls.
 void hold_aggregates(const Scene& scene, const DrawnSizes& sizes, UniformRequest& request) {
   std::size_t number = 0;
   for (const AggregateSettings& aggregate : scene.particles.aggregates) {
@@ -128,7 +130,7 @@ std::vector<ClosedBall> closed_balls(const Scene& scene) {
   return balls;
 }
 
-// The rank's share of the radii.
+// Draws the radii of this rank's particles.
 void take_radii(const DrawnSizes& sizes, std::size_t count, const Communicator& ranks, UniformRequest& request) {
   request.first = count * ranks.rank() / ranks.size();
   request.radii.resize(count * (ranks.rank() + 1) / ranks.size() - request.first);
@@ -159,7 +161,7 @@ UniformRequest request_of(const Scene& scene, const Communicator& ranks) {
   return request;
 }
 
-// An aggregate turns as one body, so its rough particles spin as it does.
+// Rough particles of an aggregate rotate with it rigidly.
 void spin_aggregates(const Scene& scene, Patch& patch) {
   patch.spins.assign(patch.size(), Vec3::Zero());
   for (const AggregateSettings& a : scene.particles.aggregates) {
@@ -172,7 +174,7 @@ void spin_aggregates(const Scene& scene, Patch& patch) {
 } // namespace
 
 void require_start_file(const Scene& scene) {
-  std::error_code unknown; // what cannot be looked at is reported when it is read
+  std::error_code unknown; // an inaccessible file is reported when it is read
   if (scene.start_from && !std::filesystem::exists(*scene.start_from, unknown) && !unknown)
     throw IoError(fmt::format("start.from names '{}', which does not exist", *scene.start_from));
 }
@@ -188,7 +190,7 @@ Patch patch_from_snapshot(Patch patch, const std::string& path, const Scene& sce
     require_same_planet(patch, scene, path);
   });
   ranks.together([&] { require_possible_particles(patch, path); });
-  // Velocities are stored in m/s; the scene's orbital frequency decides what they are in its own time.
+  // Velocities are stored in m/s; the scene's orbital frequency converts them to its units.
   for (std::vector<Vec3>* const rates : {&patch.velocities, &patch.spins})
     for (Vec3& rate : *rates)
       rate *= patch.orbital_frequency / scene.planet.orbital_frequency;
@@ -202,7 +204,7 @@ Patch patch_from_snapshot(Patch patch, const std::string& path, const Scene& sce
 
 namespace {
 
-// The largest of all ranks' bodies, and of such the heaviest.
+// Returns the largest of all ranks' bodies, the heaviest of equal ones.
 PatchScale::Sphere largest_of(const Patch& patch, const Communicator& ranks) {
   PatchScale::Sphere largest;
   for (const double radius : patch.radii)
@@ -255,12 +257,12 @@ Patch initial_patch(const Scene& scene, const std::function<void(const StartProg
     const std::string& path = *scene.start_from;
     return thinned(patch_from_snapshot(read_snapshot(path, ranks).patch, path, scene, ranks), scene, ranks);
   }
-  constexpr double placing_bytes = 250.0; // a particle: the patch, its spheres and their neighbours
+  constexpr double placing_bytes = 250.0; // per particle: the patch, its spheres and their neighbours
   const double count = static_cast<double>(scene.particles.count);
   ranks.together([&] {
     require_memory(placing_bytes * count / static_cast<double>(ranks.size()),
                    fmt::format("a start of {} particles", format_number(count)),
-                   "take fewer, or a machine that has more");
+                   "use fewer particles or a machine with more");
   });
   return fresh_patch(scene, progress, ranks);
 }

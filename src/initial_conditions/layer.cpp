@@ -2,6 +2,7 @@
 
 #include <keeler/core/units.hpp>
 
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
@@ -13,18 +14,19 @@ double LayerProfile::midplane_density() const {
 }
 
 LayerProfile LayerProfile::of_height(double height, double filling, double largest) {
+  assert(height >= 0.0 && largest > 0.0);
   if (!(filling > largest))
     return {0.0, height};
-  const double wanted = largest / filling / (std::sqrt(two_pi) * height);
-  const auto with_share = [&](double share) { // of ⟨z²⟩, that is the slab's
-    return LayerProfile{height * std::sqrt(3.0 * share), height * std::sqrt(1.0 - share)};
+  const double target = largest / filling / (std::sqrt(two_pi) * height);
+  const auto with_slab = [&](double fraction) { // of ⟨z²⟩, due to the slab
+    return LayerProfile{height * std::sqrt(3.0 * fraction), height * std::sqrt(1.0 - fraction)};
   };
-  double low = 0.0, high = 1.0; // the density falls as the share rises
+  double low = 0.0, high = 1.0; // the density falls with the fraction
   for (int halving = 0; halving < 16; ++halving) {
-    const double share = 0.5 * (low + high);
-    (with_share(share).midplane_density() > wanted ? low : high) = share;
+    const double fraction = 0.5 * (low + high);
+    (with_slab(fraction).midplane_density() > target ? low : high) = fraction;
   }
-  return with_share(high);
+  return with_slab(high);
 }
 
 } // namespace keeler

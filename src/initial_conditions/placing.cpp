@@ -11,18 +11,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
 namespace keeler {
 namespace {
 
-constexpr int usual_sweeps = 120, sweeps_a_round = 400, max_rounds = 12;
+constexpr int usual_sweeps = 120, sweeps_per_round = 400, max_rounds = 12;
 
 [[noreturn]] void fail_too_dense() {
   throw UsageError(fmt::format("too dense: after {} sweeps particles still overlap; raise "
                                "particles.velocity_dispersion or lower the optical depth",
-                               max_rounds * sweeps_a_round));
+                               max_rounds * sweeps_per_round));
 }
 
 } // namespace
@@ -65,40 +66,41 @@ void Placing::find_octaves() {
 
 void Placing::run(const std::function<void(double)>& progress) {
   const ShearingBox& box = request_.box;
-  double work = 0.0, done = 0.0; // an octave's goes with all that are placed so far
+  assert(box.area() > 0.0);
+  double work = 0.0, done = 0.0; // of an octave: all particles placed so far
   for (const Octave& octave : octaves_)
     work += static_cast<double>(octave.placed);
   for (const Octave& octave : octaves_) {
     draw(octave);
-    sort_by_place(spheres_, box);
+    sort_by_position(spheres_, box);
     const double part = static_cast<double>(octave.placed) / work;
     int round = 0;
-    const auto after_sweep = [&](int sweeps) { // nobody knows how many there will be
-      const int all = round * sweeps_a_round + sweeps;
+    const auto after_sweep = [&](int sweeps) { // the number of sweeps is not known in advance
+      const int all = round * sweeps_per_round + sweeps;
       progress(done + part * all / (all + 0.5 * usual_sweeps));
     };
-    while (!separate(spheres_, box, box.first_offset, slabs_, sweeps_a_round, after_sweep)) {
+    while (!separate(spheres_, box, box.first_offset, slabs_, sweeps_per_round, after_sweep)) {
       if (++round == max_rounds)
         slabs_.ranks().together(fail_too_dense);
-      redraw_caught(round);
+      redraw_overlapping(round);
     }
     done += part;
-    for (Sphere& sphere : spheres_) // nothing pulls it when smaller ones come: they have no room to be pushed to
-      sphere.height = sphere.place.z();
+    for (Sphere& sphere : spheres_) // no tether while smaller ones are placed, which have no room to push it to
+      sphere.height = sphere.position.z();
   }
 }
 
 bool Placing::is_free(const Trial& trial, const SizeLevels& larger) const {
   bool free = true;
-  larger.visit_near(trial.place, trial.radius, 1.0, 0, [&](std::size_t k, const Image& image) {
+  larger.visit_near(trial.position, trial.radius, 1.0, 0, [&](std::size_t k, const Image& image) {
     const double sum = trial.radius + spheres_[k].radius;
-    const Vec3 d = trial.place - spheres_[k].place - request_.box.displacement(image, request_.box.first_offset);
+    const Vec3 d = trial.position - spheres_[k].position - request_.box.displacement(image, request_.box.first_offset);
     free = free && d.squaredNorm() >= sum * sum;
   });
   return free;
 }
 
-// Evenly, or where the density pattern accepts it (von Neumann's rejection).
+// Draws it uniformly, or from the density pattern by von Neumann's rejection.
 std::pair<double, double> Placing::draw_guiding_centre(RandomStream& random) const {
   const DensityPattern& pattern = request_.pattern;
   for (;;) {
@@ -108,13 +110,13 @@ std::pair<double, double> Placing::draw_guiding_centre(RandomStream& random) con
   }
 }
 
-// From time to time farther from the mid-plane.
-void Placing::try_another_place(Trial& trial) const {
-  constexpr int tries_a_height = 50;
+// Tries another position; after every 50 tries at another height, scaled farther from the mid-plane.
+void Placing::try_another_position(Trial& trial) const {
+  constexpr int tries_per_height = 50;
   const Frequencies& f = request_.frequencies;
   const Streamlines& streamlines = request_.streamlines;
-  const int heights = trial.tries / tries_a_height; // drawn before
-  if (trial.tries++ % tries_a_height == 0) {
+  const int heights = trial.tries / tries_per_height; // drawn before
+  if (trial.tries++ % tries_per_height == 0) {
     trial.flat = 2.0 * trial.random.uniform() - 1.0;
     trial.normal = trial.random.normal();
   }
@@ -126,51 +128,52 @@ void Placing::try_another_place(Trial& trial) const {
   const double filling = crowding * crowd_volume_ / request_.box.area() / (std::sqrt(two_pi) * height);
   const LayerProfile profile = LayerProfile::of_height(height, filling, largest_filling);
   const double stretch = 1.0 + heights;
-  trial.place = Vec3(guiding_x - streamline.e_cos, guiding_y + 2.0 / f.kappa * streamline.e_sin,
-                     stretch * (profile.slab * trial.flat + profile.sigma * trial.normal));
+  trial.position = Vec3(guiding_x - streamline.e_cos, guiding_y + 2.0 / f.kappa * streamline.e_sin,
+                        stretch * (profile.slab * trial.flat + profile.sigma * trial.normal));
 }
 
-// Each until it is free of all that is larger, or has tried often enough. A try in another slab is for its rank to
-// judge.
+// Tries positions for each until one is free of all larger spheres, or the limit of tries is reached. A trial in
+// another slab is decided by that slab's rank.
 std::vector<Sphere> Placing::place(std::vector<Trial> trials, const SizeLevels& larger) const {
   constexpr int max_tries = 1000;
   std::vector<Sphere> placed;
   placed.reserve(trials.size());
-  parallel_for(trials.size(), [&](std::size_t k) { try_another_place(trials[k]); });
+  parallel_for(trials.size(), [&](std::size_t k) { try_another_position(trials[k]); });
   do {
-    trials = in_their_slabs(std::move(trials));
+    trials = send_to_owners(std::move(trials));
     parallel_for(trials.size(), [&](std::size_t k) {
       Trial& trial = trials[k];
-      while (slabs_.has(trial.place) && trial.tries <= max_tries && !is_free(trial, larger))
-        try_another_place(trial);
+      while (slabs_.has(trial.position) && trial.tries <= max_tries && !is_free(trial, larger))
+        try_another_position(trial);
     });
     const auto elsewhere = std::stable_partition(trials.begin(), trials.end(),
-                                                 [&](const Trial& trial) { return slabs_.has(trial.place); });
+                                                 [&](const Trial& trial) { return slabs_.has(trial.position); });
     for (auto trial = trials.begin(); trial != elsewhere; ++trial)
-      placed.push_back({trial->place, trial->radius, trial->place.z(), trial->particle});
+      placed.push_back({trial->position, trial->radius, trial->position.z(), trial->particle});
     trials.erase(trials.begin(), elsewhere);
   } while (slabs_.ranks().any(!trials.empty()));
   return placed;
 }
 
-std::vector<Placing::Trial> Placing::in_their_slabs(std::vector<Trial> trials) const {
+std::vector<Placing::Trial> Placing::send_to_owners(std::vector<Trial> trials) const {
   const Communicator& ranks = slabs_.ranks();
   if (!ranks.distributed())
     return trials;
   std::vector<std::vector<Trial>> parcels(ranks.size());
   for (const Trial& trial : trials)
-    parcels[slabs_.owner(trial.place)].push_back(trial);
+    parcels[slabs_.owner(trial.position)].push_back(trial);
   trials = {};
   std::vector<std::vector<Trial>> received = ranks.exchange(parcels);
   parcels = {};
-  for (std::vector<Trial>& its : received) {
-    trials.insert(trials.end(), its.begin(), its.end());
-    its = {};
+  for (std::vector<Trial>& parcel : received) {
+    trials.insert(trials.end(), parcel.begin(), parcel.end());
+    parcel = {};
   }
   return trials;
 }
 
 void Placing::draw(const Octave& octave) {
+  assert(octave.first <= octave.last && octave.last <= order_.size());
   const std::size_t own = spheres_.size();
   slabs_.add_copies(spheres_, 1.0);
   const SizeLevels larger(spheres_, request_.box, request_.box.first_offset);
@@ -184,51 +187,51 @@ void Placing::draw(const Octave& octave) {
   });
   std::vector<Sphere> drawn = place(std::move(trials), larger);
   spheres_.resize(own);
-  ExactSum moment, squares; // the least change that leaves no mean height by mass
+  ExactSum moment, squares; // smallest change to a mass-weighted mean height of zero
   for (const Sphere& sphere : drawn) {
-    moment += sphere.mass() * sphere.place.z();
+    moment += sphere.mass() * sphere.position.z();
     squares += sphere.mass() * sphere.mass();
   }
   slabs_.ranks().merge({&moment, &squares});
   const double shift = moment.value() / squares.value();
   for (Sphere& sphere : drawn)
-    sphere.height = sphere.place.z() -= sphere.mass() * shift;
+    sphere.height = sphere.position.z() -= sphere.mass() * shift;
   spheres_.insert(spheres_.end(), drawn.begin(), drawn.end());
 }
 
-// The smaller of a pair that still overlaps, mostly in the wedge between two large ones.
-bool Placing::is_caught(std::size_t k, const SizeLevels& levels) const {
+// True for the smaller of a pair that still overlaps, mostly in the wedge between two large ones.
+bool Placing::still_overlaps(std::size_t k, const SizeLevels& levels) const {
   const Sphere& sphere = spheres_[k];
-  bool caught = false;
-  levels.visit_near(sphere.place, sphere.radius, 1.0, 0, [&](std::size_t j, const Image& image) {
+  bool overlapping = false;
+  levels.visit_near(sphere.position, sphere.radius, 1.0, 0, [&](std::size_t j, const Image& image) {
     const Sphere& other = spheres_[j];
     if (j == k || (!other.held && (other.radius < sphere.radius ||
                                    (other.radius == sphere.radius && other.particle > sphere.particle))))
       return;
-    const Vec3 d = sphere.place - other.place - request_.box.displacement(image, request_.box.first_offset);
-    caught = caught || d.norm() < sphere.radius + other.radius;
+    const Vec3 d = sphere.position - other.position - request_.box.displacement(image, request_.box.first_offset);
+    overlapping = overlapping || d.norm() < sphere.radius + other.radius;
   });
-  return caught;
+  return overlapping;
 }
 
-// Those that are caught get other places.
-void Placing::redraw_caught(int round) {
+// Draws other positions for such spheres.
+void Placing::redraw_overlapping(int round) {
   const std::size_t own = spheres_.size();
   slabs_.add_copies(spheres_, 1.0);
   const SizeLevels levels(spheres_, request_.box, request_.box.first_offset);
-  std::vector<std::uint8_t> caught(own);
-  parallel_for(own, [&](std::size_t k) { caught[k] = !spheres_[k].held && is_caught(k, levels); });
+  std::vector<std::uint8_t> overlapping(own);
+  parallel_for(own, [&](std::size_t k) { overlapping[k] = !spheres_[k].held && still_overlaps(k, levels); });
   std::vector<Trial> trials;
   std::vector<Sphere> others;
   for (std::size_t k = 0; k < own; ++k) {
     const Sphere& sphere = spheres_[k];
-    if (caught[k]) {
+    if (overlapping[k]) {
       const std::uint64_t stream = static_cast<std::uint64_t>(round) << 32 | sphere.particle;
       trials.push_back(
           {RandomStream(request_.seed, RandomPurpose::relaxation, stream), sphere.radius, sphere.particle});
     } else {
       others.push_back(sphere);
-      others.back().height = sphere.place.z();
+      others.back().height = sphere.position.z();
     }
   }
   const std::vector<Sphere> placed = place(std::move(trials), levels);

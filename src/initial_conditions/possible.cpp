@@ -11,12 +11,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-// A number of the frame, as /RingBox of a snapshot has it.
+// A number of the frame, stored in /RingBox of a snapshot.
 struct FrameNumber {
   const char* what;
   double value;
@@ -38,7 +39,7 @@ void require_possible_orbits(const Patch& patch, const std::string& path) {
   require_in_range({"a nu_over_Omega", frequencies.nu, "", find_key("planet.vertical_ratio")->range}, path);
   require_in_range({"a time_orbits", patch.time_orbits, "", {.low = 0.0, .high = longest_run}}, path);
   if (!(std::fabs(patch.box.shear - frequencies.shear()) <= 1e-6 * frequencies.shear()))
-    throw InvariantError(fmt::format("'{}' has a shear_over_Omega of {}, where its kappa_over_Omega makes that {} "
+    throw InvariantError(fmt::format("'{}' has a shear_over_Omega of {}, but its kappa_over_Omega gives {} "
                                      "(2 - kappa^2/2); correct one of them or take another state",
                                      path, format_number(patch.box.shear, 7), format_number(frequencies.shear(), 7)));
 }
@@ -52,13 +53,14 @@ void require_possible_offsets(const Patch& patch, const std::string& path) {
 } // namespace
 
 std::string particle_fault(const Patch& patch, std::size_t k) {
+  assert(k < patch.size() && patch.velocities.size() == patch.size() && patch.masses.size() == patch.size());
   static const KeyRange radii = find_key("particles.sizes.radius")->range,
                         densities = find_key("particles.density")->range,
-                        places = {.high = find_key("box.size")->range.high},
-                        speeds = {.high = 1000.0}; // m/s beyond the shear: a ring's orbits have 10 to 20 km/s
-  const Vec3 &place = patch.positions[k], &velocity = patch.velocities[k];
-  if (!place.allFinite() || !velocity.allFinite())
-    return "a position or velocity that is not finite";
+                        coordinates = {.high = find_key("box.size")->range.high},
+                        speeds = {.high = 1000.0}; // m/s relative to the shear flow: ring orbits have 10 to 20 km/s
+  const Vec3 &position = patch.positions[k], &velocity = patch.velocities[k];
+  if (!position.allFinite() || !velocity.allFinite())
+    return "a position or a velocity that is not finite";
   const Vec3 spin = patch.spins.empty() ? Vec3(Vec3::Zero()) : patch.spins[k];
   if (!spin.allFinite())
     return "a spin that is not finite";
@@ -68,25 +70,25 @@ std::string particle_fault(const Patch& patch, std::size_t k) {
     double value;
   };
   const double radius = patch.radii[k];
-  const Vec3 shear(0.0, -patch.box.shear * place.x(), 0.0);
+  const Vec3 shear(0.0, -patch.box.shear * position.x(), 0.0);
   const std::array<Quantity, 5> quantities = {
       {{radii, "a radius (m)", radius},
        {densities, "a density (kg/m^3, by its mass and radius)",
         patch.masses[k] / (4.0 / 3.0 * pi * radius * radius * radius)},
-       {places, "a coordinate (m)", place.cwiseAbs().maxCoeff()},
+       {coordinates, "a coordinate (m)", position.cwiseAbs().maxCoeff()},
        {speeds, "a speed (m/s, beyond the shear)", (velocity - shear).norm() * patch.orbital_frequency},
        {speeds, "a speed of its equator (m/s, by its spin)", spin.norm() * radius * patch.orbital_frequency}}};
   for (const Quantity& q : quantities)
     if (!q.range.contains(q.value))
       return fmt::format("{} of {} (possible is {})", q.what, format_number(q.value, 3), q.range.words());
   if (const double narrow = std::min(patch.box.size_x, patch.box.size_y); 2.0 * radius > narrow)
-    return fmt::format("a diameter of {} m, more than the box is wide ({} m)", format_number(2.0 * radius, 4),
+    return fmt::format("a diameter of {} m, larger than the width of the box ({} m)", format_number(2.0 * radius, 4),
                        format_number(narrow, 4));
   return {};
 }
 
-// In snapshots the guiding centres are in the cell in the middle of a step, so some are a little outside: a tenth of
-// the box is more than the shear makes in the longest half step of an automatic run.
+// In snapshots the guiding centres are in the cell in the middle of a step, so some are slightly outside. A tenth of
+// the box exceeds the shear during the longest half step of an automatic run.
 std::string box_fault(const State& state, const ShearingBox& box, const Frequencies& frequencies) {
   constexpr double reach = 0.6; // of the sides
   const auto within = [&](double x, double y) {
@@ -118,9 +120,8 @@ void require_possible_frame(const Patch& patch, std::size_t count, const std::st
                shorter = std::min(patch.box.size_x, patch.box.size_y);
   if (!(longer <= most_oblong * shorter))
     throw InvariantError(
-        fmt::format("the box of '{}' is {} m x {} m, more than {:g} times as long as wide; take another "
-                    "state",
-                    path, format_number(patch.box.size_x, 4), format_number(patch.box.size_y, 4), most_oblong));
+        fmt::format("the box of '{}' is {} m x {} m, more than {:g} times as long as wide; take another state", path,
+                    format_number(patch.box.size_x, 4), format_number(patch.box.size_y, 4), most_oblong));
   require_possible_offsets(patch, path);
 }
 

@@ -2,6 +2,7 @@
 
 #include <keeler/core/units.hpp>
 
+#include <cassert>
 #include <limits>
 #include <vector>
 
@@ -17,7 +18,7 @@ struct Window {
   std::size_t standing = 0; // samples
 };
 
-// The length of the summed spectra, and its error from those of single samples.
+// Returns the wavelength of the summed spectra, with the error from single samples.
 Estimate length_of(const std::optional<double>& sum, std::span<const double> singles) {
   return {sum.value_or(unknown), singles.empty() ? unknown : block_mean(singles).error};
 }
@@ -49,6 +50,7 @@ bool within(const WindowMeans& means, const MeanBounds& bounds) {
 } // namespace
 
 WindowMeans compare(const Estimate& before, const Estimate& last, const MeanBounds& bounds, double standard_errors) {
+  assert(bounds.change >= 0.0 && standard_errors >= 0.0);
   WindowMeans means{before, last, 0.0};
   means.tolerance = std::max(bounds.change, standard_errors * std::hypot(before.error, last.error) / means.mean());
   return means;
@@ -56,6 +58,8 @@ WindowMeans compare(const Estimate& before, const Estimate& last, const MeanBoun
 
 std::optional<Settling> compare_windows(std::span<const SettleSample> history, std::size_t orbit,
                                         const SettleCriterion& criterion) {
+  assert(std::is_sorted(history.begin(), history.end(),
+                        [](const SettleSample& a, const SettleSample& b) { return a.orbits < b.orbits; }));
   constexpr double rounding = 1e-9;
   const auto first = std::find_if(history.begin(), history.end(), [&](const SettleSample& sample) {
     return sample.orbits >= criterion.first_orbit - rounding;
@@ -64,7 +68,7 @@ std::optional<Settling> compare_windows(std::span<const SettleSample> history, s
   const std::size_t orbits = orbit == 0 || count == 0 ? 0 : (count - 1) / (2 * orbit), length = orbits * orbit;
   if (orbits == 0 || orbits < criterion.min_window_orbits)
     return std::nullopt;
-  const auto samples = history.last(2 * length + 1); // and the one at which they begin
+  const auto samples = history.last(2 * length + 1); // with the sample at which they begin
   const Window before = window_of(samples.front(), samples.subspan(1, length));
   const Window last = window_of(samples[length], samples.last(length));
   const auto of = [&](Estimate Window::*quantity, const MeanBounds& bounds) {

@@ -1,6 +1,7 @@
 #include "size_levels.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 namespace keeler {
 
@@ -13,16 +14,17 @@ SizeLevels::SizeLevels(const std::vector<Sphere>& spheres, const ShearingBox& bo
     levels_[l].members.push_back(static_cast<std::uint32_t>(k));
     levels_[l].largest = std::max(levels_[l].largest, spheres[k].radius);
   }
-  std::vector<Vec3> places;
+  std::vector<Vec3> positions;
   for (Level& level : levels_) {
-    places.clear();
+    positions.clear();
     for (const std::uint32_t k : level.members)
-      places.push_back(spheres[k].place);
-    level.grid.build(places, box, offset, 2.0 * level.largest);
+      positions.push_back(spheres[k].position);
+    level.grid.build(positions, box, offset, 2.0 * level.largest);
   }
 }
 
 std::size_t SizeLevels::level_of(double radius) const {
+  assert(radius > 0.0 && radius <= largest_);
   return static_cast<std::size_t>(std::ilogb(largest_ / radius));
 }
 

@@ -1,4 +1,4 @@
-// What is placed without overlap.
+// A sphere that is placed without overlap.
 #pragma once
 
 #include <keeler/core/vector.hpp>
@@ -8,13 +8,13 @@
 namespace keeler {
 
 struct Sphere {
-  Vec3 place;             ///< m
+  Vec3 position;          ///< m
   double radius;          ///< m
-  double height;          ///< z that was drawn for it, m
-  std::uint32_t particle; ///< whose it is
-  bool held = false;      ///< it stays where it is
+  double height;          ///< drawn z, m
+  std::uint32_t particle; ///< number of its particle
+  bool held = false;      ///< never moves
 
-  /// In 4/3 π times the density; of a held sphere so large that no push moves it.
+  /// Returns the mass in units of 4/3 π × density; a held sphere is so heavy that no push moves it.
   double mass() const { return held ? 1e200 : radius * radius * radius; }
 };
 

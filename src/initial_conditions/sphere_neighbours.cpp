@@ -5,6 +5,7 @@
 #include <keeler/core/threads.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 #include <tuple>
 
@@ -15,9 +16,9 @@ struct SpherePair {
   std::uint32_t larger;
   Neighbour smaller;
 };
-using PairBlocks = std::vector<std::vector<SpherePair>>; // a block of larger partners each
+using PairBlocks = std::vector<std::vector<SpherePair>>; // one per block of larger partners
 
-// Each sphere looks for smaller ones: it meets of the order of r² N / area of them, τ N in all, whatever the sizes.
+// Finds the smaller partners of each sphere: of the order of r² N / area, τ N in total, for any sizes.
 PairBlocks find_pairs(const std::vector<Sphere>& spheres, std::size_t own, const ShearingBox& box, double offset,
                       double skin) {
   constexpr std::size_t block = 1024;
@@ -30,11 +31,11 @@ PairBlocks find_pairs(const std::vector<Sphere>& spheres, std::size_t own, const
       if (j == i || other.radius > sphere.radius || (other.radius == sphere.radius && j > i) || std::min(i, j) >= own)
         return;
       const double range = (sphere.radius + other.radius) * (1.0 + skin);
-      const Vec3 d = sphere.place - other.place - box.displacement(image, offset);
+      const Vec3 d = sphere.position - other.position - box.displacement(image, offset);
       if (d.squaredNorm() < range * range)
         pairs.push_back({static_cast<std::uint32_t>(i), {static_cast<std::uint32_t>(j), image}});
     };
-    levels.visit_near(sphere.place, sphere.radius, 1.0 + skin, levels.level_of(sphere.radius), consider);
+    levels.visit_near(sphere.position, sphere.radius, 1.0 + skin, levels.level_of(sphere.radius), consider);
   };
   PairBlocks blocks((count + block - 1) / block);
   parallel_for(
@@ -51,8 +52,9 @@ PairBlocks find_pairs(const std::vector<Sphere>& spheres, std::size_t own, const
 
 void SphereNeighbours::build(const std::vector<Sphere>& spheres, std::size_t own, const ShearingBox& box, double offset,
                              double skin) {
+  assert(own <= spheres.size() && skin >= 0.0);
   PairBlocks blocks = find_pairs(spheres, own, box, offset, skin);
-  first_.assign(spheres.size() + 2, 0); // a counting sort: first_[i + 1] is where the next neighbour of i goes
+  first_.assign(spheres.size() + 2, 0); // a counting sort: first_[i + 1] is the index of the next neighbour of i
   for (const std::vector<SpherePair>& block : blocks)
     for (const SpherePair& pair : block) {
       ++first_[pair.larger + 2];

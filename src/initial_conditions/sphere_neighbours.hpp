@@ -1,12 +1,13 @@
-// Which spheres may come to touch before the lists are made again (Verlet 1967). Both partners of a pair have it in
-// their lists, so that each sphere's pushes are added by one thread, in one order: that of the partners' numbers,
-// wherever they stand in memory.
+// Neighbour lists of spheres (Verlet 1967): the pairs that may touch before the lists are rebuilt. Both partners list a
+// pair, so that each sphere's pushes are added by one thread, in the order of the partners' numbers, independent of
+// their order in memory.
 #pragma once
 
 #include "sphere.hpp"
 
 #include <keeler/hill/shearing_box.hpp>
 
+#include <cassert>
 #include <span>
 #include <vector>
 
@@ -19,11 +20,12 @@ struct Neighbour {
 
 class SphereNeighbours {
 public:
-  /// All pairs of the first `own` spheres with each other and with the rest whose distance is below (1 + skin) of the
-  /// sum of their radii: complete until a sphere has moved by `skin` of its radius.
+  /// Lists all pairs of the first `own` spheres with each other and with the rest at a distance below (1 + skin) ×
+  /// (sum of their radii). Complete until a sphere has moved by `skin` of its radius.
   void build(const std::vector<Sphere>& spheres, std::size_t own, const ShearingBox& box, double offset, double skin);
 
   std::span<const Neighbour> of(std::size_t sphere) const {
+    assert(sphere + 1 < first_.size());
     return {entries_.data() + first_[sphere], entries_.data() + first_[sphere + 1]};
   }
 

@@ -6,7 +6,7 @@
 
 namespace keeler {
 
-// Ranks whose slabs [low, high] meets, each once.
+// Visits the ranks with slabs that intersect [low, high], each once.
 template<class Visit> void SphereSlabs::visit_slabs(double low, double high, const Visit& visit) const {
   const auto slab = [&](double x) {
     return static_cast<std::int64_t>(std::floor((x + 0.5 * box_.size_x) / slab_width()));
@@ -17,18 +17,19 @@ template<class Visit> void SphereSlabs::visit_slabs(double low, double high, con
     visit(static_cast<std::size_t>((s % count + count) % count));
 }
 
-std::size_t SphereSlabs::owner(const Vec3& place) const {
+std::size_t SphereSlabs::owner(const Vec3& position) const {
   std::size_t owner = 0;
-  visit_slabs(place.x(), place.x(), [&](std::size_t rank) { owner = rank; });
+  visit_slabs(position.x(), position.x(), [&](std::size_t rank) { owner = rank; });
   return owner;
 }
 
-double SphereSlabs::distance_outside(const Vec3& place) const {
+double SphereSlabs::distance_outside(const Vec3& position) const {
   const double middle = (static_cast<double>(ranks_.rank()) + 0.5) * slab_width() - 0.5 * box_.size_x;
-  return std::max(0.0, std::fabs(std::remainder(place.x() - middle, box_.size_x)) - 0.5 * slab_width());
+  return std::max(0.0, std::fabs(std::remainder(position.x() - middle, box_.size_x)) - 0.5 * slab_width());
 }
 
 void SphereSlabs::add_copies(std::vector<Sphere>& spheres, double stretch) {
+  assert(stretch >= 1.0);
   own_ = spheres.size();
   if (!ranks_.distributed())
     return;
@@ -36,38 +37,39 @@ void SphereSlabs::add_copies(std::vector<Sphere>& spheres, double stretch) {
   for (const Sphere& sphere : spheres)
     if (!sphere.held) {
       largest = std::max(largest, sphere.radius);
-      outside = std::max(outside, distance_outside(sphere.place));
+      outside = std::max(outside, distance_outside(sphere.position));
     }
   largest = ranks_.largest(largest);
   outside = ranks_.largest(outside);
-  lent_.assign(ranks_.size(), {});
+  sent_.assign(ranks_.size(), {});
   std::vector<std::vector<Sphere>> parcels(ranks_.size());
   for (std::size_t k = 0; k < own_; ++k) {
     const Sphere& sphere = spheres[k];
-    const double reach = 1.001 * (stretch * (sphere.radius + largest) + outside), x = sphere.place.x();
+    const double reach = 1.001 * (stretch * (sphere.radius + largest) + outside), x = sphere.position.x();
     if (!sphere.held)
       visit_slabs(x - reach, x + reach, [&](std::size_t rank) {
         if (rank == ranks_.rank())
           return;
-        lent_[rank].push_back(static_cast<std::uint32_t>(k));
+        sent_[rank].push_back(static_cast<std::uint32_t>(k));
         parcels[rank].push_back(sphere);
       });
   }
-  for (const std::vector<Sphere>& its : ranks_.exchange(parcels))
-    spheres.insert(spheres.end(), its.begin(), its.end());
+  for (const std::vector<Sphere>& copies : ranks_.exchange(parcels))
+    spheres.insert(spheres.end(), copies.begin(), copies.end());
 }
 
 void SphereSlabs::update_copies(std::vector<Sphere>& spheres) const {
   if (!ranks_.distributed())
     return;
+  assert(sent_.size() == ranks_.size() && own_ <= spheres.size());
   std::vector<std::vector<Vec3>> parcels(ranks_.size());
   for (std::size_t rank = 0; rank < parcels.size(); ++rank)
-    for (const std::uint32_t k : lent_[rank])
-      parcels[rank].push_back(spheres[k].place);
+    for (const std::uint32_t k : sent_[rank])
+      parcels[rank].push_back(spheres[k].position);
   auto copy = spheres.begin() + static_cast<std::ptrdiff_t>(own_);
-  for (const std::vector<Vec3>& places : ranks_.exchange(parcels))
-    for (const Vec3& place : places)
-      (copy++)->place = place;
+  for (const std::vector<Vec3>& positions : ranks_.exchange(parcels))
+    for (const Vec3& position : positions)
+      (copy++)->position = position;
   assert(copy == spheres.end());
 }
 

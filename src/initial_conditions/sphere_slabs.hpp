@@ -1,8 +1,8 @@
-// Spheres that ranks share while a start is made: each has those that were placed in its slab of the box, and copies of
-// others' that may touch them.
+// Distribution of spheres over ranks while a start is made: each rank has the spheres placed in its slab of the box,
+// and copies of spheres of other ranks that may touch them.
 //
-// Slabs are equally wide. A sphere stays with its rank wherever it is pushed; copies reach as much farther as the
-// farthest sphere is out of its slab. Held spheres are on all ranks, and no copies.
+// Slabs are equally wide. A sphere stays with its rank wherever it is pushed, and the range of copies grows by the
+// distance of the farthest sphere outside its slab. Held spheres are on all ranks and never copied.
 #pragma once
 
 #include "sphere.hpp"
@@ -19,26 +19,26 @@ public:
   SphereSlabs(const Communicator& ranks, const ShearingBox& box) : ranks_(ranks), box_(box) {}
 
   const Communicator& ranks() const { return ranks_; }
-  /// The rank in whose slab that is, in any image.
-  std::size_t owner(const Vec3& place) const;
-  bool has(const Vec3& place) const { return !ranks_.distributed() || owner(place) == ranks_.rank(); }
+  /// Returns the owner of the slab that contains the position, in any image.
+  std::size_t owner(const Vec3& position) const;
+  bool has(const Vec3& position) const { return !ranks_.distributed() || owner(position) == ranks_.rank(); }
 
-  /// Appends a copy of each sphere of another rank that may be nearer to one here, or to a place in the slab where one
-  /// no larger than the largest may be, than `stretch` times the sum of their radii. Those that are there are no
-  /// copies. Collective.
+  /// Appends a copy of each sphere of another rank that may be closer than `stretch` times the sum of radii to a sphere
+  /// here, or to a position in the slab at which a sphere no larger than the largest may be. Precondition: no copies
+  /// yet. Collective.
   void add_copies(std::vector<Sphere>& spheres, double stretch);
-  /// Copies go where their spheres have gone. Collective.
+  /// Moves the copies to the positions of their spheres. Collective.
   void update_copies(std::vector<Sphere>& spheres) const;
 
 private:
   double slab_width() const { return box_.size_x / static_cast<double>(ranks_.size()); }
-  double distance_outside(const Vec3& place) const;
+  double distance_outside(const Vec3& position) const;
   template<class Visit> void visit_slabs(double low, double high, const Visit& visit) const;
 
   Communicator ranks_;
   ShearingBox box_;
-  std::size_t own_ = 0;                          // spheres that are no copies, the first ones
-  std::vector<std::vector<std::uint32_t>> lent_; // to each rank
+  std::size_t own_ = 0;                          // number of spheres that are no copies; they come first
+  std::vector<std::vector<std::uint32_t>> sent_; // indices of the spheres copied to each rank
 };
 
 } // namespace keeler

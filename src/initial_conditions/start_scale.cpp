@@ -1,4 +1,4 @@
-// How dense and how fast the particles of a patch are, for the doubts about a start.
+// Density and velocities of the particles of a patch, for warnings about a start.
 #include "start_scale.hpp"
 
 #include <keeler/core/units.hpp>
@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -14,7 +15,7 @@
 namespace keeler {
 namespace {
 
-// Moments of x, in t = (x − centre) / width of its stripe, and of what depends on it.
+// Moments of t = (x − centre) / width of a stripe, and of the quantities q.
 struct Moments {
   struct With {
     double sum = 0.0, squares = 0.0, products = 0.0; // Σ q, Σ q², Σ t q
@@ -44,7 +45,7 @@ struct Moments {
     }
   }
 
-  // The same of t' = centre + width t.
+  // Returns the moments in terms of t' = centre + width t.
   Moments rescaled(double centre, double width) const {
     Moments m = *this;
     m.sum = centre * count + width * sum;
@@ -58,7 +59,7 @@ struct Moments {
   double slope(std::size_t k) const {
     return variance() > 0.0 ? (of[k].products - sum * of[k].sum / count) / variance() : 0.0;
   }
-  /// Σ (q − line of best fit)²
+  /// Returns Σ (q − line of best fit)².
   double residual(std::size_t k) const {
     const double about_mean = of[k].squares - of[k].sum * of[k].sum / count;
     return std::max(0.0, about_mean - slope(k) * slope(k) * variance());
@@ -67,7 +68,7 @@ struct Moments {
 
 enum Quantity : std::size_t { radial, azimuthal, vertical, height }; // three of the velocity, and z
 
-// Stripes of equal width across the box: in each the mean motion is a line in x, as on streamlines.
+// Stripes of equal width across the box. In each, the mean motion is linear in x, as on streamlines.
 class Stripes {
 public:
   Stripes(const Patch& patch, std::size_t count_of_all)
@@ -76,24 +77,23 @@ public:
   void add_particles() {
     for (std::size_t k = 0; k < patch_.size(); ++k) {
       const Vec3 c = peculiar_velocity(patch_, k);
-      const double place = (patch_.positions[k].x() / patch_.box.size_x + 0.5) * number();
-      const double stripe = std::clamp(std::floor(place), 0.0, number() - 1.0);
-      moments_[static_cast<std::size_t>(stripe)].add(place - stripe - 0.5,
-                                                     {c.x(), c.y(), c.z(), patch_.positions[k].z()});
+      const double x = (patch_.positions[k].x() / patch_.box.size_x + 0.5) * number();
+      const double stripe = std::clamp(std::floor(x), 0.0, number() - 1.0);
+      moments_[static_cast<std::size_t>(stripe)].add(x - stripe - 0.5, {c.x(), c.y(), c.z(), patch_.positions[k].z()});
     }
   }
 
-  /// On the first rank those of all.
+  /// Sums the moments of all ranks on the root.
   void gather(const Communicator& ranks) {
     if (!ranks.distributed())
       return;
     const std::vector<Moments> of_ranks = ranks.gather(moments_);
     const std::size_t stripes = moments_.size();
-    for (std::size_t k = stripes; k < of_ranks.size(); ++k) // the first rank's come first
+    for (std::size_t k = stripes; k < of_ranks.size(); ++k) // the root's come first
       moments_[k % stripes].add(of_ranks[k]);
   }
 
-  /// Standard deviation about the lines.
+  /// Returns the standard deviation from the lines.
   double scatter(Quantity quantity) const {
     double squares = 0.0, freedom = 0.0;
     for (const Moments& m : moments_)
@@ -119,9 +119,9 @@ private:
   std::vector<Moments> moments_;
 };
 
-// −dv_y/dx over S, where it is known to a small part of S.
+// Returns −dv_y/dx / S if its error is small compared with S.
 std::optional<double> shear_seen(const Moments& all, double shear) {
-  constexpr double certain = 24.0; // standard errors that S is
+  constexpr double certain = 24.0; // S in standard errors
   const double freedom = all.count - 2.0;
   if (!(freedom > 0.0) || !(all.variance() > 0.0))
     return std::nullopt;
@@ -138,8 +138,8 @@ double largest_of(const std::vector<double>& values, const Communicator& ranks) 
 
 double extent_of(const Patch& patch, int axis, const Communicator& ranks) {
   double farthest = 0.0;
-  for (const Vec3& place : patch.positions)
-    farthest = std::max(farthest, std::fabs(place[axis]));
+  for (const Vec3& position : patch.positions)
+    farthest = std::max(farthest, std::fabs(position[axis]));
   return 2.0 * ranks.largest(farthest);
 }
 
@@ -150,6 +150,7 @@ double over(double size, double extent) {
 } // namespace
 
 StartScale start_scale_of(const Patch& patch, double mass, const Communicator& ranks) {
+  assert(patch.velocities.size() == patch.size() && patch.box.area() > 0.0);
   StartScale start;
   start.particle_count = ranks.sum(patch.size());
   auto radii = exact_total<ExactSum>(patch.size(), [&](ExactSum& sum, std::size_t k) { sum += patch.radii[k]; });
@@ -176,7 +177,7 @@ StartScale start_scale_of(const Patch& patch, double mass, const Communicator& r
   start.shear = patch.box.shear;
   const Moments all = stripes.whole();
   start.flat = 4.0 * all.residual(height) < all.variance();
-  if (start.flat && start.spread_x < 2.0) // balls turn in their own way
+  if (start.flat && start.spread_x < 2.0) // isolated aggregates may rotate differently
     start.shear_seen = shear_seen(all, start.shear);
   return start;
 }

@@ -1,4 +1,4 @@
-// For initial.cpp: how dense and how fast the particles of a patch are.
+// For initial.cpp: density and velocities of the particles of a patch.
 #pragma once
 
 #include <keeler/comm/communicator.hpp>
@@ -7,7 +7,7 @@
 
 namespace keeler {
 
-/// Of a patch of that mass in all, kg. Collective, of a part of the particles: on the first rank, on others nothing.
+/// Measures a patch of this total mass, kg. Collective, for a part of the particles: result on the root only.
 StartScale start_scale_of(const Patch& patch, double mass, const Communicator& ranks);
 
 } // namespace keeler

@@ -2,21 +2,26 @@
 
 #include <keeler/core/units.hpp>
 
+#include <cassert>
+
 namespace keeler {
 
 Streamlines Streamlines::bunched(int waves, double length, double q) {
+  assert(waves != 0 && length > 0.0);
   const double wave_number = two_pi * waves / length;
   return {{{wave_number, q / std::fabs(wave_number), 0.0}}, 0.0};
 }
 
 // φ = κt − kX + π/2 − p: with x = X − e cos φ the density − ∂x/∂X + 1 is k e sin φ = q cos(kX + p) at time zero.
 void Streamlines::add_outward(int n, double length, double q, double phase) {
+  assert(n > 0 && length > 0.0);
   const double k = two_pi * n / length;
   waves.push_back({-k, q / k, 0.5 * pi - phase});
 }
 
 // φ = κt + kX + p − π/2: the density is − k e sin φ.
 void Streamlines::add_inward(int n, double length, double q, double phase) {
+  assert(n > 0 && length > 0.0);
   const double k = two_pi * n / length;
   waves.push_back({k, q / k, phase - 0.5 * pi});
 }
@@ -51,7 +56,7 @@ double Streamlines::guiding_x(double x) const {
   double farthest = 0.0;
   for (const EccentricityWave& wave : waves)
     farthest += wave.eccentricity;
-  double low = x - farthest, high = x + farthest; // x(X) rises, and is nowhere farther from X than Σ e
+  double low = x - farthest, high = x + farthest; // x(X) increases, with |x − X| <= Σ e
   for (int halving = 0; halving < 60 && low < high; ++halving) {
     const double middle = 0.5 * (low + high);
     (middle - elements(middle).e_cos < x ? low : high) = middle;

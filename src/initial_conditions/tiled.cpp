@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -21,7 +22,7 @@ void require_possible(const Patch& patch, std::size_t nx, std::size_t ny) {
   const double copies = static_cast<double>(nx) * static_cast<double>(ny);
   const KeyRange &sizes = find_key("box.size")->range, &counts = find_key("particles.count")->range;
   if (!sizes.contains(size_x) || !sizes.contains(size_y))
-    throw UsageError(fmt::format("{} x {} copies make a box of {} m x {} m (a patch has sizes {}); take fewer", nx, ny,
+    throw UsageError(fmt::format("{} x {} copies make a box of {} m x {} m (a patch has sizes {}); use fewer", nx, ny,
                                  format_number(size_x, 4), format_number(size_y, 4), sizes.words()));
   if (!(std::max(size_x, size_y) <= most_oblong * std::min(size_x, size_y)))
     throw UsageError(fmt::format("{} x {} copies make a box of {} m x {} m, more than {:g} times as long as wide; make "
@@ -29,20 +30,20 @@ void require_possible(const Patch& patch, std::size_t nx, std::size_t ny) {
                                  nx, ny, format_number(size_x, 4), format_number(size_y, 4), most_oblong));
   const double count = copies * static_cast<double>(patch.size());
   if (!(count <= counts.high))
-    throw UsageError(fmt::format("{} x {} copies make {} particles (a run takes at most {}); take fewer", nx, ny,
+    throw UsageError(fmt::format("{} x {} copies make {} particles (the limit is {}); use fewer", nx, ny,
                                  format_number(count, 3), format_number(counts.high, 3)));
   if (patch.size() > 0 && !(copies * (static_cast<double>(patch.ids.back()) + 1.0) < 0x1p63))
-    throw UsageError(fmt::format("{} x {} copies leave no ids for the copies (the largest id is {} already); number "
+    throw UsageError(fmt::format("{} x {} copies leave no ids for the copies (the largest id is already {}); number "
                                  "the particles from 0",
                                  nx, ny, patch.ids.back()));
 }
 
-// Which images of a particle the columns and rows are, whatever its place.
+// Images of a particle in the columns and rows, independent of its position.
 struct Tiles {
   ShearingBox patch, whole;
   double offset; // of the patch
   std::int64_t first_column;
-  double shift_x; // of the origin: where columns are even in number it lies between two of them
+  double shift_x; // of the origin, which lies between two columns if their number is even
 
   Tiles(const Patch& p, std::size_t nx, std::size_t ny)
       : patch(p.box), whole(p.box), offset(p.offset), first_column(-static_cast<std::int64_t>(nx / 2)),
@@ -52,8 +53,8 @@ struct Tiles {
     whole.first_offset = std::fmod(static_cast<double>(nx) * offset, whole.size_y);
   }
 
-  // The image in this column whose guiding centre is the first in the new cell: of all rows. A centre that stands
-  // outside the patch's cell, by the drift of half a step, counts as on its edge: it keeps its row.
+  // Returns the image in this column with the lowest guiding centre in the new cell. A centre outside the patch's cell,
+  // by the drift of half a step, counts as on its edge: it keeps its row.
   Image first_in(std::size_t column, double guiding_y) const {
     const auto nx = static_cast<std::int32_t>(first_column + static_cast<std::int64_t>(column));
     const double edge = 0.5 * patch.size_y,
@@ -66,11 +67,12 @@ struct Tiles {
 
 } // namespace
 
-// The images (n, m) of all particles are one infinite ring, periodic under (L_x, −d) and (0, L_y). So it is periodic
-// under (N_x L_x, −N_x d) and (0, N_y L_y): a shearing box of the offset N_x d, which grows by S N_x L_x as that box's
-// own does. Of each particle the cell holds N_x N_y images. Where the origin moves outward by s, as between two
-// columns, all velocities change by −S s: Hill's equations do not know where x = 0 is.
+// The images (n, m) of all particles form one infinite ring, periodic under (L_x, −d) and (0, L_y). So it is periodic
+// under (N_x L_x, −N_x d) and (0, N_y L_y): a shearing box with the offset N_x d, at the rate S N_x L_x of the larger
+// box. Its cell holds N_x N_y images of each particle. If the origin moves outward by s, as between two columns,
+// all velocities change by −S s: Hill's equations are invariant under shifts of x.
 Patch TiledPatch::some(std::size_t first, std::size_t count) const {
+  assert(first + count <= size());
   const Patch& patch = patch_;
   const Tiles tiles(patch, nx_, ny_);
   Patch tiled;
@@ -88,13 +90,13 @@ Patch TiledPatch::some(std::size_t first, std::size_t count) const {
   const double kappa = patch.frequencies.kappa, shear = patch.box.shear;
   parallel_for(count, [&](std::size_t k) {
     const std::size_t copy = (first + k) / patch.size(), particle = (first + k) % patch.size();
-    const Vec3 &place = patch.positions[particle], &velocity = patch.velocities[particle];
-    const double guiding_y = place.y() - 2.0 / (kappa * kappa) * velocity.x();
+    const Vec3 &position = patch.positions[particle], &velocity = patch.velocities[particle];
+    const double guiding_y = position.y() - 2.0 / (kappa * kappa) * velocity.x();
     Image image = tiles.first_in(copy / ny_, guiding_y);
     image.ny += static_cast<std::int32_t>(copy % ny_);
     Vec3 shift = patch.box.displacement(image, patch.offset);
     shift.x() += tiles.shift_x;
-    tiled.positions[k] = place + shift;
+    tiled.positions[k] = position + shift;
     tiled.velocities[k] = velocity - Vec3(0.0, shear * shift.x(), 0.0);
     tiled.radii[k] = patch.radii[particle];
     tiled.masses[k] = patch.masses[particle];
@@ -106,6 +108,7 @@ Patch TiledPatch::some(std::size_t first, std::size_t count) const {
 }
 
 TiledPatch::TiledPatch(const Patch& patch, std::size_t nx, std::size_t ny) : patch_(patch), nx_(nx), ny_(ny) {
+  assert(std::is_sorted(patch.ids.begin(), patch.ids.end()));
   require_possible(patch, nx, ny);
 }
 

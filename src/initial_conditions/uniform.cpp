@@ -8,12 +8,13 @@
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-// Epicycles of random phase: in the plane the velocity is all of them, vertically the half that is not the height.
+// Draws an epicycle of random phase: its whole horizontal velocity, but vertically only half, as z has the other half.
 Vec3 random_velocity(const UniformRequest& request, std::size_t k) {
   RandomStream random(request.seed, RandomPurpose::velocity, k);
   const double x = random.normal(), y = random.normal(), z = random.normal();
@@ -21,8 +22,8 @@ Vec3 random_velocity(const UniformRequest& request, std::size_t k) {
           request.dispersion_z * z};
 }
 
-// The least change, by the sum of squares, that leaves no momentum: in proportion to the mass, so that one heavy
-// particle does not set the light ones drifting.
+// Removes the momentum by the smallest change in the sum of squares: in proportion to the mass, so that one heavy
+// particle does not make the light ones drift.
 void remove_momentum(Patch& patch, const Communicator& ranks) {
   auto squares = exact_total<ExactSum>(patch.size(),
                                        [&](ExactSum& sum, std::size_t k) { sum += patch.masses[k] * patch.masses[k]; });
@@ -50,7 +51,7 @@ void follow_streamlines(const UniformRequest& request, Patch& patch) {
 }
 
 void add(const HeldBody& body, std::uint64_t id, Patch& patch) {
-  patch.positions.push_back(body.place);
+  patch.positions.push_back(body.position);
   patch.velocities.push_back(body.velocity);
   patch.radii.push_back(body.radius);
   patch.masses.push_back(body.mass);
@@ -70,7 +71,7 @@ Patch patch_of(const UniformRequest& request, const std::vector<Sphere>& particl
   parallel_for(particles.size(), [&](std::size_t k) {
     const Sphere& sphere = particles[k];
     patch.ids[k] = sphere.particle;
-    patch.positions[k] = sphere.place;
+    patch.positions[k] = sphere.position;
     patch.velocities[k] = random_velocity(request, sphere.particle);
     patch.radii[k] = sphere.radius;
     const double density = request.density_of ? request.density_of(sphere.particle) : request.density;
@@ -92,12 +93,15 @@ Patch patch_of(const UniformRequest& request, const std::vector<Sphere>& particl
 
 Patch uniform_patch(const UniformRequest& request, const std::function<void(const StartProgress&)>& progress,
                     const Communicator& ranks) {
+  assert(request.box.area() > 0.0 && request.frequencies.nu > 0.0);
+  assert(request.density > 0.0 && request.dispersion_x >= 0.0 && request.dispersion_z >= 0.0);
   double seconds = 0.0;
   const Stopwatch watch(seconds);
-  const auto show = [&](double share) {
+  const auto show = [&](double fraction) {
+    assert(fraction > 0.0);
     const double elapsed = watch.elapsed();
     if (progress)
-      progress({share, elapsed, elapsed * (1.0 - share) / share});
+      progress({fraction, elapsed, elapsed * (1.0 - fraction) / fraction});
   };
   Placing placing(request, ranks);
   placing.run(show);

@@ -152,7 +152,7 @@ Rows local_rows() {
       {{"local_toomre_q", unit::none, "local: Toomre Q", "by the local c_x and the mean Σ of the patch"},
        [](Source m) -> Value { return m.analysis.local.toomre_q; }},
       {{"local_share", unit::none, "", "mass fraction of the particles that have a neighbour"},
-       [](Source m) -> Value { return m.analysis.local.share; }},
+       [](Source m) -> Value { return m.analysis.local.fraction; }},
       {{"crowding_radius", unit::metres, "mean over particles: within",
         "radius of the disc about each particle in which density is counted: the larger of 6 r and λ_cr/10"},
        [](Source m) -> Value { return m.analysis.local.crowding_radius_m; }},
@@ -202,7 +202,7 @@ Rows spin_rows() {
 std::vector<Record> spectrum_of(Source m) {
   using Class = ClusterAnalysis::Class;
   static const std::vector<QuantityRow<Class>> rows = {
-      {{"least_members"}, [](const Class& c) -> Value { return c.least; }},
+      {{"least_members"}, [](const Class& c) -> Value { return c.min_members; }},
       {{"count"}, [](const Class& c) -> Value { return c.count; }},
       {{"mass_share"}, [](const Class& c) -> Value { return c.mass_fraction; }}};
   std::vector<Record> classes;

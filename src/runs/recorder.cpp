@@ -271,7 +271,7 @@ void Recorder::check_forces(const Simulation& simulation) {
         sampled_accelerations(problem, sample.targets, exact_images, choose_instruction_set());
     const ForceErrors errors = force_errors(sample, exact, simulation.state().forces.front().accelerations);
     ++c.count;
-    c.particles = sample.even;
+    c.particles = sample.uniform;
     c.last_step = simulation.state().step;
     c.last_rms = errors.rms;
     c.worst_rms = std::max(c.worst_rms, errors.rms);

@@ -141,7 +141,7 @@ const SeriesColumn all_columns[] = {
      [](Sample s) { return s.waves ? s.waves->energy : not_measured; }},
     {"dispersion_without_waves_x_m_s", "m/s", "Velocity dispersion: radial, without box-long waves", ColumnKind::value,
      "radial velocity dispersion about the velocity field of these waves; nan for too few particles",
-     [](Sample s) { return s.waves ? speed(s, s.waves->taken_out_of(s.means.dispersion).x()) : not_measured; }},
+     [](Sample s) { return s.waves ? speed(s, s.waves->residual_dispersion(s.means.dispersion).x()) : not_measured; }},
 };
 
 } // namespace

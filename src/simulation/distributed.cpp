@@ -1,4 +1,4 @@
-// A run that ranks share: docs/dev/ranks.md.
+// Distributed runs: docs/dev/ranks.md.
 #include <keeler/simulation/simulation.hpp>
 
 #include <keeler/cells/overlap.hpp>
@@ -19,15 +19,15 @@ const char* solver_words(GravitySettings::Solver solver) {
 
 } // namespace
 
-// What has an order, a place or a network of all particles still.
+// Refuses what still needs an order, an index or a network of all particles.
 void Simulation::require_distributable(const Scene& scene, std::size_t count) {
   const auto refuse = [](const char* what, const char* instead) {
-    throw UsageError(fmt::format("{} cannot be shared by several ranks; {}, or run on one rank", what, instead));
+    throw UsageError(fmt::format("{} cannot be distributed over ranks; {}, or run on one rank", what, instead));
   };
   if (scene.gravity) {
     const GravitySettings gravity = chosen_for(count, *scene.gravity);
     if (gravity.solver != GravitySettings::Solver::fft && gravity.solver != GravitySettings::Solver::mesh)
-      refuse(solver_words(gravity.solver), "take the solver \"fft\" (gravity.solver, of a bench --solver)");
+      refuse(solver_words(gravity.solver), "set gravity.solver to \"fft\" (of bench: --solver fft)");
     if (gravity.carries())
       refuse("contacts at rest that carry kicks", "set gravity.resting_contacts to \"bounced\"");
   }
@@ -43,7 +43,7 @@ void Simulation::divide() {
   slabs_->divide(holding());
 }
 
-// The particles, and the accelerations of their last kicks, which the next half kick needs.
+// Returns the particles, and the accelerations of their last kicks, which the next half kick needs.
 Slabs::Holding Simulation::holding() {
   Slabs::Holding holding{state_.particles, {}};
   for (ForceState& force : state_.forces)
@@ -51,7 +51,7 @@ Slabs::Holding Simulation::holding() {
   return holding;
 }
 
-// That are good for the step to come.
+// Makes sure that the borders are valid for the next step.
 void Simulation::require_borders() {
   if (slabs_->serve(state_.particles, state_.step_length))
     return;
@@ -60,16 +60,17 @@ void Simulation::require_borders() {
   find_moonlets();
 }
 
-// Whoever touches an own particle in the step to come has a copy here, and that step begins at this boundary.
+// Every particle that may touch one of this rank's in the next step has a copy here, and that step begins at this
+// boundary.
 Overlap Simulation::largest_overlap_distributed() {
   require_borders();
   slabs_->add_copies(state_.particles);
   const Overlap here = keeler::largest_overlap(patch_of(state_.particles));
   slabs_->drop_copies(state_.particles);
   Overlap largest;
-  for (const std::vector<Overlap>& its : ranks_.exchange(std::vector(ranks_.size(), std::vector{here})))
-    if (deeper(its.front(), largest))
-      largest = its.front();
+  for (const std::vector<Overlap>& of_rank : ranks_.exchange(std::vector(ranks_.size(), std::vector{here})))
+    if (deeper(of_rank.front(), largest))
+      largest = of_rank.front();
   return largest;
 }
 

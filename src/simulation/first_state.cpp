@@ -32,8 +32,8 @@ void require_fit(const Scene& scene, const Patch& start, const std::string& name
   ranks.on_root([&] { require_room(start.box, largest, name); });
 }
 
-// Collective: what the first rank has of all but the particles, on the others too.
-void share(SimulationState& state, const Communicator& ranks) {
+// Broadcasts all fields but the particles from the root. Collective.
+void broadcast_all_but_particles(SimulationState& state, const Communicator& ranks) {
   const FieldTable table = state.fields();
   for (const Field& field : table.fields())
     if (!field.divided) {
@@ -42,16 +42,16 @@ void share(SimulationState& state, const Communicator& ranks) {
     }
 }
 
-// In the cell.
+// Returns the particles of the patch, wrapped into the cell.
 Particles particles_of(const Patch& start, const Scene& scene, const SimulationState& state) {
   Patch patch = start;
   patch.frequencies = scene.planet.frequencies;
   if (!scene.collisions.friction)
     patch.spins.clear();
-  else if (patch.spins.empty()) // no spin against the stars
+  else if (patch.spins.empty()) // no spin relative to the stars
     patch.spins.assign(patch.size(), Vec3::Zero());
   Particles particles = particles_from(patch, 0.5 * state.step_length);
-  particles.rough = scene.collisions.friction.has_value(); // also where there are none
+  particles.rough = scene.collisions.friction.has_value(); // on ranks without particles too
   const double offset = state.epoch_offset();
   for (Body& body : particles.bodies) {
     Elements& el = body.elements;
@@ -60,7 +60,7 @@ Particles particles_of(const Patch& start, const Scene& scene, const SimulationS
   return particles;
 }
 
-// Collective: where moonlets start, which only fresh patches have, and these are the first rank's.
+// Records the guiding centres of the moonlets. Only fresh patches have moonlets, all on the root. Collective.
 void note_moonlets(SimulationState& state, const Communicator& ranks) {
   const std::size_t count = state.moonlets.size();
   if (count == 0)
@@ -68,7 +68,7 @@ void note_moonlets(SimulationState& state, const Communicator& ranks) {
   assert(!ranks.is_root() || state.particles.size() >= count);
   for (std::size_t k = 0; k < count && ranks.is_root(); ++k) // in the order of the ids they come last
     state.moonlets[k].start_x = state.particles.bodies[state.particles.size() - count + k].elements.guiding_x;
-  share(state, ranks);
+  broadcast_all_but_particles(state, ranks);
 }
 
 } // namespace
@@ -78,6 +78,7 @@ std::string start_name(const Scene& scene) {
 }
 
 SimulationState first_state(const Scene& scene, const Patch& start, const Communicator& ranks) {
+  assert(start.positions.size() == start.size() && start.velocities.size() == start.size());
   require_fit(scene, start, start_name(scene), ranks);
   SimulationState state(scene);
   if (scene.time.automatic)
@@ -86,7 +87,7 @@ SimulationState first_state(const Scene& scene, const Patch& start, const Commun
   state.box = start.box;
   state.box.shear = scene.planet.frequencies.shear();
   state.box.first_offset = start.offset;
-  share(state, ranks);
+  broadcast_all_but_particles(state, ranks);
   state.particles = particles_of(start, scene, state);
   note_moonlets(state, ranks);
   const ParticleMeans means =

@@ -1,16 +1,16 @@
-// The state that a run begins with.
+// The initial state of a run.
 #pragma once
 
 #include <keeler/simulation/state.hpp>
 
 namespace keeler {
 
-/// What messages call the state that a run begins with: its file, where it has one.
+/// Returns the name of the initial state in messages: its file, if it has one.
 std::string start_name(const Scene& scene);
 
-/// Of a patch of which each rank has some particles and the first one all else; collective. Throws InvariantError when
-/// a number is not finite or, on one rank, particles overlap by more than rounding, UsageError when the largest does
-/// not fit the box.
+/// Makes the state from a patch of which each rank has some particles and the root all other data; collective. Throws
+/// InvariantError if a number is not finite or, on one rank, particles overlap by more than rounding, UsageError if the
+/// largest does not fit in the box.
 SimulationState first_state(const Scene& scene, const Patch& start, const Communicator& ranks);
 
 } // namespace keeler

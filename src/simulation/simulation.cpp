@@ -19,7 +19,7 @@ namespace {
 
 constexpr double sorting_interval = 0.1; // orbits
 
-// What a kick of all particles did to the energy.
+// Work of one kick on all particles.
 struct KickSums {
   ExactSum work, azimuthal_gain;
 
@@ -65,23 +65,24 @@ Simulation::Simulation(const Scene& scene, SimulationState state, const Communic
     divide();
   forces_ = make_forces(scene_, state_, ranks_);
   find_moonlets();
-  set_pace();
+  schedule_drift();
 }
 
 void Simulation::advance() {
-  assert(state_.control.fits(state_.step));
+  assert(state_.control.fits(state_.step) && state_.step_length > 0.0);
+  assert(state_.particles.ids.size() == state_.particles.size());
   sort_when_due();
   for (std::size_t f = 0; f < forces_.size(); ++f)
     if (kick_due(f))
       half_kick(f);
-  carry_on_resting();
+  persist_contacts_second_half();
   {
     const Stopwatch watch(split_.drift);
     drifting_ = true;
     collide();
     drifting_ = false;
     note_slow_pairs();
-    move_on();
+    advance_epoch();
     undisturbed_ = true;
   }
   for (std::size_t f = 0; f < forces_.size(); ++f)
@@ -90,8 +91,8 @@ void Simulation::advance() {
       half_kick(f);
     }
   const double interval = carries() ? kick_interval() : 0.0;
-  decide_when_due();
-  carry_resting(interval);
+  decide_step_when_due();
+  persist_contacts(interval);
 }
 
 void Simulation::collide() {
@@ -101,35 +102,36 @@ void Simulation::collide() {
   drift_.collide(state_.particles, state_.box, state_.epoch_offset(), state_.collisions, undisturbed_);
 }
 
-// Where the kicks of all forces meet. Elements move to the middle of what the next step is now.
-void Simulation::decide_when_due() {
+// Chooses the lengths of the next steps, at ticks where the kicks of all forces coincide. Moves the elements to the
+// middle of the new step.
+void Simulation::decide_step_when_due() {
   if (!scene_.time.automatic || state_.step % decision_ticks != 0)
     return;
   const Stopwatch watch(split_.advance);
   const double tick = state_.tick(), before = state_.step_length;
   state_.control = decide_step(state_.control, state_.collisions, count_, state_.step);
   state_.step_length = static_cast<double>(state_.control.step) * tick;
-  set_pace();
+  schedule_drift();
   if (state_.step_length == before)
     return;
   rebase(0.5 * (state_.step_length - before));
   undisturbed_ = false;
 }
 
-void Simulation::set_pace() {
+void Simulation::schedule_drift() {
   const bool pairs = scene_.gravity && scene_.gravity->by_pairs();
   const double pull = pairs ? newton_g(scene_.planet.orbital_frequency) * kick_interval() : 0.0;
-  drift_.set_pace(state_.step_length, pull, carries() ? state_.resting.looked_at() * pull : 0.0);
+  drift_.set_pace(state_.step_length, pull, carries() ? state_.resting.slow_limit() * pull : 0.0);
 }
 
-// Before any order in memory changes.
+// Precondition: the order in memory has not changed since the drift.
 void Simulation::note_slow_pairs() {
   for (const SlowPair& pair : drift_.slow_pairs())
     resting_.note(state_.particles, pair);
 }
 
-// What contacts at rest are told of this boundary. `before` is the kick interval that ends here.
-template<class Carry> void Simulation::with_kicks(double before, const Carry& carry) {
+// Calls function(step) with this boundary's kicks. `before` is the kick interval that ends here.
+template<class Function> void Simulation::with_kicks(double before, const Function& function) {
   const Stopwatch watch(split_.resting);
   std::vector<KickPart> parts;
   for (std::size_t f = 0; f < forces_.size(); ++f)
@@ -138,28 +140,29 @@ template<class Carry> void Simulation::with_kicks(double before, const Carry& ca
       parts.push_back({state_.forces[f].accelerations, 0.5 * (f == 0 ? before : after), 0.5 * after,
                        &state_.forces[f].work, &state_.forces[f].azimuthal_gain});
     }
-  carry(RestingStep{state_.particles, scene_.planet.frequencies, state_.box, state_.epoch_offset(),
-                    0.5 * state_.step_length, kick_interval(), newton_g(scene_.planet.orbital_frequency), parts});
+  function(RestingStep{state_.particles, scene_.planet.frequencies, state_.box, state_.epoch_offset(),
+                       0.5 * state_.step_length, kick_interval(), newton_g(scene_.planet.orbital_frequency), parts});
   undisturbed_ = false;
 }
 
-void Simulation::carry_resting(double before) {
+void Simulation::persist_contacts(double before) {
+  assert(!carries() || before > 0.0);
   if (!carries() || !kick_due(0) || resting_.idle(state_.resting))
     return;
   with_kicks(before, [&](const RestingStep& step) {
-    resting_.carry(state_.resting, step, scene_.collisions.friction, state_.collisions);
+    resting_.persist(state_.resting, step, scene_.collisions.friction, state_.collisions);
   });
-  set_pace();
+  schedule_drift();
 }
 
-void Simulation::carry_on_resting() {
+void Simulation::persist_contacts_second_half() {
   if (state_.resting.pairs.empty() || !kick_due(0))
     return;
   with_kicks(kick_interval(),
-             [&](const RestingStep& step) { resting_.carry_on(state_.resting, step, state_.collisions); });
+             [&](const RestingStep& step) { resting_.persist_second_half(state_.resting, step, state_.collisions); });
 }
 
-// Memory order follows the places every tenth of an orbit.
+// Sorts particles in memory by position every tenth of an orbit.
 void Simulation::sort_when_due() {
   const std::int64_t longest = scene_.time.automatic ? TimeSettings::longest : 1;
   const auto intervals = std::ceil(sorting_interval / (static_cast<double>(longest) * scene_.time.step));
@@ -168,7 +171,7 @@ void Simulation::sort_when_due() {
     return;
   if constexpr (Communicator::possible)
     if (ranks_.distributed())
-      return slabs_->expire(); // new borders sort too
+      return slabs_->expire(); // new borders sort particles too
   const Stopwatch watch(split_.drift);
   drift_.release();
   undisturbed_ = false;
@@ -183,15 +186,15 @@ void Simulation::sort_when_due() {
   find_moonlets();
 }
 
-// To the epoch of the next step.
-void Simulation::move_on() {
+// Moves the elements to the epoch of the next step.
+void Simulation::advance_epoch() {
   const Stopwatch watch(split_.advance);
   state_.step += state_.control.step;
   ++state_.control.steps;
   rebase(state_.step_length);
 }
 
-// Elements to another epoch, and back into the cell by guiding centre.
+// Moves the elements to another epoch, and back into the cell by guiding centre.
 void Simulation::rebase(double time) {
   const Rebase to_epoch(scene_.planet.frequencies, time);
   const double offset = state_.epoch_offset();
@@ -210,7 +213,7 @@ void Simulation::rebase(double time) {
   });
   wrap_moonlets();
   if (state_.particles.rough) {
-    const FixedRotation turn(time); // of the stars in Hill's frame
+    const FixedRotation turn(time); // of the stars relative to Hill's frame
     parallel_for(state_.particles.size(), [&](std::size_t k) {
       Vec3& spin = state_.particles.spins[k];
       turn.turn(spin.y(), spin.x());
@@ -236,7 +239,7 @@ void Simulation::accelerate(std::size_t f) {
   forces_[f]->accelerate(boundary(), accelerations);
 }
 
-// Half a kick interval's velocity change, at the boundary between steps. Two half kicks are always two additions.
+// Applies half a kick interval's velocity change, at the boundary between steps. Two half kicks stay two additions.
 void Simulation::half_kick(std::size_t f) {
   const Stopwatch watch(split_.forces[forces_[f]->name()]), kick_watch(split_.kick);
   ForceState& force = state_.forces[f];
@@ -255,12 +258,12 @@ void Simulation::half_kick(std::size_t f) {
   ranks_.merge({&sums.work, &sums.azimuthal_gain});
   force.work += sums.work.value();
   force.azimuthal_gain += sums.azimuthal_gain.value();
-  std::vector<double> gains(moonlet_places_.size(), 0.0);
+  std::vector<double> gains(moonlet_indices_.size(), 0.0);
   for (std::size_t k = 0; k < gains.size(); ++k)
-    if (const std::size_t place = moonlet_places_[k]; place != elsewhere)
-      gains[k] = state_.particles.bodies[place].mass * half * force.accelerations[place].y();
+    if (const std::size_t index = moonlet_indices_[k]; index != elsewhere)
+      gains[k] = state_.particles.bodies[index].mass * half * force.accelerations[index].y();
   if (!gains.empty())
-    from_owners(gains);
+    sum_from_owners(gains);
   for (std::size_t k = 0; k < gains.size(); ++k)
     force.moonlet_gains[k] += gains[k];
 }
@@ -287,7 +290,7 @@ void Simulation::replace(Particles particles) {
     accelerate(f);
 }
 
-// Into the cell, those that may be far from it. The others stay to the bit where the last kick has left them.
+// Wraps changed particles into the cell, as they may be far from it. Others keep their bits since the last kick.
 void Simulation::wrap_changed(const Particles& before) {
   const double offset = state_.epoch_offset();
   moonlet_wraps_.assign(2 * state_.moonlets.size(), 0.0);
@@ -303,7 +306,7 @@ void Simulation::wrap_changed(const Particles& before) {
   wrap_moonlets();
 }
 
-// At `after` the epoch, with the box's shear offset of then.
+// The patch at time `after` (rad) since the epoch, with the box's shear offset at that time.
 Patch Simulation::patch_of(const Particles& particles, double offset, double after) const {
   Patch patch = make_patch(particles, state_.box, offset, scene_.planet.frequencies, after);
   patch.orbital_frequency = scene_.planet.orbital_frequency;
@@ -340,7 +343,7 @@ double Simulation::offset_at_break() const {
 }
 
 double Simulation::largest_overlap() {
-  drift_.release(); // room for what is looked for
+  drift_.release(); // frees memory for the search
   if constexpr (Communicator::possible)
     if (ranks_.distributed())
       return largest_overlap_distributed().depth;

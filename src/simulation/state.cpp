@@ -16,7 +16,7 @@ SimulationState::SimulationState(const Scene& scene) : moonlets(scene.moonlets.s
   carries = scene.gravity && scene.gravity->carries();
 }
 
-// Nobody changes a state through the table that is made here.
+// Precondition: the caller writes nothing through the table.
 FieldTable SimulationState::fields() const {
   return const_cast<SimulationState*>(this)->fields();
 }
@@ -56,25 +56,25 @@ FieldTable SimulationState::fields() {
 std::string SimulationState::fault(const Scene& scene, const Communicator& ranks) const {
   const std::size_t count = particles.size(), of_all = ranks.sum(count);
   if (of_all == 0 || particles.ids.size() != count || (particles.rough && particles.spins.size() != count))
-    return "its particles are none, or their arrays have different lengths";
+    return "it has no particles, or their arrays have different lengths";
   if (moonlets.size() != scene.moonlets.size() || moonlets.size() > of_all)
-    return fmt::format("it has {} moonlets, and its scene {}", moonlets.size(), scene.moonlets.size());
+    return fmt::format("it has {} moonlets, but its scene has {}", moonlets.size(), scene.moonlets.size());
   for (const ForceState& force : forces)
     if ((!force.accelerations.empty() && force.accelerations.size() != count) ||
         force.moonlet_gains.size() != moonlets.size())
-      return fmt::format("the arrays of {} have another length than its particles", force.name);
+      return fmt::format("the length of the arrays of {} is not its number of particles", force.name);
   const bool whole = control.step >= 1 && control.step <= TimeSettings::longest && control.kick >= 0 &&
                      control.kick <= TimeSettings::longest && step >= 0 && control.steps >= 0 && control.fits(step);
   if (!whole)
-    return fmt::format("no step of {} ticks begins at tick {}", control.step, step);
+    return fmt::format("a step of {} ticks cannot begin at tick {}", control.step, step);
   const double length = static_cast<double>(control.step) * scene.step_length();
   if (!(std::abs(step_length - length) <= 1e-9 * length))
-    return fmt::format("its step is {:g} rad long, and its scene's {:g}", step_length, length);
+    return fmt::format("its step is {:g} rad long, but its scene's is {:g}", step_length, length);
   constexpr double longest_side = 1e9; // m
   const auto side = [](double size) { return size > 0.0 && size < longest_side; };
   if (!side(box.size_x) || !side(box.size_y) || !(std::abs(box.shear) < 10.0) || !(box.first_offset >= 0.0) ||
       !(box.first_offset <= box.size_y))
-    return fmt::format("it has a box of {:g} m x {:g} m", box.size_x, box.size_y);
+    return fmt::format("its box of {:g} m x {:g} m is invalid", box.size_x, box.size_y);
   return {};
 }
 
@@ -85,8 +85,8 @@ double SimulationState::kick_work() const {
   return work;
 }
 
-// A free epicycle keeps ½κ²e² = ½c_x² + ½c_y² + (S/κ²) c_y² while d(c_y²)/dt = −κ² c_x c_y. So the work of the
-// translational stress over any time follows, without an error of sampling, from what collisions and kicks did to c_y².
+// A free epicycle keeps ½κ²e² = ½c_x² + ½c_y² + (S/κ²) c_y² while d(c_y²)/dt = −κ² c_x c_y. So the time integral of the
+// translational stress follows, without sampling error, from the changes of c_y² by collisions and kicks.
 EnergyBalance SimulationState::balance(const ParticleMeans& means, const Frequencies& f) const {
   const double part = f.shear() / (f.kappa * f.kappa);
   double azimuthal_gain = collisions.azimuthal_gain, booked = epicyclic_gain(collisions, f);

@@ -3,15 +3,16 @@
 #include <keeler/scene/scene.hpp>
 
 #include <algorithm>
+#include <cassert>
 
 namespace keeler {
 namespace {
 
-constexpr std::uint64_t enough = 500; // contacts to judge by
-// In the wakes of the A ring the loss in collisions exceeds the work of the shear by about this share of contacts, and
-// a kick interval twice as long makes it three times as large.
+constexpr std::uint64_t enough = 500; // contacts needed for a decision
+// In the wakes of the A ring the energy lost in collisions exceeds the work of the shear by about this fraction of
+// contacts, and a kick interval twice as long triples it.
 constexpr double most_unresolved = 0.015, few_unresolved = 0.004;
-constexpr double max_contacts = 0.5, few_contacts = 0.25; // of a particle in a drift
+constexpr double max_contacts = 0.5, few_contacts = 0.25; // per particle and drift
 
 std::int64_t kick_for(std::int64_t kick, double unresolved) {
   if (unresolved > most_unresolved)
@@ -19,7 +20,7 @@ std::int64_t kick_for(std::int64_t kick, double unresolved) {
   return unresolved < few_unresolved ? std::min(TimeSettings::longest, 2 * kick) : kick;
 }
 
-// `rate`: contacts of a particle in a tick.
+// `rate`: contacts per particle and tick.
 std::int64_t step_for(std::int64_t step, double rate) {
   while (step > 1 && rate * static_cast<double>(step) > max_contacts)
     step /= 2;
@@ -40,6 +41,7 @@ StepControl decide_step(const StepControl& last, const CollisionTally& tally, st
   next.decided_at = tick;
   next.contacts = tally.fast + tally.slow;
   next.unresolved = tally.unresolved;
+  assert(tick >= last.decided_at && next.contacts >= last.contacts && next.unresolved >= last.unresolved);
   const std::uint64_t contacts = next.contacts - last.contacts;
   if (contacts >= enough)
     next.kick =

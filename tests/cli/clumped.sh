@@ -65,7 +65,7 @@ grep -q Clumping "$work/out" && fail "a snapshot of a run has the record of its 
 
 # A patch that does not clump, or not in time, leaves no file.
 nothing_left() { [ -e "$work/none.hdf" ] && fail "$1: left a file behind"; }
-refuses_with 1 "too light" "no wakes stand in the patch" "${clump[@]}" -o "$work/none.hdf" \
+refuses_with 1 "too light" "no wakes in the patch" "${clump[@]}" -o "$work/none.hdf" \
   --set particles.density=110 --set 'box.size=[60,60]' --most-orbits 9
 nothing_left "too light"
 refuses_with 1 "not by then" "did not settle in 9 orbits" "${clump[@]}" -o "$work/none.hdf" --most-orbits 9 \

@@ -49,7 +49,7 @@ refused 2 "an unknown column" "table.csv:1: unknown column 'name'; rename or rem
 made x,y,z,r,m 0,0,0,1,4000 5,5,5,nan,4000
 refused 2 "nan" "table.csv:3: the particle has a radius (m) of nan"
 made x,y,z,r,m 0,nan,0,1,4000
-refused 2 "a place that is nan" "table.csv:2: the particle has a position or velocity that is not finite"
+refused 2 "a place that is nan" "table.csv:2: the particle has a position or a velocity that is not finite"
 made x,y,z,r,m 0,0,0,-1,4000
 refused 2 "a negative radius" "table.csv:2: the particle has a radius (m) of -1 (possible is from 1e-6 to 1000000); correct it"
 made x,y,z,r,m 0,0,0,1,0
@@ -67,7 +67,7 @@ refused 2 "a word" "table.csv:2: z is 'zero' (it must be a number)"
 made 0,0,0,1,4000
 refused 2 "no names" "table.csv:1: the first row has numbers (it must name the columns)"
 made x,y,z,r,m 0,0,0,100,4e9
-refused 2 "a particle wider than the box" "table.csv:2: the particle has a diameter of 200 m, more than the box is wide (40 m)"
+refused 2 "a particle wider than the box" "table.csv:2: the particle has a diameter of 200 m, larger than the width of the box (40 m)"
 rm "$work/table.csv"
 refused 4 "no file" "table.csv"
 printf '\211HDF\r\n\032\nrubbish' >"$work/table.csv"

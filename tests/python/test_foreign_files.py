@@ -105,7 +105,7 @@ class ForeignFiles(unittest.TestCase):
             (ring("kappa_over_Omega", np.inf), "a kappa_over_Omega of inf"),
             (ring("nu_over_Omega", np.nan), "a nu_over_Omega of nan"),
             (ring("nu_over_Omega", 1e9), "a nu_over_Omega of 1e9"),
-            (ring("shear_over_Omega", 0.0), "a shear_over_Omega of 0, where its kappa_over_Omega makes that 1.50"),
+            (ring("shear_over_Omega", 0.0), "a shear_over_Omega of 0, but its kappa_over_Omega gives 1.50"),
             (ring("shear_over_Omega", np.nan), "a shear_over_Omega of nan"),
         ):
             with self.subTest(words):

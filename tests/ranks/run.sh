@@ -184,7 +184,7 @@ refused() { # WORDS ARGUMENT...
   grep -qF -- "$words" "$work/err" || fail "no '$words' in: $(cat "$work/err")"
   [ ! -e "$work/none" ] || fail "$words: something was written"
 }
-refused 'gravity by the tree cannot be shared by several ranks; take the solver "fft"' run "$work/wakes.toml" -o "$work/none" --set gravity.solver=tree
+refused 'gravity by the tree cannot be distributed over ranks; set gravity.solver to "fft"' run "$work/wakes.toml" -o "$work/none" --set gravity.solver=tree
 refused 'set gravity.resting_contacts to "bounced"' run "$work/wakes.toml" -o "$work/none" \
   --set gravity.resting_contacts=carried
 refused 'set collisions.finder to "certified"' run "$work/uniform.toml" -o "$work/none" --set collisions.finder=original

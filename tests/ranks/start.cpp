@@ -187,7 +187,7 @@ TEST_CASE("what no ring has is an error on all ranks, in the words of one proces
   negative.radii[patch.size() - 1] = -1.0;
   CHECK(words(negative).find("a radius that is not positive") != std::string::npos);
   elsewhere.orbital_frequency *= 2.0;
-  CHECK(words(elsewhere).find("was made at another place") != std::string::npos);
+  CHECK(words(elsewhere).find("was made for another orbit") != std::string::npos);
   none.positions.clear(), none.velocities.clear(), none.radii.clear(), none.masses.clear(), none.ids.clear();
   CHECK(words(none).find("holds no particles") != std::string::npos);
 }

@@ -1,11 +1,11 @@
-// Contacts at rest: pairs of spheres whose rebound a single kick undoes. The drift cannot resolve them, since a kick
-// would make them bounce once for each kick interval and dissipate what it has just given them. They carry the kick
-// instead: impulses along the lines of centres, given together with it, hold each of these pairs at contact until the
-// next kick (non-smooth contact dynamics: Moreau 1988, Jean 1999; Preclik & Rüde 2015; the scheme is SHAKE, Ryckaert et
-// al. 1977, for constraints that only push). docs/dev/resting.md.
+// Contacts at rest: pairs of spheres with a rebound that a single kick reverses. The drift cannot resolve them: they
+// would bounce once per kick interval and dissipate what the kick has just given them. This solver holds each such pair
+// at contact until the next kick, by an impulse along the line of centres that acts together with the kick (non-smooth
+// contact dynamics: Moreau 1988, Jean 1999; Preclik & Rüde 2015; the scheme is SHAKE, Ryckaert et al. 1977, for
+// constraints that only push). docs/dev/contact-solver.md.
 //
-// Invariants: pairs are sorted by ids, low < high; impulses push and never pull; nothing here depends on memory order
-// or threads; what a restart needs is in RestingState.
+// Invariants: pairs are sorted by ids, low < high; impulses push and never pull; no result depends on memory order or
+// threads; RestingState holds all that a restart needs.
 #pragma once
 
 #include <keeler/collision/drift.hpp>
@@ -32,32 +32,32 @@ struct RestingPair {
   }
 };
 
-/// What a pair carries at this boundary between two steps.
+/// A pair's contact at the boundary between two steps.
 struct RestingLoad {
-  Vec3 separation = Vec3::Zero(); ///< from the lower id to the other, m
-  double impulse = 0.0;           ///< that pushes them apart, of a whole kick, kg m rad⁻¹
+  Vec3 separation = Vec3::Zero(); ///< from the lower id to the higher one, m
+  double impulse = 0.0;           ///< of the whole kick, pushes the two apart, kg m rad⁻¹
 };
 
-/// Of a run, to go on from.
+/// The contacts at rest of a run; part of its checkpoints.
 struct RestingState {
   std::vector<RestingPair> pairs;
-  std::vector<RestingLoad> loads; ///< one for each
-  double strongest = 0.0;         ///< of the impulses, in kicks of the pair's own gravity
-  double work = 0.0; ///< of the impulses on the motion of the pairs relative to each other, kg m² rad⁻²
+  std::vector<RestingLoad> loads; ///< one per pair
+  double strongest = 0.0;         ///< largest impulse, in kicks of the pair's gravity
+  double work = 0.0;              ///< of the impulses on the relative motion of the pairs, kg m² rad⁻²
 
-  /// Contacts of anybody slower than so many kicks of the pair's own gravity may come to rest.
+  /// A contact slower than this, in kicks of the pair's gravity, may come to rest.
   static constexpr double slow = 4.0;
-  /// The same for those who touch a particle at rest, which may press as hard as others do.
-  double looked_at() const { return slow * std::max(1.0, strongest); }
+  /// Returns this limit for contacts with a particle at rest, which may press as hard as the strongest impulse.
+  double slow_limit() const { return slow * std::max(1.0, strongest); }
 
   void list_fields(FieldTable& table);
 };
 
-/// A force's share in the kicks at a boundary.
+/// The part that one force has in the kicks at a boundary.
 struct KickPart {
   std::span<const Vec3> accelerations; ///< m rad⁻², in the order of the particles
   double before = 0.0, after = 0.0;    ///< half kick intervals that end and begin here, rad
-  double* work = nullptr;              ///< booked for it, kg m² rad⁻²
+  double* work = nullptr;              ///< the force's energy account, kg m² rad⁻²
   double* azimuthal_gain = nullptr;
 };
 
@@ -67,13 +67,13 @@ struct RestingStep {
   Frequencies frequencies;
   ShearingBox box;
   double epoch_offset = 0.0; ///< the box's shear offset at the epoch of the elements, m
-  double to_epoch = 0.0;     ///< from the boundary, rad
-  double interval = 0.0;     ///< to the next kick, rad
+  double to_epoch = 0.0;     ///< time from the boundary to the epoch, rad
+  double interval = 0.0;     ///< time to the next kick, rad
   double gravity = 0.0;      ///< Newton's constant, m³ kg⁻¹ rad⁻²
   std::span<const KickPart> kicks;
 };
 
-/// What the last carry() took.
+/// Cost of the last persist().
 struct RestingCosts {
   std::size_t contacts = 0, iterations = 0;
 };
@@ -85,35 +85,35 @@ public:
   RestingContacts(RestingContacts&& other) noexcept;
   RestingContacts& operator=(RestingContacts&& other) noexcept;
 
-  /// A pair that has touched slowly in the kick interval at hand.
+  /// Records a pair that touched slowly in the current kick interval. Precondition: the pair's low id is the smaller.
   void note(const Particles& particles, const SlowPair& pair);
 
-  /// Whether there is nothing to do: nothing rests, and nothing was noted.
+  /// True if there is nothing to do: no pair rests and none was noted.
   bool idle(const RestingState& state) const { return state.pairs.empty() && noted_.empty(); }
 
-  /// To be called after the half kicks that end an interval: finds who rests, what each pair has to carry through the
-  /// kick, rubs rough surfaces, and gives the first half of the impulses. Throws InvariantError when no impulses are
-  /// found.
-  void carry(RestingState& state, const RestingStep& step, const std::optional<Friction>& friction,
-             CollisionTally& tally);
+  /// Selects the pairs at rest, applies friction to rough ones, finds the impulses for the kick, and applies the first
+  /// half of them. Precondition: the half kicks that end an interval have been applied. Throws InvariantError if no
+  /// impulses exist.
+  void persist(RestingState& state, const RestingStep& step, const std::optional<Friction>& friction,
+               CollisionTally& tally);
 
-  /// To be called after the half kicks that begin the next interval: the second half.
-  void carry_on(RestingState& state, const RestingStep& step, CollisionTally& tally);
+  /// Applies the second half. Precondition: the half kicks that begin the next interval have been applied.
+  void persist_second_half(RestingState& state, const RestingStep& step, CollisionTally& tally);
 
-  /// The order of the particles in memory is another.
-  void reordered() { places_known_ = false; }
+  /// Tells that the particles' order in memory has changed.
+  void reordered() { indices_known_ = false; }
 
   const RestingCosts& costs() const;
 
 private:
   struct Noted {
     RestingPair ids;
-    std::uint32_t low, high; // places in memory
+    std::uint32_t low, high; // indices of the particles
   };
   struct Work;
   std::vector<Noted> noted_;
-  bool places_known_ = false;
-  std::unique_ptr<Work> work_; // only where something rests
+  bool indices_known_ = false;
+  std::unique_ptr<Work> work_; // null while no pair rests
 };
 
 } // namespace keeler

@@ -1,8 +1,8 @@
 // Clusters of touching spheres: friends of friends, across the edges of the sheared box.
 //
-// Two spheres are friends when the gap between their surfaces is at most a share of the sum of their radii. Friends of
-// friends make a cluster. Its members stand at their images next to each other, so that it has a shape also when an
-// edge of the box cuts it. A cluster that touches its own image goes on for ever and has none.
+// Two spheres are friends if the gap between their surfaces is at most a given fraction of the sum of their radii.
+// Friends of friends form a cluster. Its members are taken at adjacent images, so that it has a shape also if an edge
+// of the box cuts it. A cluster that touches its own image is infinite and has none.
 #pragma once
 
 #include <keeler/particles/patch.hpp>
@@ -18,39 +18,39 @@ namespace keeler {
 inline constexpr double default_cluster_gap = 0.01;
 
 struct Cluster {
-  std::vector<std::uint32_t> members; ///< indices into the patch, rising
+  std::vector<std::uint32_t> members; ///< indices into the patch, ascending
   double mass = 0.0;                  ///< kg
-  /// Half axes (m), longest first, of the homogeneous ellipsoid with the same moments of inertia: √(5 × principal
-  /// second moments), with m r²/5 for each sphere. None for a cluster without end.
+  /// Half axes (m), longest first, of the homogeneous ellipsoid with equal moments of inertia: √(5 × principal
+  /// second moments), with m r²/5 for each sphere. Empty for an infinite cluster.
   std::optional<std::array<double, 3>> half_axes;
-  /// Spin about the vertical in units of Ω, seen from the stars: 1 + L_z/I_z about the centre of mass, from the places
-  /// and velocities of the centres alone. 1 keeps one face to the planet; a round piece of undisturbed ring has
-  /// 1 − S/2. None for a cluster without end or a vertical pile.
+  /// Spin about the vertical in units of Ω, relative to the stars: 1 + L_z/I_z about the centre of mass, from the
+  /// positions and velocities of the centres. 1 is synchronous rotation; a round piece of undisturbed ring has 1 − S/2.
+  /// Empty for an infinite cluster or a vertical pile.
   std::optional<double> spin;
 };
 
-/// All clusters of two or more members, the heaviest first, then by their first member. `gap` ≥ 0.
+/// Returns all clusters of two or more members, by descending mass, then by their first member. Precondition: gap ≥ 0.
 std::vector<Cluster> find_clusters(const Patch& patch, double gap = default_cluster_gap);
 
 /// Means over snapshots.
 struct ClusterAnalysis {
-  /// Clusters of `least` … 2 `least` − 1 members.
+  /// Clusters of `min_members` … 2 × `min_members` − 1 members.
   struct Class {
-    std::size_t least = 0;
-    double count = 0.0;         ///< clusters a snapshot
-    double mass_fraction = 0.0; ///< of all mass
+    std::size_t min_members = 0;
+    double count = 0.0;         ///< clusters per snapshot
+    double mass_fraction = 0.0; ///< of the total mass
   };
 
   double gap = default_cluster_gap;
-  double count = 0.0;                                     ///< clusters of two or more
-  double mass_fraction = 0.0;                             ///< of all mass: in such clusters
-  double largest_mass_fraction = 0.0;                     ///< of all mass: in the heaviest one
-  std::optional<std::array<double, 3>> largest_half_axes; ///< m, over the snapshots whose heaviest has them
-  std::optional<double> spin;                             ///< mean over the mass of all clusters that have one
-  std::vector<Class> spectrum;                            ///< from `least` = 2 on, up to the largest
+  double count = 0.0;                                     ///< clusters per snapshot
+  double mass_fraction = 0.0;                             ///< of the total mass, in all clusters
+  double largest_mass_fraction = 0.0;                     ///< of the total mass, in the heaviest cluster
+  std::optional<std::array<double, 3>> largest_half_axes; ///< m, mean over snapshots with a finite heaviest cluster
+  std::optional<double> spin;                             ///< mass-weighted mean of the clusters that have one
+  std::vector<Class> spectrum;                            ///< from `min_members` = 2 up to the largest
 };
 
-/// Of at least one patch, none of them empty.
+/// Precondition: at least one patch, none of them empty.
 ClusterAnalysis analyze_clusters(std::span<const Patch> patches, double gap = default_cluster_gap);
 
 } // namespace keeler

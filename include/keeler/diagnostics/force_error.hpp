@@ -1,7 +1,7 @@
-// How wrong a solver's accelerations are, measured on some of the particles, as a share of the rms acceleration.
+// The error of a solver's accelerations on a sample of the particles, relative to the rms acceleration.
 //
-// Some are drawn evenly: they give the errors of the whole. Others stand beside each of the cell's four edges: a force
-// that is not truly periodic pulls these to one side.
+// Some particles are drawn uniformly: their errors represent the whole. Others are next to each of the cell's four
+// edges: a force that is not exactly periodic pulls these to one side.
 #pragma once
 
 #include <keeler/gravity/solver.hpp>
@@ -13,35 +13,34 @@
 
 namespace keeler {
 
-/// What a solver sees of a patch, which must outlive it.
+/// Returns a solver's input for a patch, which must outlive it.
 GravityProblem gravity_problem(const Patch& patch);
 
-/// Who is looked at: indices into a problem, each group in the order drawn.
+/// The sample: indices into a problem, each group in the order drawn.
 struct ForceSample {
-  std::vector<std::size_t> targets;   ///< those drawn evenly, then those of the edges x < 0, x > 0, y < 0, y > 0
-  std::size_t even = 0;               ///< how many were drawn evenly
-  std::array<std::size_t, 4> edges{}; ///< how many stand at each edge; the same particle may stand at two
+  std::vector<std::size_t> targets;   ///< the uniform sample, then the edges x < 0, x > 0, y < 0, y > 0
+  std::size_t uniform = 0;            ///< number drawn uniformly
+  std::array<std::size_t, 4> edges{}; ///< number at each edge; a particle may be at two
 };
 
-/// Draws at random, always the same ids of the same particles, in whatever order these are: `even` of all particles,
-/// and `at_each_edge` of those within `edge_width` (m) of an edge, or as many as there are.
-ForceSample draw_force_sample(const GravityProblem& problem, std::size_t even, std::size_t at_each_edge,
+/// Draws `uniform` of all particles and `at_each_edge` of the particles within `edge_width` (m) of an edge, or all if
+/// there are fewer. Always draws the same ids, in any order of the particles.
+ForceSample draw_force_sample(const GravityProblem& problem, std::size_t uniform, std::size_t at_each_edge,
                               double edge_width);
 
-/// Errors over the rms |a| of the particles drawn evenly; 0 where nobody was drawn.
+/// Errors relative to the rms |a| of the uniform sample; 0 if that is empty.
 struct ForceErrors {
   double rms = 0.0;                      ///< of |δa|
-  double p999 = 0.0;                     ///< 99.9 % have a smaller |δa|: the largest of fewer than 1000
+  double p999 = 0.0;                     ///< 99.9 % have a smaller |δa|; the largest of fewer than 1000
   std::array<double, 3> component_rms{}; ///< of δa_x, δa_y, δa_z
-  double edge_rms = 0.0;                 ///< of |δa| beside the edges
-  double edge_pull =
-      0.0; ///< |mean of δa along the plane| beside the worst edge, over the rms acceleration in the plane
+  double edge_rms = 0.0;                 ///< of |δa| at the edges
+  double edge_pull = 0.0; ///< |mean of δa in the plane| at the worst edge, over the rms acceleration in the plane
 };
 
-/// `exact` has the true accelerations of the sample's targets, in their order; `accelerations` those of all particles.
+/// `exact`: the true accelerations of the targets, in their order; `accelerations`: of all particles.
 ForceErrors force_errors(const ForceSample& sample, std::span<const Vec3> exact, std::span<const Vec3> accelerations);
 
-/// |Σ m a| / Σ m |a|.
+/// Returns |Σ m a| / Σ m |a|.
 double net_force(std::span<const double> masses, std::span<const Vec3> accelerations);
 
 } // namespace keeler

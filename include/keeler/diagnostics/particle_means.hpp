@@ -1,5 +1,5 @@
-// Means over all particles of a run, from their elements as they lie in memory: no copy, no sorting, and exact sums, so
-// that neither memory order nor ranks show. The same numbers as those of a patch (diagnostics/dispersion.hpp), up to
+// Means over all particles of a run, from their elements in memory order: no copy, no sorting, and exact sums, so that
+// they do not depend on memory order or ranks. Equal to the means of a patch (diagnostics/dispersion.hpp) up to
 // rounding.
 #pragma once
 
@@ -9,15 +9,15 @@
 
 namespace keeler {
 
-/// The spins of rough particles; all 0 for smooth ones.
+/// Means of the spins of rough particles; all 0 for smooth ones.
 struct SpinMeans {
   double energy = 0.0;        ///< Σ ½ I (ω − Ω)², in Hill's frame, kg m² rad⁻²
   double random_energy = 0.0; ///< Σ ½ I (ω − ⟨ω⟩)², kg m² rad⁻²
-  Vec3 mean = Vec3::Zero();   ///< ⟨ω⟩ against the stars, rad⁻¹
+  Vec3 mean = Vec3::Zero();   ///< ⟨ω⟩ relative to the stars, rad⁻¹
   double dispersion = 0.0;    ///< √⟨|ω − ⟨ω⟩|²⟩, rad⁻¹
 };
 
-/// Weighted by mass. The bits follow from the particles alone.
+/// Weighted by mass. The bits depend on the particles only.
 struct ParticleMeans {
   double mass = 0.0;              ///< Σ m, kg
   double epicyclic_energy = 0.0;  ///< Σ m (½κ²e² + ½ν²i²), kg m² rad⁻²
@@ -28,8 +28,8 @@ struct ParticleMeans {
   SpinMeans spin;
 };
 
-/// At `after` (rad) from the epoch of the elements. All are 0 without particles. Collective: of the particles of all
-/// ranks.
+/// Returns means at `after` (rad) from the epoch of the elements; all are 0 without particles. Collective: over the
+/// particles of all ranks.
 ParticleMeans particle_means(const Particles& particles, const Frequencies& frequencies, double after,
                              const Communicator& ranks = {});
 

@@ -18,8 +18,8 @@ struct SizeClass {
 
 inline constexpr int max_size_classes = 4;
 
-/// Classes of equal width in log r from the smallest to the largest radius, smallest first; none when all radii are
-/// equal. Means count mass.
+/// Returns classes of equal width in log r from the smallest to the largest radius, in this order, or nothing if all
+/// radii are equal. Means are weighted by mass. Precondition: at least one class.
 std::vector<SizeClass> size_classes(const Patch& patch, int classes = max_size_classes);
 
 } // namespace keeler

@@ -1,26 +1,26 @@
-// How much ring there is on an area, and how near it is to collapse under its own weight.
+// Optical depth and surface density of a patch, and its gravitational stability.
 #pragma once
 
 #include <keeler/particles/patch.hpp>
 
 namespace keeler {
 
-/// τ = Σ π r² / area.
+/// Returns τ = Σ π r² / area.
 double optical_depth(const Patch& patch);
 
-/// Σ = Σ m / area, kg m^-2.
+/// Returns Σ = Σ m / area, kg m^-2.
 double surface_density(const Patch& patch);
 
-/// Of the particles themselves, kg m^-3: their mass over their volume.
+/// Returns the density of the particles, kg m^-3: total mass / total volume.
 double material_density(const Patch& patch);
 
-/// Fraction of the plane z = 0 that spheres cut: Σ π (r² − z²) over those that reach it, / area.
+/// Returns the fraction of the plane z = 0 inside spheres: Σ π (r² − z²) over spheres that intersect it, / area.
 double midplane_filling(const Patch& patch);
 
-/// λ_cr, m (orbit/toomre.hpp).
+/// Returns λ_cr, m (hill/toomre.hpp).
 double critical_wavelength(const Patch& patch);
 
-/// Q (orbit/toomre.hpp).
+/// Returns Q (hill/toomre.hpp).
 double toomre_q(const Patch& patch);
 
 } // namespace keeler

@@ -1,5 +1,5 @@
-// The shape of the distribution of random velocities: the covariance tensor of the peculiar velocities, its principal
-// axes in the ring plane, and how far the longer one points away from the radius (vertex deviation).
+// The velocity ellipsoid: the covariance tensor of the peculiar velocities, its principal axes in the ring plane, and
+// the angle from the radial direction to the longer one (vertex deviation).
 #pragma once
 
 #include <keeler/particles/patch.hpp>
@@ -19,7 +19,7 @@ struct VelocityEllipsoid {
   double vertex_deviation_degrees = 0.0; ///< from x to the longer axis, in (−90, 90], positive towards +y
 };
 
-/// A circle in the plane has a ratio of 1 and no meaningful deviation.
+/// For isotropic motion in the plane the ratio is 1 and the deviation meaningless.
 VelocityEllipsoid velocity_ellipsoid(const VelocityMoments& moments);
 
 } // namespace keeler

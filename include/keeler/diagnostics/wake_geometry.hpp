@@ -1,6 +1,6 @@
-// Sizes and directions of self-gravity wakes, over several snapshots of a run: from the power spectrum
-// (wake_spectrum.hpp) and from the central ridge of the autocorrelation (wakes.hpp). Values come from the summed
-// spectra and from the mean autocorrelation; the scatter is that of the snapshots one by one.
+// Sizes and directions of self-gravity wakes in several snapshots of a run, from the power spectrum (wake_spectrum.hpp)
+// and from the central ridge of the autocorrelation (wakes.hpp). Values come from the summed spectra and from the mean
+// autocorrelation; the scatter is that of single snapshots.
 #pragma once
 
 #include <keeler/diagnostics/wakes.hpp>
@@ -19,7 +19,7 @@ struct WakeGeometry {
   Measured outer_pitch_degrees;
 };
 
-/// Of snapshots of one box, at least one.
+/// Precondition: at least one snapshot, all of one box.
 WakeGeometry wake_geometry(std::span<const Patch> patches, double critical_wavelength);
 
 } // namespace keeler

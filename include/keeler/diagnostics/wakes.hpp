@@ -1,13 +1,13 @@
-// Self-gravity wakes as the autocorrelation shows them: direction of the central ridge, distance to the next wake.
+// Self-gravity wakes in the autocorrelation: direction of the central ridge, distance to the next wake.
 //
 // Pitch: the angle from the y axis of the central ridge, a line fitted to its crest (the largest ξ at each Δy) out to
-// one λ_cr; positive when trailing, that is when the outer part of a wake (x > 0) lags behind (y < 0). The crest starts
+// one λ_cr; positive when trailing, that is if the outer part of a wake (x > 0) lags behind (y < 0). The crest starts
 // in the direction along which the mean of ξ over a line through zero lag is largest. Spacing: ξ is averaged along that
 // direction into a function of the radial lag Δx (at Δy = 0); the spacing is its first side maximum.
 //
 // The ridge bends, so its pitch is also given for two parts, after Michikoshi, Fujii, Kokubo & Salo (2015, ApJ 812,
-// 151), who fit the inner and the outer part of the autocorrelation separately. The limits are Keeler's own: the inner
-// part ends λ_cr/2 from zero lag and its line goes through zero lag; the outer part goes from there to 3/2 λ_cr.
+// 151), who fit the inner and the outer part of the autocorrelation separately. The limits are Keeler's: the inner part
+// ends λ_cr/2 from zero lag and its line passes through zero lag; the outer part extends from there to 3/2 λ_cr.
 #pragma once
 
 #include <keeler/diagnostics/autocorrelation.hpp>
@@ -18,10 +18,10 @@
 namespace keeler {
 
 struct Wakes {
-  std::optional<double> pitch_degrees;       ///< in (−90, 90]; none when no direction stands out
-  std::optional<double> inner_pitch_degrees; ///< of the crest within λ_cr/2; none where `pitch_degrees` is none
-  std::optional<double> outer_pitch_degrees; ///< beyond; none when the crest drowns in the noise before λ_cr
-  std::optional<double> spacing;             ///< m; none without wakes or without a side maximum within half a box
+  std::optional<double> pitch_degrees;       ///< in (−90, 90]; empty if no direction is significant
+  std::optional<double> inner_pitch_degrees; ///< of the crest within λ_cr/2; empty if `pitch_degrees` is
+  std::optional<double> outer_pitch_degrees; ///< beyond; empty if the crest falls below the noise before λ_cr
+  std::optional<double> spacing;             ///< m; empty without wakes or a side maximum within half a box
   double amplitude = 0.0;                    ///< largest mean of ξ over such a line minus the mean over all directions
 
   double reach = 0.0;           ///< half the length of the lines averaged over, m
@@ -29,8 +29,8 @@ struct Wakes {
   std::vector<double> profile;  ///< ξ averaged along the ridge, at radial lags 0, 1, 2 … × profile_spacing
 };
 
-/// Lines reach 3/4 λ_cr to each side (less in a small box). There are no wakes when λ_cr is not resolved by the map, or
-/// when the amplitude is below 0.02 or below five times the noise of particles at random.
+/// Lines extend 3/4 λ_cr to each side (less in a small box). Finds no wakes if the map does not resolve λ_cr, or if the
+/// amplitude is below 0.02 or below five times the noise of random particles.
 Wakes find_wakes(const AutocorrelationMap& map, double critical_wavelength);
 
 } // namespace keeler

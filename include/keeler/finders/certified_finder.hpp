@@ -1,5 +1,5 @@
-// The finder "certified": the first contact on the relative epicycle, guaranteed. Pairs that provably approach all the
-// way to their first root are found by Newton's method, several at once; all others by CertifiedSearch.
+// The finder "certified": finds the first contact on the relative epicycle, guaranteed. Pairs that provably approach up
+// to their first root are solved by Newton's method, several at once; all others by CertifiedSearch.
 #pragma once
 
 #include <keeler/core/simd.hpp>
@@ -9,8 +9,8 @@
 
 namespace keeler {
 
-/// The instruction set has no say in any bit of the results. A search that Newton's method leaves undecided counts its
-/// evaluations too, but only the passes of CertifiedSearch.
+/// Results are bit-identical for all instruction sets. If Newton's method leaves a search undecided, its evaluations
+/// are counted, but only the iterations of CertifiedSearch.
 std::unique_ptr<Finder> make_certified_finder(InstructionSet set);
 
 } // namespace keeler

@@ -1,20 +1,21 @@
-// What a finder's calls came to: how many ended for each reason, and after how many iterations and evaluations. The
-// histograms are those of the paper's Figures 5 and 6.
+// Statistics of a finder's calls: their number by exit, and histograms of iterations and evaluations, as in the paper's
+// Figures 5 and 6.
 #pragma once
 
 #include <keeler/finders/pair.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 
 namespace keeler {
 
 struct FinderCounts {
-  static constexpr int bins = 64; ///< 0 … 62; the last one holds 63 and all above
+  static constexpr int bins = 64; ///< 0 … 62; the last one holds 63 and above
   using Histogram = std::array<std::uint64_t, bins>;
 
-  /// Calls of one kind.
+  /// Calls with one exit.
   struct Calls {
     std::uint64_t count = 0;
     std::uint64_t iterations = 0, evaluations = 0, halvings = 0; ///< summed
@@ -37,6 +38,7 @@ struct FinderCounts {
   const Calls& of(FinderExit exit) const { return by_exit[static_cast<int>(exit)]; }
 
   void add(const FinderResult& result) {
+    assert(result.iterations >= 0 && result.evaluations >= 0);
     Calls& calls = by_exit[static_cast<int>(result.exit)];
     ++calls.count;
     calls.iterations += result.iterations;

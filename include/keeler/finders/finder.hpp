@@ -1,20 +1,20 @@
-// A finder: a form of motion under a form of search, with what the motion keeps for each particle through a step.
+// A finder combines a form of motion with a form of search, and the data that the motion stores per particle and step.
 //
-// Motion: how the relative path of two particles is represented. It has
-//   Motion(const Pair&, const DriftStep&)             or, when it keeps something for each particle,
+// Motion: represents the relative path of two particles. It has
+//   Motion(const Pair&, const DriftStep&)             or, if it stores data per particle,
 //   struct Memory; static Memory remember(const Elements&, const DriftStep&);
 //   Motion(const Pair&, const DriftStep&, const Memory& lo, const Memory& hi);
 //   Separation at(double time)                        one evaluation
 // and may have
-//   std::optional<Separation> at_start()              the separation at pair.start from what is kept, if that can be:
+//   std::optional<Separation> at_start()              the separation at pair.start from stored data, if available:
 //                                                     no evaluation
 //   static bool surely_apart(const Query&, const Body& low, const Body& high, const DriftStep&)
-//                                                     proves a miss before a pair is even set up
-// Search: how guesses move to the first contact. It has
+//                                                     proves a miss before a pair is set up
+// Search: moves guesses to the first contact. It has
 //   template<class Motion> static FinderResult find(Motion&, const Pair&);
-// and, when it never errs and never gives up,
+// and, if it never errs and never gives up,
 //   static constexpr bool exact = true;
-// A new finder is one such file and one line in src/finders/finders.cpp: docs/dev/finders.md shows one.
+// A new finder needs one such file and one line in src/finders/finders.cpp: docs/dev/finders.md shows one.
 #pragma once
 
 #include <keeler/core/threads.hpp>
@@ -31,24 +31,25 @@
 
 namespace keeler {
 
-/// One step as finders see it. Times are relative to the epoch of the elements, rad.
+/// One step as seen by finders. Times are relative to the epoch of the elements, rad. Precondition: begin <= end.
 struct DriftStep {
   std::span<const Body> bodies;
   Frequencies frequencies;
   double begin = 0.0, end = 0.0;
   Rotation at_begin, at_end;
   StraightLineTest straight_line;
-  bool tested = false; ///< straight lines have ruled most pairs out already: to test them again does not pay
+  bool tested = false; ///< straight lines have already excluded most pairs: another test does not pay
 
-  /// `size` is the largest coordinate that occurs, m: it sets the allowance for rounding.
+  /// `size`: largest coordinate, m; sets the allowance for rounding.
   DriftStep(const Frequencies& f, double begin_time, double end_time, double size)
       : frequencies(f), begin(begin_time), end(end_time), at_begin(f, begin_time), at_end(f, end_time) {
+    assert(!(begin > end));
     straight_line = {f, end, std::max(std::fabs(begin), std::fabs(end)), 1e-13 * size};
   }
 };
 
-/// Which two particles (places in the store; `low` has the lower id), the shift of the image of `high` at the epoch,
-/// and from when on.
+/// Two particles (indices into the store; `low` has the lower id), the shift of the image of `high` at the epoch, and
+/// the begin of the search.
 struct Query {
   std::uint32_t low = 0, high = 0;
   double shift_x = 0.0, shift_y = 0.0; ///< m
@@ -76,16 +77,17 @@ inline Pair pair_of(const Query& q, const Body& low, const Body& high, const Dri
 }
 
 inline Pair pair_of(const Query& q, const DriftStep& s) {
+  assert(q.low < s.bodies.size() && q.high < s.bodies.size());
   return pair_of(q, s.bodies[q.low], s.bodies[q.high], s);
 }
 
-/// What the image of `hi` adds to the state of the particle itself at a time: images drift with the shear, exactly.
+/// Returns the state of the image of `hi` minus that of the particle at a time: images drift with the shear, exactly.
 inline State image_offset(const Pair& pair, const Frequencies& f, double time) {
   const double drift = -f.shear() * pair.shift_x;
   return {Vec3(pair.shift_x, pair.shift_y + drift * time, 0.0), Vec3(0.0, drift, 0.0)};
 }
 
-/// The separation at the start of the span: from what the motion keeps when it can, else an evaluation, counted.
+/// Returns the separation at the start of the span, from stored data if available, else by an evaluation, counted.
 template<class Motion> Separation first_separation(Motion& motion, const Pair& pair, FinderResult& result) {
   if constexpr (requires { motion.at_start(); })
     if (const std::optional<Separation> kept = motion.at_start())
@@ -98,32 +100,33 @@ class Finder {
 public:
   virtual ~Finder() = default;
 
-  /// A step begins. The step and the particles it names must stay where they are until the next call.
+  /// Begins a step. The step and its particles must stay in place until the next call.
   virtual void begin(const DriftStep& step) = 0;
 
-  /// A particle has changed its velocity.
+  /// Updates stored data after a change of a particle's velocity. Precondition: begin() was called.
   virtual void changed(std::size_t particle) = 0;
 
-  /// A contact's time lies in [query.start, end of the step): a root elsewhere is reported as `outside`.
+  /// Finds a contact in [query.start, end of the step); a root elsewhere is reported as `outside`. Precondition:
+  /// begin() was called.
   virtual FinderResult find(const Query& query) const = 0;
 
-  /// The answers of find() to many queries, to the bit, in their order.
+  /// Answers many queries, bit-identical to find(), in their order. Precondition: one result per query.
   virtual void find_all(std::span<const Query> queries, std::span<FinderResult> results) const {
     assert(results.size() == queries.size());
     for (std::size_t k = 0; k < queries.size(); ++k)
       results[k] = find(queries[k]);
   }
 
-  /// Whether the finder keeps nothing for each particle, never gives up and never errs. Only such a one may be asked
-  /// about orbits that are not those of the step, by several threads.
+  /// True if the finder stores nothing per particle, never gives up and never errs. Only such a finder may be called
+  /// for orbits other than the step's, by several threads.
   virtual bool exact() const { return false; }
-  /// The same question about these orbits in place of the step's. Only for exact finders.
+  /// As find(), for these orbits in place of the step's. Precondition: exact().
   virtual FinderResult find_between(const Query&, const Body& /*low*/, const Body& /*high*/) const {
     assert(!exact());
     return {};
   }
 
-  /// Kept for each particle beyond its elements.
+  /// Returns the size of the data stored per particle beyond its elements.
   virtual std::size_t bytes_per_particle() const = 0;
 };
 
@@ -138,11 +141,13 @@ public:
   }
 
   void changed([[maybe_unused]] std::size_t k) override {
+    assert(step_ != nullptr && k < step_->bodies.size());
     if constexpr (remembers)
       memories_[k] = Motion::remember(step_->bodies[k].elements, *step_);
   }
 
   FinderResult find(const Query& query) const override {
+    assert(step_ != nullptr && query.low < step_->bodies.size() && query.high < step_->bodies.size());
     return find_between(query, step_->bodies[query.low], step_->bodies[query.high]);
   }
 

@@ -1,4 +1,4 @@
-// The finders by name: each is one form of motion under one form of search, and one line of the table.
+// The table of finders by name; each is one form of motion with one form of search.
 #pragma once
 
 #include <keeler/finders/finder.hpp>
@@ -15,10 +15,10 @@ struct FinderEntry {
   std::unique_ptr<Finder> (*make)();
 };
 
-/// All finders, the default first.
+/// Returns all finders, the default first.
 std::span<const FinderEntry> finder_table();
 
-/// A finder of that name, or null.
+/// Returns the finder of that name, or null.
 std::unique_ptr<Finder> make_finder(const std::string& name);
 
 } // namespace keeler

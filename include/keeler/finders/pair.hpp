@@ -1,4 +1,4 @@
-// The question that a finder answers: two particles, a span of one step; when do they first touch, approaching?
+// Input and result of a finder: when do two particles first touch, approaching, within a span of one step?
 #pragma once
 
 #include <keeler/hill/elements.hpp>
@@ -9,7 +9,7 @@ namespace keeler {
 /// to the epoch of the elements, rad. The span is half-open: a contact at `end` belongs to the next step.
 struct Pair {
   Elements lo, hi;
-  double shift_x = 0.0, shift_y = 0.0; ///< what has been added to X and Y of `hi`, at the epoch
+  double shift_x = 0.0, shift_y = 0.0; ///< added to X and Y of `hi`, at the epoch
   double radius_sum = 0.0;             ///< r_i + r_j, m
   double smaller = 0.0;                ///< the smaller of the two radii, m
   double start = 0.0; ///< the later of the two particles' last velocity changes in this step, or the step's start
@@ -38,15 +38,15 @@ enum class FinderExit {
 };
 inline constexpr int finder_exits = 7;
 
-/// The exit's name in words, as reports and JSON show it.
+/// Returns the exit's name, as in reports and JSON.
 const char* name_of(FinderExit exit);
 
 struct FinderResult {
   FinderExit exit = FinderExit::missed;
-  double time = 0.0;   ///< of the contact, in [start, end), when exit is hit or overlapping
+  double time = 0.0;   ///< of the contact, in [start, end), if exit is hit or overlapping
   int iterations = 0;  ///< passes of the search loop
   int evaluations = 0; ///< evaluations of the motion
-  int halvings = 0;    ///< steps that were tried and then halved; each is an evaluation too
+  int halvings = 0;    ///< trial steps that were halved; each is an evaluation too
 
   bool contact() const { return exit == FinderExit::hit || exit == FinderExit::overlapping; }
 };

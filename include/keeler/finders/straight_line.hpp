@@ -1,25 +1,26 @@
-// The straight line that a relative path touches at the epoch, and the test that it allows: no path leaves its tangent
-// by more than A t²/2, so a pair whose tangents stay farther apart than contact plus that is a proven miss, without a
-// sine or cosine. Everything comes from the difference of the elements: a body is one line of cache.
+// The test of straight lines: a relative path deviates from its tangent at the epoch by at most A t²/2, so a pair with
+// tangents farther apart than contact plus that is a proven miss, without a sine or cosine. All values come from
+// the difference of the elements: a body is one cache line.
 #pragma once
 
 #include <keeler/particles/store.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 
-/// The test over times up to `end` after the epoch, none farther from it than `longest` (rad); may_touch_soon() has its
-/// own times.
+/// The test at times up to `end` after the epoch, all within `longest` (rad) of it; may_touch_soon() has separate
+/// times.
 struct StraightLineTest {
   Frequencies frequencies;
   double end = 0.0;
   double longest = 0.0;
-  double allowance = 0.0; ///< added to contact, m: for the rounding of coordinates, or a skin
+  double allowance = 0.0; ///< added to contact, m: for rounding of coordinates, or a skin
 
-  /// False only when the closest approach of the straight lines over [start, end], with all that curvature and rounding
-  /// can add, stays outside contact. The shift, at the epoch, is that of the image of `b`.
+  /// Returns false only if the closest approach of the straight lines over [start, end] stays outside contact plus
+  /// bounds on curvature and rounding. The shift is that of the image of `b` at the epoch.
   bool may_touch(const Body& a, const Body& b, double shift_x, double shift_y, double start) const {
     const double shear = frequencies.shear(), kappa = frequencies.kappa, nu = frequencies.nu;
     const Elements el = b.elements - a.elements;
@@ -32,16 +33,17 @@ struct StraightLineTest {
                          nu * nu * (std::fabs(el.i_sin) + std::fabs(el.i_cos));
     const double contact = a.radius + b.radius + allowance, far = contact + bound * half_square;
     const double d2 = d.squaredNorm(), dv = d.dot(v);
-    if (d2 - 2.0 * up * std::fabs(dv) * longest > far * far * up) // |d + v t|² is no less: most pairs end here
+    if (d2 - 2.0 * up * std::fabs(dv) * longest > far * far * up) // a lower bound on |d + v t|²: most pairs end here
       return false;
     const double e2 = el.e_cos * el.e_cos + el.e_sin * el.e_sin, i2 = el.i_sin * el.i_sin + el.i_cos * el.i_cos;
     const double near = contact + up * std::sqrt(4.0 * kappa * kappa * e2 + nu * nu * nu * nu * i2) * half_square;
     return comes_near(d, v, dv, start, end, near);
   }
 
-  /// The same for a `time` (at least 0) from `begin` on, by the straight lines of then.
+  /// As above, for the next `time` from `begin` on, with the tangents at `begin`. Precondition: time >= 0.
   bool may_touch_soon(const Body& a, const Body& b, double shift_x, double shift_y, const Rotation& begin,
                       double time) const {
+    assert(!(time < 0.0));
     Elements el = b.elements - a.elements;
     el.guiding_x += shift_x;
     el.guiding_y += shift_y;
@@ -55,7 +57,7 @@ struct StraightLineTest {
 private:
   static constexpr double up = 1.0 + 1e-9; // for roundings
 
-  // Not false when there are numbers that are not.
+  // Returns true for values that are not finite.
   static bool comes_near(const Vec3& d, const Vec3& v, double dv, double first, double last, double near) {
     const double v2 = v.squaredNorm();
     const double closest = v2 > 0.0 ? std::clamp(-dv / v2, first, last) : first;

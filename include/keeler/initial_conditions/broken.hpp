@@ -1,4 +1,4 @@
-// A state in which an invariant broke, kept so that it can be looked at.
+// A state that violates an invariant, saved for inspection.
 #pragma once
 
 #include <keeler/core/error.hpp>
@@ -11,18 +11,18 @@
 
 namespace keeler {
 
-/// Takes the particles out that no snapshot may have (particle_fault). Returns how many.
+/// Removes the particles that are not valid in a snapshot (particle_fault). Returns their number.
 std::size_t keep_possible(Patch& patch);
 
-/// What broke, with the state: where nothing else keeps it.
+/// A violated invariant together with the state, which no file has.
 struct BrokenState : InvariantError {
   BrokenState(const InvariantError& error, const Simulation& simulation);
   std::int64_t step;
   Patch patch; ///< Simulation::patch_at_break()
 };
 
-/// Writes a snapshot of what is possible in it. Returns the words of the error, when it was, and the file; or why the
-/// state could not be saved.
+/// Writes a snapshot of the valid particles. Returns the message of the error, the time, and the file or the reason why
+/// the state could not be saved.
 std::string save_broken(const BrokenState& broken, const std::filesystem::path& file, const SnapshotMeta& meta);
 
 } // namespace keeler

@@ -13,14 +13,14 @@
 
 namespace keeler {
 
-/// How a clumped state came about.
+/// The record of how a clumped state was made.
 struct Clumping {
   SettleCriterion criterion;
   double sample_every_orbits = 0.0; ///< 1 / samples_per_orbit, rounded to whole kick intervals
-  double orbits = 0.0;              ///< evolved
+  double orbits = 0.0;              ///< number of orbits evolved
   Settling settling;                ///< at the end
   std::vector<SettleSample> history;
-  double orbital_frequency = 0.0; ///< rad/s: makes m²/s of m² rad⁻¹
+  double orbital_frequency = 0.0; ///< rad/s: converts m² rad⁻¹ to m²/s
 };
 
 struct ClumpedState {
@@ -28,25 +28,25 @@ struct ClumpedState {
   Clumping clumping;
 };
 
-/// Where the clumping stands, after each step.
+/// Progress of the evolution, reported after each step.
 struct ClumpingProgress {
   double orbits = 0.0;
   double elapsed_s = 0.0;           ///< wall time
   double contrast = 0.0;            ///< of the last sample: rms of the smoothed Σ/⟨Σ⟩ − 1
-  std::optional<Settling> settling; ///< none before criterion.least_orbits()
+  std::optional<Settling> settling; ///< empty before criterion.min_orbits()
   SettleCriterion criterion;
   bool settled = false;
 };
 
-/// Evolves the scene's initial state, by the scene's step and gravity, until its wakes have settled; the scene's end
-/// time and schedules do not matter. Same scene and criterion, same state, for any number of threads. Throws UsageError
-/// for a scene without gravity or whose wakes could not be seen, and for a limit of orbits below which nothing settles;
-/// Error (run_time) when they have not settled by then; BrokenState (broken.hpp) when a step comes to what cannot be;
+/// Evolves the scene's initial state, with the scene's step and gravity, until its wakes have settled; ignores the
+/// scene's end time and schedules. The result depends on scene and criterion only, not on the number of threads. Throws
+/// UsageError for a scene without gravity or too small for wakes, and for a limit of orbits that is too short to
+/// settle; Error (run_time) if they have not settled by then; BrokenState (broken.hpp) if a step violates an invariant;
 /// Interrupted (interrupt.hpp), and what initial_patch() and Simulation throw.
 ClumpedState clumped_state(const Scene& scene, const SettleCriterion& criterion = {},
                            const std::function<void(const ClumpingProgress&)>& progress = {});
 
-/// The record as numbers by name, for SnapshotMeta::clumping.
+/// Returns the record as numbers by name, for SnapshotMeta::clumping.
 std::map<std::string, std::vector<double>> clumping_numbers(const Clumping& clumping);
 
 } // namespace keeler

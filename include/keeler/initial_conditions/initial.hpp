@@ -1,4 +1,4 @@
-// The state that a scene starts from.
+// The initial state of a scene.
 #pragma once
 
 #include <keeler/comm/communicator.hpp>
@@ -12,22 +12,23 @@
 
 namespace keeler {
 
-/// A fresh patch on the scene's streamlines, or the snapshot that the scene names. Throws UsageError (too dense),
-/// Interrupted (interrupt.hpp), or what patch_from_snapshot() throws. Collective: each rank gets a part of the
-/// particles, and the first one all else. `progress` may throw where it throws on all ranks.
+/// Returns a fresh patch on the scene's streamlines, or the snapshot that the scene names. Throws UsageError (too
+/// dense), Interrupted (interrupt.hpp), or what patch_from_snapshot() throws. Collective: each rank gets a part of the
+/// particles, and the root all other data. `progress` may throw if it throws on all ranks.
 Patch initial_patch(const Scene& scene, const std::function<void(const StartProgress&)>& progress = {},
                     const Communicator& ranks = {});
 
-/// Throws IoError where the snapshot that the scene starts from does not exist.
+/// Throws IoError if the snapshot that the scene starts from does not exist.
 void require_start_file(const Scene& scene);
 
-/// The patch of a snapshot, made the start of a run of this scene: the scene's frequencies, its own box, time zero.
-/// Throws IoError; UsageError when it was made at another place; InvariantError for a particle that no ring has, named.
+/// Returns the patch of a snapshot as the start of a run of this scene: with the scene's frequencies, the patch's own
+/// box, and time zero. Throws IoError; UsageError if it was made at another orbit; InvariantError for an invalid
+/// particle, which it names.
 Patch patch_from_snapshot(const std::string& path, const Scene& scene);
-/// The same of a snapshot that has been read; `path` stands for it in messages. Collective, of a part of the particles.
+/// As above, for a snapshot that has been read; messages name it by `path`. Collective, for a part of the particles.
 Patch patch_from_snapshot(Patch patch, const std::string& path, const Scene& scene, const Communicator& ranks = {});
 
-/// How large a patch is, for the doubts about it. Collective, of a part of the particles: on the first rank.
+/// Returns the size of a patch, for warnings. Collective, for a part of the particles: on the root.
 PatchScale scale_of(const Patch& patch, const Communicator& ranks = {});
 
 } // namespace keeler

@@ -1,5 +1,5 @@
-// How the centres of a fresh layer are spread in z: Gaussian, or flat-topped where a Gaussian would be too full in the
-// mid-plane. Dense rings are flat-topped too.
+// The vertical profile of a fresh layer: Gaussian, or flat-topped if a Gaussian would be too dense in the mid-plane.
+// Dense rings are flat-topped too.
 #pragma once
 
 namespace keeler {
@@ -9,12 +9,12 @@ struct LayerProfile {
   double slab = 0.0;  ///< m
   double sigma = 0.0; ///< m
 
-  /// A Gaussian of this height √⟨z²⟩ (m) whose mid-plane would be filled to `filling`; or, where that is above
-  /// `largest`, the profile of the same height with its mid-plane filled to `largest`. A slab, the flattest of all, has
-  /// 0.72 of the filling of a Gaussian.
+  /// Returns a Gaussian of this height √⟨z²⟩ (m) with the filling factor `filling` in the mid-plane. If that exceeds
+  /// `largest`, returns the profile of this height with the filling factor `largest` there; the limit is a
+  /// slab, with 0.72 of the filling factor of a Gaussian.
   static LayerProfile of_height(double height, double filling, double largest);
 
-  /// Centres a unit of z in the mid-plane, m^-1, of one centre in all.
+  /// Returns the probability density of z in the mid-plane, m^-1.
   double midplane_density() const;
 };
 

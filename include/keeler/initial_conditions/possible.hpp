@@ -1,5 +1,5 @@
-// What no patch of a ring has, in a state that somebody else made or changed: the ranges of the scene's keys hold for
-// it too. Beyond them steps and searches may not end.
+// Validation of states made or changed outside Keeler, against the ranges of the scene's keys. Beyond them steps and
+// searches may not end.
 #pragma once
 
 #include <keeler/hill/elements.hpp>
@@ -9,18 +9,18 @@
 
 namespace keeler {
 
-/// "a radius (m) of -1 (possible is from 1e-6 to 1000000)"; empty when particle k is possible. The patch knows its
-/// orbital frequency.
+/// Returns a description such as "a radius (m) of -1 (possible is from 1e-6 to 1000000)", or an empty string if
+/// particle k is valid. Precondition: the patch has its orbital frequency.
 std::string particle_fault(const Patch& patch, std::size_t k);
 
-/// "x = 2000, y = 3 outside the box of 60 m x 60 m about 0 (as has its guiding centre)"; empty when a particle of a
-/// start with this state (m, m rad⁻¹) is in the box or close to it.
+/// Returns a description such as "x = 2000, y = 3 outside the box of 60 m x 60 m about 0 (as has its guiding centre)",
+/// or an empty string if a particle with this state (m, m rad⁻¹) is in the box or close to it.
 std::string box_fault(const State& state, const ShearingBox& box, const Frequencies& frequencies);
 
-/// Throws InvariantError that names what is not possible in the patch of this file: the planet, the box or a particle.
-/// UsageError when it has none.
+/// Throws InvariantError that names the invalid value of this file: of the planet, the box or a particle. Throws
+/// UsageError if the patch is empty.
 void require_possible(const Patch& patch, const std::string& path);
-/// The same of a patch of so many particles but for them, and of the particles.
+/// The two parts of this check: all but the particles of a patch with `count` of them, and the particles.
 void require_possible_frame(const Patch& patch, std::size_t count, const std::string& path);
 void require_possible_particles(const Patch& patch, const std::string& path);
 

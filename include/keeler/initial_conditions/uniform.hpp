@@ -1,4 +1,4 @@
-// A fresh, statistically uniform patch without overlaps: where a run starts when nothing else is given.
+// A fresh, statistically uniform patch without overlaps: the default start of a run.
 #pragma once
 
 #include <keeler/comm/communicator.hpp>
@@ -13,45 +13,46 @@
 
 namespace keeler {
 
-/// A body at a place of its own.
+/// A body with a given position and velocity, such as a moonlet.
 struct HeldBody {
-  Vec3 place, velocity;
+  Vec3 position, velocity;
   double radius, mass;
 };
 
-/// Where no particle is placed.
+/// A region in which no particle is placed.
 struct ClosedBall {
   Vec3 centre;
   double radius;
 };
 
-/// What a uniform patch is made of. Internal units. Of several ranks each gives the radii of some particles, whose ids
-/// follow those of the rank before, the first rank the held bodies, and all of them all else.
+/// Input of uniform_patch(), in internal units. In a distributed start each rank gives the radii of some particles,
+/// with ids that follow the rank before; the root gives the held bodies; all ranks give all other values.
 struct UniformRequest {
   ShearingBox box;
   Frequencies frequencies;
   std::vector<double> radii; ///< m, of particles first, first + 1, …; particle k gets id k
   std::uint64_t first = 0;
   double density = 900.0;                               ///< kg m⁻³
-  std::function<double(std::uint64_t id)> density_of{}; ///< that of each in its place; empty: all have the same
+  std::function<double(std::uint64_t id)> density_of{}; ///< density of each particle, replaces `density` if set
   double dispersion_x = 1.0;                            ///< c_x, m rad⁻¹
   double dispersion_z = 0.65;                           ///< c_z, m rad⁻¹
   double own_room = 0.0;                                ///< m²: the layer's height is √(c_z²/ν² + own_room)
-  Streamlines streamlines;                              ///< that the mean motion follows; circles unless given
-  std::vector<HeldBody> held;                           ///< they come after the particles, with the ids that follow
-  std::vector<ClosedBall> closed;                       ///< each held body is inside one of them; no two may overlap
-  DensityPattern pattern;                               ///< of the guiding centres on them
+  Streamlines streamlines;                              ///< of the mean motion; circles by default
+  std::vector<HeldBody> held;                           ///< their ids follow the particles' ids
+  std::vector<ClosedBall> closed;                       ///< contain all held bodies; must not overlap
+  DensityPattern pattern;                               ///< of the guiding centres on the streamlines
   std::uint64_t seed = 1;
 };
 
-/// Uniform in x and y (in X, where streamlines bunch), or after the pattern; in z Gaussian, or flat-topped with the
-/// same height where the mid-plane would be fuller than largest_filling (scene/derived.hpp). Eccentricity vectors are
-/// Gaussian about those of the streamlines, so that c_y = c_x κ/2, and so are vertical velocities; their random parts
-/// have no mean by mass, nor have the heights (of the particles alone where bodies are held, but for what these push
-/// aside). Each pair is apart by at least 2 × 10⁻⁵ of the smaller radius. Sizes may differ by 10⁴ and more; time and
-/// memory go with the number of particles. Same request, same state, for any number of threads and ranks, of which each
-/// gets some of the particles. Throws UsageError when there is no room without overlap, Interrupted (interrupt.hpp).
-/// Collective: `progress` is called on all ranks at the same points, and may throw where it throws on all.
+/// Returns a patch that is uniform in x and y (in X, if streamlines bunch), or follows the pattern. The profile in z is
+/// Gaussian, or flat-topped with equal height if the mid-plane would exceed largest_filling (scene/derived.hpp).
+/// Eccentricity vectors are Gaussian about the streamlines', so that c_y = c_x κ/2, and so are vertical
+/// velocities. Their random parts and the heights have a mass-weighted mean of zero (of the particles alone if bodies
+/// are held, apart from what these push aside). The gap of each pair is at least 2 × 10⁻⁵ of the smaller radius. Sizes
+/// may differ by 10⁴ and more; time and memory are proportional to the number of particles. The result depends on the
+/// request only, not on the number of threads and ranks; each rank gets some of the particles. Throws UsageError if
+/// there is no room without overlap, Interrupted (interrupt.hpp). Collective: `progress` is called on all ranks at the
+/// same points, and may throw if it throws on all.
 Patch uniform_patch(const UniformRequest& request, const std::function<void(const StartProgress&)>& progress = {},
                     const Communicator& ranks = {});
 

@@ -1,6 +1,6 @@
 // Chooses whether contacts at rest carry the kicks or bounce, where a scene leaves it open (gravity.resting_contacts =
 // "auto"). The choice depends on the bodies of the patch and on the kick interval only, so a fresh start, a snapshot
-// and a table of one patch give one choice. docs/dev/resting.md has the measurements behind it.
+// and a table of one patch give one choice. docs/dev/contact-solver.md has the measurements behind it.
 #pragma once
 
 #include <keeler/scene/patch_scale.hpp>

@@ -1,8 +1,8 @@
-// The step: kick–drift–kick. The forces' half kicks, a drift with its collisions, the forces' half kicks; the kicks of
-// a force only every k-th drift, and none at all in a scene without forces.
+// Time integration: one step is kick, drift, kick. The half kicks of all forces surround a drift with its collisions. A
+// force kicks only every k-th drift; a scene without forces has no kicks.
 //
-// Of a run that ranks share each rank has a Simulation of its own particles: state().particles, and the accelerations.
-// All else of the state is that of the whole run, on each. What is said to be collective all ranks call at once.
+// In a distributed run each rank has a Simulation with its own particles: state().particles and the accelerations. All
+// other state is global and equal on each rank. All ranks must call a collective function together.
 #pragma once
 
 #include <keeler/cells/overlap.hpp>
@@ -23,15 +23,15 @@
 
 namespace keeler {
 
-/// Wall time spent in each part since construction, s.
+/// Wall time of each part since construction, s.
 struct TimeSplit {
   double drift = 0.0;
-  double advance = 0.0;                 ///< of the drift: to the next epoch and back into the cell
-  double kick = 0.0;                    ///< of the forces: their half kicks
+  double advance = 0.0;                 ///< part of drift: move to the next epoch, wrap into the cell
+  double kick = 0.0;                    ///< part of the forces: half kicks
   double resting = 0.0;                 ///< impulses of contacts at rest
-  std::map<std::string, double> forces; ///< by name, the half kicks included
+  std::map<std::string, double> forces; ///< by name, half kicks included
 
-  /// 0 for a force that the scene has not.
+  /// Returns 0 for a force that the scene does not have.
   double force(const std::string& name) const {
     const auto found = forces.find(name);
     return found == forces.end() ? 0.0 : found->second;
@@ -40,98 +40,98 @@ struct TimeSplit {
 
 class Simulation {
 public:
-  /// A new run from a patch; time starts at zero. Throws InvariantError when particles overlap by more than rounding.
-  /// Collective, as all that follows from it: each rank gives a part of the particles, whichever, and the first one all
-  /// else of the patch. Throws UsageError for what the scene asks for and ranks cannot share yet.
+  /// Starts a run from a patch, at time zero. Collective, as all that follows from it: each rank gives any part of the
+  /// particles, and the root the rest of the patch. Throws InvariantError if particles overlap by more than rounding,
+  /// UsageError for settings that cannot be distributed.
   Simulation(const Scene& scene, const Patch& start, const Communicator& ranks = {});
 
-  /// A run that goes on from a state, to the bit. Collective: each rank gives a part of the particles, whichever, with
-  /// their accelerations, and all else of the state.
+  /// Continues a run from a state, bit for bit. Collective: each rank gives any part of the particles, with their
+  /// accelerations, and all other state.
   Simulation(const Scene& scene, SimulationState state, const Communicator& ranks = {});
 
-  /// One step; collective. Throws InvariantError, or Interrupted when an Interruptible (interrupt.hpp) asks for it; the
-  /// state is then that of an unfinished step and must not be stored.
+  /// Advances by one step; collective. Throws InvariantError, or Interrupted at the request of an Interruptible
+  /// (interrupt.hpp). After that the state is that of an unfinished step and must not be stored.
   void advance();
 
-  /// The same particles with other elements, radii, masses or spins, given from outside where kicks meet (the step is a
-  /// multiple of the scene's kick_interval()). Ids and their order must be those of the state. The energy that this
-  /// brings counts as part of the start. Throws InvariantError, and then nothing has changed, when a number is not
-  /// finite or particles overlap by more than rounding.
+  /// Replaces elements, radii, masses or spins by values from outside; counts the change of energy as part of the
+  /// start. Preconditions: one rank, the step is a multiple of the scene's kick_interval(), and ids and order equal
+  /// to the state. Throws InvariantError, and then changes nothing, if a number is not finite or particles
+  /// overlap by more than rounding.
   void replace(Particles particles);
 
-  /// After advance() or replace() has thrown: the state of before is the state again. It may be looked at, but no step
-  /// may follow: for that a simulation is to be made of it.
+  /// Restores an earlier state after advance() or replace() has thrown. It may be read, but not advanced: for that,
+  /// make a new simulation from it.
   void put_back(SimulationState state) noexcept {
     state_ = std::move(state);
     drifting_ = undisturbed_ = false;
   }
 
   const SimulationState& state() const { return state_; }
-  /// The state itself, its arrays where they are in memory; nothing else may be asked of the simulation afterwards.
+  /// Moves the state out, its arrays in their order in memory. The simulation must not be used afterwards.
   SimulationState take_state() && { return std::move(state_); }
-  /// Throws UsageError for what a scene of so many particles asks for and ranks cannot share yet. In builds with ranks.
+  /// Throws UsageError for settings of a scene with `count` particles that cannot be distributed. Only with MPI.
   static void require_distributable(const Scene& scene, std::size_t count);
 
   const Communicator& ranks() const { return ranks_; }
-  /// Particles of all ranks.
+  /// Returns the number of particles of all ranks.
   std::size_t count() const { return count_; }
   double orbits() const { return static_cast<double>(state_.step) * scene_.time.step; }
 
-  /// The id of the first moonlet; of none the number of particles.
+  /// Returns the id of the first moonlet, or the number of particles if there is none.
   std::uint64_t first_moonlet() const { return count_ - state_.moonlets.size(); }
-  /// The body of a moonlet, k < state().moonlets.size(). Collective.
+  /// Returns the body of a moonlet. Collective. Precondition: k < state().moonlets.size().
   Body moonlet(std::size_t k) const;
 
-  /// A Cartesian copy of the present state. Not of a run that ranks share: nobody has all its particles.
+  /// Returns a Cartesian copy of the state. Precondition: not distributed.
   Patch patch() const;
-  /// The same without particles.
+  /// Returns such a patch without its particles.
   Patch frame() const;
-  /// Collective: on the first rank piece(patch) for the particles of all ranks in the order of their ids, `rows` at a
-  /// time, fewer the last time. What it throws all ranks throw.
+  /// Calls piece(patch) on the root for the particles of all ranks in the order of their ids, `rows` at a time, the
+  /// remainder last. Collective: all ranks throw what `piece` throws.
   void visit_patch(std::size_t rows, const std::function<void(const Patch&)>& piece) const;
 
-  /// The same when advance() has thrown: of the last boundary, or, in the middle of a drift, of the time of the last
-  /// contact that was carried out.
+  /// Returns a patch after advance() has thrown: at the last boundary or, within a drift, at the time of the last
+  /// contact.
   Patch patch_at_break() const;
-  /// That time, in rad from the epoch of the elements, and the box's shear offset then.
+  /// Return that time, in rad from the epoch of the elements, and the box's shear offset at that time.
   double time_at_break() const { return drifting_ ? drift_.reached() : -0.5 * state_.step_length; }
   double offset_at_break() const;
 
-  /// The particles at this boundary between steps, as forces see them; not to be kept beyond the next step.
+  /// Returns the particles at this boundary as forces see them. Valid until the next step.
   Boundary boundary() const;
 
-  /// The energy and the stress of self-gravity at this boundary, where it acts and has them. Collective.
+  /// Returns the energy and the stress of self-gravity at this boundary, if it acts and has them. Collective.
   std::optional<GravityEnergy> gravity_energy() const;
 
-  /// Means over all particles now, at this boundary. Collective.
+  /// Returns means over all particles at this boundary. Collective.
   ParticleMeans means() const;
 
-  /// How deep two particles stand inside each other at this boundary at most, of the sum of their radii; 0 when none
-  /// do. Collective. The order in memory may change, and the next step makes its lists anew.
+  /// Returns the deepest overlap of two particles at this boundary in units of the sum of their radii; 0 if there is
+  /// none. Collective. May change the order in memory; the next step rebuilds its lists.
   double largest_overlap();
 
-  /// Where the energy of the random motions came from and went. Collective.
+  /// Returns the balance of the energy of random motions. Collective.
   EnergyBalance balance() const { return balance(means()); }
-  /// The same where the means are known already.
+  /// As above, with means that are known already.
   EnergyBalance balance(const ParticleMeans& now) const { return state_.balance(now, scene_.planet.frequencies); }
 
   const TimeSplit& time_split() const { return split_; }
 
-  /// What contacts at rest took at the last kick.
+  /// Returns the cost of contacts at rest at the last kick.
   const RestingCosts& resting_costs() const { return resting_.costs(); }
 
-  /// Ticks from kick to kick of state().forces[f], where the present step begins.
+  /// Returns the ticks from kick to kick of state().forces[f], for the current step.
   std::int64_t ticks_between_kicks(std::size_t f) const {
     return state_.control.kick > 0 ? state_.control.kick : forces_[f]->kick_every();
   }
 
-  /// To watch collisions, or to measure finders.
+  /// For observers of collisions and measurements of finders.
   DriftPhase& drift() { return drift_; }
 
 private:
   static constexpr std::size_t elsewhere = ~std::size_t{0};
 
-  // of a run that ranks share (shared.cpp)
+  // in distributed runs (distributed.cpp)
   void divide();
   void require_borders();
   void collide_distributed();
@@ -144,21 +144,21 @@ private:
   void wrap_changed(const Particles& before);
   void accelerate(std::size_t f);
   void half_kick(std::size_t f);
-  void move_on();
+  void advance_epoch();
   void rebase(double time);
   void sort_when_due();
-  void decide_when_due();
+  void decide_step_when_due();
   void find_moonlets();
-  void from_owners(std::span<double> numbers) const;
+  void sum_from_owners(std::span<double> numbers) const;
   void note_wrap(std::size_t k, const Vec3& shift);
   void wrap_moonlets();
-  void set_pace();
+  void schedule_drift();
   bool carries() const { return scene_.gravity && scene_.gravity->carries(); }
   double kick_interval() const { return static_cast<double>(ticks_between_kicks(0)) * state_.tick(); }
   void note_slow_pairs();
-  void carry_resting(double before);
-  void carry_on_resting();
-  template<class Carry> void with_kicks(double before, const Carry& carry);
+  void persist_contacts(double before);
+  void persist_contacts_second_half();
+  template<class Function> void with_kicks(double before, const Function& function);
   bool kick_due(std::size_t f) const { return state_.step % ticks_between_kicks(f) == 0; }
 
   Scene scene_;
@@ -166,13 +166,13 @@ private:
   SimulationState state_;
   std::size_t count_;
   DriftPhase drift_;
-  bool drifting_ = false;                      // until collisions are carried out
-  bool undisturbed_ = false;                   // the particles, but for moving on, since the last drift
+  bool drifting_ = false;                      // a drift has begun and not ended
+  bool undisturbed_ = false;                   // particles have only moved since the last drift
   std::vector<std::unique_ptr<Force>> forces_; // in the order of state_.forces
   RestingContacts resting_;
-  std::unique_ptr<Slabs> slabs_;            // only of a run that ranks share
-  std::vector<std::size_t> moonlet_places_; // in memory; elsewhere for those of other ranks
-  std::vector<double> moonlet_wraps_;       // x and y by which each has gone round an edge just now, m
+  std::unique_ptr<Slabs> slabs_;             // null unless distributed
+  std::vector<std::size_t> moonlet_indices_; // in the store; `elsewhere` on another rank
+  std::vector<double> moonlet_wraps_;        // shift in x and y of each by this wrap, m
   TimeSplit split_;
 };
 

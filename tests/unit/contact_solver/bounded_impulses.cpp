@@ -1,5 +1,4 @@
-// Impulses that only push: statics with known forces, and random networks against a search through all sets of joints
-// that may push.
+// Impulses that only push: statics with known forces, and random networks against a search through all free sets.
 #include <bounded_impulses.hpp>
 
 #include <keeler/core/random.hpp>
@@ -29,7 +28,7 @@ struct Network {
 
   std::vector<Vec3> changes(const std::vector<double>& impulses) const {
     std::vector<Vec3> out(inverse_masses.size());
-    BoundedImpulses(joints, inverse_masses).push(impulses, out);
+    BoundedImpulses(joints, inverse_masses).apply(impulses, out);
     return out;
   }
 
@@ -39,15 +38,15 @@ struct Network {
     for (std::size_t c = 0; c < joints.size(); ++c) {
       std::vector<double> unit(joints.size());
       unit[c] = 1.0;
-      const std::vector<Vec3> by_it = changes(unit);
+      const std::vector<Vec3> response = changes(unit);
       for (std::size_t d = 0; d < joints.size(); ++d)
         a(static_cast<Eigen::Index>(d), static_cast<Eigen::Index>(c)) =
-            joints[d].normal.dot(by_it[joints[d].high] - by_it[joints[d].low]);
+            joints[d].normal.dot(response[joints[d].high] - response[joints[d].low]);
     }
     return a;
   }
 
-  // The plain way: each set of joints in turn pushes just as hard as is required of it, until all others open enough.
+  // Brute force: tries each free set of joints, with the impulses that meet their requirements, until all others open.
   std::optional<std::vector<double>> by_all_sets(double tolerance) const {
     const Eigen::MatrixXd a = matrix();
     const Eigen::Map<const Eigen::VectorXd> r(required.data(), a.rows());
@@ -59,7 +58,7 @@ struct Network {
       Eigen::VectorXd x = Eigen::VectorXd::Zero(a.rows());
       if (!members.empty()) {
         const Eigen::MatrixXd among = a(members, members);
-        const Eigen::VectorXd wanted = r(members), pushes = among.completeOrthogonalDecomposition().solve(wanted);
+        const Eigen::VectorXd target = r(members), pushes = among.completeOrthogonalDecomposition().solve(target);
         for (std::size_t m = 0; m < members.size(); ++m)
           x(members[m]) = pushes(static_cast<Eigen::Index>(m));
       }
@@ -82,8 +81,8 @@ Vec3 direction(RandomStream& random) {
 
 } // namespace
 
-// Each body is pulled by one unit towards the middle of a chain: a joint carries all that is outside of it.
-TEST_CASE("a chain carries the sum of what pulls on it") {
+// Each body is pulled by one unit towards the middle of a chain: a joint supports all bodies beyond it.
+TEST_CASE("each joint of a chain supports the sum of the pulls beyond it") {
   Network chain;
   constexpr int count = 9;
   chain.inverse_masses.assign(count, 1.0);
@@ -97,8 +96,8 @@ TEST_CASE("a chain carries the sum of what pulls on it") {
     CHECK(impulses[static_cast<std::size_t>(k)] == doctest::Approx(std::min(k + 1, count - 1 - k)).epsilon(1e-10));
 }
 
-// A ball of mass m and weight W on two that cannot move, whose centres form an equilateral triangle with its own: each
-// carries W / (2 cos 30°). On two that can move and stand on nothing, all fall, and nothing is carried.
+// A ball of mass m and weight W on two that cannot move, with centres in an equilateral triangle: each supports
+// W / (2 cos 30°).
 TEST_CASE("a ball on two others presses on each as in statics") {
   Network triangle;
   const Vec3 left(0.5, 0.0, std::sqrt(0.75)), right(-0.5, 0.0, std::sqrt(0.75));
@@ -113,7 +112,7 @@ TEST_CASE("a ball on two others presses on each as in statics") {
     CHECK(impulse == doctest::Approx(4.0 * fall / (2.0 * std::cos(std::acos(-1.0) / 6.0))).epsilon(1e-10));
 }
 
-TEST_CASE("random networks: the same motion as by trying all sets of joints, momenta kept") {
+TEST_CASE("random networks: the motion equals that by trial of all free sets, and momentum is conserved") {
   RandomStream random(7, RandomPurpose::sample, 0);
   int compared = 0;
   for (int trial = 0; trial < 400; ++trial) {
@@ -129,7 +128,7 @@ TEST_CASE("random networks: the same motion as by trying all sets of joints, mom
     }
     const auto plain = network.by_all_sets(1e-9);
     if (!plain)
-      continue; // nothing opens all of them
+      continue; // no impulses open all of them
     ++compared;
     const std::vector<double> impulses = network.solve(1e-11);
     const std::vector<Vec3> expected = network.changes(*plain), found = network.changes(impulses);
@@ -147,7 +146,7 @@ TEST_CASE("random networks: the same motion as by trying all sets of joints, mom
   CHECK(compared > 200);
 }
 
-TEST_CASE("two joints that push one another and a third body into nothing are told from such that can be opened") {
+TEST_CASE("two opposite joints that no impulses can open are reported as jammed") {
   Network jammed;
   jammed.joints = {{0, 1, Vec3::UnitX()}, {0, 1, -Vec3::UnitX()}};
   jammed.inverse_masses = {1.0, 1.0};

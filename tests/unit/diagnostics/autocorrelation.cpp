@@ -17,7 +17,7 @@ const ShearingBox box{24.0, 40.0, 1.5, 0.0}; // cells of 2 × 2.5 m
 
 using Mesh = std::vector<double>;
 
-// Cloud-in-cell by its definition: every image's overlap with every node.
+// Cloud-in-cell by definition: every image's overlap with every node.
 Mesh cloud(const Patch& patch, std::size_t k) {
   const double dx = box.size_x / columns, dy = box.size_y / rows;
   Mesh mesh(columns * rows, 0.0);

@@ -24,7 +24,7 @@ Partition partition_of(const std::vector<Cluster>& clusters) {
   return partition;
 }
 
-// By all pairs and images, labels spreading until nothing changes.
+// Brute force: all pairs and images, labels propagated until nothing changes.
 Partition by_all_pairs(const Patch& patch, double gap) {
   std::vector<std::size_t> label(patch.size());
   std::iota(label.begin(), label.end(), std::size_t{0});
@@ -53,8 +53,8 @@ Partition by_all_pairs(const Patch& patch, double gap) {
 
 const ShearingBox box{60.0, 40.0, 1.5, 0.0};
 
-// A pile of spheres of 1 m at given places beside each other, turning rigidly at `spin` − 1 in the rotating frame, far
-// across an edge.
+// A pile of spheres of 1 m at given adjacent positions, in rigid rotation at `spin` − 1 in the rotating frame, across
+// an edge.
 Patch rigid(const std::vector<Vec3>& places, double spin, double offset) {
   Patch patch = test::uniform(box, offset, places.size(), 1);
   const Vec3 centre(29.5, 19.0, 0.3);
@@ -147,14 +147,14 @@ TEST_CASE("the analysis counts clusters by size") {
   CHECK(a.mass_fraction == doctest::Approx(0.7));
   CHECK(a.largest_mass_fraction == doctest::Approx(0.5));
   REQUIRE(a.spectrum.size() == 2);
-  CHECK(a.spectrum[0].least == 2);
+  CHECK(a.spectrum[0].min_members == 2);
   CHECK(a.spectrum[0].count == doctest::Approx(1.0));
-  CHECK(a.spectrum[1].least == 4);
+  CHECK(a.spectrum[1].min_members == 4);
   CHECK(a.spectrum[1].mass_fraction == doctest::Approx(0.5));
   REQUIRE(a.largest_half_axes);
   CHECK((*a.largest_half_axes)[0] == doctest::Approx(std::sqrt(5.0 * (8.0 + 0.2))).epsilon(1e-9));
   REQUIRE(a.spin);
-  CHECK(*a.spin == doctest::Approx(1.0).epsilon(1e-9)); // rows along y shear into nothing
+  CHECK(*a.spin == doctest::Approx(1.0).epsilon(1e-9)); // shear does not rotate rows along y
   CHECK(!analyze_clusters(patches, 0.0).spectrum.empty());
   CHECK(analyze_clusters(std::vector{test::uniform(box, 0.0, 1, 1)}).count == 0.0);
 }

@@ -53,7 +53,7 @@ TEST_CASE("an ensemble of epicycles has c_x = κ e/√2, c_y = κ² e/(2√2), c
   }
   Patch patch = make_patch(particles, box, 7.0, f, 0.0);
   patch.orbital_frequency = 2e-4;
-  // The speed along y beyond the shear of the particle's own place is (2 − S) e cos φ = ½ κ² e cos φ.
+  // The speed along y relative to the shear at the particle is (2 − S) e cos φ = ½ κ² e cos φ.
   const Vec3 expected(f.kappa * 2.0, 0.5 * f.kappa * f.kappa * 2.0, f.nu * 1.5);
   const Vec3 measured = velocity_dispersion(patch);
   CHECK((measured - expected / std::sqrt(2.0)).norm() < 1e-12);

@@ -24,8 +24,8 @@ double wave_number(int n) {
   return two_pi * n / box.size_x;
 }
 
-// Guiding centres at equal distances, whose eccentricity vectors are a wave of `amplitude` (m) in mode `n` of one
-// component and 3 of the other, a common part, and ± `random` (m) in turns, which no mode below the last one sees.
+// Guiding centres at equal distances, with eccentricity vectors in a wave of `amplitude` (m) in mode `n` of one
+// component and 3 of the other, a common part, and ± `random` (m) alternating, which affects only the last mode.
 Particles imposed(std::size_t count, int n, double amplitude, double random) {
   Particles particles;
   for (std::size_t k = 0; k < count; ++k) {
@@ -66,8 +66,8 @@ std::optional<EpicyclicWaves> of_patch(const Particles& particles, double after)
   return epicyclic_waves(make_patch(particles, box, 7.0, frequencies, after));
 }
 
-// By definition, mode by mode and particle by particle: half of the squared amplitudes over the mean square, and what
-// is expected of particles at random, 2 Σm²/(Σm)² a mode, taken out.
+// Brute force, mode by mode and particle by particle: half of the squared amplitudes over the mean square, minus the
+// expectation for random particles, 2 Σm²/(Σm)² per mode.
 EpicyclicWaves by_definition(const Particles& particles, double after) {
   const Rotation rotation(frequencies, after);
   double mass = 0.0, mass_squares = 0.0, mean_x = 0.0, mean_y = 0.0;
@@ -128,7 +128,8 @@ TEST_CASE("an imposed wave has the share of the energy that its amplitude says")
     if (n == 5)
       continue;
     const Patch patch = make_patch(particles, box, 7.0, frequencies, 0.0);
-    const Vec3 dispersion = velocity_dispersion(patch), rest_of_it = epicyclic_waves(patch)->taken_out_of(dispersion);
+    const Vec3 dispersion = velocity_dispersion(patch),
+               rest_of_it = epicyclic_waves(patch)->residual_dispersion(dispersion);
     CHECK(dispersion.x() == doctest::Approx(frequencies.kappa * std::sqrt(wave + rest)).epsilon(1e-9));
     CHECK(rest_of_it.x() == doctest::Approx(frequencies.kappa * random / std::sqrt(1.0 - noise)).epsilon(1e-9));
     CHECK(rest_of_it.y() ==

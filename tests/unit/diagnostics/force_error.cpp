@@ -37,7 +37,7 @@ TEST_CASE("a sample of forces holds different particles, and those near each edg
   const Patch patch = scattered(5000);
   const GravityProblem problem = gravity_problem(patch);
   const ForceSample sample = draw_force_sample(problem, 1000, 50, 3.0);
-  CHECK(sample.even == 1000);
+  CHECK(sample.uniform == 1000);
   CHECK(sample.edges == std::array<std::size_t, 4>{50, 50, 50, 50});
   REQUIRE(sample.targets.size() == 1200);
   CHECK(std::set<std::size_t>(sample.targets.begin(), sample.targets.begin() + 1000).size() == 1000);
@@ -72,7 +72,7 @@ TEST_CASE("a sample of more than there are is all of them") {
   const Patch patch = scattered(30);
   const ForceSample sample = draw_force_sample(gravity_problem(patch), 100, 100, 0.0);
   CHECK(std::set<std::size_t>(sample.targets.begin(), sample.targets.end()).size() == 30);
-  CHECK(sample.even == 30);
+  CHECK(sample.uniform == 30);
   CHECK(sample.edges == std::array<std::size_t, 4>{});
 }
 
@@ -85,7 +85,7 @@ TEST_CASE("errors of forces") {
   std::vector<Vec3> wrong = exact;
   for (std::size_t k = 0; k < 1000; ++k)
     wrong[k] += Vec3(0.1, -0.2, k % 2 ? 0.2 : -0.2);
-  for (std::size_t k = 1000; k < 1500; ++k) // at the edges in x alternating errors, which pull nobody
+  for (std::size_t k = 1000; k < 1500; ++k) // at the edges in x alternating errors, with zero mean
     wrong[k].x() += k % 2 ? 0.5 : -0.5;
   for (std::size_t k = 1750; k < 2000; ++k) // at the last edge always the same
     wrong[k] += Vec3(0.3, 0.4, 1.0);

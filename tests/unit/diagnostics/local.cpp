@@ -27,7 +27,7 @@ Patch moving(Patch patch, std::uint64_t seed) {
   return patch;
 }
 
-// Calls visit(j, distance vector) for every particle and image but i itself, by trying all.
+// Calls visit(j, distance vector) for every particle and image but i itself, by brute force.
 template<class Visit> void for_all_others(const Patch& patch, std::size_t i, const Visit& visit) {
   for (std::size_t j = 0; j < patch.size(); ++j)
     for (int nx = -3; nx <= 3; ++nx)
@@ -44,7 +44,7 @@ TEST_CASE("local motion and crowding are those of all pairs and images") {
       Patch patch = moving(test::uniform(box, offset, 150, 1), 2);
       patch.positions[3] += box.displacement({1, 0}, offset); // outside the cell by its eccentricity
       patch.velocities[3].y() -= box.shear * box.size_x;
-      double mass = 0.0, company = 0.0, discs = 0.0, cuts = 0.0;
+      double mass = 0.0, with_neighbours = 0.0, discs = 0.0, cuts = 0.0;
       Vec3 squares = Vec3::Zero();
       for (std::size_t i = 0; i < patch.size(); ++i) {
         std::vector<std::size_t> near = {i};
@@ -74,12 +74,12 @@ TEST_CASE("local motion and crowding are those of all pairs and images") {
           const Vec3 v = peculiar_velocity(patch, j) - mean / near_mass;
           variance += patch.masses[j] / near_mass * v.cwiseProduct(v);
         }
-        company += m;
+        with_neighbours += m;
         squares += m * variance / (1.0 - near_squares / (near_mass * near_mass));
       }
       const LocalMotion motion = local_motion(patch, radius);
-      CHECK(motion.share == doctest::Approx(company / mass).epsilon(1e-12));
-      CHECK((motion.dispersion - Vec3((squares / company).cwiseSqrt())).norm() < 1e-11);
+      CHECK(motion.fraction == doctest::Approx(with_neighbours / mass).epsilon(1e-12));
+      CHECK((motion.dispersion - Vec3((squares / with_neighbours).cwiseSqrt())).norm() < 1e-11);
       const Crowding crowd = crowding(patch, radius);
       CHECK(crowd.optical_depth == doctest::Approx(discs / mass).epsilon(1e-12));
       CHECK(crowd.filling == doctest::Approx(cuts / mass).epsilon(1e-12));
@@ -100,7 +100,7 @@ TEST_CASE("independent velocities give their dispersion, streams do not count") 
   CHECK(motion.dispersion.x() == doctest::Approx(1.0).epsilon(0.05)); // the stream changes by 0.3 over a radius
   CHECK(motion.dispersion.y() == doctest::Approx(1.0).epsilon(0.02));
   CHECK(motion.dispersion.z() == 0.0);
-  CHECK(motion.share > 0.8);
+  CHECK(motion.fraction > 0.8);
 }
 
 TEST_CASE("particles at random see the mean density; crowded ones see their crowd") {

@@ -71,7 +71,7 @@ TEST_CASE("one pass over the spins gives the numbers of the patch") {
   for (std::size_t k = 0; k < patch.size(); ++k)
     energy += 0.2 * patch.masses[k] * std::pow(patch.radii[k], 2) * (patch.spins[k] - Vec3::UnitZ()).squaredNorm();
   CHECK(means.spin.energy == doctest::Approx(energy).epsilon(1e-12));
-  // a vector that stands still among the stars turns backwards in Hill's frame
+  // a vector fixed among the stars rotates backwards in Hill's frame
   CHECK((patch.spins[0] - Eigen::AngleAxisd(-0.3, Vec3::UnitZ()) * particles.spins[particles.size() - 1]).norm() <
         1e-14);
   const Particles back = particles_from(patch, -0.3);

@@ -88,7 +88,8 @@ TEST_CASE("growth is the slope of the logarithm") {
 }
 
 TEST_CASE("the error of a growth rate holds where the scatter lasts") {
-  // noise that forgets a third of itself a sample, about a growth of 0.01: the rates of many such series scatter by it
+  // noise with a correlation of 2/3 from sample to sample, about a growth of 0.01: the rates of many such series
+  // scatter by it
   constexpr int samples = 80, series = 300;
   double squares = 0.0, errors = 0.0;
   for (int s = 0; s < series; ++s) {

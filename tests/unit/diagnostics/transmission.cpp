@@ -17,7 +17,7 @@ namespace {
 
 constexpr double degree = pi / 180.0;
 
-// Whether a sphere or an image of one is nearer to the ray than its radius, by trying all in space.
+// Brute force: true if a sphere or one of its images is closer to the ray than its radius.
 bool blocked_in_space(const Patch& patch, const LineOfSight& sight, const Vec3& place, int most) {
   const Vec3 d(std::cos(sight.elevation) * std::cos(sight.azimuth), std::cos(sight.elevation) * std::sin(sight.azimuth),
                std::sin(sight.elevation));
@@ -50,7 +50,7 @@ TEST_CASE("each ray is blocked as by all spheres and images in space") {
         const std::vector<std::uint8_t> blocked = rays.blocked(patch, sight);
         std::size_t wrong = 0;
         for (std::size_t ray = 0; ray < rays.size(); ++ray)
-          wrong += (blocked[ray] != 0) != blocked_in_space(patch, sight, rays.place(ray), 4) ? 1 : 0;
+          wrong += (blocked[ray] != 0) != blocked_in_space(patch, sight, rays.position(ray), 4) ? 1 : 0;
         CHECK(wrong == 0);
       }
 }
@@ -60,12 +60,12 @@ TEST_CASE("a lattice has one ray a cell and whole footprints") {
   const RayLattice rays(box, 1000, 5.0);
   CHECK(rays.footprints() == 5 * 3);
   CHECK(rays.size() == rays.columns() * rays.rows());
-  CHECK(rays.rays_a_footprint() * rays.footprints() == rays.size());
+  CHECK(rays.rays_per_footprint() * rays.footprints() == rays.size());
   CHECK(static_cast<double>(rays.size()) == doctest::Approx(1000.0).epsilon(0.15));
   CHECK(rays.footprint_x() == doctest::Approx(4.8));
   for (std::size_t ray = 0; ray < rays.size(); ++ray) {
-    const double column = (rays.place(ray).x() + 12.0) / 24.0 * static_cast<double>(rays.columns());
-    const double row = (rays.place(ray).y() + 8.5) / 17.0 * static_cast<double>(rays.rows());
+    const double column = (rays.position(ray).x() + 12.0) / 24.0 * static_cast<double>(rays.columns());
+    const double row = (rays.position(ray).y() + 8.5) / 17.0 * static_cast<double>(rays.rows());
     CHECK(static_cast<std::size_t>(column) == ray / rays.rows());
     CHECK(static_cast<std::size_t>(row) == ray % rays.rows());
   }
@@ -74,9 +74,9 @@ TEST_CASE("a lattice has one ray a cell and whole footprints") {
   Patch patch = test::uniform(box, 0.0, 1, 1);
   patch.positions[0] = Vec3(-12.0 + 1.5 * 4.8, -8.5 + 2.5 * 17.0 / 3.0, 0.0);
   patch.radii[0] = 2.0;
-  const std::vector<double> shares = rays.shares(rays.blocked(patch, {pi / 2.0, 0.0}));
-  for (std::size_t f = 0; f < shares.size(); ++f)
-    CHECK(shares[f] ==
+  const std::vector<double> transmissions = rays.transmissions(rays.blocked(patch, {pi / 2.0, 0.0}));
+  for (std::size_t f = 0; f < transmissions.size(); ++f)
+    CHECK(transmissions[f] ==
           (f == 1 * 3 + 2 ? doctest::Approx(1.0 - pi * 4.0 / (4.8 * 17.0 / 3.0)).epsilon(0.1) : doctest::Approx(1.0)));
 }
 
@@ -148,7 +148,7 @@ TEST_CASE("the bits do not depend on the threads") {
   set_threads(2);
   const RayLattice two(box, 4000, 10.0);
   CHECK(two.blocked(patch, {0.1, 1.0}) == alone);
-  CHECK(two.place(77) == one.place(77));
+  CHECK(two.position(77) == one.position(77));
 }
 
 } // namespace transmission_test

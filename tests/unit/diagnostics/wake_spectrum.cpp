@@ -26,7 +26,7 @@ WakePower::Bin whole(const WakePower& sums) {
   return total;
 }
 
-// The sums by their definition: every wave over every particle. One bin holds all.
+// Brute force: sums of every wave over every particle, in one bin.
 WakePower by_definition(const Patch& patch, int most) {
   WakePower sums;
   sums.snapshots = 1;
@@ -70,7 +70,7 @@ TEST_CASE("the sums over the mesh are those over all waves and particles") {
     const WakePower fast = wake_power(patch, lambda), slow = by_definition(patch, 30);
     CHECK(fast.snapshots == 1);
     CHECK(fast.noise_squares == doctest::Approx(slow.noise_squares).epsilon(1e-6));
-    // What a cloud aliases from waves shorter than two cells is all that differs.
+    // Only aliases of waves shorter than two cells differ.
     CHECK(fast.power == doctest::Approx(slow.power).epsilon(2e-3));
     CHECK(whole(fast).power == doctest::Approx(fast.power).epsilon(1e-12));
     CHECK(whole(fast).k == doctest::Approx(whole(slow).k).epsilon(2e-3));
@@ -119,7 +119,7 @@ TEST_CASE("particles at random have no wakes") {
     CHECK(!wake_waves(power).wavelength);
     mean += power.power / std::sqrt(power.noise_squares) / 20.0;
   }
-  CHECK(std::fabs(mean) < 4.0 / std::sqrt(20.0)); // the noise taken out is the noise there is
+  CHECK(std::fabs(mean) < 4.0 / std::sqrt(20.0)); // the subtracted noise equals the actual noise
 }
 
 TEST_CASE("a wavelength that the mesh does not resolve gives no waves") {
@@ -129,7 +129,7 @@ TEST_CASE("a wavelength that the mesh does not resolve gives no waves") {
 }
 
 TEST_CASE("weak waves among particles that keep apart: the lengths leave out what is below the noise") {
-  // Spheres on a lattice of 2 m, shaken by 0.7 m: far more even than at random. A wave moves them along x.
+  // Spheres on a lattice of 2 m, shaken by 0.7 m: far more even than random particles. A wave moves them along x.
   const ShearingBox wide{240.0, 240.0, 1.5, 0.0};
   Patch patch = test::uniform(wide, 0.0, 14400, 1);
   RandomStream random(3, RandomPurpose::position, 1);

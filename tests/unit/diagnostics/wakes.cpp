@@ -66,7 +66,7 @@ TEST_CASE("a wavelength that the map does not resolve gives no wakes") {
 }
 
 TEST_CASE("a single wake has a direction but no spacing") {
-  const test::Wave wave(box, 0.0, 1, 0); // one crest a box: its neighbour is farther than half a box
+  const test::Wave wave(box, 0.0, 1, 0); // one crest per box: its neighbour is farther than half a box
   const auto crest = [&](double x, double y) { return std::exp(8.0 * (wave(x, y) - 0.9)); };
   const Wakes wakes = wakes_of({test::scattered(box, 0.0, 5000, 1, crest)}, 61.0);
   REQUIRE(wakes.pitch_degrees);
@@ -96,7 +96,7 @@ TEST_CASE("a ridge that bends has an inner and an outer pitch") {
   CHECK(*wakes.pitch_degrees < *wakes.inner_pitch_degrees);
   CHECK(*wakes.pitch_degrees > *wakes.outer_pitch_degrees);
 
-  map.noise = 0.15; // the crest, e^(−Δy/λ_cr), drowns at 0.8 λ_cr
+  map.noise = 0.15; // the crest, e^(−Δy/λ_cr), falls below the noise at 0.8 λ_cr
   const Wakes noisy = find_wakes(map, lambda);
   CHECK(noisy.inner_pitch_degrees);
   CHECK(!noisy.outer_pitch_degrees);

@@ -1,9 +1,9 @@
-// What rounding may do to a pair's f = |d|² − R² and to f′ near contact.
+// Bounds on rounding errors of a pair's f = |d|² − R² and of f′ near contact.
 //
-// δ is the finder's own allowance for f as evaluated (gap_error in motion/relative.hpp) at |d| = R, with 2R c for the
-// rounding c of the coordinates of an image, which precedes all motion. The search may let f sink by δ beyond an
-// evaluation that is itself wrong by δ, and by one more δ for every 1024 passes: 2 δ (1 + passes/1024). Time is a
-// double too: f′ times half its spacing.
+// δ is the finder's allowance for f as evaluated (gap_error in motion/relative.hpp) at |d| = R, with 2R c for the
+// rounding c of the coordinates of an image, which precedes all motion. The search may let f decrease by δ beyond
+// an evaluation with an error of δ, and by one more δ per 1024 passes: 2 δ (1 + passes/1024). Rounding of the time adds
+// f′ times half its spacing.
 #pragma once
 
 #include "unit/finders/bernstein_twin.hpp"

@@ -2,9 +2,9 @@
 //
 // On [c − w, c + w] each coordinate is its Taylor polynomial in u = (t − c)/w with Lagrange's remainder, so
 // f = |d|² − R² is a polynomial P of degree 2p within an error that is known. The coefficients of P in Bernstein form
-// bound it from both sides (Farouki & Rajan 1987), those of P′ and P″ are their differences, and so these follow:
-//   P >= the least coefficient; P monotone or concave => least at an end; P convex => P >= any of its tangents.
-// What stays undecided is halved. Extended precision throughout; nothing is shared with the finders but the elements.
+// bound it from both sides (Farouki & Rajan 1987); the coefficients of P′ and P″ are their differences. Therefore
+//   P >= the smallest coefficient; P monotone or concave => minimum at an end; P convex => P >= any of its tangents.
+// Undecided intervals are halved. Extended precision throughout; only the elements are common with the finders.
 #pragma once
 
 #include <keeler/hill/elements.hpp>
@@ -41,8 +41,8 @@ public:
     return std::sqrt(square(kappa_ * e_) + square(2 * e_ + shear_ * std::fabs(guiding_x_)) + square(nu_ * i_));
   }
 
-  /// How far the pair sinks into contact, approaching, in [from, to], in units of `bound`: below 0 by that much, or by
-  /// that much while in contact. Proven, so never too small. Above 1 it is not proven to be less: the walk ends there.
+  /// Returns an upper bound on the depth of contact that the pair reaches, approaching, in [from, to], in units of
+  /// `bound`: of f below 0, or of its decrease while in contact. The search ends if it exceeds 1.
   double sinks(Real from, Real to, Real bound) {
     bound_ = bound;
     deepest_ = fallen_ = 0;
@@ -52,7 +52,7 @@ public:
     return static_cast<double>(std::max(deepest_, fallen_) / bound);
   }
 
-  int pieces() const { return pieces_; } ///< that the last proof took
+  int pieces() const { return pieces_; } ///< of the last proof
 
 private:
   static constexpr int order = 8, degree = 2 * order; // of the coordinates, of P
@@ -73,7 +73,7 @@ private:
     return d + (low_s + low_d);
   }
 
-  // The eccentricity and inclination vectors turned to time t.
+  // Rotates the eccentricity and inclination vectors to time t.
   struct Turned {
     Real ec, es, is, ic;
   };
@@ -186,7 +186,7 @@ private:
     return {least + power[0], fall, high_first <= 0 || (low_second >= 0 && b[1] < b[0])};
   }
 
-  // The least value on [−1, 1] of a tangent to P near its minimum: a lower bound of P where it is convex.
+  // Returns the minimum on [−1, 1] of a tangent to P near its minimum: a lower bound of P where it is convex.
   static Real lowest_tangent(const Coefficients& power) {
     Real best = -HUGE_VALL, u = 0, left = -1, right = 1;
     for (int pass = 0; pass < 12; ++pass) {
@@ -223,11 +223,11 @@ private:
     const Low low = bound_below(b, p.power);
     if (low.least - p.error >= 0)
       return;
-    if (const Real fall = low.fall + p.fall_error; 64 * fall <= bound_) { // in contact, but it sinks no further
+    if (const Real fall = low.fall + p.fall_error; 64 * fall <= bound_) { // in contact, but no deeper than allowed
       fallen_ += fall;
       return;
     }
-    // deeper than half, the fall decides: the pair may have come out of contact only just, and turned back
+    // deeper than half: the decrease decides, as the pair may just have left contact and turned back
     if (64 * p.error <= bound_ && low.least - p.error >= -bound_ * (low.reached ? 9.0L / 16 : 1.0L / 64)) {
       deepest_ = std::max(deepest_, p.error - low.least);
       return;

@@ -1,5 +1,5 @@
-// The certified finder, which settles most pairs by Newton's method and many of them at once, against the plain
-// certified search; and the bits of all instruction sets. KEELER_PAIRS=10000000 asks for that many pairs.
+// The certified finder, which solves most pairs by Newton's method, many at once, against the plain certified search;
+// and identical bits for all instruction sets. KEELER_PAIRS=10000000 sets the number of pairs.
 #include <keeler/finders/certified_finder.hpp>
 #include <keeler/finders/finders.hpp>
 #include <keeler/finders/motion/relative.hpp>
@@ -22,8 +22,8 @@ namespace {
 
 using PlainFinder = MotionSearch<BoundedMotion, CertifiedSearch>;
 
-// CertifiedSearch evaluates once before its first pass: whoever has more evaluations was left undecided by Newton's
-// method before.
+// CertifiedSearch evaluates once before its first pass: a search with more evaluations was left undecided by Newton's
+// method first.
 bool searched(const FinderResult& result) {
   return result.evaluations > result.iterations + 1;
 }
@@ -46,7 +46,7 @@ struct Comparison {
     const int thousands = std::max(found.iterations, plain.iterations) / 1024;
     const Real bound = 2 * allowance.gap * (1 + thousands);
     bool right = true;
-    if (found.contact() != plain.contact()) { // none calls what the other may not leave out
+    if (found.contact() != plain.contact()) { // neither reports a contact that the other must not miss
       ++other_call;
       right = twin.sinks(c.query.start, c.end, bound) <= 1.0;
     } else if (found.contact()) {
@@ -68,7 +68,7 @@ bool same_bits(const FinderResult& a, const FinderResult& b) {
          a.iterations == b.iterations && a.evaluations == b.evaluations && a.halvings == b.halvings;
 }
 
-// Pairs of one family, each asked about from several times on; the step is that of the first pair.
+// Compares pairs of one family, each from several start times; the step is the first pair's.
 struct ManyPairs {
   std::vector<Body> bodies;
   std::vector<Query> queries;
@@ -122,7 +122,7 @@ TEST_CASE("Newton's method and the certified search give the same first contacts
     CAPTURE(name);
     CHECK(comparison.wrong == 0);
     CHECK(comparison.contacts > each / 100);
-    CHECK(comparison.left < comparison.asked); // Newton's method settles some
+    CHECK(comparison.left < comparison.asked); // Newton's method solves some
     table += fmt::format("{:<16}{:>10} pairs, {:>9} contacts, {:>8} searched, {:>6} called otherwise, f apart {:.3f}\n",
                          name, comparison.pairs, comparison.contacts, comparison.left, comparison.other_call,
                          comparison.apart);

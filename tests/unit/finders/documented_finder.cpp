@@ -1,4 +1,4 @@
-// The example of docs/dev/finders.md, built into the table as that page says, finds what the certified finder finds.
+// The example finder of docs/dev/finders.md, built as that page says, agrees with the certified finder.
 #include <keeler/finders/finders.hpp>
 
 #include <keeler/core/random.hpp>

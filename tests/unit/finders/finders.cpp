@@ -12,7 +12,7 @@ using namespace keeler;
 
 namespace {
 
-// Asks a finder by name about one pair.
+// Runs a finder by name on one pair.
 FinderResult ask(const std::string& name, const Pair& pair, const Frequencies& f) {
   const std::unique_ptr<Finder> finder = make_finder(name);
   const std::vector<Body> bodies = {{pair.lo, 0.5 * pair.radius_sum, 1.0}, {pair.hi, 0.5 * pair.radius_sum, 1.0}};
@@ -56,7 +56,7 @@ public:
   Real gap(Real t) const { return at(t).first; }
   Real closing(Real t) const { return at(t).second; }
 
-  /// The least |d|² − R² that an approach reaches in [start, end].
+  /// Returns the smallest |d|² − R² that an approach reaches in [start, end].
   Real deepest(Real end, int points) const {
     Real least = HUGE_VALL, before = pair_.start;
     for (int k = 1; k <= points && end > pair_.start; ++k) {
@@ -77,7 +77,7 @@ public:
     return least;
   }
 
-  /// What rounding of the elements in double precision can do to |d|² − R²: some units in the last place of its terms.
+  /// Returns a bound on the error of |d|² − R² by rounding of the elements: some units in the last place of its terms.
   Real rounding() const {
     const Real scale = std::max({std::fabs(el_.guiding_x), std::fabs(el_.guiding_y), 2 * el_.eccentricity(),
                                  el_.inclination(), pair_.radius_sum});
@@ -115,7 +115,7 @@ TEST_CASE("the certified finder finds every first contact, grazing ones too, and
           const Twin twin(pair, f);
           REQUIRE(result.exit != FinderExit::gave_up);
           max_passes = std::max(max_passes, result.iterations);
-          // what the search itself allows a contact to sink unseen, doubled: see search/certified.hpp
+          // twice the depth that the search may miss: see search/certified.hpp
           const int sinks = 1 + result.iterations / 1024;
           const auto allowed = sinks * twin.rounding();
           if (result.contact()) {
@@ -141,7 +141,7 @@ TEST_CASE("after a bounce the pair is not found again at once, and its later con
     Pair pair = grazing_pair(random, f, 0.3, 0.5, 20.0);
     FinderResult first = certified(pair, f);
     if (first.exit != FinderExit::hit || Twin(pair, f).gap(pair.start) < 0)
-      continue; // starts buried
+      continue; // overlaps at the start
     ++bounces;
     const Rotation r(f, first.time);
     const State s = state_at(pair.hi, f, r);

@@ -1,5 +1,5 @@
 // The certified finder against the certified twin: over random pairs of many families it finds every first contact and
-// invents none. KEELER_PAIRS=10000000 asks for that many pairs; by default a sample runs.
+// no false one. KEELER_PAIRS=10000000 sets the number of pairs; the default is a sample.
 #include <keeler/finders/finders.hpp>
 #include <keeler/finders/motion/relative.hpp>
 
@@ -37,7 +37,7 @@ struct Tally {
   }
 };
 
-// Asks the finder of the table about one pair after the other.
+// Runs the table's finder on single pairs.
 class Examiner {
 public:
   explicit Examiner(const char* finder) : finder_(make_finder(finder)) {}
@@ -154,7 +154,7 @@ TEST_CASE("the certified finder misses no first contact and invents none: proven
     table += row(family_names[static_cast<std::size_t>(family)], tally);
     all.add(tally);
     CHECK(tally.wrong == 0);
-    CHECK(tally.hits > each / 100); // the family does what it is for
+    CHECK(tally.hits > each / 100); // the family serves its purpose
     CHECK(tally.searched_misses > each / 100);
   }
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - clock_start;
@@ -191,7 +191,7 @@ TEST_CASE("straight lines rule out no first contact, over the step and over any 
     }
     CHECK(lost == 0);
     CHECK(contacts > static_cast<int>(draws(200)));
-    CHECK(ruled_out > static_cast<int>(draws(200))); // the test is of use
+    CHECK(ruled_out > static_cast<int>(draws(200))); // the test is effective
   }
 }
 

@@ -44,7 +44,7 @@ struct Meeting {
 const Frequencies all_frequencies[] = {{1.0, 1.0}, {0.99458, 1.00539}, {1.0, 3.6}};
 const double all_steps[] = {two_pi * 1e-4, two_pi * 1e-3, two_pi * 1e-2, two_pi * 0.1};
 
-// What rounding of coordinates of some hundred metres does to their differences and rates.
+// Rounding errors of differences and rates of coordinates of some hundred metres.
 constexpr double rounding = 2e-12;
 
 void check_equal(const Separation& a, const Separation& b) {

@@ -1,4 +1,4 @@
-// The finders of the paper, held to what it and its public code show.
+// The finders of the paper, compared with its results and its public code.
 #include <keeler/finders/finders.hpp>
 #include <keeler/finders/motion/relative.hpp>
 #include <keeler/finders/search/published.hpp>
@@ -15,8 +15,8 @@ using namespace keeler;
 
 namespace {
 
-// The share of calls in a histogram from one bin on.
-double share_from(const FinderCounts::Histogram& histogram, int first) {
+// Returns the fraction of calls in a histogram from one bin on.
+double fraction_from(const FinderCounts::Histogram& histogram, int first) {
   double all = 0.0, late = 0.0;
   for (int k = 0; k < FinderCounts::bins; ++k) {
     all += static_cast<double>(histogram[k]);
@@ -64,7 +64,7 @@ TEST_CASE("counts: by exit, in bins with an open last one, and merged") {
   CHECK(a.total().by_evaluations[1] == 1);
 }
 
-// The sizes of the effects are those of the paper's Figures 5 and 6 (single size, early, a thousandth of an orbit).
+// The sizes of the effects are taken from the paper's Figures 5 and 6 (single size, early, a thousandth of an orbit).
 TEST_CASE("grid pairs of a settled state at a thousandth of an orbit: iterations and evaluations as in the paper") {
   test::Ring ring(test::equilibrium_patch(2000, 3), {}, two_pi * 1e-3);
   for (int k = 0; k < 150; ++k)
@@ -85,10 +85,10 @@ TEST_CASE("grid pairs of a settled state at a thousandth of an orbit: iterations
     CHECK(ratio(a.lost, contacts) < 0.02);
     CHECK(a.invented == 0);
     if (a.name == "original")
-      CHECK(share_from(hits.by_iterations, 20) > 0.5);
+      CHECK(fraction_from(hits.by_iterations, 20) > 0.5);
     else
-      CHECK(share_from(hits.by_iterations, 6) < 0.02);
-    CHECK(share_from(total.by_iterations, 1) < 0.5); // most calls end at once
+      CHECK(fraction_from(hits.by_iterations, 6) < 0.02);
+    CHECK(fraction_from(total.by_iterations, 1) < 0.5); // most calls end at once
   }
 
   const auto passes = [&](const char* name) { return all.of(name).counts.total().iterations; };
@@ -101,8 +101,8 @@ TEST_CASE("grid pairs of a settled state at a thousandth of an orbit: iterations
   CHECK(evaluations("newton-relative") == evaluations("newton-full")); // the same search on the same path
   CHECK(evaluations("linear-full-no-start") > 3 * evaluations("linear-full") / 2);
   for (const char* linear : {"linear-full", "linear-cubic"}) { // the tail on misses
-    CHECK(share_from(all.of(linear).counts.of(FinderExit::gave_up).by_iterations, 10) > 0.9);
-    CHECK(share_from(all.of(linear).counts.total().by_iterations, 10) > 0.005);
+    CHECK(fraction_from(all.of(linear).counts.of(FinderExit::gave_up).by_iterations, 10) > 0.9);
+    CHECK(fraction_from(all.of(linear).counts.total().by_iterations, 10) > 0.005);
   }
 }
 

@@ -16,7 +16,7 @@
 
 namespace keeler::test {
 
-// How many pairs of all families a test draws: so many, or what the environment says.
+// Returns the number of pairs of all families to draw: the default, or KEELER_PAIRS of the environment.
 inline std::uint64_t pairs_asked_for() {
   const char* text = std::getenv("KEELER_PAIRS");
   return text ? std::strtoull(text, nullptr, 10) : draws(120000);
@@ -54,7 +54,8 @@ public:
     return c;
   }
 
-  /// The same pair after a bounce at a time: restitution 0 to 1, but no slower than the drift phase lets a pair leave.
+  /// Returns the pair after a bounce at a time: restitution 0 to 1, but no slower than the drift phase lets a pair
+  /// leave.
   bool bounce(PairCase& c, double time) {
     auto& [a, b] = c.bodies;
     const Rotation r(c.frequencies, time);
@@ -164,7 +165,7 @@ private:
     }
   }
 
-  // Almost one orbit, a contact's length ahead or behind; now and then at a constant distance.
+  // Almost one orbit, a contact's length ahead or behind; sometimes at a constant distance.
   Elements co_orbital(double radius_sum, double depth) {
     Elements el;
     if (random_.uniform() < 0.1) { // |d|² = e²cos² + 4e²sin² + i²sin² is constant for i = √3 e in phase (κ = ν = 1)
@@ -182,7 +183,7 @@ private:
     return el;
   }
 
-  // Where the pair stands: at the origin, among neighbours on orbits of their own, or across the edge of a large box.
+  // Moves the pair: to the origin, to another orbit, or across the edge of a large box.
   void place(PairCase& c, const Elements& relative, double unit) {
     Elements& lo = c.bodies[0].elements;
     Elements& hi = c.bodies[1].elements;

@@ -1,4 +1,4 @@
-// Aggregates in the start: packed as full as is asked for, at their place, turning as one body, nothing in them.
+// Aggregates in initial states: filling factor, position, rigid rotation, and no other particles inside.
 #include "aggregate.hpp"
 
 #include <keeler/cells/overlap.hpp>
@@ -34,7 +34,7 @@ Scene scene_with(const std::string& sizes, const std::string& more, const std::v
 
 struct Pile {
   Vec3 place = Vec3::Zero(), velocity = Vec3::Zero(); // of the centre of mass
-  double mass = 0.0, cubes = 0.0, farthest = 0.0;     // the latter: of a surface from the middle of the ball
+  double mass = 0.0, cubes = 0.0, farthest = 0.0;     // largest distance of a surface from the centre of the ball
 };
 
 Pile pile_of(const Patch& patch, const AggregateSettings& a) {
@@ -102,10 +102,10 @@ TEST_CASE("aggregates have the filling, the place and the spin of the scene, on 
         CHECK((patch.velocities[k] - circular - (a.spin - 1.0) * turning).norm() < 1e-11);
         CHECK(patch.ids[k] == k);
       }
-      for (std::size_t k = 0; k < scene.particles.free_count(); ++k) // nobody inside
+      for (std::size_t k = 0; k < scene.particles.free_count(); ++k) // none inside
         CHECK((patch.positions[k] - a.position).norm() > a.radius + patch.radii[k]);
     }
-    Vec3 momentum = Vec3::Zero(); // of the others, beyond the shear
+    Vec3 momentum = Vec3::Zero(); // of all other particles, relative to the shear
     double mass = 0.0;
     for (std::size_t k = 0; k < scene.particles.free_count(); ++k) {
       momentum += patch.masses[k] * (patch.velocities[k] + Vec3(0.0, shear * patch.positions[k].x(), 0.0));

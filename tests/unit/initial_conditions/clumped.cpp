@@ -16,7 +16,7 @@ using namespace keeler;
 
 namespace {
 
-// A patch of two by two wavelengths that clumps within an orbit: a quarter of a second of processor time an orbit.
+// A patch of two by two wavelengths that clumps within an orbit: a quarter of a second of processor time per orbit.
 Scene scene(const std::vector<std::string>& overrides = {}) {
   return parse_scene(R"(
 [planet]
@@ -39,7 +39,7 @@ end = 1.0
                      "test scene", overrides);
 }
 
-// One that is held to less: it need not be a sample of anything.
+// A weaker criterion, sufficient for these tests.
 SettleCriterion lenient() {
   SettleCriterion criterion;
   criterion.first_orbit = 1.0;
@@ -48,7 +48,7 @@ SettleCriterion lenient() {
   return criterion;
 }
 
-// Made on one thread, by the first case that asks.
+// Made once, on one thread, by the first case that needs it.
 const ClumpedState& leniently_clumped() {
   static const ClumpedState state = [] {
     set_threads(1);
@@ -85,7 +85,7 @@ TEST_CASE("a patch clumps the same for any number of threads") {
   const ClumpedState& one = leniently_clumped();
   CHECK(one.patch.positions == two.patch.positions);
   CHECK(one.patch.velocities == two.patch.velocities);
-  // as text: a length that is not known is NaN
+  // compared as text: unknown lengths are NaN
   CHECK(fmt::format("{}", clumping_numbers(one.clumping)) == fmt::format("{}", clumping_numbers(two.clumping)));
 }
 
@@ -131,11 +131,11 @@ TEST_CASE("a patch that does not settle is given up at the limit, not written") 
       CHECK(std::string(error.what()).find(words) != std::string::npos);
     }
   };
-  // Q = 2.1 at c_x = 2 r Ω, which collisions alone keep up: no wakes stand out (Salo 1995)
+  // Q = 2.1 at c_x = 2 r Ω, which collisions alone maintain: no wakes (Salo 1995)
   const Scene light = scene({"particles.density=110", "box.size=[60,60]", "gravity.kick_every=10"});
   SettleCriterion criterion = lenient();
   criterion.max_orbits = 4.0;
-  refused(light, criterion, "no wakes stand");
+  refused(light, criterion, "no wakes in the patch");
   criterion.viscosity = {.error = 1e-9, .change = 1e-9};
   criterion.standard_errors = 0.0;
   refused(scene(), criterion, "did not settle in 4 orbits");

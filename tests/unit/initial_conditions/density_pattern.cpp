@@ -31,7 +31,7 @@ sizes = { law = "equal", radius = 1.0 }
                      "s.toml");
 }
 
-// Σ/⟨Σ⟩ between two x.
+// Returns Σ/⟨Σ⟩ between two x.
 double density_between(const Patch& patch, double low, double high) {
   double count = 0.0;
   for (const Vec3& place : patch.positions)
@@ -39,7 +39,7 @@ double density_between(const Patch& patch, double low, double high) {
   return count / static_cast<double>(patch.size()) * patch.box.size_x / (high - low);
 }
 
-// Of Σ/⟨Σ⟩ − 1, as in amplitude × exp(i k·r).
+// Returns the complex amplitude of Σ/⟨Σ⟩ − 1, as in amplitude × exp(i k·r).
 std::complex<double> wave(const Patch& patch, int nx, int ny) {
   std::complex<double> sum = 0.0;
   for (const Vec3& place : patch.positions)
@@ -89,7 +89,7 @@ TEST_CASE("a step has the density that is asked for on both sides, and the scene
   const Patch patch = initial_patch(scene);
   CHECK(patch.size() == scene_with("").particles.count);
   CHECK(largest_overlap(patch).depth == 0.0);
-  const double beside = 1.0 / (1.0 + 2.0 * 80.0 / 240.0); // the mean is that of the scene
+  const double beside = 1.0 / (1.0 + 2.0 * 80.0 / 240.0); // the mean equals the scene's
   // 1 m about the edges is left out: particles push each other apart. Noise of counts: 1/√N of 1500 to 3000
   CHECK(density_between(patch, -29.0, 49.0) == doctest::Approx(3.0 * beside).epsilon(3.0 / std::sqrt(2900.0)));
   CHECK(density_between(patch, -119.0, -31.0) == doctest::Approx(beside).epsilon(3.0 / std::sqrt(1000.0)));

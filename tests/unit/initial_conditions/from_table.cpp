@@ -66,10 +66,11 @@ TEST_CASE("a table's particles are taken as they are") {
   table.velocities.clear(); // circular: S x in the orbit's direction, backwards
   table.masses.clear();
   TableScene of = table_scene();
-  CHECK_THROWS_WITH_AS(patch_from_table(table, of),
-                       "t.csv: no column m, and the scene has no particles.density (one of them gives the masses); add "
-                       "either",
-                       UsageError);
+  CHECK_THROWS_WITH_AS(
+      patch_from_table(table, of),
+      "t.csv: no column m, and the scene has no particles.density (one of them is needed for the masses); add "
+      "either",
+      UsageError);
   of.density = 900.0;
   const Patch circular = patch_from_table(table, of);
   CHECK(circular.velocities[0] == Vec3(0.0, -15.0, 0.0));
@@ -105,8 +106,8 @@ TEST_CASE("a particle that no ring has, or outside the box, is named by its row"
     CHECK(fault(table).find("t.csv:2: the particle has " + words) == 0);
     CHECK(fault(table).find("; correct it or remove the row") != std::string::npos);
   };
-  says(one({1.0, NAN, 0.0}, still), "a position or velocity that is not finite");
-  says(one(here, {0.0, INFINITY, 0.0}), "a position or velocity that is not finite");
+  says(one({1.0, NAN, 0.0}, still), "a position or a velocity that is not finite");
+  says(one(here, {0.0, INFINITY, 0.0}), "a position or a velocity that is not finite");
   ParticleTable table = one(here, still);
   table.radii[0] = -1.0;
   says(table, "a radius (m) of -1 (possible is from 1e-6 to 1000000)");

@@ -51,7 +51,7 @@ TEST_CASE("dense scenes whose equilibria exist start, at the default dispersion"
     const Patch patch = initial_patch(scene);
     CHECK(largest_overlap(patch).depth == 0.0);
     CHECK(optical_depth(patch) == doctest::Approx(scene.optical_depth()).epsilon(1e-12));
-    // 5 % for the room that is made and for the draw: 1/√(2N) of 2000 particles and more
+    // 5 % for separation and sampling: 1/√(2N) of 2000 particles or more
     const double height = layer_height(scene.optical_depth(), scene.particles.layer_sizes(),
                                        scene.particles.velocity_dispersion, scene.planet.frequencies.nu);
     CHECK(scale_height(patch) == doctest::Approx(height).epsilon(0.08));
@@ -65,7 +65,7 @@ TEST_CASE("tau, the moments of the law and the dispersion are those of the scene
       scene_of("", "optical_depth = 0.8\nsizes = { law = \"power\", exponent = 3.0, min = 0.5, max = 5.0 }", 120.0);
   const Patch patch = initial_patch(scene);
   const double count = static_cast<double>(patch.size());
-  double weight = 0.0; // Σ m² / (Σ m)²: one over the number of particles that matter to means by mass
+  double weight = 0.0; // Σ m² / (Σ m)²: 1 / effective number of particles in mass-weighted means
   double masses = 0.0;
   for (const double mass : patch.masses) {
     weight += mass * mass;
@@ -93,7 +93,7 @@ TEST_CASE("a moonlet in a table of radii does not thicken the layer of the grain
       squares += patch.radii[k] == 1.0 ? patch.positions[k].z() * patch.positions[k].z() : 0.0;
     return std::sqrt(squares / 4000.0);
   };
-  CHECK(height(40.0) < 1.3 * height(1.0)); // with 94 % of the mass: ⟨r³⟩/⟨r²⟩ of all would make it 13 m
+  CHECK(height(40.0) < 1.3 * height(1.0)); // with 94 % of the mass: with ⟨r³⟩/⟨r²⟩ of all it would be 13 m
 }
 
 } // namespace initial_test

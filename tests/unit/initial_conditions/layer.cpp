@@ -26,7 +26,7 @@ TEST_CASE("a layer that is sparse enough is Gaussian, a denser one has the same 
 }
 
 TEST_CASE("the density in the mid-plane is that of the two parts folded together") {
-  // the slow twin: ∫ of the slab's density times the Gaussian's at −z
+  // brute force: ∫ of the slab's density times the Gaussian's at −z
   const LayerProfile profile{1.7, 0.6};
   double sum = 0.0;
   constexpr int slices = 20000;

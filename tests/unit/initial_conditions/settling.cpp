@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t orbit = 20; // samples
 constexpr SettleCriterion criterion;
 
-// What the samples of a history show at a time in orbits.
+// The sampled values of a history at a time in orbits.
 struct Course {
   std::function<double(double)> viscosity = [](double) { return 2.0; };
   std::function<double(double)> wavelength = [](double) { return 50.0; };
@@ -48,7 +48,7 @@ std::vector<SettleSample> history(const Course& course, double end = criterion.m
   return samples;
 }
 
-// Where a history counts as settled for the first time; its end: never.
+// Returns the first time at which a history is settled, or its end if never.
 struct First {
   double orbits = HUGE_VAL;
   Settling settling;
@@ -119,7 +119,7 @@ TEST_CASE("a plateau in the overshoot of orbits 2 to 5 is not taken for the sett
   const First first = first_settled({.viscosity = [](double t) { return t < 2.0 ? t : t < 5.01 ? 2.6 : 2.0; }});
   CHECK(first.orbits == doctest::Approx(9.0));
   CHECK(first.settling.viscosity.mean() == doctest::Approx(2.0));
-  // One that decays until orbit 8 delays it: windows grow, and the first one must lose its weight.
+  // A decay until orbit 8 delays settling: windows must grow until it has little weight.
   const First late = first_settled({.viscosity = [](double t) { return t < 8.0 ? 4.0 - 0.25 * t : 2.0; }});
   CHECK(late.orbits > 10.0);
   CHECK(late.orbits < 14.0);

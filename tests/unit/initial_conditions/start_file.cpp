@@ -37,7 +37,7 @@ end = 1.0
                      "test scene", overrides, from);
 }
 
-// What a start from the scene's patch says after a change.
+// Returns the message of a start from the scene's patch after a change.
 std::string fault(const std::function<void(Patch&)>& change) {
   const std::string file = (std::filesystem::temp_directory_path() / "keeler-test-start.hdf").string();
   Patch patch = initial_patch(scene());
@@ -163,7 +163,7 @@ TEST_CASE("starts far from any ring are doubted, and others are not, however the
   const auto said = [](const Patch& patch) { return warnings(scale_of(patch).start); };
   const auto of = [](const std::vector<std::string>& overrides) { return initial_patch(scene(overrides)); };
   const std::string many = "particles.optical_depth=0.1", wide = "box.size=[400,100]";
-  // Streamlines that nearly cross, in a box many times as wide as particles are; and a ball that turns with its orbit.
+  // Streamlines that nearly cross, in a box many times wider than the particles; and a ball in synchronous rotation.
   for (const std::vector<std::string>& overrides : std::vector<std::vector<std::string>>{
            {},
            {many, wide},

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double length = 60.0;
 
-// What radial_modes() would find for streamlines that are evenly filled, at a time: 2 ⟨exp(−ikx)⟩ over X.
+// The result of radial_modes() for uniformly filled streamlines at a time: 2 ⟨exp(−ikx)⟩ over X.
 std::complex<double> density_of(const Streamlines& s, int n, double kappa_time) {
   constexpr int samples = 4000;
   const double k = two_pi * n / length;
@@ -85,7 +85,7 @@ TEST_CASE("streamlines of several modes do not cross, and each place lies on one
 TEST_CASE("a scene's mode is measured as it was seeded, for any number of threads") {
   struct Case {
     const char* direction;
-    double outward, inward; // shares of κe = q/k
+    double outward, inward; // fractions of κe = q/k
   };
   for (const Case& c : {Case{"outward", 1.0, 0.0}, {"inward", 0.0, 1.0}, {"standing", 0.5, 0.5}}) {
     CAPTURE(c.direction);

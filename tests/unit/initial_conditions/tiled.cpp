@@ -22,7 +22,7 @@ namespace {
 
 const std::vector<std::pair<std::size_t, std::size_t>> tilings = {{2, 2}, {3, 2}, {1, 4}, {4, 1}, {3, 3}};
 
-// No factor of the sides is 1, nor is kappa.
+// Neither a factor of the sides nor kappa is 1.
 Scene scene_of(std::size_t count) {
   return parse_scene(fmt::format(R"(
 [planet]
@@ -44,7 +44,7 @@ end = 1.0
                      "test scene");
 }
 
-// In a sheared box, and with as much motion as a few collisions make.
+// A patch in a sheared box, with motion from a few collisions.
 Patch evolved(const Scene& scene) {
   Simulation simulation(scene, initial_patch(scene));
   for (int k = 0; k < 131; ++k)
@@ -52,7 +52,7 @@ Patch evolved(const Scene& scene) {
   return simulation.patch();
 }
 
-// Distances from a particle to all images of all particles within a reach, in order.
+// Returns the sorted distances from a particle to all images of particles within a reach.
 std::vector<double> distances(const Patch& patch, std::size_t k, double reach) {
   std::vector<double> all;
   const int nx_most = static_cast<int>(reach / patch.box.size_x) + 2, ny_most = 2 * nx_most + 4;
@@ -94,7 +94,7 @@ TEST_CASE("all distances of a tiled patch are those of the patch, across the new
     }
     CHECK(of_another_number == 0);
     CHECK(outside == 0);
-    CHECK(worst < 1e-13 * 100.0); // a few roundings of places up to 100 m
+    CHECK(worst < 1e-13 * 100.0); // a few roundings of positions up to 100 m
   }
 }
 

@@ -17,7 +17,7 @@ using namespace keeler;
 
 namespace {
 
-// A square box for these radii, and a layer with this mid-plane filling factor if it were Gaussian: V / (√(2π) H A).
+// Makes a square box for these radii, and a layer with this mid-plane filling factor if Gaussian: V / (√(2π) H A).
 UniformRequest layer(std::vector<double> radii, double optical_depth, double filling, std::uint64_t seed) {
   UniformRequest request;
   double area = 0.0, volume = 0.0;
@@ -41,7 +41,7 @@ std::vector<double> power_law(double smallest, double largest, std::size_t count
   return draw_radii(power_sizes(3.0, smallest, largest), count, 4);
 }
 
-// The slow twin of "no overlap": the least room between two surfaces over all pairs and images, in the smaller radius.
+// Brute force: the smallest gap over all pairs and images, in units of the smaller radius.
 double min_room(const Patch& patch) {
   double least = HUGE_VAL;
   for (std::size_t i = 0; i < patch.size(); ++i)
@@ -64,7 +64,7 @@ double rms_height(const Patch& patch) {
   return std::sqrt(sum / static_cast<double>(patch.size()));
 }
 
-// |Σ m a| / √(Σ (m a)²) for each component of what is left of the shear and the heights
+// |Σ m a| / √(Σ (m a)²) for each component of the peculiar velocity, and for the heights
 double largest_mean(const Patch& patch) {
   double largest = 0.0;
   const auto add = [&](const auto& value) {
@@ -116,7 +116,7 @@ TEST_CASE("no overlaps, up to a mid-plane filling of 0.55, with the height and t
 TEST_CASE("each pair is apart, by brute force, in boxes large and small") {
   std::vector<UniformRequest> requests = {equal_layer(0.5, 0.2, 300, 1), equal_layer(2.0, 0.55, 300, 2),
                                           layer(power_law(0.1, 3.0, 300), 0.7, 0.3, 3)};
-  std::vector<double> crowd(120, 0.1); // one large body, which leaves only the corners and what is above it
+  std::vector<double> crowd(120, 0.1); // one large body leaves only the corners and the space above it
   crowd.push_back(1.0);
   requests.push_back(layer(crowd, 1.0, 0.4, 4));
   requests.back().box = {2.02, 2.1, 1.5, 0.7};
@@ -133,7 +133,7 @@ TEST_CASE("sizes over three and four decades are placed without overlap") {
   const Patch power = uniform_patch(layer(power_law(0.01, 10.0, 10000), 0.6, 0.2, 4));
   CHECK(largest_overlap(power).depth == 0.0);
   std::vector<double> table;
-  for (int k = 0; k <= 40; ++k) // from 1 to 10⁻⁴, ever more of them
+  for (int k = 0; k <= 40; ++k) // from 1 to 10⁻⁴, in increasing number
     table.insert(table.end(), static_cast<std::size_t>(std::pow(10.0, 0.09 * k)), std::pow(10.0, -0.1 * k));
   const Patch listed = uniform_patch(layer(table, 0.8, 0.2, 5));
   CHECK(largest_overlap(listed).depth == 0.0);
@@ -159,7 +159,7 @@ TEST_CASE("a moonlet takes the middle of a layer that is as thin as without it")
 TEST_CASE("draws have no mean eccentricity vector, inclination vector or momentum") {
   for (const UniformRequest& request :
        {equal_layer(1.0, 0.4, 3000, 7), layer(power_law(0.1, 3.0, 3000), 0.5, 0.2, 8), equal_layer(0.1, 0.1, 2, 9)})
-    CHECK(largest_mean(uniform_patch(request)) < 1e-11); // roundings of the shear and of the radial places
+    CHECK(largest_mean(uniform_patch(request)) < 1e-11); // roundings of the shear and of the radial positions
 }
 
 TEST_CASE("one particle rests on its circle in the mid-plane, and none make an empty patch") {
@@ -188,12 +188,12 @@ TEST_CASE("the same state for the same seed, whatever the threads") {
 TEST_CASE("progress rises to the end, and a stop is obeyed at the next sweep") {
   const UniformRequest request = layer(power_law(0.2, 2.0, 1000), 1.0, 0.4, 3);
   std::atomic<bool> stop = false;
-  std::vector<double> shares;
-  const auto note = [&](const StartProgress& p) { shares.push_back(p.share); };
+  std::vector<double> fractions;
+  const auto note = [&](const StartProgress& p) { fractions.push_back(p.fraction); };
   const Interruptible by_stop(stop);
   CHECK(uniform_patch(request, note).size() == 1000);
-  CHECK(std::is_sorted(shares.begin(), shares.end()));
-  CHECK(shares.back() == 1.0);
+  CHECK(std::is_sorted(fractions.begin(), fractions.end()));
+  CHECK(fractions.back() == 1.0);
   int sweeps = 0;
   const auto stop_at_third = [&](const StartProgress&) { stop = ++sweeps == 3; };
   CHECK_THROWS_AS(uniform_patch(request, stop_at_third), Interrupted);

@@ -54,7 +54,7 @@ TEST_CASE("a row is what the patch says, measured particle by particle") {
   const double bins =
       0.06 / std::sqrt(static_cast<double>(patch.size())); // of the guiding radius: few particles in each
   CHECK(std::fabs(row["epicyclic_wave_fraction"] - waves.energy) < bins);
-  CHECK(row["dispersion_without_waves_x_m_s"] == doctest::Approx(waves.taken_out_of(c).x()).epsilon(bins));
+  CHECK(row["dispersion_without_waves_x_m_s"] == doctest::Approx(waves.residual_dispersion(c).x()).epsilon(bins));
 
   const SimulationState& state = simulation.state();
   CHECK(state.collisions.fast > 0);

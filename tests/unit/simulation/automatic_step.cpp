@@ -1,4 +1,4 @@
-// The automatic step: what it decides, and that a run with it is one run whatever the threads and the restarts.
+// The automatic step: its decisions, and equal runs for any number of threads and restarts.
 #include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/initial_conditions/initial.hpp>
@@ -42,7 +42,8 @@ void run_until(Simulation& simulation, double orbits) {
     simulation.advance();
 }
 
-// The decision after `ticks` in which each of `count` particles had `rate` contacts a tick, so many of them unresolved.
+// The decision after `ticks` in which each of `count` particles had `rate` contacts per tick, a fraction of them
+// unresolved.
 StepControl decided(const StepControl& last, double rate, double unresolved, std::int64_t ticks = decision_ticks) {
   constexpr std::size_t count = 10'000;
   CollisionTally tally;
@@ -119,7 +120,7 @@ time = { step = )";
   Simulation one(automatic, start), other(fixed, start);
   run_until(one, 3.0);
   run_until(other, 3.0);
-  CHECK(one.state().control.step == 64); // nobody needs a shorter one
+  CHECK(one.state().control.step == 64); // no particle needs a shorter one
   const Patch a = one.patch(), b = other.patch();
   REQUIRE(one.orbits() == other.orbits());
   for (std::size_t k = 0; k < a.size(); ++k) {

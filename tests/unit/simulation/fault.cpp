@@ -1,4 +1,4 @@
-// A state from a file is the scene's, or it is refused: a step would read beyond arrays.
+// A state from a file that does not fit the scene is refused: a step could read beyond arrays.
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
@@ -30,12 +30,12 @@ time = { step = "auto", end = 1.0 }
   }
   const std::pair<const char*, std::function<void(SimulationState&)>> faults[] = {
       {"lengths", [](SimulationState& s) { s.particles.ids.pop_back(); }},
-      {"none", [](SimulationState& s) { s.particles = {}; }},
+      {"no particles", [](SimulationState& s) { s.particles = {}; }},
       {"moonlets", [](SimulationState& s) { s.moonlets.clear(); }},
       {"gravity", [](SimulationState& s) { s.forces[0].accelerations.resize(3); }},
       {"gravity", [](SimulationState& s) { s.forces[0].moonlet_gains.clear(); }},
       {"step of 0 ticks", [](SimulationState& s) { s.control.step = 0; }},
-      {"begins at tick", [](SimulationState& s) { s.step = -64; }},
+      {"begin at tick", [](SimulationState& s) { s.step = -64; }},
       {"rad long", [](SimulationState& s) { s.step_length *= 2.0; }},
       {"rad long", [](SimulationState& s) { s.step_length = std::numeric_limits<double>::quiet_NaN(); }},
       {"box", [](SimulationState& s) { s.box.size_x = 0.0; }},

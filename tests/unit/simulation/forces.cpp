@@ -61,7 +61,7 @@ struct Pushed {
 } // namespace
 
 // Hill's equations with a constant acceleration a, from rest at the origin: a vertical one lifts the middle of the
-// oscillation to a/ν²; an azimuthal one makes the orbit grow by 2Ωa/κ² an orbit's radian.
+// oscillation to a/ν²; an azimuthal one makes the orbit grow by 2Ωa/κ² per radian of the orbit.
 TEST_CASE("a constant acceleration does what Hill's equations say, to second order in the step") {
   const double a = 0.3, nu = 1.02, kappa = 0.98;
   const auto lifted = [&](double t) { return Vec3(0.0, 0.0, a / (nu * nu) * (1.0 - std::cos(nu * t))); };

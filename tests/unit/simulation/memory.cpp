@@ -1,4 +1,4 @@
-// What a run holds in memory: bounded, and no more than `keeler check` says beforehand.
+// The memory of a run is bounded, by the estimate of `keeler check`.
 #include <keeler/advice/derived.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
@@ -59,7 +59,7 @@ TEST_CASE("the drift phase holds no more than 460 bytes a particle, 660 on threa
       CHECK(held <= (several > 1 ? 660.0 : 460.0));
       const double memory = 1e6 * derive(scene).memory_mb;
       CHECK(memory >= held * count);
-      // beyond what does not grow with their number; a snapshot's copy comes on top
+      // beyond a constant; a snapshot's copy is extra
       const double more = (1e6 * derive(scene_of(large, step)).memory_mb - memory) / static_cast<double>(large - count);
       CHECK(more >= held + patch);
     }

@@ -1,5 +1,5 @@
-// Memory order is for speed alone: a state whose particles stand in memory in another order goes on to the same state,
-// bit for bit, what is booked of kicks and collisions included.
+// Memory order affects speed only: after a permutation of the particles in memory a state evolves identically, bit for
+// bit, with all energy accounts of kicks and collisions.
 #include <keeler/cells/order.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/scene/load.hpp>
@@ -25,7 +25,7 @@ namespace {
 using Order = std::vector<std::uint32_t>;
 using Shuffle = std::function<void(Order&)>;
 
-// The rows of a field that has one for each particle.
+// Returns the rows of a field with one row per particle.
 void reorder_rows(const Field& field, const Order& order) {
   const std::size_t width = field.components * size_of(field.type);
   const auto* const from = static_cast<const std::byte*>(field.data());
@@ -48,7 +48,7 @@ Order pluralize(std::size_t count) {
   return order;
 }
 
-// By id, with every number that a checkpoint holds.
+// Returns all values of a checkpoint, sorted by id.
 std::vector<std::string> content(SimulationState state) {
   Order order = pluralize(state.particles.size());
   std::sort(order.begin(), order.end(),
@@ -82,7 +82,7 @@ Scene dense_scene(const std::string& more, const std::string& step = "2e-3") {
 
 void check_any_order(const Scene& scene, int steps_after) {
   Simulation beginning(scene, initial_patch(scene));
-  for (int k = 0; k < 3; ++k) // past the step that puts all in order
+  for (int k = 0; k < 3; ++k) // beyond the step that sorts the particles
     beginning.advance();
   const SimulationState start = beginning.state();
   const auto after = [&](const Shuffle& shuffle) {

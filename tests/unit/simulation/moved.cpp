@@ -1,4 +1,4 @@
-// A simulation may be moved, as a value in a container is.
+// A simulation can be moved, like a value in a container.
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>

@@ -11,10 +11,10 @@ namespace radial_gravity_test {
 using namespace keeler;
 
 // The axisymmetric waves of a cold thin disc have ω² = κ² − 2π G Σ |k| (Toomre 1964; Binney & Tremaine 2008, eq. 6.52).
-// Particles keep X, so a displacement A sin kX with no radial velocity swings as A sin kX cos ωt while kA is small.
+// Particles keep X, so a displacement A sin kX with no radial velocity oscillates as A sin kX cos ωt while kA is small.
 TEST_CASE("waves of a cold ring in its radial self-gravity swing at Toomre's frequency") {
   constexpr std::size_t count = 400;
-  constexpr double length = 1000.0, amplitude = 1.0, share = 0.4; // of κ² that gravity takes away
+  constexpr double length = 1000.0, amplitude = 1.0, fraction = 0.4; // reduction of κ² by gravity
   constexpr int waves = 2;
   const Scene scene = parse_scene("planet = { orbital_frequency = 2e-4, epicyclic_ratio = 0.95 }\n"
                                   "box.size = [1000.0, 1000.0]\n"
@@ -24,7 +24,7 @@ TEST_CASE("waves of a cold ring in its radial self-gravity swing at Toomre's fre
                                   "test scene");
   const Frequencies& f = scene.planet.frequencies;
   const double k = two_pi * waves / length, kappa2 = f.kappa * f.kappa;
-  const double density = share * kappa2 / (two_pi * newton_g(scene.planet.orbital_frequency) * k);
+  const double density = fraction * kappa2 / (two_pi * newton_g(scene.planet.orbital_frequency) * k);
   Patch patch;
   patch.box = {length, length, f.shear(), 0.0};
   patch.frequencies = f;
@@ -39,7 +39,7 @@ TEST_CASE("waves of a cold ring in its radial self-gravity swing at Toomre's fre
     patch.ids.push_back(p);
   }
   Simulation simulation(scene, patch);
-  const double omega = f.kappa * std::sqrt(1.0 - share);
+  const double omega = f.kappa * std::sqrt(1.0 - fraction);
   double largest = 0.0;
   while (simulation.orbits() < 2.0 - 1e-9) {
     simulation.advance();

@@ -1,5 +1,5 @@
-// Contacts at rest: against exact motions of two bodies, a drop that bounces to rest, conservation laws, and the same
-// bits for any threads and over a restart.
+// Contacts at rest: exact motions of two bodies, a sphere that bounces to rest, conservation laws, and identical bits
+// for any number of threads and after a restart.
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr double omega = 1.3e-4; // rad/s
 
-// Two bodies that see nothing but each other and the planet.
+// Two bodies without images of each other.
 Scene scene_of_two(double density, double step, const std::string& more) {
   return parse_scene(
       fmt::format("planet.orbital_frequency = {}\nbox.size = [200, 200]\n"
@@ -32,7 +32,7 @@ Scene scene_of_two(double density, double step, const std::string& more) {
       "test scene");
 }
 
-// The first body at the origin, where it stays when it is much heavier than the other or both swing about the middle.
+// Puts the first body at the origin, where it stays if it is much heavier, or else both about the origin.
 Patch two(const Scene& scene, const Vec3& place, const Vec3& velocity, double heavier = 1.0) {
   Patch patch;
   const double mass = 4.0 / 3.0 * pi * scene.particles.density, share = 1.0 / (1.0 + heavier);
@@ -49,7 +49,7 @@ Patch two(const Scene& scene, const Vec3& place, const Vec3& velocity, double he
 
 // Two spheres that touch are a dumbbell in the planet's tide. With κ = ν = Ω = 1 and θ the angle of their line of
 // centres from the radial direction, Hill's equations along the arc give θ'' = −(3/2c) sin 2θ: c = 1 for smooth
-// spheres, and 1 + 2I/(μ d²) = 1.4 where rough ones turn as one body (I = 2/5 m r² each, μ = m/2, d = 2r).
+// spheres, and 1 + 2I/(μ d²) = 1.4 for rough ones, which rotate rigidly (I = 2/5 m r² each, μ = m/2, d = 2r).
 double largest_error_of_swing(const std::string& surface, double inertia, double step, double start_angle) {
   const Scene scene =
       scene_of_two(3000.0, step, "collisions.restitution = { law = \"constant\", value = 0.3 }\n" + surface);
@@ -61,7 +61,7 @@ double largest_error_of_swing(const std::string& surface, double inertia, double
   const auto pull = [&](double a) { return -1.5 / inertia * std::sin(2.0 * a); };
   for (int k = 0; simulation.orbits() < 2.0; ++k) {
     simulation.advance();
-    constexpr int parts = 8; // Störmer–Verlet, of so short steps that its error does not count
+    constexpr int parts = 8; // Störmer–Verlet, with steps short enough to neglect its error
     const double part = two_pi * step / parts;
     for (int p = 0; p < parts; ++p) {
       rate += 0.5 * part * pull(angle);
@@ -138,8 +138,8 @@ TEST_CASE("tides part two spheres that touch where r_h is below 1, and not above
   }
 }
 
-// Along the vertical through a heavy sphere motion is one-dimensional: z'' = −GM/z² − z. The sphere that is dropped on
-// it bounces at restitution 0.5 until a kick undoes its rebound, and lies still from then on.
+// Along the vertical through a heavy sphere motion is one-dimensional: z'' = −GM/z² − z. A sphere dropped on it
+// bounces at restitution 0.5 until a kick reverses its rebound, and rests from then on.
 TEST_CASE("a dropped sphere bounces as it should, and then rests") {
   constexpr double step = 2.5e-4, heavier = 30.0, height = 3.0;
   const Scene scene = scene_of_two(900.0, step, "collisions.restitution = { law = \"constant\", value = 0.5 }\n");
@@ -167,10 +167,10 @@ TEST_CASE("a dropped sphere bounces as it should, and then rests") {
   CHECK(bounces.speeds.size() == so_far);
   const Patch end = simulation.patch();
   CHECK((end.positions[1] - end.positions[0]).norm() == doctest::Approx(2.0).epsilon(1e-4));
-  CHECK((end.velocities[1] - end.velocities[0]).norm() < 0.02 * kick); // what gaps are held to
+  CHECK((end.velocities[1] - end.velocities[0]).norm() < 0.02 * kick); // the tolerance of gaps
   const double dropped = 0.5 * first * first, mass = end.masses[1] * heavier / (1.0 + heavier);
   CHECK(simulation.balance().lost - simulation.balance().resting_work ==
-        doctest::Approx(mass * dropped).epsilon(0.02)); // all that the fall gave is gone
+        doctest::Approx(mass * dropped).epsilon(0.02)); // the energy of the fall is dissipated
 }
 
 TEST_CASE("a pile keeps its momentum, and its energy is booked") {
@@ -202,14 +202,14 @@ TEST_CASE("a pile keeps its momentum, and its energy is booked") {
   CHECK(largest_overlap(simulation.patch()).depth == 0.0);
 }
 
-// The Jacobi energy of a pile that has come to rest is all there is, and nothing is lost any more.
+// A pile at rest conserves its Jacobi energy: nothing more is lost.
 TEST_CASE("a pile comes to rest") {
   const Scene scene = pile_scene("collisions.restitution = { law = \"constant\", value = 0.5 }\n");
   Simulation simulation(scene, initial_patch(scene));
   run_until(simulation, 1.0);
   const double lost = simulation.balance().lost;
   run_until(simulation, 1.2);
-  // a two-hundredth of its binding energy an orbit, 3/5 G M²/R at least
+  // per orbit 1/200 of its binding energy, at least 3/5 G M²/R
   const double mass = 60.0 * simulation.state().particles.bodies[0].mass, radius = std::cbrt(60.0 / 0.5);
   CHECK((simulation.balance().lost - lost) / 0.2 <
         0.005 * 0.6 * newton_g(scene.planet.orbital_frequency) * mass * mass / radius);

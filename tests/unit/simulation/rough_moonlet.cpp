@@ -1,4 +1,4 @@
-// Friction and [[moonlet]] in one scene: what a contact of the two turns, and the same bits however many threads run.
+// Friction and [[moonlet]] in one scene: the torque of a contact, and identical bits for any number of threads.
 #include <keeler/core/threads.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/scene/load.hpp>
@@ -37,7 +37,7 @@ double inertia(const Patch& patch, std::size_t k) {
   return 0.4 * patch.masses[k] * patch.radii[k] * patch.radii[k];
 }
 
-// About the vertical through the origin, of motion in Hill's frame and spins.
+// Angular momentum about the vertical through the origin, of motion in Hill's frame and spins.
 double angular_momentum(const Patch& patch, const Couple& at) {
   const auto orbital = [](const State& s) { return s.position.cross(s.velocity).z(); };
   double sum = patch.masses[0] * orbital(at.grain) + patch.masses[1] * orbital(at.moonlet);

@@ -1,5 +1,5 @@
 // A satellite that passes the box: against the impulse of the linear theory, Hill's equations integrated to the end of
-// the passage, and what a ring's streamlines do downstream.
+// the passage, and a ring's streamlines downstream.
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/forces/satellite.hpp>
@@ -82,7 +82,7 @@ double angle_between(double a, double b) {
   return std::fabs(std::remainder(a - b, two_pi));
 }
 
-// Hill's equations of a particle and a satellite that feels nothing of it, y counted on for ever: the slow way.
+// Brute force: Hill's equations of a particle and a satellite of fixed orbit, with y unwrapped.
 struct HillPassage {
   double pull, x_s, e_s, phase, passage;
 
@@ -94,7 +94,7 @@ struct HillPassage {
     return {v, Vec3(2.0 * v.y() + 3.0 * s.position.x(), -2.0 * v.x(), 0.0) + a};
   }
 
-  // By the classical Runge–Kutta method.
+  // Integrates by the classical Runge–Kutta method.
   State end(State s, double time) const {
     constexpr double h = 2e-3;
     const auto moved = [](const State& from, double by, const State& along) {
@@ -132,7 +132,7 @@ TEST_CASE("a passage makes the eccentricity of the impulse, and moves orbits awa
   }
 }
 
-// At the time when the column stands upright, |y| behind the satellite, a streamline has met it |y|/(3/2 d) ago: its
+// At the time when the column is upright, |y| behind the satellite, a streamline has met it |y|/(3/2 d) ago: its
 // wave along the orbit has the wavelength 3π d (Showalter et al. 1986).
 TEST_CASE("streamlines downstream have the phases of a wave of wavelength 3 pi d, when they stand side by side") {
   const double h = 1e-4, behind = 12.0; // orbits
@@ -154,7 +154,7 @@ TEST_CASE("streamlines downstream have the phases of a wave of wavelength 3 pi d
     CHECK(angle_between(now.phase, 0.5 * pi + two_pi * y / (3.0 * pi * d)) < 2e-2);
     CHECK(relative(now.eccentricity, e) < 5e-3);
     CHECK(relative(now.gained_x - tails, gained) <
-          5e-2); // with its own X in the time of the passage: 26 times too large
+          5e-2); // with the current X in the time of the passage: 26 times too large
   }
 }
 
@@ -284,7 +284,7 @@ TEST_CASE("the drag of a passage is the fastest that it moves a particle over th
 }
 
 TEST_CASE("the passages that drag particles along are those far from the time when the cell stands upright") {
-  // 0.77 · 1e-3 · 2π an orbit: 0.6 at 124 orbits from 30
+  // 0.77 · 1e-3 · 2π per orbit: 0.6 at 124 orbits from 30
   const Scene scene = scene_with(1e-3, "passage = 10.0\nevery = 25.0\nupright_after = 20.0\n", 1.0);
   CHECK(!dragging(scene, doubtful_drag, 0.0, 150.0));
   const std::optional<SatellitePassage> first = dragging(scene, doubtful_drag, 0.0, 400.0);

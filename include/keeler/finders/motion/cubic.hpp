@@ -1,12 +1,13 @@
-// Motion, form "cubic": Hermite cubics through positions and velocities at the step's two ends. They differ from the
-// epicycle by at most h⁴/384 max|x⁗| an axis, and cost no sine or cosine once fitted.
-//   CubicMotion        fitted for each pair before any test, with both particles' own sines and cosines: 16 values
-//   LateCubicMotion    the full motion at the start of the span (8 values); fitted (16 more) when the search moves on
-//   CachedCubicMotion  fitted for each particle once a step and after each velocity change, by the shared rotations
+// Motion, form "cubic": Hermite cubics through positions and velocities at the two ends of the step. They differ from
+// the epicycle by at most h⁴/384 max|x⁗| per axis, and need no sine or cosine once fitted.
+//   CubicMotion        fitted per pair before any test, with both particles' own sines and cosines: 16 values
+//   LateCubicMotion    the full motion at the start of the span (8 values); fitted (16 more) if the search moves on
+//   CachedCubicMotion  fitted per particle, once per step and after each velocity change, with the common rotations
 #pragma once
 
 #include <keeler/finders/motion/full.hpp>
 
+#include <cassert>
 #include <optional>
 
 namespace keeler {
@@ -15,8 +16,9 @@ namespace keeler {
 struct Cubic {
   Vec3 c0, c1, c2, c3;
 
-  /// Through the states at u = 0 and u = h.
+  /// Returns the cubic through the states at u = 0 and u = h. Precondition: h > 0.
   static Cubic through(const State& begin, const State& end, double h) {
+    assert(h > 0.0);
     const Vec3 slope = (end.position - begin.position) / h;
     return {begin.position, begin.velocity, (3.0 * slope - 2.0 * begin.velocity - end.velocity) / h,
             (begin.velocity + end.velocity - 2.0 * slope) / (h * h)};

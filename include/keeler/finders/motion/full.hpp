@@ -1,7 +1,7 @@
-// Motion, form "full": each particle on its own epicycle, with its own sines and cosines at each guess, as the paper
-// timed it: eight values an evaluation, also where κ = ν would let two angles share.
-// StoredStartMotion is the same path with the states at the step's start kept for each particle: a pair that recedes
-// there costs no sine or cosine.
+// Motion, form "full": each particle on its epicycle, with its own sines and cosines at each guess, as timed in the
+// paper: eight values per evaluation, even if κ = ν would make two angles equal.
+// StoredStartMotion is this path with the states at the step's start stored per particle: a pair that recedes there
+// needs no sine or cosine.
 #pragma once
 
 #include <keeler/finders/finder.hpp>
@@ -10,7 +10,7 @@
 
 namespace keeler {
 
-/// A rotation that shares nothing: two sines and two cosines.
+/// Returns a rotation computed from scratch: two sines and two cosines.
 inline Rotation own_rotation(const Frequencies& f, double time) {
   Rotation r;
   r.after = time;
@@ -45,7 +45,7 @@ public:
   StoredStartMotion(const Pair& pair, const DriftStep& step, const Memory& lo, const Memory& hi)
       : FullMotion(pair, step), lo_(lo), hi_(hi), begin_(step.begin) {}
 
-  /// Later in the step particles stand at other times, and nothing is kept.
+  /// Returns nothing later in the step, when particles have been moved to other times.
   std::optional<Separation> at_start() const {
     if (pair_.start != begin_)
       return std::nullopt;

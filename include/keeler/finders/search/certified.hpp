@@ -2,24 +2,26 @@
 //
 // With |v| <= V and |a| <= A for all times, over a remaining span s from a point with distance |d| and speed |v|,
 //   f'' = 2|v|² + 2 d·a >= m = 2 max(0, |v| − A s)² − 2 (|d| + V s) A,
-// so f(t + τ) >= f + f' τ + m τ²/2: the first root of that parabola, if any lies in the span, is a safe step, and it
-// converges quadratically on simple roots. Where f stands within its own rounding error of zero the pair is in contact:
-// approaching, the event is now; receding, the first possible turning point −f'/m is the next safe step.
-// All roundings are taken to the safe side: f, f' and m down, V and A up, the step down.
+// so f(t + τ) >= f + f' τ + m τ²/2: the first root of that parabola, if any is in the span, is a safe step, and it
+// converges quadratically on simple roots. If |f| is within its rounding error the pair is in contact: approaching, the
+// event is now; receding, the first possible turning point −f'/m is the next safe step.
+// All roundings are directed to the safe side: f, f' and m down, V and A up, the step down.
 //
-// Within rounding of contact the steps would shrink to noise (a pair at constant distance never leaves it). There a
-// step may let f sink by one rounding error, and by one more for every 1024 passes. So every search ends, and no
+// Near contact, within rounding, the steps would shrink to noise (a pair at constant distance never leaves it). There a
+// step may let f decrease by one rounding error, and by one more per 1024 passes. So every search ends, and no
 // contact deeper than 2 δ (1 + passes/1024) is missed, with δ = gap_error: docs/theory/finders.md has the proof.
 #pragma once
 
 #include <keeler/finders/finder.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 
-/// `Motion` also has largest_speed(), largest_acceleration(), gap_error() and closing_error(): see BoundedMotion.
+/// Precondition: Motion has largest_speed(), largest_acceleration(), gap_error() and closing_error(): see
+/// BoundedMotion.
 struct CertifiedSearch {
   static constexpr bool exact = true;
   template<class Motion> static FinderResult find(const Motion& motion, const Pair& pair);
@@ -27,12 +29,13 @@ struct CertifiedSearch {
 
 template<class Motion> FinderResult CertifiedSearch::find(const Motion& motion, const Pair& pair) {
   constexpr double down = 1.0 - 1e-13;
-  constexpr int patience = 8; // short steps in a row before the window is halved: nearer bounds are tighter
+  constexpr int patience = 8; // consecutive short steps before the window is halved: bounds over it are tighter
   const double speed_bound = motion.largest_speed(), acceleration_bound = motion.largest_acceleration();
 
+  assert(!(pair.start > pair.end));
   FinderResult result;
   double t = pair.start;
-  double window = pair.end - pair.start; // how far ahead a bound looks at most
+  double window = pair.end - pair.start; // largest span of a bound
   bool at_start = true;
   int short_steps = 0;
   while (true) {
@@ -56,14 +59,14 @@ template<class Motion> FinderResult CertifiedSearch::find(const Motion& motion, 
     const double positive = 2.0 * slower * slower, negative = 2.0 * (distance + speed_bound * s) * acceleration_bound;
     const double m = positive * down - negative / down; // f'' >= m over the next s
     const int thousands = result.iterations / 1024;
-    const double slack = error * (1.0 + thousands);
+    const double tolerance = error * (1.0 + thousands);
     const double low_slope = slope - motion.closing_error(distance, speed);
 
-    double step; // no contact before t + step; infinite when there is none within s
+    double step; // no contact before t + step; infinite if there is none within s
     if (f <= error) {
-      step = m >= 0.0 ? HUGE_VAL : std::max(0.0, slope) / -m + std::sqrt(2.0 * slack / -m);
+      step = m >= 0.0 ? HUGE_VAL : std::max(0.0, slope) / -m + std::sqrt(2.0 * tolerance / -m);
     } else {
-      const double low_f = std::max(f - error, slack);
+      const double low_f = std::max(f - error, tolerance);
       const double discriminant = low_slope * low_slope - 2.0 * m * low_f;
       if (m >= 0.0 && (low_slope >= 0.0 || discriminant < 0.0))
         step = HUGE_VAL;
@@ -79,7 +82,7 @@ template<class Motion> FinderResult CertifiedSearch::find(const Motion& motion, 
       return result;
     }
     const double next = t + std::min(step, s);
-    if (next == t && slope < 0.0) { // the root lies between t and the next double
+    if (next == t && slope < 0.0) { // the root is between t and the next double
       result.exit = at_start ? FinderExit::overlapping : FinderExit::hit;
       result.time = t;
       return result;

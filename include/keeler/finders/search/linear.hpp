@@ -1,8 +1,8 @@
-// Search, form "linear" (the paper's fastest): the next guess is where straight lines from the present guess would
-// touch, or else their closest approach; the move is halved while |f| grows or the particles recede there.
+// Search, form "linear" (the paper's fastest): the next guess is the contact of straight lines from the current guess,
+// or else their closest approach; the move is halved while |f| grows or the particles recede there.
 //
-// It can miss a contact, most often in this way: where a closest approach turns out to lie farther off than d² = 2 R²,
-// the form "full" ends, though straight lines from there may well lead to a contact. The test is made on the distance
+// It can miss a contact, most often because the form "full" ends at a closest approach with d² > 2 R², although
+// straight lines from there may lead to a contact. The test uses the distance
 // reached by the move. Of random pairs that touch within a step of 0.1 orbit at relative speeds of about 1, 3 and 10 rΩ
 // this form loses 0.4, 0.4 and 9.5 %, like the published code (up to 11 %). Tested on the distance before the move, it
 // would lose 2.5, 17 and 45 %; without the test, 0.4, 0.01 and 0 %.
@@ -13,7 +13,7 @@
 
 namespace keeler {
 
-/// The published code differs a little between the two motions that it searches in this way.
+/// The published code differs slightly between the two motions with this search.
 enum class LinearForm { full, cubic };
 
 template<LinearForm form> struct LinearSearch {

@@ -1,10 +1,10 @@
-// Search, form "Newton": f = |d|² − R² is followed along its tangent, in three forms of the published code:
+// Search, form "Newton": follows f = |d|² − R² along its tangent, in three forms of the published code:
 //   original   steps of half length, halved again while |f| grows
 //   damped     full steps, halved while |f| grows or the particles recede: the paper's method
-//   as_coded   the same, but the first trial of each step is evaluated where the step begins, not where it ends. That
-//              one is hardly ever worse, so steps are hardly ever damped. The code was published in this form.
-// In all three the guess that was accepted is evaluated once more, as there: it is part of the time that the paper
-// measured. None but the original asks whether the particles approach at the root.
+//   as_coded   damped, but the first trial of each step is evaluated at the begin of the step, not at its end. It is
+//              hardly ever worse there, so steps are hardly ever damped. The code was published in this form.
+// As in that code, all three evaluate the accepted guess once more: it is part of the time that the paper measured.
+// Only the original checks whether the particles approach at the root.
 #pragma once
 
 #include <keeler/finders/finder.hpp>
@@ -55,7 +55,7 @@ FinderResult NewtonSearch<form>::find(Motion& motion, const Pair& pair) {
   return leave(result, PublishedExit::iterations);
 }
 
-/// One pass; false when it ends the search.
+/// Makes one pass; false if it ends the search.
 template<NewtonForm form>
 template<class Motion>
 bool NewtonSearch<form>::step(Motion& motion, const Pair& pair, double& guess, Separation& now, FinderResult& result) {
@@ -84,13 +84,13 @@ bool NewtonSearch<form>::step(Motion& motion, const Pair& pair, double& guess, S
   return !out_of_range(guess, pair, result);
 }
 
-/// From the root where the particles part, by halves towards the start of the span, to where they still approach.
+/// Moves from a root where the particles recede, by halves towards the start of the span, to where they still approach.
 template<NewtonForm form>
 template<class Motion>
 bool NewtonSearch<form>::back_to_approach(Motion& motion, const Pair& pair, double& guess, Separation& now,
                                           FinderResult& result) {
-  constexpr int most = 64; // then the guess no longer moves
-  for (int k = 0; k < most && now.closing() > 0.0; ++k) {
+  constexpr int max_halvings = 64; // the guess no longer moves
+  for (int k = 0; k < max_halvings && now.closing() > 0.0; ++k) {
     guess = 0.5 * (guess + pair.start);
     now = motion.at(guess);
     ++result.evaluations;

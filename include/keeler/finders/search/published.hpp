@@ -1,11 +1,11 @@
-// What the finders of the published code (M. C. Lewis, HardSphereCollSims, 2023) have in common: its constants and its
-// exit codes, in one place. Its answers are kept, with these exceptions, each because Keeler asks a pair again that has
-// just collided, which that code does not:
-//   - a pair that overlaps and recedes is receding for every finder (there, linear-full calls it an event);
+// Common parts of the finders of the published code (M. C. Lewis, HardSphereCollSims, 2023): its constants and its exit
+// codes. Its results are kept, with these exceptions, each because Keeler searches again after a pair has just
+// collided, which that code does not:
+//   - a pair that overlaps and recedes is receding for every finder (there, linear-full reports an event);
 //   - relative rest (f′ = 0) is receding, not a first guess at infinity;
-//   - an event for an overlapping pair that would fall behind the end of the step is at the start of the span.
-// Its costs are not all the same: there the original's trials need no velocities (six sines and cosines, here eight),
-// linear-cubic evaluates each accepted guess once more, and both cubic ones work on two cubics, not on their
+//   - an event for an overlapping pair beyond the end of the step is moved to the start of the span.
+// Its costs differ in some respects: there the original's trials need no velocities (six sines and cosines, here
+// eight), linear-cubic evaluates each accepted guess once more, and both cubic ones use two cubics, not their
 // difference.
 #pragma once
 
@@ -19,16 +19,16 @@ struct Published {
   static constexpr double convergence = 1e-8;  ///< a root has |d² − R²| below this many R²
   static constexpr int iterations = 50;        ///< passes of the loop
   static constexpr int halvings = 15;          ///< of one step
-  static constexpr double farthest = 5.0;      ///< steps: how far a guess may lie from the step's start
-  static constexpr double min_move = 1e-8;     ///< steps: a shorter move to a closest approach is none
+  static constexpr double farthest = 5.0;      ///< steps: largest distance of a guess from the step's start
+  static constexpr double min_move = 1e-8;     ///< steps: a shorter move to a closest approach counts as none
   static constexpr int closest_moves = 25;     ///< moves to a closest approach in one search
   static constexpr double hopeless = 2.0;      ///< R²: a closest approach with a larger d² ends linear-full
-  static constexpr double overlap_step = 1e-4; ///< steps after the start of the span: the event of an overlapping pair
-  static constexpr double overlap_radius = 1e-3; ///< linear-full later in a step: the time in which this many of the
-                                                 ///< smaller radius are covered
+  static constexpr double overlap_step = 1e-4; ///< steps from the start of the span to the event of an overlapping pair
+  static constexpr double overlap_radius = 1e-3; ///< linear-full later in a step: as the time to cover this fraction of
+                                                 ///< the smaller radius
 };
 
-/// The codes with which its finders return.
+/// The exit codes of its finders.
 enum class PublishedExit {
   root = 0,
   iterations = 1, ///< fifty passes
@@ -38,15 +38,15 @@ enum class PublishedExit {
   too_early = 5,    ///< guess before −5 h
   too_late = 6,     ///< guess after 5 h
   halvings = 7,     ///< fifteen of one step
-  no_movement = 8,  ///< towards a closest approach; or a closest approach too far to hope for
+  no_movement = 8,  ///< towards a closest approach; or a closest approach beyond `hopeless`
   closest_moves = 9 ///< too many of them
 };
 
-/// Codes 5, 6 and 8 are the finder's own decision that there is no contact; 1, 7 and 9 decide nothing.
+/// Codes 5, 6 and 8 are the finder's decision that there is no contact; 1, 7 and 9 decide nothing.
 constexpr FinderExit exit_of(PublishedExit code) {
   switch (code) {
   case PublishedExit::root:
-    return FinderExit::hit; // `outside` when its time is not in the span: see MotionSearch
+    return FinderExit::hit; // `outside` if its time is not in the span: see MotionSearch
   case PublishedExit::overlapping_receding:
   case PublishedExit::receding:
     return FinderExit::receding;
@@ -75,14 +75,14 @@ inline FinderResult& not_a_number(FinderResult& result) {
   return result;
 }
 
-/// The event of an overlapping pair: `delay` after the start of the span, or at once where that is past its end.
+/// Reports the event of an overlapping pair: `delay` after the start of the span, or at once if that is past its end.
 inline FinderResult& overlap(FinderResult& result, const Pair& pair, double delay) {
   const double time = pair.start + delay;
   result.time = time < pair.end ? time : pair.start;
   return leave(result, PublishedExit::overlapping);
 }
 
-/// Whether |d² − R²| is as small as a root's.
+/// True if |d² − R²| is within the tolerance of a root.
 inline bool is_root(const Separation& s, double radius_sum) {
   return std::fabs(s.gap(radius_sum)) < Published::convergence * radius_sum * radius_sum;
 }
@@ -101,12 +101,12 @@ bool damp(Motion& motion, double guess, double& step, Separation& trial, FinderR
   return true;
 }
 
-/// A step so long that no number of halvings allowed brings it back in range: its sine would mean nothing.
+/// True if the step is so long that the allowed halvings cannot bring it back in range: its sine would be meaningless.
 inline bool leads_nowhere(double step, const Pair& pair) {
   return !(std::fabs(step) < std::ldexp(2.0 * Published::farthest * pair.step, Published::halvings));
 }
 
-/// Whether a guess, or the step to one, has left the range; the result is then complete.
+/// True if a guess is out of range; the result is then complete.
 inline bool out_of_range(double guess, const Pair& pair, FinderResult& result) {
   const double since_begin = guess - (pair.end - pair.step), range = Published::farthest * pair.step;
   if (std::fabs(since_begin) <= range)
