@@ -39,8 +39,8 @@ template<class Call> auto checked(const std::string& what, const Call& call) {
 /// Returns a name that no other open file has: HDF5 treats two files of equal name as one.
 std::string fresh_name();
 
-/// Throws std::bad_alloc unless `bytes` and a reserve for HDF5 itself can be allocated: some HDF5 versions crash when
-/// an allocation fails.
+/// Throws std::bad_alloc unless `bytes` and a reserve for HDF5 itself can be allocated: HDF5 may crash when an
+/// allocation fails.
 void require_memory(std::size_t bytes = 0);
 
 /// Returns the creation properties of a class of objects. Without time stamps, equal content gives equal bytes.

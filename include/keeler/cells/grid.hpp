@@ -24,8 +24,7 @@ public:
     visit_cells<true>(point, reach_x, reach_y, visit);
   }
 
-  /// Calls visit(j, image) for all points in the cells that the window intersects: a superset of visit_near(),
-  /// untested.
+  /// Calls visit(j, image) for all points in the cells that the window intersects: a superset of visit_near().
   template<class Visit>
   void visit_touched_cells(const Vec3& point, double reach_x, double reach_y, const Visit& visit) const {
     visit_cells<false>(point, reach_x, reach_y, visit);

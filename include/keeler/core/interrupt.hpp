@@ -1,7 +1,7 @@
 // Cancellation of long work, such as the generation of a state or a step that takes too long.
 //
-// The caller of such work sets a flag for the duration of the call (Interruptible). When another thread or a signal
-// handler raises the flag, parallel loops (threads.hpp), and other loops that check it, throw Interrupted. Data that
+// The caller of such work registers a flag for its duration (Interruptible). When another thread or a signal handler
+// raises the flag, parallel loops (threads.hpp), and other loops that check it, throw Interrupted. Data that
 // the work was changing is then incomplete and must not be used.
 #pragma once
 

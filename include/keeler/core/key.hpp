@@ -56,8 +56,7 @@ struct Key {
   KeyCondition only_with{};
   std::vector<std::string> columns{}; ///< of rows: meaning and unit of each column
   KeyEffect effect = KeyEffect::motion;
-  std::string
-      unhashed{}; ///< TOML; this value does not enter the state hash: scenes from before the key existed keep theirs
+  std::string unhashed{}; ///< TOML; this value is not hashed: scenes older than the key keep their state hash
 
   std::string section() const { return path.substr(0, path.rfind('.') == std::string::npos ? 0 : path.rfind('.')); }
   std::string name() const { return path.substr(path.rfind('.') == std::string::npos ? 0 : path.rfind('.') + 1); }

@@ -17,9 +17,8 @@ double available_memory();
 /// available; REMEDY".
 void require_memory(double bytes, const std::string& what, const std::string& remedy);
 
-/// Converts a count, computed from user input, to a size: rounds down, and throws as require_memory() if it is
-/// negative, NaN, or memory is missing for that many items of `bytes_each`. `what` names the items. Precondition:
-/// bytes_each >= 0.
+/// Converts a count, computed from user input, to a size: rounds down, and throws as require_memory() if it is negative
+/// or NaN, or memory is missing for so many items of `bytes_each` (>= 0). `what` names the items.
 std::size_t affordable_size(double count, double bytes_each, const std::string& what, const std::string& remedy);
 
 } // namespace keeler

@@ -8,14 +8,12 @@
 
 namespace keeler {
 
-/// Owns a file descriptor. Every member throws IoError "cannot VERB 'FILE': reason"; DiskFullError when the disk is
-/// full.
+/// Owns a file descriptor. Every member throws IoError "cannot VERB 'FILE': reason"; DiskFullError on a full disk.
 class Descriptor {
 public:
   /// `flags` as for open(2).
   Descriptor(const std::filesystem::path& file, int flags);
-  /// Owns `number`, which open(2) or a similar call has just returned; throws by errno if it is below 0. Messages name
-  /// the file.
+  /// Owns `number`, the result of open(2) or a similar call; throws by errno if it is below 0. Messages name `file`.
   Descriptor(int number, const std::filesystem::path& file);
   ~Descriptor();
   Descriptor(Descriptor&& other) noexcept;

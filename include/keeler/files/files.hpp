@@ -20,8 +20,7 @@ void write_file(const std::filesystem::path& file, std::span<const std::byte> co
 /// Writes a text as write_file() does.
 void write_text(const std::filesystem::path& file, std::string_view text);
 
-/// Throws IoError, naming `output`, unless `folder` is a writable folder. Call it before long work that writes
-/// `output`.
+/// Throws IoError, naming `output`, unless `folder` is a writable folder. Call it before long work for `output`.
 void require_writable_folder(const std::filesystem::path& folder, const std::filesystem::path& output);
 
 /// Returns all bytes of a file. Throws IoError, also when they do not fit into memory; Interrupted while it waits for a

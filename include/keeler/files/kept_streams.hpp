@@ -21,8 +21,7 @@ public:
 /// True for a pipe or a device, which can be read only once.
 bool reads_once(const std::filesystem::path& file);
 
-/// Opens a file for random access. A pipe or a device is first read to its end, into memory. Throws IoError,
-/// Interrupted.
+/// Opens a file for random access; reads a pipe or a device to its end first. Throws IoError, Interrupted.
 std::shared_ptr<Descriptor> open_anywhere(const std::filesystem::path& file);
 
 } // namespace keeler

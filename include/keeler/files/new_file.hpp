@@ -16,8 +16,7 @@
 
 namespace keeler {
 
-/// Returns the descriptor of this process to which a name refers, through any links: 1 for /dev/stdout, 3 for
-/// /dev/fd/3.
+/// Returns the descriptor of this process that a name refers to, through any links: 1 for /dev/stdout, 3 for /dev/fd/3.
 std::optional<int> descriptor_named(const std::filesystem::path& name);
 
 /// True if the name refers to a stream.
