@@ -35,7 +35,7 @@ bool is_stop(const ChildEnd& end) {
   return end.code == static_cast<int>(ExitCode::stopped);
 }
 
-// Returns a path as an argument; one that begins with a dash must not refresh like an option.
+// Returns a path as an argument; one that begins with a dash must not look like an option.
 std::string argument_of(const fs::path& path) {
   const std::string text = path.string();
   return text.starts_with('-') ? "./" + text : text;

@@ -16,8 +16,7 @@ namespace keeler {
 
 class ParticleView {
 public:
-  /// Encodes at most this many particles per snapshot, with equal ids in all snapshots. Precondition: max_particles >
-  /// 0.
+  /// Encodes at most `max_particles` (> 0) particles per snapshot, with equal ids in all snapshots.
   explicit ParticleView(std::size_t max_particles) : max_particles_(max_particles) { assert(max_particles > 0); }
 
   /// Adds a snapshot; call it for the snapshots of one run, oldest first. Throws IoError if the number of particles

@@ -43,7 +43,7 @@ using Json = nlohmann::ordered_json;
 
 // Limits that keep a page small: number of pictures, their widths (pixels) and sizes (bytes).
 constexpr std::size_t max_pictures = 4;
-constexpr int picture_width = 1200, earlier_picture_width = 600, min_picture_width = 300;
+constexpr int picture_width = 1200, earlier_picture_width = 600, min_embedded_width = 300;
 constexpr std::size_t picture_bytes = 1'600'000, earlier_picture_bytes = 430'000;
 
 // Particles measured, over all snapshots: limits the time that a page of large patches takes.
@@ -90,10 +90,10 @@ bool has_plots() {
 std::vector<std::byte> picture_within(std::size_t bytes, const Patch& patch, PictureOptions& look) {
   for (;;) {
     std::vector<std::byte> png = patch_png(patch, look);
-    if (png.size() <= bytes || look.width <= min_picture_width)
+    if (png.size() <= bytes || look.width <= min_embedded_width)
       return png;
     const double factor = 0.95 * std::sqrt(static_cast<double>(bytes) / static_cast<double>(png.size()));
-    look.width = std::max(min_picture_width, static_cast<int>(factor * look.width));
+    look.width = std::max(min_embedded_width, static_cast<int>(factor * look.width));
   }
 }
 

@@ -119,7 +119,7 @@ SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
     write_text(folders.path() / "grid.toml", grid.text);
   }
   if (const std::size_t others = folders.count_other_runs(plan.runs); others > 0)
-    settings.notice(fmt::format("note: {} in '{}' do not belong to this grid; they are kept, and not in the tables",
+    settings.notice(fmt::format("note: {} in '{}' outside this grid (kept, but not in the tables)",
                                 pluralize(others, "run"), (folders.path() / "runs").string()));
   if (!settings.tables_only) {
     result.began = true;
