@@ -169,7 +169,7 @@ refuses "a field that is not there" "'mass' is not a field of a picture; choose 
 refuses "spins of smooth particles" "choose another field" render "$work/taken" -o "$work/none.png" --colour spin
 refuses "a theme that is not there" "--theme" render "$work/taken" -o "$work/none.png" --theme green
 refuses "a picture of no width" "'0' is not a number of pixels" render "$work/taken" -o "$work/none.png" --width 0
-refuses "a movie of a file" "no folder" render "$work/taken/snap_000000.hdf" --movie -o "$work/none.png"
+refuses "a movie of a file" "not a folder" render "$work/taken/snap_000000.hdf" --movie -o "$work/none.png"
 refuses "a movie of another kind" ".mp4 files or animated .png" render "$work/taken" --movie -o "$work/none.gif"
 refuses "a movie and more" "--autocorrelation" render "$work/taken" --movie --autocorrelation -o "$work/none.png"
 mkdir "$work/nothing"
