@@ -47,12 +47,12 @@ GravityChoice choice_for(const StepBenchSettings& settings, const BenchState& st
 
 // Particles are the first rank's; all else each rank has made for itself.
 void require_same_bench(const StepBenchSettings& settings, const BenchState& state, const GravityChoice& choice) {
-  std::vector<Asked> request = {{"--count", fmt::format("{}", settings.count)},
-                                {"--repeats", fmt::format("{}", settings.repeats)},
-                                {"--solver", choice.solver},
-                                {"--kick-every", fmt::format("{}", choice.settings.kick_every)},
-                                {"the solver's settings", choice.text},
-                                {"particles", fmt::format("{}", state.patch.size())}};
+  std::vector<RequestEntry> request = {{"--count", fmt::format("{}", settings.count)},
+                                       {"--repeats", fmt::format("{}", settings.repeats)},
+                                       {"--solver", choice.solver},
+                                       {"--kick-every", fmt::format("{}", choice.settings.kick_every)},
+                                       {"the solver's settings", choice.text},
+                                       {"particles", fmt::format("{}", state.patch.size())}};
   settings.ranks.together([&] {
     for (const KeyInForce& key : keys_in_force(state.scene))
       request.push_back({key.path, key.value});

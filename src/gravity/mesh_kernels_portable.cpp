@@ -1,4 +1,4 @@
-// The mesh solver's kernels for any processor: four lanes, which is what x86-64 (SSE2) and 64-bit ARM both have.
+// The mesh solver's kernels for any processor: four lanes, which both x86-64 (SSE2) and 64-bit ARM have.
 #include "mesh_kernels.hpp"
 
 #define KEELER_KERNEL_SPACE mesh_portable

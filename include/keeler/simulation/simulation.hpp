@@ -133,7 +133,7 @@ private:
 
   // of a run that ranks share (shared.cpp)
   void divide();
-  void require_borders();
+  void require_ghost_layer();
   void collide_distributed();
   Overlap largest_overlap_distributed();
   Slabs::Holding holding();

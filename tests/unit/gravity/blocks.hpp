@@ -30,9 +30,9 @@ inline TargetBlock targets_at(const std::vector<Place>& places) {
 inline SingleTargetBlock in_single(const TargetBlock& from) {
   SingleTargetBlock targets{};
   for (std::size_t k = 0; k < TargetBlock::capacity; ++k) {
-    split_place(from.x[k], targets.x[k], targets.x_low[k]);
-    split_place(from.y[k], targets.y[k], targets.y_low[k]);
-    split_place(from.z[k], targets.z[k], targets.z_low[k]);
+    split_position(from.x[k], targets.x[k], targets.x_low[k]);
+    split_position(from.y[k], targets.y[k], targets.y_low[k]);
+    split_position(from.z[k], targets.z[k], targets.z_low[k]);
     targets.from_x[k] = static_cast<float>(from.x[k]);
     targets.from_y[k] = static_cast<float>(from.y[k]);
     targets.from_z[k] = static_cast<float>(from.z[k]);

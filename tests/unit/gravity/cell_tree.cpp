@@ -143,7 +143,7 @@ TEST_CASE("the tree ends where no split is possible") {
   for (std::size_t k = 0; k < 700; ++k) // each split takes off one particle, until floats end
     input.particles[k].x = std::ldexp(1.0, -static_cast<int>(k % 140));
   const CellTree deep = input.tree();
-  CHECK(deep.cells().size() == 2 * CellTree::deepest + 1);
+  CHECK(deep.cells().size() == 2 * CellTree::max_depth + 1);
 }
 
 } // namespace cell_tree_test
