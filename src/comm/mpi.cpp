@@ -119,7 +119,7 @@ bool another_rank_reports() {
   return another_reports;
 }
 
-// In round k each rank sends to rank + k and receives from rank − k (modulo their number). Long parcels go in pieces.
+// Each rank sends to rank + k and receives from rank − k (modulo their number) in round k. Long parcels go in pieces.
 void Communicator::exchange(const std::vector<std::span<const std::byte>>& sent,
                             const std::function<std::byte*(std::size_t rank, std::size_t size)>& allocate) const {
   assert(sent.size() == size_);

@@ -49,7 +49,7 @@ std::optional<std::string> value_in(const Values& values, const std::string& nam
   return found == values.end() ? std::nullopt : std::optional(found->second);
 }
 
-// Returns the first name whose values differ: in the order of the request, then among names that only the root has.
+// Returns the first name with different values: in the order of the request, then among names that only the root has.
 std::optional<std::string> difference(const std::vector<RequestEntry>& request, const Values& own,
                                       const Values& of_root) {
   for (const RequestEntry& entry : request)

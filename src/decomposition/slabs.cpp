@@ -94,7 +94,7 @@ bool Slabs::is_within(double x, std::size_t rank, double reach) const {
   return is_near(x) || is_near(x - box_.size_x) || is_near(x + box_.size_x);
 }
 
-// Visits the other ranks whose slabs are within `reach` of x. They are consecutive, on both sides of this rank's slab.
+// Visits the other ranks with slabs within `reach` of x. They are consecutive, on both sides of this rank's slab.
 template<class Visit> void Slabs::for_each_within(double x, double reach, const Visit& visit) const {
   const std::size_t count = ranks_.size(), own = ranks_.rank();
   std::size_t up = 1, down = 1;

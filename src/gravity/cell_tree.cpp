@@ -131,8 +131,8 @@ public:
     return moments;
   }
 
-  // Partitions keys [begin, end) from `here` to `there`: those in the lower half of the box first. Returns the end of
-  // the lower half.
+  // Partitions keys [begin, end) from `here` to `there`, the lower half of the box first. Returns the end of the
+  // lower half.
   static std::uint32_t split(const CellBox& box, const Key* here, Key* there, std::uint32_t begin, std::uint32_t end) {
     int axis = 0;
     for (int k = 1; k < 3; ++k)

@@ -19,7 +19,7 @@ constexpr int degree = 14;
 constexpr int node_count = degree + 2; // even: half of them mirror the others
 constexpr double tolerance = 1e-8;
 
-// Returns the rings along the side of length `across` of a box whose other side is `along`: more if the box is long.
+// Returns the rings along the side of length `across` of a box with the other side `along`: more if the box is long.
 int rings_for(int rings, double along, double across) {
   return rings * std::max(1, static_cast<int>(std::ceil(along / across / 1.3)));
 }
@@ -70,7 +70,7 @@ Eigen::MatrixXd to_chebyshev(int highest, int count) {
   return matrix;
 }
 
-// Returns a matrix whose row k has the coefficients of T_k in powers.
+// Returns a matrix; row k has the coefficients of T_k in powers.
 Eigen::MatrixXd chebyshev_in_powers(int highest) {
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(highest + 1, highest + 1);
   rows(0, 0) = 1.0;

@@ -41,7 +41,7 @@ double mesh_bytes(const ShearingBox& box, double spacing, double height, std::si
   return (sizeof(float) + 0.5 * sizeof(std::complex<float>)) * mesh_nodes(box, step, z) + phases;
 }
 
-// The table has errors of equal spheres, a little above those measured in fresh and clumped patches
+// The table has errors of equal spheres, a little above the measured ones in fresh and clumped patches
 // (docs/dev/gravity-fft.md). The factor for other sizes is fitted to the patches there.
 double cut_for(double force_error, double mass_spread) {
   struct Measured {

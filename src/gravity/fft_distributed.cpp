@@ -104,7 +104,7 @@ void FftSolver::Parts::spread_distributed(const Communicator& ranks, const Distr
 
   by_columns.reset({&own.interpolated, 1}, {0, transform.waves()}, shape.planes);
   transform.forward_y(mesh, by_columns);
-  // reuses the mesh's memory, whose values are not needed any more
+  // reuses the mesh's memory: its values are not needed any more
   by_waves.reset(solve.transpose.columns(), own.waves, shape.planes,
                  AlignedArray<std::complex<float>>(mesh.release_memory()));
   solve.transpose.to_waves(by_columns, by_waves, ranks);
@@ -130,7 +130,7 @@ void FftSolver::Parts::accelerate_distributed(const GravityProblem& problem, std
   const DistributedSolve solve = begin_distributed(problem, offset, settings.short_range);
   fill_mesh_distributed(ranks, solve);
 
-  // reuses the memory of by_columns, whose values are not needed any more
+  // reuses the memory of by_columns: its values are not needed any more
   AlignedArray<Vec3> memory(by_columns.release_memory());
   memory.resize_at_least(sorted.count());
   const std::span<Vec3> computed(memory.data(), sorted.count());

@@ -68,7 +68,7 @@ Coefficients most_concentrated(const Quadrature& rule, double band) {
 
 } // namespace
 
-// With Φ(u) = ∫₀ᵘ ψ, the potential of the cloud is Φ(u)/u and its attraction (Φ − u ψ)/u³ times the vector.
+// The potential of the cloud is Φ(u)/u with Φ(u) = ∫₀ᵘ ψ, and its attraction (Φ − u ψ)/u³ times the vector.
 ForceSplit::ForceSplit(double band) {
   const Quadrature rule(40);
   const Coefficients profile = most_concentrated(rule, band);

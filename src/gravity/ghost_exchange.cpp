@@ -41,7 +41,7 @@ void GhostExchange::reserve(std::span<const std::uint64_t> per_column, const Mes
   assigned_from_[own_rank].reserve(sent_to_[own_rank].capacity());
 }
 
-// Packs the particles that other ranks need, and keeps those that this one needs.
+// Packs the particles that other ranks need, and keeps the ones that this rank needs.
 void GhostExchange::pack(std::vector<FoldedParticle>& particles, const TileFinder& find, const MeshPartition& partition,
                          std::size_t own_rank, Buffers& buffers) {
   std::size_t kept = 0;

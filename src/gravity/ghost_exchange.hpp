@@ -4,8 +4,8 @@
 // tiles and computes its acceleration. Other ranks that need the column get a ghost of it. For most particles owner and
 // mesh rank are the same, and they are not sent there.
 //
-// Invariant: owner o lists the particles that it sent to mesh rank m in the order in which m lists those assigned to it
-// and received from o. So results return without indices.
+// Invariant: owner o lists the particles that it sent to mesh rank m in the order in which m lists the assigned
+// particles received from o. So results return without indices.
 #pragma once
 
 #include "mesh_partition.hpp"
@@ -24,8 +24,8 @@ namespace keeler {
 
 class GhostExchange {
 public:
-  /// Sends particles to all ranks that need them. `particles`, on entry those that this rank owns, become all that it
-  /// needs. Precondition: `per_column` counts them per column of tiles. Collective.
+  /// Sends particles to all ranks that need them. `particles` has on entry the particles that this rank owns, on return
+  /// all that it needs. Precondition: `per_column` counts them per column of tiles. Collective.
   GhostExchange(std::vector<FoldedParticle>& particles, std::span<const std::uint64_t> per_column,
                 const TileFinder& find, const MeshPartition& partition, const Communicator& ranks);
 

@@ -3,7 +3,7 @@
 // Lanes are targets: each target adds its sources one by one in the order of the list, so the bits do not depend on the
 // width of the registers. (Only `far_cells` has sources in its lanes, sixteen in every set.) All kernels use + − × and
 // integer operations alone. The reciprocal root starts from integer arithmetic, not from an approximate instruction,
-// since those differ between processors. The source is compiled once per instruction set, with raw pointers and without
+// which would differ between processors. The source is compiled once per instruction set, with raw pointers and without
 // library code: the linker could keep the wide form of an inline function that two files emit, and a processor without
 // these instructions would execute it.
 //

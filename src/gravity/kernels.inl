@@ -166,8 +166,8 @@ inline float sum_of(const Sixteen& v) {
   return (s[0] + s[2]) + (s[1] + s[3]);
 }
 
-// With r from the centre to the cell, adds m r/|r|³, 3 m r r/|r|⁵, 15/2 m r r r/|r|⁷, 35/2 m r r r r/|r|⁹, each the
-// previous one times e = r/|r|² and a factor; and the quadrupole's contributions to the field and its gradient.
+// Adds m r/|r|³, 3 m r r/|r|⁵, 15/2 m r r r/|r|⁷, 35/2 m r r r r/|r|⁹, with r from the centre to the cell: each term is
+// the previous one times e = r/|r|² and a factor. Adds the quadrupole's contributions to the field and its gradient.
 void far_cells(LocalTerms& sums, const FarCells& cells, std::size_t count) {
   Sixteen sum1[3]{}, sum2[6]{}, sum3[10]{}, sum4[15]{};
   for (std::size_t k = 0; k < count; k += FarCells::lanes) {

@@ -3,8 +3,7 @@
 //
 // Ewald's sum for a sheet (e.g. Koyama & Ostriker 2009, ApJ 693, 1316, for the waves' part): near images with their
 // attraction cut off beyond a few split lengths, and the rest as waves e^{ik·r} with the 3-D Gaussian's profile across
-// the plane. The wave k = 0 is the mean sheet, which attracts by 2π/A far above it and not at all along the plane. G
-// = 1.
+// the plane. The wave k = 0 is the mean sheet, which attracts by 2π/A far above it and not along it. Units: G = 1.
 #pragma once
 
 #include <keeler/core/vector.hpp>

@@ -21,8 +21,8 @@ bool transforms_fast(std::size_t n) {
   return n == 1;
 }
 
-// In boxes of a few spacings a particle and its images have nearly equal positions in their cells, and their errors add
-// up: such boxes get finer meshes, which cost almost nothing.
+// A lower limit for boxes of a few spacings, where a particle and its images have nearly equal positions in their cells
+// and their errors add up. It costs almost nothing.
 constexpr std::size_t min_cells = 8;
 
 // Returns the smallest fast number of cells that are at most `spacing` wide.

@@ -36,8 +36,8 @@ std::int64_t column_at(double distance, double size, double width, std::int64_t 
   return static_cast<std::int64_t>(boxes) * columns + std::min(column, columns - 1);
 }
 
-// Returns the columns whose particles a part needs: all that the search for neighbours (near_forces.cpp) can visit,
-// whichever way it rounds.
+// Returns the columns of tiles that a part needs: all that the search for neighbours (near_forces.cpp) can visit, with
+// any rounding.
 TileColumns needed_columns(const MeshPart& part, const Tiling& tiling, double size, double reach) {
   const double width = size * static_cast<double>(tiling.side) / static_cast<double>(tiling.columns);
   const auto columns = static_cast<std::int64_t>(tiling.tile_columns());
@@ -89,7 +89,7 @@ std::vector<MeshPart> make_parts(const MeshShape& shape, const Tiling& tiling, c
   return parts;
 }
 
-// Rotates the parts over the ranks so that most particles stay on their owner's rank: the mesh's origin may move
+// Rotates the parts over the ranks so that most particles stay on their owner: the mesh's origin may move
 // against the owners' slabs. Collective.
 void rotate_to_owners(std::vector<MeshPart>& parts, std::span<const std::uint64_t> own, const Communicator& ranks) {
   std::vector<std::uint64_t> stay(parts.size(), 0); // particles, per rotation

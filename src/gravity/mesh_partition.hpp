@@ -23,8 +23,8 @@ namespace keeler {
 /// The part of the mesh that one rank is assigned. A rank without columns may still have waves.
 struct MeshPart {
   IndexRange assigned;     ///< columns of tiles
-  IndexRange spread;       ///< columns of tiles whose particles spread into its nodes: assigned, and the slab below
-  TileColumns needed;      ///< columns of tiles whose particles it needs: spread, and neighbours of assigned ones
+  IndexRange spread;       ///< columns of tiles with particles that spread into its nodes: assigned, and the slab below
+  TileColumns needed;      ///< columns of tiles with particles that it needs: spread, and neighbours of assigned ones
   IndexRange interpolated; ///< columns of nodes at its particles: assigned, and three ghost columns of the next part
   IndexRange stored;       ///< columns of nodes that its mesh holds
   IndexRange waves;        ///< along y
@@ -36,7 +36,7 @@ inline constexpr double edge_tolerance = 1e-9;
 class MeshPartition {
 public:
   /// Partitions the mesh by the number of this rank's particles per column of tiles. No rank is assigned more than
-  /// twice the mean number of particles or of columns, plus one slab. Most particles stay on their owner's rank.
+  /// twice the mean number of particles or of columns, plus one slab. Most particles stay on their owner.
   /// `reach` is the largest distance of neighbours, m; 0: there are none. Collective.
   MeshPartition(const MeshShape& shape, const Tiling& tiling, const ShearingBox& box, double reach,
                 std::span<const std::uint64_t> particles_per_column, const Communicator& ranks);

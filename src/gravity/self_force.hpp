@@ -4,8 +4,8 @@
 // Ballenegger, Cerdà & Holm 2011, Comput. Phys. Commun. 182, 1919).
 //
 // Along each axis it is s₁ sin 2πt + s₂ sin 4πt, t the position in the cell; the dependence on the other two
-// coordinates and the higher harmonics are 2 % of it. It is that of an infinite mesh: particles in the last columns,
-// whose weights in ghosts go to rows at other phases, keep part of theirs.
+// coordinates and the higher harmonics are 2 % of it. It is that of an infinite mesh: particles in the last columns
+// keep part of theirs, since their weights in ghosts go to rows at other phases.
 #pragma once
 
 #include "force_split.hpp"

@@ -72,7 +72,7 @@ public:
   /// Sorts all particles. Precondition: the offset is folded (images.hpp).
   void sort(const GravityProblem& problem, double offset, const Tiling& tiling);
 
-  /// Sorts a part of the box. Precondition: `particles` are all those in the given columns of tiles. Only tiles in
+  /// Sorts a part of the box. Precondition: `particles` are all particles in these columns of tiles. Only tiles in
   /// these columns may be queried.
   void sort(std::span<const FoldedParticle> particles, const ShearingBox& box, const Tiling& tiling,
             const TileColumns& columns, double mass_unit);
@@ -80,7 +80,7 @@ public:
   const Tiling& tiling() const { return tiling_; }
   std::size_t count() const { return index_.size(); }
 
-  /// Particles of tile t are [first(t), end(t)); those of the next tile of the column follow.
+  /// Particles of tile t are [first(t), end(t)); the next tile of the column follows.
   std::size_t first(std::size_t tile) const {
     assert(local_tile(tile) + 1 < first_.size());
     return first_[local_tile(tile)];

@@ -1,12 +1,12 @@
 // Transpose of the half spectrum over ranks, between the transforms along y and x: by columns, where a rank has all
 // waves of its interpolated columns (mesh_partition.hpp), and by waves, where it has all columns of its waves.
 //
-// Layout by waves: the columns of all parts follow each other, and those of each part begin a block. So what two ranks
+// Layout by waves: the columns of all parts follow each other, and each part begins a block. So what two ranks
 // exchange is a set of whole blocks at a constant stride on one side and one run of them on the other, which MPI sends
 // and receives in place.
 //
 // The three last columns of a part are ghosts, the first ones of the next part. Both ranks transform them; in the
-// layout by waves the later part's values overwrite the ghosts' (HalfSpectrum), so those do not count.
+// layout by waves the later part's values overwrite the ghosts (HalfSpectrum).
 #pragma once
 
 #include "index_range.hpp"

@@ -92,7 +92,7 @@ public:
     return max(here ? 1.0 : 0.0) > 0.0;
   }
 
-  /// Replaces the bytes or the text by those of the root. Precondition: all ranks give the same number of bytes.
+  /// Replaces the bytes or the text by the root's. Precondition: all ranks give equal numbers of bytes.
   void broadcast(std::span<std::byte> bytes) const;
   void broadcast(std::string& text) const;
   template<class Value> Value broadcast(Value value) const {

@@ -2,7 +2,7 @@
 //
 // Slabs cut the box across x. An own particle's reference is its x when the layer was built. Invariant: until the layer
 // is rebuilt, no own particle of any rank moves farther than `margin` from its reference along x. So an own particle
-// can touch only own particles and near ghosts: those whose reference is within two margins and two largest radii of
+// can touch only own particles and near ghosts, which have a reference within two margins and two largest radii of
 // the slab. src/collision/distributed_drift.cpp says what the ghosts farther out are for.
 #pragma once
 

@@ -24,7 +24,7 @@ public:
     std::vector<std::vector<Vec3>*> rows;
   };
 
-  /// How far ghosts reach. It changes the cost and no result.
+  /// The width of the ghost layer. It changes the cost and no result.
   struct Reach {
     double growth = 12.0; ///< margin over the excursion of one step; adapted as the run goes on
     /// Width of the layer beyond the near ghosts, in diameters of the mean sphere: a wrong path rarely spreads through

@@ -1,6 +1,6 @@
 // Radial self-gravity alone: the attraction of the surface density averaged along the orbit, as a thin sheet in the
-// mid-plane. Simulations of viscous overstability use it (Salo & Schmidt 2010; Lehmann, Schmidt & Salo 2017), whose
-// waves are axisymmetric: no wakes form, and ν contains the layer's vertical self-gravity (planet.vertical_ratio).
+// mid-plane. Simulations of viscous overstability use it (Salo & Schmidt 2010; Lehmann, Schmidt & Salo 2017): its
+// waves are axisymmetric, no wakes form, and ν contains the layer's vertical self-gravity (planet.vertical_ratio).
 //
 //   Σ(x) = ⟨Σ⟩ + Σ_n (S_n exp(i k_n x) + c.c.)     k_n = 2π n / L_x, n = 1 … L_x / shortest_wavelength
 //   Φ(x) = −2π G Σ_n (S_n / k_n) exp(i k_n x) + c.c.     g_x = −dΦ/dx

@@ -52,7 +52,7 @@ public:
   virtual GravityEnergy energy(const GravityProblem& problem) = 0;
 };
 
-/// How self-gravity is computed.
+/// The settings of self-gravity.
 struct GravitySettings {
   enum class Solver { direct, tree, fft, mesh, axisymmetric, automatic };
   Solver solver = Solver::tree;

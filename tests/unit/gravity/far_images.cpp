@@ -21,7 +21,7 @@ struct Mass {
 
 } // namespace
 
-TEST_CASE("far images pull as Ewald's sums say, in boxes of any shape, at any offset, thin and thick") {
+TEST_CASE("far images attract as Ewald's sums say, in boxes of any shape, at any offset, thin and thick") {
   for (const ShearingBox& box : {ShearingBox{60.0, 60.0, 1.5, 0.0}, ShearingBox{60.0, 48.0, 1.5, 0.0},
                                  ShearingBox{20.0, 400.0, 1.5, 0.0}, ShearingBox{300.0, 60.0, 1.5, 0.0}})
     for (const double height : {0.0, 0.02, 0.1, 0.4})
@@ -57,7 +57,7 @@ TEST_CASE("far images pull as Ewald's sums say, in boxes of any shape, at any of
       }
 }
 
-TEST_CASE("many bodies feel what each of them does, whatever the instruction set") {
+TEST_CASE("the field of many bodies is the sum of their fields, in all instruction sets") {
   const ClumpedState state = clumped_state(1100, 3, 3.0); // three blocks, the last one not full
   const double offset = folded_offset(state.box, state.offset);
   std::vector<Mass> bodies;
@@ -84,7 +84,7 @@ TEST_CASE("many bodies feel what each of them does, whatever the instruction set
     }
 }
 
-TEST_CASE("a body high above the others feels the far images from the highest place that counts") {
+TEST_CASE("a body high above the others feels the far images from the largest height allowed") {
   const ShearingBox box{50.0, 50.0, 1.5, 0.0};
   const FarImages far(box, 7.0, 1, 1e6);
   const InstructionSet set = choose_instruction_set();

@@ -34,7 +34,7 @@ TEST_CASE("the boxes around the cell lie evenly on both sides of it at any offse
     }
 }
 
-TEST_CASE("any image of a place comes back into the cell as the same place") {
+TEST_CASE("any image of a position is folded back to that position") {
   const double offset = folded_offset(box, 41.5);
   const Vec3 place(40.25, -30.5, 2.0);
   for (const int nx : {-2, 0, 1})
