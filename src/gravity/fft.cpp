@@ -173,7 +173,7 @@ NearForces::Energy FftSolver::Parts::near_energy(const GravityProblem& problem, 
 }
 
 FftSolver::FftSolver(const FftSettings& settings, InstructionSet set) : parts_(std::make_unique<Parts>(settings, set)) {
-  assert(settings.spacing > 0.0 && settings.cut >= 1.0);
+  assert(settings.spacing >= 0.0 && settings.cut >= 1.0);
 }
 
 FftSolver::~FftSolver() = default;
