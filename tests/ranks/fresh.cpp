@@ -97,8 +97,8 @@ TEST_CASE("a fresh start has the bits of one process, and each rank has its part
 
 TEST_CASE("moonlets and aggregates have the bits of one process, at bounds of slabs and inside") {
   const std::string friction = "[collisions.friction]\ntangential_restitution = 0.5\n";
-  for (const char* const place : {"0.0, 3.0, 0.0", "-44.0, 20.0, 1.0", "15.0, -10.0, 0.0"}) {
-    const std::string moonlet = std::string("[[moonlet]]\nplace = [") + place + "]\nradius = 7.0\ndensity = 700.0\n",
+  for (const char* const position : {"0.0, 3.0, 0.0", "-44.0, 20.0, 1.0", "15.0, -10.0, 0.0"}) {
+    const std::string moonlet = std::string("[[moonlet]]\nplace = [") + position + "]\nradius = 7.0\ndensity = 700.0\n",
                       aggregates = "[[particles.aggregate]]\ncount = 80\nplace = [-20.0, -15.0, 0.0]\nspin = 0.5\n"
                                    "[[particles.aggregate]]\ncount = 30\nplace = [30.0, 12.0, 0.0]\nfilling = 0.35\n";
     const Scene scene = scene_with("[90, 60]", "optical_depth = 0.4\n" + equal, aggregates + moonlet + friction);

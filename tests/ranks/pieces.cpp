@@ -177,15 +177,15 @@ TEST_CASE("a checkpoint that ranks write is that of one process, byte by byte, a
     table.scalar("number", number, "1", "the same on all");
     return table;
   };
-  write_checkpoint(folder / "shared.h5", table_of(own), header, launched());
+  write_checkpoint(folder / "distributed.h5", table_of(own), header, launched());
   launched().on_root([&] {
     write_checkpoint(folder / "alone.h5", table_of(whole), header);
-    CHECK(read_file(folder / "shared.h5") == read_file(folder / "alone.h5"));
+    CHECK(read_file(folder / "distributed.h5") == read_file(folder / "alone.h5"));
   });
   Particles read;
   read.rough = true;
   number = 0.0;
-  const Checkpoint checkpoint(folder / "shared.h5", launched());
+  const Checkpoint checkpoint(folder / "distributed.h5", launched());
   CHECK(checkpoint.header().scene == header.scene);
   checkpoint.read(table_of(read));
   CHECK(number == 0.1);
@@ -207,16 +207,16 @@ TEST_CASE("a snapshot whose particles come from all ranks is that of one process
     patch.orbital_frequency = 1.3e-4;
     return patch;
   };
-  std::optional<SnapshotFile> shared;
+  std::optional<SnapshotFile> distributed;
   launched().on_root([&] {
     write_snapshot(folder / "alone.hdf", patch_of(all), meta);
-    shared.emplace(folder / "shared.hdf", patch_of(Particles()), all.size(), true, meta);
+    distributed.emplace(folder / "distributed.hdf", patch_of(Particles()), all.size(), true, meta);
   });
   visit_by_id(part_of(all, launched().rank()), launched(), SnapshotFile::piece,
-              [&](const Particles& piece) { shared->add(patch_of(piece)); });
+              [&](const Particles& piece) { distributed->add(patch_of(piece)); });
   launched().on_root([&] {
-    shared->finish();
-    CHECK(read_file(folder / "shared.hdf") == read_file(folder / "alone.hdf"));
+    distributed->finish();
+    CHECK(read_file(folder / "distributed.hdf") == read_file(folder / "alone.hdf"));
   });
 }
 

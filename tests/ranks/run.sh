@@ -10,9 +10,9 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 # containers of
 transport=(--mca btl 'self,tcp')
 export PMIX_MCA_gds=hash
 
-# shared RANKS THREADS CODE ARGUMENT...: runs the program on RANKS ranks and checks its exit code; output as of runs(),
+# on_ranks RANKS THREADS CODE ARGUMENT...: runs the program on RANKS ranks and checks its exit code; output as of runs(),
 # without the launcher's lines
-shared() {
+on_ranks() {
   local ranks=$1 threads=$2 expected=$3 code=0
   shift 3
   "$mpiexec" -n "$ranks" --oversubscribe --bind-to none "${transport[@]}" -x OMP_NUM_THREADS="$threads" "$keeler" "$@" \
@@ -116,14 +116,14 @@ for name in uniform wakes sizes moonlet; do
   runs 0 run "$work/$name.toml" -o "$work/$name-1"
   for ranks in "2 1" "2 2" "3 1" "4 2" "8 1"; do
     read -r count threads <<<"$ranks"
-    shared "$count" "$threads" 0 run "$work/$name.toml" -o "$work/$name-$count-$threads"
+    on_ranks "$count" "$threads" 0 run "$work/$name.toml" -o "$work/$name-$count-$threads"
     same "$name, $count ranks of $threads threads" "$work/$name-1" "$work/$name-$count-$threads"
   done
 done
 
 # Stopped on 4 ranks, resumed on 3, then on one.
-shared 4 1 0 run "$work/wakes.toml" -o "$work/cut" --set time.end=0.1
-shared 3 1 0 resume "$work/cut" --until 0.16
+on_ranks 4 1 0 run "$work/wakes.toml" -o "$work/cut" --set time.end=0.1
+on_ranks 3 1 0 resume "$work/cut" --until 0.16
 runs 0 resume "$work/cut" --until 0.2
 [ "$(state_hash "$work/cut")" = "$(state_hash "$work/wakes-1")" ] || fail "4, 3, 1 ranks: state_hash differs"
 same_series "4, 3, 1 ranks" "$work/wakes-1" "$work/cut"
@@ -143,15 +143,15 @@ end = 4e-3
 series_every = 2e-3'
 peak() { text peak_memory_mb "$1/summary.json"; }
 runs 0 run "$work/many.toml" -o "$work/many-1"
-shared 4 1 0 run "$work/many.toml" -o "$work/many-4"
+on_ranks 4 1 0 run "$work/many.toml" -o "$work/many-4"
 same "many" "$work/many-1" "$work/many-4"
 (
   ulimit -f 18000 # a checkpoint's second piece does not fit
-  shared 4 1 4 resume "$work/many-4" --until 8e-3
+  on_ranks 4 1 4 resume "$work/many-4" --until 8e-3
   report >/dev/null
 ) || fail "many: a full disk"
 [ "$(find "$work/many-4" -name 'checkpoint_*' | wc -l)" -eq 1 ] || fail "many: a full disk: other checkpoints"
-shared 4 1 0 resume "$work/many-4" --until 8e-3
+on_ranks 4 1 0 resume "$work/many-4" --until 8e-3
 runs 0 resume "$work/many-1" --until 8e-3
 same "many, resumed" "$work/many-1" "$work/many-4"
 awk "BEGIN { exit !($(peak "$work/many-4") < 0.85 * $(peak "$work/many-1")) }" ||
@@ -170,7 +170,7 @@ step = 2e-3
 end = 4e-3
 END
 runs 0 run "$work/from.toml" -o "$work/from-1"
-shared 4 1 0 run "$work/from.toml" -o "$work/from-4"
+on_ranks 4 1 0 run "$work/from.toml" -o "$work/from-4"
 same "a snapshot as start" "$work/from-1" "$work/from-4"
 awk "BEGIN { exit !($(peak "$work/from-4") < 0.75 * $(peak "$work/from-1")) }" ||
   fail "a snapshot as start: the first of 4 ranks took $(peak "$work/from-4") MB, one process $(peak "$work/from-1") MB"
@@ -179,7 +179,7 @@ awk "BEGIN { exit !($(peak "$work/from-4") < 0.75 * $(peak "$work/from-1")) }" |
 refused() { # WORDS ARGUMENT...
   local words=$1
   shift
-  shared 2 1 2 "$@"
+  on_ranks 2 1 2 "$@"
   [ "$(wc -l <"$work/err")" -eq 1 ] || fail "$words: not one line: $(cat "$work/all")"
   grep -qF -- "$words" "$work/err" || fail "no '$words' in: $(cat "$work/err")"
   [ ! -e "$work/none" ] || fail "$words: something was written"
@@ -254,7 +254,7 @@ differ "the content of '/proc/self/cwd/radii.txt'" "run $work/radii.toml -o $wor
 same "own threads and paths" "$work/uniform-1" "$work/mixed"
 
 # A missing start is reported before features that are refused.
-shared 2 1 4 run "$work/wakes.toml" -o "$work/none" --from "$work/absent.hdf" --set gravity.solver=tree
+on_ranks 2 1 4 run "$work/wakes.toml" -o "$work/none" --from "$work/absent.hdf" --set gravity.solver=tree
 grep -qF "start.from names '$work/absent.hdf', which does not exist" "$work/err" || fail "absent: $(cat "$work/err")"
 
 # Two builds do not start one run, in either order.
@@ -270,7 +270,7 @@ for programs in "$other_build : $keeler" "$keeler : $other_build"; do
 done
 
 # A bench prints the gain by ranks and the cost of their communication.
-shared 2 1 0 bench step --count 3000 --solver fft --repeats 1 --json
+on_ranks 2 1 0 bench step --count 3000 --solver fft --repeats 1 --json
 python3 - "$work/out" <<'END' || fail "bench step: $(cat "$work/out")"
 import json, sys
 bench = json.load(open(sys.argv[1]))
@@ -280,15 +280,15 @@ assert 0 < exchange["ns"] < bench["ns_per_particle_step"] and exchange["messages
 END
 
 # A full disk, emulated by a limit on file size: exit 4, and the last checkpoint is good.
-shared 2 1 0 run "$work/wakes.toml" -o "$work/full" --set time.end=0.1
+on_ranks 2 1 0 run "$work/wakes.toml" -o "$work/full" --set time.end=0.1
 (
   ulimit -f 40
-  shared 2 1 4 resume "$work/full" --until 0.198
+  on_ranks 2 1 4 resume "$work/full" --until 0.198
   report >/dev/null
 ) || fail "a full disk"
 [ "$(grep -c '^keeler: ' "$work/err")" -eq 1 ] || fail "a full disk: not one line: $(cat "$work/err")"
 grep -q "free some space, then continue with" "$work/err" || fail "a full disk: $(cat "$work/err")"
-shared 2 1 0 resume "$work/full" --until 0.198
+on_ranks 2 1 0 resume "$work/full" --until 0.198
 same "after a full disk" "$work/wakes-1" "$work/full"
 
 # A rank is killed: all end without success, and the run can be resumed from the last checkpoint.
@@ -303,5 +303,5 @@ pkill -KILL -f -n -- "$keeler run $work/wakes.toml -o $work/killed" || fail "the
 code=0
 wait $launcher || code=$?
 [ "$code" -ne 0 ] || fail "a killed rank: exit 0"
-shared 2 1 0 resume "$work/killed" --until 1
+on_ranks 2 1 0 resume "$work/killed" --until 1
 report

@@ -150,13 +150,13 @@ TEST_CASE("a run from a snapshot has the bits of one process, for any distributi
       std::string text = "[planet]\npreset = \"saturn-a-ring\"\n[start]\nfrom = \"" + file.path() +
                          "\"\n[time]\nstep = 2e-3\nend = 0.1\n";
       const Scene from = parse_scene(text, "test scene", overrides);
-      Simulation alone(from, initial_patch(from)), shared(from, initial_patch(from, {}, launched()), launched()),
+      Simulation alone(from, initial_patch(from)), distributed(from, initial_patch(from, {}, launched()), launched()),
           odd(from, part_of(initial_patch(from)), launched());
       const std::string expected = hash_after(alone, from, 20);
-      CHECK(hash_after(shared, from, 20) == expected);
+      CHECK(hash_after(distributed, from, 20) == expected);
       CHECK(hash_after(odd, from, 20) == expected);
-      CHECK(shared.state().energy.epicyclic == alone.state().energy.epicyclic);
-      CHECK(shared.state().energy.spin == alone.state().energy.spin);
+      CHECK(distributed.state().energy.epicyclic == alone.state().energy.epicyclic);
+      CHECK(distributed.state().energy.spin == alone.state().energy.spin);
       CHECK(scale_of(initial_patch(from, {}, launched()), launched()).particle_count == alone.count());
     }
 }
