@@ -44,7 +44,7 @@ double plain_potential(const ClumpedState& state, int waves) {
   return sum;
 }
 
-// Particles at even spacing, their masses modulated by one wave, at any height and place along the orbit.
+// Particles at even spacing, their masses modulated by one wave, at any height and position along the orbit.
 ClumpedState one_wave(int n, double amplitude) {
   constexpr std::size_t count = 400;
   ClumpedState state;

@@ -12,16 +12,16 @@ namespace keeler_test {
 
 using namespace keeler;
 
-struct Place {
+struct Point {
   double x, y, z;
 };
 
-inline TargetBlock targets_at(const std::vector<Place>& places) {
+inline TargetBlock targets_at(const std::vector<Point>& points) {
   TargetBlock targets{};
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    targets.x[k] = places[k].x;
-    targets.y[k] = places[k].y;
-    targets.z[k] = places[k].z;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    targets.x[k] = points[k].x;
+    targets.y[k] = points[k].y;
+    targets.z[k] = points[k].z;
   }
   return targets;
 }
@@ -40,8 +40,8 @@ inline SingleTargetBlock in_single(const TargetBlock& from) {
   return targets;
 }
 
-inline SingleTargetBlock single_targets_at(const std::vector<Place>& places) {
-  return in_single(targets_at(places));
+inline SingleTargetBlock single_targets_at(const std::vector<Point>& points) {
+  return in_single(targets_at(points));
 }
 
 inline std::vector<SinglePoint> in_single(const std::vector<PointSource>& sources) {
@@ -54,10 +54,10 @@ inline std::vector<SinglePoint> in_single(const std::vector<PointSource>& source
 /// Returns sources within a few units of the origin.
 inline TargetBlock random_targets() {
   RandomStream random(11, RandomPurpose::position, 0);
-  std::vector<Place> places;
+  std::vector<Point> points;
   for (std::size_t k = 0; k < TargetBlock::capacity; ++k)
-    places.push_back({random.normal(), random.normal(), random.normal()});
-  return targets_at(places);
+    points.push_back({random.normal(), random.normal(), random.normal()});
+  return targets_at(points);
 }
 
 inline std::vector<PointSource> random_points(std::size_t count) {

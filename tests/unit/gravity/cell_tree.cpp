@@ -13,18 +13,18 @@ namespace {
 
 struct Input {
   std::vector<PointSource> particles;
-  std::vector<std::uint32_t> places;
+  std::vector<std::uint32_t> indices;
   std::vector<std::uint64_t> ids;
 
   void add(const Vec3& p, double mass, std::uint64_t id) {
-    places.push_back(static_cast<std::uint32_t>(places.size()));
+    indices.push_back(static_cast<std::uint32_t>(indices.size()));
     particles.push_back({p.x(), p.y(), p.z(), mass});
     ids.push_back(id);
   }
 
   CellTree tree() const {
     CellTree tree;
-    tree.build(particles, places, ids);
+    tree.build(particles, indices, ids);
     return tree;
   }
 };
@@ -114,7 +114,7 @@ TEST_CASE("the tree has the given particles, in an order that does not depend on
   for (std::size_t k = 0; k < 2000; ++k) { // 1999 is prime
     const std::size_t from = (k * 1999 + 7) % 2000;
     other.particles.push_back(input.particles[from]);
-    other.places.push_back(input.places[from]);
+    other.indices.push_back(input.indices[from]);
   }
   other.ids = input.ids;
   const CellTree reordered = other.tree();

@@ -32,14 +32,14 @@ TEST_CASE("far images attract as Ewald's sums say, in boxes of any shape, at any
         double error = 0.0, whole = 0.0;
         for (std::uint64_t k = 0; k < 40; ++k) {
           RandomStream random(2, RandomPurpose::position, k);
-          const auto place = [&] {
+          const auto random_mass = [&] {
             Mass m{0.0, 0.0, 0.0, 1.0};
             m.x = (random.uniform() - 0.5) * box.size_x;
             m.y = (random.uniform() - 0.5) * box.size_y;
             m.z = (2.0 * random.uniform() - 1.0) * highest;
             return m;
           };
-          const Mass target = place(), source = place();
+          const Mass target = random_mass(), source = random_mass();
           const std::vector<Vec3> pulls =
               far.attractions<double>(std::vector<Mass>{target, source}, choose_instruction_set());
           const Vec3 exact = far_pull(Lattice(box, offset), near_images(box, offset, {}),

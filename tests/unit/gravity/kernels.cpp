@@ -52,9 +52,9 @@ TEST_CASE("a pair attracts by Newton's law, at any distance and anywhere, in bot
   RandomStream random(13, RandomPurpose::position, 0);
   double worst_double = 0.0, worst_single = 0.0;
   for (int k = 0; k < 2000; ++k) {
-    const Place target = {1e3 * random.normal(), 1e4 * random.normal(), 10.0 * random.normal()};
+    const Point target = {1e3 * random.normal(), 1e4 * random.normal(), 10.0 * random.normal()};
     const double distance = std::pow(10.0, 8.0 * random.uniform() - 3.0); // 1 mm to 100 km
-    const Place source = {target.x + distance * random.normal(), target.y + distance * random.normal(),
+    const Point source = {target.x + distance * random.normal(), target.y + distance * random.normal(),
                           target.z + distance * random.normal()};
     const std::vector<PointSource> sources = {{source.x, source.y, source.z, 0.3}};
     const std::vector<SinglePoint> singles = in_single(sources);
@@ -88,7 +88,7 @@ TEST_CASE("single precision loses nothing over many sources") {
 
 TEST_CASE("a target among the sources does not attract itself, but its neighbours do at any distance") {
   const AttractionKernels kernels = attraction_kernels(InstructionSet::portable);
-  const Place at = {8123.456789, -377.7654321, 3.1415926535};
+  const Point at = {8123.456789, -377.7654321, 3.1415926535};
   const double gap = 1e-5; // m, and thousands away from the origin
   const std::vector<PointSource> sources = {{at.x, at.y, at.z, 1.0}, {at.x + gap, at.y, at.z, 1e-6}};
   const std::vector<SinglePoint> singles = in_single(sources);
