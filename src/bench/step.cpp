@@ -50,12 +50,12 @@ GravityChoice choice_for(const StepBenchSettings& settings, const BenchState& st
 // Throws when the ranks have different requests. Each rank read its command line and made its scene itself; only the
 // particles come from rank 0.
 void require_same_bench(const StepBenchSettings& settings, const BenchState& state, const GravityChoice& choice) {
-  std::vector<Asked> request = {{"--count", fmt::format("{}", settings.count)},
-                                {"--repeats", fmt::format("{}", settings.repeats)},
-                                {"--solver", choice.solver},
-                                {"--kick-every", fmt::format("{}", choice.settings.kick_every)},
-                                {"the solver's settings", choice.text},
-                                {"particles", fmt::format("{}", state.patch.size())}};
+  std::vector<RequestEntry> request = {{"--count", fmt::format("{}", settings.count)},
+                                       {"--repeats", fmt::format("{}", settings.repeats)},
+                                       {"--solver", choice.solver},
+                                       {"--kick-every", fmt::format("{}", choice.settings.kick_every)},
+                                       {"the solver's settings", choice.text},
+                                       {"particles", fmt::format("{}", state.patch.size())}};
   settings.ranks.together([&] {
     for (const KeyInForce& key : keys_in_force(state.scene))
       request.push_back({key.path, key.value});

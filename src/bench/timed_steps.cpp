@@ -116,7 +116,7 @@ ExchangeSplit exchange_since(const ExchangeCosts& before, const Communicator& ra
   const double each_step = 1.0 / (steps * static_cast<double>(ranks.size()));
   const auto total = [&](std::uint64_t number) { return static_cast<double>(ranks.sum(number)) * each_step; };
   const std::uint64_t messages = after.messages - before.messages, bytes = after.bytes - before.bytes;
-  const std::uint64_t common = after.common - before.common;
+  const std::uint64_t common = after.collectives - before.collectives;
   const auto ns = static_cast<std::uint64_t>(1e9 * (after.seconds - before.seconds));
   return {total(ns) / static_cast<double>(count), total(messages), total(bytes), total(common)};
 }

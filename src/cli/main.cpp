@@ -29,7 +29,7 @@ namespace keeler {
 namespace {
 
 int fail(ExitCode code, const std::string& message) {
-  if (!another_rank_speaks())
+  if (!another_rank_reports())
     say(message);
   fail_ranks(code);
   return static_cast<int>(code);

@@ -109,7 +109,7 @@ struct DriftEngine::FollowsOwners : DriftEngine::InPlace {
 // The step at hand of all ranks.
 struct DriftEngine::Sharing {
   DriftEngine& drift;
-  const Borders& borders;
+  const GhostLayer& borders;
   const Communicator& ranks;
   std::vector<Event> first{};
   Parcels told{};               // by own particles, to each rank
@@ -132,7 +132,7 @@ struct DriftEngine::Sharing {
   bool tell() {
     Parcels news(ranks.size());
     for (std::size_t rank = 0; rank < ranks.size(); ++rank)
-      news[rank] = packed(to_tell(borders.lent[rank]));
+      news[rank] = packed(to_tell(borders.sent[rank]));
     const bool is_new = ranks.any(news != told);
     told = news;
     const Parcels from = ranks.exchange(std::move(news));
@@ -205,13 +205,13 @@ void DriftEngine::note_change(std::uint32_t place, double time, const Elements& 
   const Vec3 spin = particles_->rough ? particles_->spins[place] : Vec3::Zero();
   if (so_far_.stamp(place) == 0)
     beginnings_.push_back({place, before, spin});
-  if (borders_->has_copies(place))
+  if (borders_->on_two_ranks(place))
     changes_.push_back({place, time, before, {}, spin, Vec3::Zero()});
   note_path(place, after);
 }
 
 void DriftEngine::note_path(std::uint32_t place, const Elements& path) {
-  strayed_ = strayed_ || (place < borders_->own && !borders_->keeps(place, path, step_));
+  strayed_ = strayed_ || (place < borders_->own && !borders_->within_margin(place, path, step_));
 }
 
 // The same of a step that was carried out in domains.
@@ -220,7 +220,7 @@ void DriftEngine::note_changes_of_domains() {
   std::sort(places.begin(), places.end());
   places.erase(std::unique(places.begin(), places.end()), places.end());
   for (const std::uint32_t place : places) {
-    const bool has_copies = borders_->has_copies(place);
+    const bool has_copies = borders_->on_two_ranks(place);
     const auto changes_before = static_cast<std::ptrdiff_t>(changes_.size());
     Beginning first{place, particles_->bodies[place].elements, Vec3::Zero()};
     optimistic_.visit_changes(place, [&](double time, const Elements& before, const Vec3& spin) { // from the last one
@@ -271,7 +271,7 @@ void DriftEngine::undo_changes() {
   gave_up_ = 0;
 }
 
-bool DriftEngine::collide_distributed(Particles& particles, const Borders& borders, const Communicator& ranks,
+bool DriftEngine::collide_distributed(Particles& particles, const GhostLayer& borders, const Communicator& ranks,
                                       const ShearingBox& box, double offset, CollisionTally& tally) {
   assert(finder().exact() && !(observer_ && observer_->looks_on()) && !audit_);
   counted_ = borders.own;

@@ -36,7 +36,7 @@ void DriftPhase::collide(Particles& particles, const ShearingBox& box, double of
 }
 
 #ifdef KEELER_MPI
-bool DriftPhase::collide_distributed(Particles& particles, const Borders& borders, const Communicator& ranks,
+bool DriftPhase::collide_distributed(Particles& particles, const GhostLayer& borders, const Communicator& ranks,
                                      const ShearingBox& box, double offset, CollisionTally& tally) {
   return engine_->collide_distributed(particles, borders, ranks, box, offset, tally);
 }

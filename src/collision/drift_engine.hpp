@@ -10,7 +10,7 @@
 #include <keeler/collision/neighbour_audit.hpp>
 #include <keeler/comm/communicator.hpp>
 #include <keeler/core/exact_sum.hpp>
-#include <keeler/decomposition/borders.hpp>
+#include <keeler/decomposition/ghost_layer.hpp>
 
 namespace keeler {
 
@@ -22,7 +22,7 @@ public:
   DriftEngine& operator=(const DriftEngine&) = delete;
 
   void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally, bool undisturbed);
-  bool collide_distributed(Particles& particles, const Borders& borders, const Communicator& ranks,
+  bool collide_distributed(Particles& particles, const GhostLayer& borders, const Communicator& ranks,
                            const ShearingBox& box, double offset, CollisionTally& tally);
   DriftCosts costs() const;
 
@@ -118,10 +118,10 @@ private:
   static constexpr std::size_t everybody = ~std::size_t{0};
   std::size_t counted_ = everybody; // particles, the first ones, whose contacts count here
   // of a step that ranks share
-  const Borders* borders_ = nullptr;  // none otherwise
-  std::vector<Beginning> beginnings_; // once each
-  std::vector<PathChange> changes_;   // of particles that two ranks have
-  bool strayed_ = false;              // an own particle, from where the borders are good
+  const GhostLayer* borders_ = nullptr; // none otherwise
+  std::vector<Beginning> beginnings_;   // once each
+  std::vector<PathChange> changes_;     // of particles that two ranks have
+  bool strayed_ = false;                // an own particle, from where the borders are good
   DriftCosts costs_;
 };
 

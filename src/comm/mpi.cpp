@@ -1,4 +1,4 @@
-// Ranks on MPI: the only source that knows of it.
+// The communicator on MPI: the only source file that includes mpi.h.
 #include <keeler/comm/communicator.hpp>
 
 #include <keeler/core/error_at_hand.hpp>
@@ -21,11 +21,11 @@
 namespace keeler {
 namespace {
 
-constexpr std::size_t longest_message = std::size_t{1} << 30; // bytes: MPI counts in int
+constexpr std::size_t max_message = std::size_t{1} << 30; // bytes: MPI counts in int
 
 bool is_launched = false;
-bool all_know = false;       // of the error that ends this rank
-bool another_speaks = false; // of it
+bool error_is_common = false; // all ranks have thrown the error that ends this rank
+bool another_reports = false; // and another rank reports it
 ExchangeCosts costs;
 
 bool has_launcher() {
@@ -35,8 +35,8 @@ bool has_launcher() {
   return false;
 }
 
-void note(std::size_t bytes) {
-  costs.largest = std::max(costs.largest, static_cast<std::uint64_t>(bytes));
+void record_bytes(std::size_t bytes) {
+  costs.max_bytes = std::max(costs.max_bytes, static_cast<std::uint64_t>(bytes));
 }
 
 int as_int(std::size_t number) {
@@ -44,7 +44,7 @@ int as_int(std::size_t number) {
   return static_cast<int>(number);
 }
 
-// Blocks as MPI has them.
+// The MPI data type of some blocks.
 class BlockType {
 public:
   explicit BlockType(const Blocks& blocks) {
@@ -54,7 +54,7 @@ public:
   }
   BlockType(const BlockType&) = delete;
   BlockType& operator=(const BlockType&) = delete;
-  ~BlockType() { MPI_Type_free(&type_); } // what goes on with it ends as it would have
+  ~BlockType() { MPI_Type_free(&type_); } // pending communication that uses it completes normally
 
   MPI_Datatype operator*() const { return type_; }
 
@@ -68,33 +68,34 @@ void copy(const Blocks& from, const Blocks& to) {
     std::memcpy(to.first + k * to.stride, from.first + k * from.stride, from.size);
 }
 
-// Whatever must be the same in all for the same bits.
-std::string build() {
+// Identifies the build: everything that must agree between ranks for results to agree in bits.
+std::string build_id() {
   return fmt::format("{} of {} by {} {}", program_version(), source_commit(), build_compiler(), build_flags());
 }
 
 void require_one_build(const Communicator& ranks) {
-  std::string first = build();
-  ranks.broadcast(first);
+  std::string of_root = build_id();
+  ranks.broadcast(of_root);
   ranks.together([&] {
-    if (first != build())
-      throw UsageError(fmt::format("rank {} runs another build of Keeler ({}) than rank 0 ({}), and would not have the "
-                                   "same bits; start the same program on all machines",
-                                   ranks.rank(), build(), first));
+    if (of_root != build_id())
+      throw UsageError(fmt::format("rank {} runs another build of Keeler ({}) than rank 0 ({}), so that their results "
+                                   "could differ in bits; start the same program on all machines",
+                                   ranks.rank(), build_id(), of_root));
   });
 }
 
 } // namespace
 
 Communicator Communicator::launched() {
+  assert(!is_launched);
   if (!has_launcher())
     return {};
-  int provided = 0, own = 0, count = 1;
+  int provided = 0, rank = 0, size = 1;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
-  MPI_Comm_rank(MPI_COMM_WORLD, &own);
-  MPI_Comm_size(MPI_COMM_WORLD, &count);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &size);
   is_launched = true;
-  const Communicator ranks(static_cast<std::size_t>(own), static_cast<std::size_t>(count));
+  const Communicator ranks(static_cast<std::size_t>(rank), static_cast<std::size_t>(size));
   require_one_build(ranks);
   return ranks;
 }
@@ -109,36 +110,36 @@ void finish_ranks() {
 }
 
 void fail_ranks(ExitCode code) {
-  if (is_launched && !all_know)
+  if (is_launched && !error_is_common)
     MPI_Abort(MPI_COMM_WORLD, static_cast<int>(code));
   finish_ranks();
 }
 
-bool another_rank_speaks() {
-  return another_speaks;
+bool another_rank_reports() {
+  return another_reports;
 }
 
-// Pairs of ranks at equal distances round a ring, so that none waits for more than one other; long parcels in pieces.
+// Each rank sends to rank + k and receives from rank − k (modulo their number) in round k. Long parcels go in pieces.
 void Communicator::exchange(const std::vector<std::span<const std::byte>>& sent,
-                            const std::function<std::byte*(std::size_t rank, std::size_t size)>& room) const {
+                            const std::function<std::byte*(std::size_t rank, std::size_t size)>& allocate) const {
   assert(sent.size() == size_);
   if (!distributed())
     return;
   const Stopwatch watch(costs.seconds);
-  std::vector<std::uint64_t> sizes(size_), from(size_);
-  std::transform(sent.begin(), sent.end(), sizes.begin(), [](const auto& parcel) { return parcel.size(); });
-  MPI_Alltoall(sizes.data(), 1, MPI_UINT64_T, from.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD);
-  for (const auto& bytes : {sizes, from})
-    note(std::accumulate(bytes.begin(), bytes.end(), std::uint64_t{0}) - bytes[rank_]);
+  std::vector<std::uint64_t> sent_sizes(size_), received_sizes(size_);
+  std::transform(sent.begin(), sent.end(), sent_sizes.begin(), [](const auto& parcel) { return parcel.size(); });
+  MPI_Alltoall(sent_sizes.data(), 1, MPI_UINT64_T, received_sizes.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD);
+  for (const auto& sizes : {sent_sizes, received_sizes})
+    record_bytes(std::accumulate(sizes.begin(), sizes.end(), std::uint64_t{0}) - sizes[rank_]);
   std::vector<MPI_Request> requests;
   const auto in_pieces = [&](std::size_t size, const auto& start) {
-    for (std::size_t begin = 0; begin < size; begin += longest_message)
-      start(begin, as_int(std::min(longest_message, size - begin)), &requests.emplace_back());
+    for (std::size_t begin = 0; begin < size; begin += max_message)
+      start(begin, as_int(std::min(max_message, size - begin)), &requests.emplace_back());
   };
   for (std::size_t step = 1; step < size_; ++step) {
     const std::size_t other = (rank_ + size_ - step) % size_;
-    std::byte* const bytes = room(other, from[other]);
-    in_pieces(from[other], [&](std::size_t begin, int size, MPI_Request* request) {
+    std::byte* const bytes = allocate(other, received_sizes[other]);
+    in_pieces(received_sizes[other], [&](std::size_t begin, int size, MPI_Request* request) {
       MPI_Irecv(bytes + begin, size, MPI_BYTE, as_int(other), 0, MPI_COMM_WORLD, request);
     });
   }
@@ -154,6 +155,7 @@ void Communicator::exchange(const std::vector<std::span<const std::byte>>& sent,
 }
 
 Parcels Communicator::exchange(Parcels parcels) const {
+  assert(parcels.size() == size_);
   Parcels received(parcels.size());
   exchange({parcels.begin(), parcels.end()}, [&](std::size_t rank, std::size_t size) {
     received[rank].resize(size);
@@ -185,7 +187,7 @@ void Communicator::exchange(std::span<const Blocks> sent, std::span<const Blocks
     MPI_Isend(blocks.first, 1, *BlockType(blocks), as_int(other), 0, MPI_COMM_WORLD, &requests.emplace_back());
   }
   costs.bytes += bytes_sent;
-  note(std::max(bytes_sent, bytes_received));
+  record_bytes(std::max(bytes_sent, bytes_received));
   copy(sent[rank_], received[rank_]);
   MPI_Waitall(as_int(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
 }
@@ -194,19 +196,20 @@ std::vector<std::byte> Communicator::gather(std::vector<std::byte> bytes) const 
   if (!distributed())
     return bytes;
   const Stopwatch watch(costs.seconds);
-  const int own = as_int(bytes.size());
-  std::vector<int> sizes(is_root() ? size_ : 0), places(sizes.size());
-  MPI_Gather(&own, 1, MPI_INT, sizes.data(), 1, MPI_INT, 0, MPI_COMM_WORLD);
-  std::exclusive_scan(sizes.begin(), sizes.end(), places.begin(), 0);
-  std::vector<std::byte> all(is_root() ? static_cast<std::size_t>(places.back() + sizes.back()) : 0);
-  note(std::max(bytes.size(), all.size()));
-  MPI_Gatherv(bytes.data(), own, MPI_BYTE, all.data(), sizes.data(), places.data(), MPI_BYTE, 0, MPI_COMM_WORLD);
+  const int own_size = as_int(bytes.size());
+  std::vector<int> sizes(is_root() ? size_ : 0), offsets(sizes.size());
+  MPI_Gather(&own_size, 1, MPI_INT, sizes.data(), 1, MPI_INT, 0, MPI_COMM_WORLD);
+  std::exclusive_scan(sizes.begin(), sizes.end(), offsets.begin(), 0);
+  assert(!is_root() || offsets.back() <= std::numeric_limits<int>::max() - sizes.back()); // MPI counts in int
+  std::vector<std::byte> all(is_root() ? static_cast<std::size_t>(offsets.back() + sizes.back()) : 0);
+  record_bytes(std::max(bytes.size(), all.size()));
+  MPI_Gatherv(bytes.data(), own_size, MPI_BYTE, all.data(), sizes.data(), offsets.data(), MPI_BYTE, 0, MPI_COMM_WORLD);
   return all;
 }
 
 void Communicator::sum(std::span<std::uint64_t> numbers) const {
   const Stopwatch watch(costs.seconds);
-  ++costs.common;
+  ++costs.collectives;
   if (distributed())
     MPI_Allreduce(MPI_IN_PLACE, numbers.data(), as_int(numbers.size()), MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
 }
@@ -216,21 +219,23 @@ void Communicator::merge(std::initializer_list<ExactSum*> sums) const {
     return;
   std::vector<std::uint64_t> words;
   for (const ExactSum* sum : sums) {
-    const std::vector<std::uint64_t> its = sum->words();
-    words.insert(words.end(), its.begin(), its.end());
+    assert(sum != nullptr);
+    const std::vector<std::uint64_t> words_of_sum = sum->words();
+    words.insert(words.end(), words_of_sum.begin(), words_of_sum.end());
   }
   sum(std::span(words));
-  const std::size_t each = words.size() / sums.size();
+  assert(words.size() % sums.size() == 0);
+  const std::size_t words_per_sum = words.size() / sums.size();
   std::size_t begin = 0;
   for (ExactSum* sum : sums) {
-    *sum = ExactSum::of_words(std::span(words).subspan(begin, each));
-    begin += each;
+    *sum = ExactSum::of_words(std::span(words).subspan(begin, words_per_sum));
+    begin += words_per_sum;
   }
 }
 
-double Communicator::largest(double number) const {
+double Communicator::max(double number) const {
   const Stopwatch watch(costs.seconds);
-  ++costs.common;
+  ++costs.collectives;
   if (distributed())
     MPI_Allreduce(MPI_IN_PLACE, &number, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
   return number;
@@ -238,11 +243,10 @@ double Communicator::largest(double number) const {
 
 void Communicator::broadcast(std::span<std::byte> bytes) const {
   const Stopwatch watch(costs.seconds);
-  ++costs.common;
-  note(bytes.size());
-  for (std::size_t begin = 0; distributed() && begin < bytes.size(); begin += longest_message)
-    MPI_Bcast(bytes.data() + begin, as_int(std::min(longest_message, bytes.size() - begin)), MPI_BYTE, 0,
-              MPI_COMM_WORLD);
+  ++costs.collectives;
+  record_bytes(bytes.size());
+  for (std::size_t begin = 0; distributed() && begin < bytes.size(); begin += max_message)
+    MPI_Bcast(bytes.data() + begin, as_int(std::min(max_message, bytes.size() - begin)), MPI_BYTE, 0, MPI_COMM_WORLD);
 }
 
 void Communicator::broadcast(std::string& text) const {
@@ -262,24 +266,23 @@ void Communicator::together(const std::function<void()>& work) const {
     error = error_at_hand();
     thrown = std::current_exception();
   }
-  const auto speaker = static_cast<std::size_t>(least(static_cast<double>(error ? rank_ : size_)));
-  if (speaker == size_)
+  const auto reporter = static_cast<std::size_t>(min(static_cast<double>(error ? rank_ : size_)));
+  if (reporter == size_)
     return;
-  all_know = true;
-  another_speaks = speaker != rank_;
-  // from the speaker to all
-  Parcels parcels(size_);
-  const auto told = [&] { return fmt::format("{:3d}{}", static_cast<int>(error->code()), error->what()); };
-  if (speaker == rank_) {
-    const std::string text = told();
+  error_is_common = true;
+  another_reports = reporter != rank_;
+  Parcels parcels(size_); // the lowest failed rank sends its error to all: three digits of the code, then the text
+  if (reporter == rank_) {
+    const std::string text = fmt::format("{:3d}{}", static_cast<int>(error->code()), error->what());
     const auto bytes = std::as_bytes(std::span(text));
     for (std::vector<std::byte>& parcel : parcels)
       parcel.assign(bytes.begin(), bytes.end());
   }
-  const std::vector<std::byte> heard = exchange(std::move(parcels))[speaker];
-  if (speaker == rank_)
+  const std::vector<std::byte> received = exchange(std::move(parcels))[reporter];
+  if (reporter == rank_)
     std::rethrow_exception(thrown);
-  const std::string text(reinterpret_cast<const char*>(heard.data()), heard.size());
+  assert(received.size() >= 3);
+  const std::string text(reinterpret_cast<const char*>(received.data()), received.size());
   throw Error(static_cast<ExitCode>(std::stoi(text.substr(0, 3))), text.substr(3));
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <map>
 #include <optional>
 
@@ -10,12 +11,15 @@ namespace {
 
 using Values = std::map<std::string, std::string>;
 
-// Names and values end with a byte that neither an argument nor a file's path can hold.
-std::string packed(const std::vector<Asked>& request) {
+// Packs the request into one text. Names and values end with a zero byte, which neither an argument nor a path can
+// contain.
+std::string packed(const std::vector<RequestEntry>& request) {
   std::string text;
-  for (const Asked& asked : request)
-    for (const std::string& part : {asked.name, asked.value})
+  for (const RequestEntry& entry : request)
+    for (const std::string& part : {entry.name, entry.value}) {
+      assert(part.find('\0') == std::string::npos);
       text += part + '\0';
+    }
   return text;
 }
 
@@ -32,12 +36,12 @@ Values unpacked(const std::string& text) {
   return values;
 }
 
-std::string in_words(const std::string& name, const std::optional<std::string>& value) {
-  constexpr std::size_t longest = 100; // a table of radii may be a megabyte
+std::string describe(const std::string& name, const std::optional<std::string>& value) {
+  constexpr std::size_t max_length = 100; // a table of radii may have a megabyte
   if (!value)
     return "no " + name;
-  return value->size() > longest ? fmt::format("{} = {} ...", name, value->substr(0, longest))
-                                 : fmt::format("{} = {}", name, *value);
+  return value->size() > max_length ? fmt::format("{} = {} ...", name, value->substr(0, max_length))
+                                    : fmt::format("{} = {}", name, *value);
 }
 
 std::optional<std::string> value_in(const Values& values, const std::string& name) {
@@ -45,12 +49,13 @@ std::optional<std::string> value_in(const Values& values, const std::string& nam
   return found == values.end() ? std::nullopt : std::optional(found->second);
 }
 
-// The first name, in the order of the request, then of what the first rank alone has, that has another value there.
-std::optional<std::string> difference(const std::vector<Asked>& request, const Values& own, const Values& first) {
-  for (const Asked& asked : request)
-    if (value_in(first, asked.name) != asked.value)
-      return asked.name;
-  for (const auto& [name, value] : first)
+// Returns the first name with different values: in the order of the request, then among names that only the root has.
+std::optional<std::string> difference(const std::vector<RequestEntry>& request, const Values& own,
+                                      const Values& of_root) {
+  for (const RequestEntry& entry : request)
+    if (value_in(of_root, entry.name) != entry.value)
+      return entry.name;
+  for (const auto& [name, value] : of_root)
     if (!own.contains(name))
       return name;
   return std::nullopt;
@@ -58,18 +63,18 @@ std::optional<std::string> difference(const std::vector<Asked>& request, const V
 
 } // namespace
 
-void require_same_request(const std::vector<Asked>& request, const Communicator& ranks) {
+void require_same_request(const std::vector<RequestEntry>& request, const Communicator& ranks) {
   if (!ranks.distributed())
     return;
   std::string text = packed(request);
   ranks.broadcast(text);
   ranks.together([&] {
-    const Values first = unpacked(text), own = unpacked(packed(request));
-    if (const std::optional<std::string> name = difference(request, own, first))
+    const Values of_root = unpacked(text), own = unpacked(packed(request));
+    if (const std::optional<std::string> name = difference(request, own, of_root))
       throw UsageError(
-          fmt::format("rank {} is asked for something else than rank 0: it has {}, and rank 0 has {}; start "
-                      "all ranks with the same command and the same files",
-                      ranks.rank(), in_words(*name, value_in(own, *name)), in_words(*name, value_in(first, *name))));
+          fmt::format("the request of rank {} differs from that of rank 0: it has {}, and rank 0 has {}; start all "
+                      "ranks with the same command and the same files",
+                      ranks.rank(), describe(*name, value_in(own, *name)), describe(*name, value_in(of_root, *name))));
   });
 }
 

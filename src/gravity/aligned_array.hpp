@@ -1,51 +1,55 @@
-// Memory for FFTW and for wide registers: on whole cache lines, which is more than fftw_malloc aligns to and the same
-// for each array, so plans made for one array serve all.
+// Memory for FFTW and for wide registers, aligned to cache lines: stricter than fftw_malloc, and equal for all arrays,
+// so a plan made for one array can be executed on any other.
 #pragma once
 
 #include <cstddef>
 #include <memory>
 #include <new>
+#include <type_traits>
 #include <utility>
 
 namespace keeler {
 
-/// Plain numbers, not initialised. Growing forgets them.
+/// An array of trivial values, not initialised. Growing loses them.
 template<class T> class AlignedArray {
+  static_assert(std::is_trivially_destructible_v<T>);
+
 public:
   AlignedArray() = default;
   AlignedArray(AlignedArray&& other) noexcept
-      : size_(std::exchange(other.size_, 0)), numbers_(std::move(other.numbers_)) {}
+      : size_(std::exchange(other.size_, 0)), values_(std::move(other.values_)) {}
   AlignedArray& operator=(AlignedArray&& other) noexcept {
     size_ = std::exchange(other.size_, 0);
-    numbers_ = std::move(other.numbers_);
+    values_ = std::move(other.values_);
     return *this;
   }
-  /// The memory of numbers of another kind, which are forgotten.
+  /// Takes over the memory of an array of another type; its values are lost.
   template<class Other>
   explicit AlignedArray(AlignedArray<Other>&& other)
       : size_(std::exchange(other.size_, 0) * sizeof(Other) / sizeof(T)),
-        numbers_(reinterpret_cast<T*>(other.numbers_.release())) {}
+        values_(reinterpret_cast<T*>(other.values_.release())) {}
 
+  /// Makes room for `size` values at least.
   void resize_at_least(std::size_t size) {
     if (size <= size_)
       return;
-    numbers_.reset();
+    values_.reset();
     size_ = 0;
-    numbers_.reset(static_cast<T*>(::operator new(size * sizeof(T), line)));
+    values_.reset(static_cast<T*>(::operator new(size * sizeof(T), line)));
     size_ = size;
   }
-  T* data() { return numbers_.get(); }
-  const T* data() const { return numbers_.get(); }
+  T* data() { return values_.get(); }
+  const T* data() const { return values_.get(); }
 
 private:
   struct Free {
-    void operator()(T* numbers) const { ::operator delete(numbers, line); }
+    void operator()(T* values) const { ::operator delete(values, line); }
   };
   static constexpr std::align_val_t line{64};
   template<class Other> friend class AlignedArray;
 
   std::size_t size_ = 0;
-  std::unique_ptr<T, Free> numbers_;
+  std::unique_ptr<T, Free> values_;
 };
 
 } // namespace keeler

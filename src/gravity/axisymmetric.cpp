@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <complex>
 #include <memory>
@@ -21,15 +22,16 @@
 namespace keeler {
 namespace {
 
-// Particles are spread by a B-spline of order 8, and forces read off by the same one, which keeps the momentum. Its
-// transform is divided out twice; what is left is the alias k - nodes of the shortest wave, (1/11)^8 = 5e-9 of it.
-constexpr std::size_t order = 8, nodes_a_wave = 12;
+// A B-spline of order 8 spreads particles and interpolates forces, which conserves momentum. Its transform is divided
+// out twice; the error left is the alias k - nodes of the shortest wave, (1/11)^8 = 5e-9 of it.
+constexpr std::size_t order = 8, nodes_per_wave = 12;
 
 using Weights = std::array<double, order>;
 
-// Of the nodes first … first + 7 for a place between node first + 7 and the next, t of a spacing beyond it (Essmann et
-// al. 1995). That is half a spline too far down; spreading and reading off both are, and it cancels.
+// Returns the weights of nodes first … first + 7 for a position t spacings beyond node first + 7, 0 ≤ t < 1 (Essmann et
+// al. 1995). They are shifted down by half a spline; the shifts of spreading and interpolation cancel.
 Weights spline_weights(double t) {
+  assert(!(t < 0.0) && !(t > 1.0));
   Weights w{};
   w[order - 1] = t;
   w[order - 2] = 1.0 - t;
@@ -37,7 +39,7 @@ Weights spline_weights(double t) {
     const double scale = 1.0 / static_cast<double>(p - 1);
     w[order - p] = scale * (1.0 - t) * w[order - p + 1];
     for (std::size_t j = order - p + 1; j + 1 < order; ++j) {
-      const double from_low = static_cast<double>(order - 1 - j); // spacings of the place beyond node j, less t
+      const double from_low = static_cast<double>(order - 1 - j); // distance from node j in spacings, less t
       w[j] = scale * ((from_low + t) * w[j] + (static_cast<double>(p) - from_low - t) * w[j + 1]);
     }
     w[order - 1] *= scale * t;
@@ -45,22 +47,23 @@ Weights spline_weights(double t) {
   return w;
 }
 
-struct Place {
-  std::size_t first;
+// The nodes of one particle and their weights.
+struct Stencil {
+  std::size_t first; // modulo the number of nodes
   Weights weights;
 };
 
-// Memory and plans of FFTW.
+// Frees memory and plans of FFTW.
 struct Free {
-  void operator()(void* numbers) const { fftw_free(numbers); }
+  void operator()(void* memory) const { fftw_free(memory); }
   void operator()(fftw_plan plan) const { fftw_destroy_plan(plan); }
 };
 template<class T> using Owned = std::unique_ptr<T, Free>;
 
-template<class T> T* there(T* made) {
-  if (made == nullptr)
+template<class T> T* require(T* allocated) {
+  if (allocated == nullptr)
     throw std::bad_alloc();
-  return made;
+  return allocated;
 }
 
 double waves_in(double size_x, double shortest_wavelength) {
@@ -70,12 +73,13 @@ double waves_in(double size_x, double shortest_wavelength) {
 } // namespace
 
 double radial_mesh_nodes(double size_x, double shortest_wavelength) {
-  const double least = std::max(static_cast<double>(nodes_a_wave) * waves_in(size_x, shortest_wavelength), 2.0 * order);
-  return std::exp2(std::ceil(std::log2(least)));
+  const double min_nodes =
+      std::max(static_cast<double>(nodes_per_wave) * waves_in(size_x, shortest_wavelength), 2.0 * order);
+  return std::exp2(std::ceil(std::log2(min_nodes)));
 }
 
 std::string radial_mesh_fault(double size_x, double shortest_wavelength) {
-  constexpr double max_nodes = 0x1p27; // 10⁷ waves, of a metre in the widest box that there is
+  constexpr double max_nodes = 0x1p27; // 10⁷ waves, of 1 m in the widest box allowed
   const double nodes = radial_mesh_nodes(size_x, shortest_wavelength);
   const bool too_long = !(waves_in(size_x, shortest_wavelength) >= 1.0);
   if (!too_long && nodes <= max_nodes)
@@ -86,11 +90,11 @@ std::string radial_mesh_fault(double size_x, double shortest_wavelength) {
   if (too_long)
     return fmt::format("{}longer than the box is wide ({} m: no wave is left); shorten it", begin, width);
   return fmt::format(
-      "{}too short (in a box that is {} m wide it needs a mesh of {} nodes, and {} are the most); raise it", begin,
-      width, format_number(nodes, 3), format_number(max_nodes, 3));
+      "{}too short (in a box that is {} m wide it needs a mesh of {} nodes, and at most {} are allowed); raise it",
+      begin, width, format_number(nodes, 3), format_number(max_nodes, 3));
 }
 
-// The sums, the waves and what FFTW notes for its plans; and a mesh of whole numbers a thread.
+// The sums, the waves and the plans of FFTW; and a mesh of integers per thread.
 double radial_mesh_bytes(double size_x, double shortest_wavelength, int threads) {
   return radial_mesh_nodes(size_x, shortest_wavelength) * (32.0 + 8.0 * threads);
 }
@@ -99,14 +103,14 @@ struct AxisymmetricSolver::Mesh {
   explicit Mesh(double wavelength) : shortest_wavelength(wavelength) {}
 
   void prepare(const ShearingBox& box);
-  Place place_of(double x, double length) const;
+  Stencil stencil_at(double x, double length) const;
   void spread(const GravityProblem& problem);
   void transform(const GravityProblem& problem);
   double spline_transform(std::size_t n) const;
 
   double shortest_wavelength;
   std::size_t modes = 0, nodes = 0;
-  std::vector<std::vector<std::int64_t>> fixed; // a mesh a thread
+  std::vector<std::vector<std::int64_t>> fixed; // per thread: a mesh in fixed point
   Owned<double[]> real;                         // nodes
   Owned<fftw_complex[]> waves;                  // nodes / 2 + 1
   Owned<fftw_plan_s> forward, backward;
@@ -114,44 +118,45 @@ struct AxisymmetricSolver::Mesh {
 
 void AxisymmetricSolver::Mesh::prepare(const ShearingBox& box) {
   const double waves_in_box = waves_in(box.size_x, shortest_wavelength);
+  assert(shortest_wavelength > 0.0 && box.size_x > 0.0);
   if (static_cast<double>(modes) == waves_in_box && modes > 0)
     return;
   if (const std::string fault = radial_mesh_fault(box.size_x, shortest_wavelength); !fault.empty())
     throw UsageError(fault);
-  modes = 0; // until all is there
+  modes = 0; // not valid until all is allocated
   const double nodes_needed = radial_mesh_nodes(box.size_x, shortest_wavelength);
   require_memory(radial_mesh_bytes(box.size_x, shortest_wavelength, threads()),
                  fmt::format("a mesh of {} nodes", format_number(nodes_needed, 4)),
                  "raise gravity.shortest_wavelength");
   nodes = static_cast<std::size_t>(nodes_needed);
-  real.reset(there(fftw_alloc_real(nodes)));
-  waves.reset(there(fftw_alloc_complex(nodes / 2 + 1)));
+  real.reset(require(fftw_alloc_real(nodes)));
+  waves.reset(require(fftw_alloc_complex(nodes / 2 + 1)));
   const auto size = static_cast<int>(nodes);
-  forward.reset(there(fftw_plan_dft_r2c_1d(size, real.get(), waves.get(), FFTW_ESTIMATE)));
-  backward.reset(there(fftw_plan_dft_c2r_1d(size, waves.get(), real.get(), FFTW_ESTIMATE)));
+  forward.reset(require(fftw_plan_dft_r2c_1d(size, real.get(), waves.get(), FFTW_ESTIMATE)));
+  backward.reset(require(fftw_plan_dft_c2r_1d(size, waves.get(), real.get(), FFTW_ESTIMATE)));
   modes = static_cast<std::size_t>(waves_in_box);
 }
 
-Place AxisymmetricSolver::Mesh::place_of(double x, double length) const {
+Stencil AxisymmetricSolver::Mesh::stencil_at(double x, double length) const {
   const double turns = x / length, at = (turns - std::floor(turns)) * static_cast<double>(nodes);
-  const auto node = static_cast<std::size_t>(at); // `nodes` itself where the turns round up to 1
+  const auto node = static_cast<std::size_t>(at); // may be `nodes`, by rounding
   return {node + nodes - (order - 1), spline_weights(at - static_cast<double>(node))};
 }
 
-// In whole numbers, whose sums have no order: the same bits for any threads and any order in memory.
+// Spreads the masses in fixed point: sums of integers have the same bits in any order and on any number of threads.
 void AxisymmetricSolver::Mesh::spread(const GravityProblem& problem) {
   const std::size_t count = problem.positions.size();
-  const double most = *std::max_element(problem.masses.begin(), problem.masses.end()) * static_cast<double>(count);
-  const int exponent = 61 - std::ilogb(most); // no node has more than half of all
+  const double max_total = *std::max_element(problem.masses.begin(), problem.masses.end()) * static_cast<double>(count);
+  const int exponent = 61 - std::ilogb(max_total); // no node has more than half of the total
   const double unit = std::ldexp(1.0, exponent), length = problem.box.size_x;
   fixed.resize(static_cast<std::size_t>(threads()));
   for (std::vector<std::int64_t>& mesh : fixed)
     mesh.assign(nodes, 0);
   parallel_for(count, [&](std::size_t k) {
     std::vector<std::int64_t>& mesh = fixed[static_cast<std::size_t>(omp_get_thread_num())];
-    const Place place = place_of(problem.positions[k].x(), length);
+    const Stencil stencil = stencil_at(problem.positions[k].x(), length);
     for (std::size_t j = 0; j < order; ++j)
-      mesh[(place.first + j) & (nodes - 1)] += std::llrint(problem.masses[k] * unit * place.weights[j]);
+      mesh[(stencil.first + j) & (nodes - 1)] += std::llrint(problem.masses[k] * unit * stencil.weights[j]);
   });
   for (std::size_t i = 0; i < nodes; ++i) {
     std::int64_t sum = 0;
@@ -161,15 +166,17 @@ void AxisymmetricSolver::Mesh::spread(const GravityProblem& problem) {
   }
 }
 
+// Returns the transform of the spline at wave n ≥ 1.
 double AxisymmetricSolver::Mesh::spline_transform(std::size_t n) const {
+  assert(n >= 1 && n <= nodes / 2);
   const double half = pi * static_cast<double>(n) / static_cast<double>(nodes);
   return std::pow(std::sin(half) / half, static_cast<double>(order));
 }
 
-// waves[n] / area becomes S_n, but for the phase of half a spline.
+// Sets waves[n] to S_n × area, up to the phase of half a spline.
 void AxisymmetricSolver::Mesh::transform(const GravityProblem& problem) {
   if (!std::all_of(problem.positions.begin(), problem.positions.end(), [](const Vec3& p) { return p.allFinite(); }))
-    throw InvariantError("a particle stands at no finite place; take a shorter time.step");
+    throw InvariantError("the position of a particle is not finite; take a shorter time.step");
   prepare(problem.box);
   spread(problem);
   fftw_execute(forward.get());
@@ -185,6 +192,7 @@ AxisymmetricSolver::~AxisymmetricSolver() = default;
 
 void AxisymmetricSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) {
   const std::size_t count = problem.positions.size();
+  assert(accelerations.size() == count && problem.masses.size() == count);
   if (count == 0)
     return;
   Mesh& mesh = *mesh_;
@@ -200,15 +208,15 @@ void AxisymmetricSolver::accelerate(const GravityProblem& problem, std::span<Vec
   }
   fftw_execute(mesh.backward.get());
   parallel_for(count, [&](std::size_t k) {
-    const Place place = mesh.place_of(problem.positions[k].x(), problem.box.size_x);
+    const Stencil stencil = mesh.stencil_at(problem.positions[k].x(), problem.box.size_x);
     double g = 0.0;
     for (std::size_t j = 0; j < order; ++j)
-      g += place.weights[j] * mesh.real[(place.first + j) & (mesh.nodes - 1)];
+      g += stencil.weights[j] * mesh.real[(stencil.first + j) & (mesh.nodes - 1)];
     accelerations[k] = Vec3(g, 0.0, 0.0);
   });
 }
 
-// ½ ∫ Σ Φ dA, wave by wave.
+// Sums ½ ∫ Σ Φ dA wave by wave.
 GravityEnergy AxisymmetricSolver::energy(const GravityProblem& problem) {
   if (problem.positions.empty())
     return {};

@@ -6,24 +6,26 @@
 #include <keeler/core/vector.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 namespace keeler {
 namespace {
 
-// A particle on its way down the tree.
-struct Mark {
-  float at[3];
+// The position and index of a particle, sorted in place of it while the tree is built.
+struct Key {
+  float position[3];
   std::uint32_t index;
 };
 
-CellBox tight_box(const Mark* first, const Mark* last) {
-  // all four words at once; the last one is never looked at. Two boxes take turns, or each step would wait for the last
+CellBox tight_box(const Key* first, const Key* last) {
+  // all four words at once; the last one is not used. Two boxes in turns shorten the chain of dependencies
   typedef float Four __attribute__((vector_size(16), may_alias));
-  const auto at = [](const Mark* m) -> const Four& { return *reinterpret_cast<const Four*>(m); };
+  const auto at = [](const Key* m) -> const Four& { return *reinterpret_cast<const Four*>(m); };
   Four low = at(first), high = low, other_low = at(last - 1), other_high = other_low;
-  const Mark* m = first;
+  const Key* m = first;
   for (; m + 1 < last; m += 2) {
     const Four &a = at(m), &b = at(m + 1);
     low = a < low ? a : low;
@@ -44,7 +46,7 @@ struct Moments {
   Vec3 mixed = Vec3::Zero();    // xy, xz, yz
 };
 
-// Adds the quadrupole of a mass at a displacement d from the centre.
+// Adds the quadrupole of a mass at displacement d from the centre.
 void add_quadrupole(Moments& moments, double mass, const Vec3& d) {
   moments.diagonal += mass * (3.0 * d.cwiseProduct(d) - Vec3::Constant(d.squaredNorm()));
   moments.mixed += 3.0 * mass * Vec3(d.x() * d.y(), d.x() * d.z(), d.y() * d.z());
@@ -69,7 +71,7 @@ Moments moments_of(const PointSource* first, const PointSource* last, const Cell
   return moments;
 }
 
-Moments together(const Moments& a, const Moments& b, const CellBox& box) {
+Moments merged(const Moments& a, const Moments& b, const CellBox& box) {
   Moments moments;
   moments.mass = a.mass + b.mass;
   moments.centre = centre_of(moments.mass, a.mass * a.centre + b.mass * b.centre, box);
@@ -80,7 +82,7 @@ Moments together(const Moments& a, const Moments& b, const CellBox& box) {
   return moments;
 }
 
-// A run of cells with what belongs to them.
+// Consecutive cells with their boxes and moments.
 struct Cells {
   std::vector<TreeCell> cells;
   std::vector<CellBox> boxes;
@@ -99,36 +101,39 @@ struct Cells {
   }
 };
 
-// Grows subtrees, and writes the particles of their leaves to where they belong.
-class Grower {
+// Builds subtrees and writes the particles of their leaves to the tree's arrays.
+class SubtreeBuilder {
 public:
-  Grower(std::span<const PointSource> input, std::span<const std::uint32_t> places, std::span<const std::uint64_t> ids,
-         double mass_unit, PointSource* particles, std::uint32_t* order, SinglePoint* points)
-      : input_(input), places_(places), ids_(ids), mass_unit_(mass_unit), particles_(particles), order_(order),
+  SubtreeBuilder(std::span<const PointSource> input, std::span<const std::uint32_t> indices,
+                 std::span<const std::uint64_t> ids, double mass_unit, PointSource* particles, std::uint32_t* order,
+                 SinglePoint* points)
+      : input_(input), indices_(indices), ids_(ids), mass_unit_(mass_unit), particles_(particles), order_(order),
         points_(points) {}
 
-  // Appends the subtree over marks [begin, end), which stand in `here`; `there` is as long, for the partitions.
-  Moments grow(Cells& to, Mark* here, Mark* there, std::uint32_t begin, std::uint32_t end, int depth) const {
+  // Appends the subtree over keys [begin, end). The keys are in `here`; `there` is a buffer of equal length, which
+  // partitions write to. Precondition: begin < end.
+  Moments build(Cells& to, Key* here, Key* there, std::uint32_t begin, std::uint32_t end, int depth) const {
+    assert(begin < end);
     const CellBox box = tight_box(here + begin, here + end);
     const std::size_t cell = open(to, begin, end - begin, box);
     Moments moments;
     const std::uint32_t middle =
-        depth < CellTree::deepest && end - begin > CellTree::leaf_size ? split(box, here, there, begin, end) : begin;
+        depth < CellTree::max_depth && end - begin > CellTree::leaf_size ? split(box, here, there, begin, end) : begin;
     if (middle > begin && middle < end) {
-      const Moments a = grow(to, there, here, begin, middle, depth + 1);
-      const Moments b = grow(to, there, here, middle, end, depth + 1);
-      moments = together(a, b, box);
+      const Moments a = build(to, there, here, begin, middle, depth + 1);
+      const Moments b = build(to, there, here, middle, end, depth + 1);
+      moments = merged(a, b, box);
     } else {
-      settle(here, begin, end);
+      write_leaf(here, begin, end);
       moments = moments_of(particles_ + begin, particles_ + end, box);
     }
     close(to, cell, moments);
     return moments;
   }
 
-  // Copies the marks of the lower half of the box to the front of the same range of `there`, the others behind them.
-  static std::uint32_t split(const CellBox& box, const Mark* here, Mark* there, std::uint32_t begin,
-                             std::uint32_t end) {
+  // Partitions keys [begin, end) from `here` to `there`, the lower half of the box first. Returns the end of the
+  // lower half.
+  static std::uint32_t split(const CellBox& box, const Key* here, Key* there, std::uint32_t begin, std::uint32_t end) {
     int axis = 0;
     for (int k = 1; k < 3; ++k)
       if (box.high[k] - box.low[k] > box.high[axis] - box.low[axis])
@@ -137,8 +142,8 @@ public:
     if (!(middle < box.high[axis])) // neighbouring floats
       middle = box.low[axis];
     std::uint32_t left = begin, right = end;
-    for (const Mark* m = here + begin; m != here + end; ++m) { // without branches: both places, one of them to stay
-      const bool low = m->at[axis] <= middle;
+    for (const Key* m = here + begin; m != here + end; ++m) { // without branches: written to both ends, and kept at one
+      const bool low = m->position[axis] <= middle;
       there[left] = *m;
       there[right - 1] = *m;
       left += low;
@@ -157,15 +162,16 @@ public:
     return to.cells.size() - 1;
   }
 
-  // Writes the moments of a cell whose subtree is all that follows it.
+  // Writes span and moments of a cell. Precondition: its subtree is complete and ends the cells.
   void close(Cells& to, std::size_t index, const Moments& from) const {
+    assert(index < to.cells.size());
     TreeCell& cell = to.cells[index];
     CellMoments& moments = to.moments[index];
     const CellBox& box = to.boxes[index];
     cell.span = static_cast<std::uint32_t>(to.cells.size() - index);
-    split_place(from.centre.x(), cell.x, moments.x_low);
-    split_place(from.centre.y(), cell.y, moments.y_low);
-    split_place(from.centre.z(), cell.z, moments.z_low);
+    split_position(from.centre.x(), cell.x, moments.x_low);
+    split_position(from.centre.y(), cell.y, moments.y_low);
+    split_position(from.centre.z(), cell.z, moments.z_low);
     const float dx = std::max(cell.x - box.low[0], box.high[0] - cell.x);
     const float dy = std::max(cell.y - box.low[1], box.high[1] - cell.y);
     const float dz = std::max(cell.z - box.low[2], box.high[2] - cell.z);
@@ -181,27 +187,28 @@ public:
   }
 
 private:
-  // Puts the particles of a leaf in their order.
-  void settle(Mark* marks, std::uint32_t begin, std::uint32_t end) const {
-    const auto before = [this](const Mark& a, const Mark& b) {
-      return a.at[0] != b.at[0] ? a.at[0] < b.at[0] : ids_[places_[a.index]] < ids_[places_[b.index]];
+  // Sorts the keys of a leaf and writes its particles.
+  void write_leaf(Key* keys, std::uint32_t begin, std::uint32_t end) const {
+    const auto before = [this](const Key& a, const Key& b) {
+      return a.position[0] != b.position[0] ? a.position[0] < b.position[0]
+                                            : ids_[indices_[a.index]] < ids_[indices_[b.index]];
     };
-    for (std::uint32_t k = begin + 1; k < end && end - begin <= 32; ++k) // a few: by insertion
-      for (std::uint32_t j = k; j > begin && before(marks[j], marks[j - 1]); --j)
-        std::swap(marks[j], marks[j - 1]);
+    for (std::uint32_t k = begin + 1; k < end && end - begin <= 32; ++k) // few keys: insertion sort
+      for (std::uint32_t j = k; j > begin && before(keys[j], keys[j - 1]); --j)
+        std::swap(keys[j], keys[j - 1]);
     if (end - begin > 32)
-      std::sort(marks + begin, marks + end, before);
+      std::sort(keys + begin, keys + end, before);
     const double unit = 1.0 / mass_unit_;
     for (std::uint32_t k = begin; k < end; ++k) {
-      const PointSource& p = input_[marks[k].index];
-      order_[k] = places_[marks[k].index];
+      const PointSource& p = input_[keys[k].index];
+      order_[k] = indices_[keys[k].index];
       particles_[k] = p;
       points_[k] = single_point({p.x, p.y, p.z, unit * p.mass});
     }
   }
 
   std::span<const PointSource> input_;
-  std::span<const std::uint32_t> places_;
+  std::span<const std::uint32_t> indices_;
   std::span<const std::uint64_t> ids_;
   double mass_unit_;
   PointSource* particles_;
@@ -209,30 +216,30 @@ private:
   SinglePoint* points_;
 };
 
-// A subtree that one thread grows.
+// A subtree that one thread builds.
 struct Piece {
   std::uint32_t begin, end;
   int depth;
-  bool swapped; // the marks stand in the second buffer
+  bool swapped; // the keys are in the second buffer
   Cells cells = {};
   Moments moments = {};
 };
 
-// Splits the top of the tree down to pieces of at most `largest` particles, left to right.
-void cut(std::vector<Piece>& pieces, Mark* here, Mark* there, std::uint32_t begin, std::uint32_t end, int depth,
-         std::uint32_t largest) {
-  if (end - begin > std::max(largest, CellTree::leaf_size) && depth < CellTree::deepest) {
-    const std::uint32_t middle = Grower::split(tight_box(here + begin, here + end), here, there, begin, end);
+// Splits the top of the tree into pieces of at most `largest` particles, left to right.
+void split_top(std::vector<Piece>& pieces, Key* here, Key* there, std::uint32_t begin, std::uint32_t end, int depth,
+               std::uint32_t largest) {
+  if (end - begin > std::max(largest, CellTree::leaf_size) && depth < CellTree::max_depth) {
+    const std::uint32_t middle = SubtreeBuilder::split(tight_box(here + begin, here + end), here, there, begin, end);
     if (middle > begin && middle < end) {
-      cut(pieces, there, here, begin, middle, depth + 1, largest);
-      cut(pieces, there, here, middle, end, depth + 1, largest);
+      split_top(pieces, there, here, begin, middle, depth + 1, largest);
+      split_top(pieces, there, here, middle, end, depth + 1, largest);
       return;
     }
   }
   pieces.push_back({begin, end, depth, depth % 2 == 1});
 }
 
-CellBox around(const CellBox& a, const CellBox& b) {
+CellBox enclosing(const CellBox& a, const CellBox& b) {
   CellBox box = a;
   for (int k = 0; k < 3; ++k) {
     box.low[k] = std::min(a.low[k], b.low[k]);
@@ -241,33 +248,35 @@ CellBox around(const CellBox& a, const CellBox& b) {
   return box;
 }
 
-// Appends the subtree that starts with `next` at this depth: depths, left to right, tell the shape of a binary tree.
-Moments join(const Grower& grower, Cells& to, std::vector<Piece>::const_iterator& next, int depth) {
+// Appends the subtree that begins with piece `next` at this depth and advances `next` behind it. The depths of the
+// pieces, left to right, define the shape of the binary tree.
+Moments join(const SubtreeBuilder& builder, Cells& to, std::vector<Piece>::const_iterator& next, int depth) {
   if (next->depth == depth) {
     to.append(next->cells);
     return (next++)->moments;
   }
   const std::uint32_t begin = next->begin;
-  const std::size_t here = Grower::open(to, begin, 0, {});
-  const Moments a = join(grower, to, next, depth + 1);
+  const std::size_t here = SubtreeBuilder::open(to, begin, 0, {});
+  const Moments a = join(builder, to, next, depth + 1);
   const std::size_t second = to.cells.size();
-  const Moments b = join(grower, to, next, depth + 1);
-  const CellBox box = around(to.boxes[here + 1], to.boxes[second]);
+  const Moments b = join(builder, to, next, depth + 1);
+  const CellBox box = enclosing(to.boxes[here + 1], to.boxes[second]);
   to.boxes[here] = box;
   TreeCell& cell = to.cells[here];
   cell.count = to.cells[here + 1].count + to.cells[second].count;
   for (int k = 0; k < 3; ++k)
     cell.size = std::max(cell.size, box.high[k] - box.low[k]);
-  const Moments moments = together(a, b, box);
-  grower.close(to, here, moments);
+  const Moments moments = merged(a, b, box);
+  builder.close(to, here, moments);
   return moments;
 }
 
 } // namespace
 
-void CellTree::build(std::span<const PointSource> particles, std::span<const std::uint32_t> places,
+void CellTree::build(std::span<const PointSource> particles, std::span<const std::uint32_t> indices,
                      std::span<const std::uint64_t> ids) {
   const std::size_t count = particles.size();
+  assert(indices.size() == count && count <= std::numeric_limits<std::uint32_t>::max());
   particles_.resize(count);
   order_.resize(count);
   points_.resize(count);
@@ -276,35 +285,36 @@ void CellTree::build(std::span<const PointSource> particles, std::span<const std
   all.boxes.clear();
   all.moments.clear();
   if (count > 0) {
-    const auto marks = std::make_unique_for_overwrite<Mark[]>(count),
-               others = std::make_unique_for_overwrite<Mark[]>(count);
+    const auto keys = std::make_unique_for_overwrite<Key[]>(count),
+               others = std::make_unique_for_overwrite<Key[]>(count);
     parallel_for(count, [&](std::size_t k) {
       const PointSource& p = particles[k];
-      marks[k] = {{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)},
-                  static_cast<std::uint32_t>(k)};
+      keys[k] = {{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)},
+                 static_cast<std::uint32_t>(k)};
     });
     mass_unit_ = 0.0;
     for (const PointSource& p : particles)
       mass_unit_ = std::max(mass_unit_, p.mass);
     if (mass_unit_ == 0.0)
       mass_unit_ = 1.0;
-    // Any bound gives the same tree; this one gives threads enough pieces and each piece enough to do.
+    // any bound gives the same tree; this one makes enough pieces for the threads and enough work per piece
     const auto largest = static_cast<std::uint32_t>(std::max<std::size_t>(512, count / 64));
     std::vector<Piece> pieces;
-    cut(pieces, marks.get(), others.get(), 0, static_cast<std::uint32_t>(count), 0, largest);
-    const Grower grower(particles, places, ids, mass_unit_, particles_.data(), order_.data(), points_.data());
+    split_top(pieces, keys.get(), others.get(), 0, static_cast<std::uint32_t>(count), 0, largest);
+    const SubtreeBuilder builder(particles, indices, ids, mass_unit_, particles_.data(), order_.data(), points_.data());
     parallel_for(
         pieces.size(),
         [&](std::size_t k) {
           Piece& piece = pieces[k];
-          Mark* const here = piece.swapped ? others.get() : marks.get();
-          Mark* const there = piece.swapped ? marks.get() : others.get();
-          piece.cells.reserve((piece.end - piece.begin) / 2); // leaves are half full on the average
-          piece.moments = grower.grow(piece.cells, here, there, piece.begin, piece.end, piece.depth);
+          Key* const here = piece.swapped ? others.get() : keys.get();
+          Key* const there = piece.swapped ? keys.get() : others.get();
+          piece.cells.reserve((piece.end - piece.begin) / 2); // leaves are half full on average
+          piece.moments = builder.build(piece.cells, here, there, piece.begin, piece.end, piece.depth);
         },
         1);
     auto next = pieces.cbegin();
-    join(grower, all, next, 0);
+    join(builder, all, next, 0);
+    assert(next == pieces.cend() && all.cells[0].span == all.cells.size() && all.cells[0].count == count);
   }
   cells_ = std::move(all.cells);
   boxes_ = std::move(all.boxes);

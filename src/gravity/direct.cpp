@@ -8,14 +8,15 @@
 #include <keeler/particles/order.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 
 namespace keeler {
 namespace {
 
-// Particles inside the cell, in the order of their ids.
+// Particles folded into the cell, sorted by id.
 struct Ordered {
-  std::vector<std::uint32_t> order; // indices of the problem
+  std::vector<std::uint32_t> order; // indices in the problem's arrays
   std::vector<PointSource> sources;
 };
 
@@ -29,15 +30,17 @@ Ordered ordered(const GravityProblem& problem, double offset) {
   return result;
 }
 
-// A run of sources as targets.
+// Consecutive sources as targets, at most TargetBlock::capacity.
 struct Targets {
   const PointSource* first;
   std::size_t count;
 };
 
-// Σ m d / |d|³ of all sources and their images; an image at +shift attracts as the cell does a target at −shift.
+// Writes Σ m d / |d|³ over all sources and their images. An image at +shift attracts as the cell does a target at
+// −shift.
 void sum_in_double(Targets targets, const std::vector<Vec3>& shifts, const AttractionKernels& kernels,
                    const std::vector<PointSource>& sources, Vec3* sums) {
+  assert(targets.count <= TargetBlock::capacity);
   TargetBlock block{};
   for (const Vec3& shift : shifts) {
     for (std::size_t k = 0; k < targets.count; ++k) {
@@ -51,7 +54,7 @@ void sum_in_double(Targets targets, const std::vector<Vec3>& shifts, const Attra
     sums[k] = {block.ax[k], block.ay[k], block.az[k]};
 }
 
-// Sources for single precision, with masses in units of the largest.
+// Sources in single precision, masses in units of the largest.
 struct SingleSources {
   std::vector<SinglePoint> points;
   double mass_unit = 0.0;
@@ -67,16 +70,17 @@ SingleSources in_single(const std::vector<PointSource>& sources) {
   return single;
 }
 
-// The same sums in single precision.
+// As sum_in_double(), in single precision.
 void sum_in_single(Targets targets, const std::vector<Vec3>& shifts, const AttractionKernels& kernels,
                    const SingleSources& sources, Vec3* sums) {
+  assert(targets.count <= SingleTargetBlock::capacity);
   SingleTargetBlock block{};
   const PointRange all{0, static_cast<std::uint32_t>(sources.points.size())};
   for (const Vec3& shift : shifts) {
     for (std::size_t k = 0; k < targets.count; ++k) {
-      split_place(targets.first[k].x - shift.x(), block.x[k], block.x_low[k]);
-      split_place(targets.first[k].y - shift.y(), block.y[k], block.y_low[k]);
-      split_place(targets.first[k].z, block.z[k], block.z_low[k]);
+      split_position(targets.first[k].x - shift.x(), block.x[k], block.x_low[k]);
+      split_position(targets.first[k].y - shift.y(), block.y[k], block.y_low[k]);
+      split_position(targets.first[k].z, block.z[k], block.z_low[k]);
     }
     kernels.points_single(block, targets.count, sources.points.data(), &all, 1);
   }
@@ -84,18 +88,18 @@ void sum_in_single(Targets targets, const std::vector<Vec3>& shifts, const Attra
     sums[k] = sources.mass_unit * Vec3(block.ax[k], block.ay[k], block.az[k]);
 }
 
-// Attractions per G of the sources and their near images on some of the sources.
-std::vector<Vec3> near_attractions(const std::vector<PointSource>& sources, std::span<const std::size_t> places,
+// Returns the attraction per G of all sources and their near images on sources[k] for each k in `indices`.
+std::vector<Vec3> near_attractions(const std::vector<PointSource>& sources, std::span<const std::size_t> indices,
                                    const std::vector<Vec3>& shifts, const AttractionKernels& kernels,
                                    Precision precision) {
   const bool single = precision == Precision::single_precision;
   const SingleSources single_sources = single ? in_single(sources) : SingleSources{};
   std::vector<PointSource> targets;
-  for (const std::size_t place : places)
-    targets.push_back(sources[place]);
-  std::vector<Vec3> result(places.size());
+  for (const std::size_t index : indices)
+    targets.push_back(sources[index]);
+  std::vector<Vec3> result(indices.size());
   constexpr std::size_t block_size = TargetBlock::capacity;
-  parallel_for((places.size() + block_size - 1) / block_size,
+  parallel_for((indices.size() + block_size - 1) / block_size,
                [&](std::size_t block) {
                  const std::size_t first = block * block_size;
                  const Targets some{&targets[first], std::min(block_size, targets.size() - first)};
@@ -114,6 +118,7 @@ DirectSolver::DirectSolver(const ImageSettings& images, InstructionSet set, Prec
     : images_(images), set_(set), precision_(precision) {}
 
 void DirectSolver::accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) {
+  assert(accelerations.size() == problem.positions.size());
   std::vector<std::size_t> all(problem.positions.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   const std::vector<Vec3> result = sampled_accelerations(problem, all, images_, set_, precision_);
@@ -122,20 +127,24 @@ void DirectSolver::accelerate(const GravityProblem& problem, std::span<Vec3> acc
 
 std::vector<Vec3> sampled_accelerations(const GravityProblem& problem, std::span<const std::size_t> sample,
                                         const ImageSettings& images, InstructionSet set, Precision precision) {
+  assert(problem.masses.size() == problem.positions.size() && problem.ids.size() == problem.positions.size());
+  assert(!problem.ranks.distributed());
   const double offset = folded_offset(problem.box, problem.offset);
   const auto [order, sources] = ordered(problem, offset);
-  std::vector<std::size_t> place_of(order.size());
+  std::vector<std::size_t> sorted_index(order.size());
   for (std::size_t k = 0; k < order.size(); ++k)
-    place_of[order[k]] = k;
-  std::vector<std::size_t> places;
-  for (const std::size_t k : sample)
-    places.push_back(place_of[k]);
+    sorted_index[order[k]] = k;
+  std::vector<std::size_t> indices;
+  for (const std::size_t k : sample) {
+    assert(k < sorted_index.size());
+    indices.push_back(sorted_index[k]);
+  }
   const ImageSettings all = rings_for_height(images, problem.box, height_of(sources));
   std::vector<Vec3> result =
-      near_attractions(sources, places, near_images(problem.box, offset, all), attraction_kernels(set), precision);
+      near_attractions(sources, indices, near_images(problem.box, offset, all), attraction_kernels(set), precision);
   const std::vector<Vec3> far = far_accelerations<double>(problem, offset, all, sources, set);
   for (std::size_t k = 0; k < result.size(); ++k)
-    result[k] = problem.newton_g * result[k] + far[places[k]];
+    result[k] = problem.newton_g * result[k] + far[indices[k]];
   return result;
 }
 

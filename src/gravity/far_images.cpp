@@ -6,7 +6,9 @@
 #include <keeler/gravity/images.hpp>
 #include <keeler/gravity/near_image_count.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <complex>
 
@@ -17,13 +19,14 @@ constexpr int degree = 14;
 constexpr int node_count = degree + 2; // even: half of them mirror the others
 constexpr double tolerance = 1e-8;
 
-// Rings in a direction across which the box is `across` wide, and `along` the other way.
+// Returns the rings along the side of length `across` of a box with the other side `along`: more if the box is long.
 int rings_for(int rings, double along, double across) {
   return rings * std::max(1, static_cast<int>(std::ceil(along / across / 1.3)));
 }
 
-// The field changes over the distance of the far images: heights small against it need few powers. With one ring the
-// error in the plane is 1e-6 and more; with two or more it is so small that the one in height must be less as well.
+// Returns the degree in z. The field varies over the distance of the far images: heights small against it need few
+// powers. With one ring the error in the plane is 1e-6 and more; with two or more it is smaller, and so must be the one
+// along z.
 int height_degree(int rings, double relative_height) {
   const double height = rings == 1 ? relative_height : 4.0 * relative_height;
   return height < 0.05 ? 2 : height < 0.2 ? 4 : 8;
@@ -36,7 +39,7 @@ PolynomialShape shape_for(int height_degree) {
   return shape;
 }
 
-// Calls visit(a, b, c) for the monomials in their order.
+// Calls visit(a, b, c) for each monomial, in order.
 template<class Visit> void for_each_monomial(const PolynomialShape& shape, const Visit& visit) {
   for (int c = 0; c <= shape.height_degree; ++c)
     for (int b = 0; b <= shape.degree - c; ++b)
@@ -44,21 +47,21 @@ template<class Visit> void for_each_monomial(const PolynomialShape& shape, const
         visit(a, b, c);
 }
 
-// Where each monomial stands.
-using TermPlaces = std::array<std::array<std::array<std::size_t, degree + 1>, degree + 1>, degree + 1>;
+// The index of each monomial x^a y^b z^c at [c][b][a].
+using TermIndices = std::array<std::array<std::array<std::size_t, degree + 1>, degree + 1>, degree + 1>;
 
-TermPlaces places_of(const PolynomialShape& shape) {
-  TermPlaces places{};
+TermIndices indices_of(const PolynomialShape& shape) {
+  TermIndices indices{};
   std::size_t next = 0;
-  for_each_monomial(shape, [&](int a, int b, int c) { places[c][b][a] = next++; });
-  return places;
+  for_each_monomial(shape, [&](int a, int b, int c) { indices[c][b][a] = next++; });
+  return indices;
 }
 
 double chebyshev_node(int k, int count) {
   return std::cos(pi * (k + 0.5) / count);
 }
 
-// Values at the nodes → coefficients of T_0 … T_highest.
+// Returns the matrix from values at the nodes to coefficients of T_0 … T_highest.
 Eigen::MatrixXd to_chebyshev(int highest, int count) {
   Eigen::MatrixXd matrix(highest + 1, count);
   for (int i = 0; i <= highest; ++i)
@@ -67,7 +70,7 @@ Eigen::MatrixXd to_chebyshev(int highest, int count) {
   return matrix;
 }
 
-// Row k: T_k in powers.
+// Returns a matrix; row k has the coefficients of T_k in powers.
 Eigen::MatrixXd chebyshev_in_powers(int highest) {
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(highest + 1, highest + 1);
   rows(0, 0) = 1.0;
@@ -79,7 +82,7 @@ Eigen::MatrixXd chebyshev_in_powers(int highest) {
   return rows;
 }
 
-// The far images' potential on the nodes of one height: all images by Ewald's sums, less the near ones.
+// The far images' potential on the nodes of one height: all images by Ewald's sums, minus the near ones.
 class FarPotential {
 public:
   FarPotential(const ShearingBox& box, double offset, int rings)
@@ -98,7 +101,7 @@ public:
     }
   }
 
-  /// Rows: nodes along x; columns: nodes along y.
+  // Returns the values; rows are nodes along x, columns nodes along y.
   Eigen::MatrixXd at_height(double z) const {
     std::vector<double> amplitudes;
     for (const LatticeWave& wave : lattice_.waves())
@@ -109,9 +112,9 @@ public:
         [&](std::size_t i) {
           const auto row = static_cast<int>(i);
           for (int j = 0; j < node_count; ++j) {
-            const Vec3 place(chebyshev_node(row, node_count) * box_.size_x, chebyshev_node(j, node_count) * box_.size_y,
-                             z);
-            double sum = lattice_.sheet_potential(z) + images_at(place);
+            const Vec3 position(chebyshev_node(row, node_count) * box_.size_x,
+                                chebyshev_node(j, node_count) * box_.size_y, z);
+            double sum = lattice_.sheet_potential(z) + images_at(position);
             for (std::size_t k = 0; k < amplitudes.size(); ++k) {
               const std::complex<double>&u = along_x_[i][k], &v = along_y_[j][k];
               sum += amplitudes[k] * (u.real() * v.real() - u.imag() * v.imag()); // cos(kx x + ky y)
@@ -126,14 +129,15 @@ public:
 private:
   double shortest() const { return std::min(box_.size_x, box_.size_y); }
 
-  double images_at(const Vec3& place) const {
+  // Returns the part of Ewald's sum over images, minus the near images.
+  double images_at(const Vec3& position) const {
     double sum = 0.0;
     const double per_split = 0.5 / lattice_.split_length(), reach = lattice_.reach();
     for (const Vec3& shift : others_)
-      if (const double d = (place - shift).norm(); d < reach)
+      if (const double d = (position - shift).norm(); d < reach)
         sum -= std::erfc(per_split * d) / d;
     for (const Vec3& shift : near_) {
-      const double d = (place - shift).norm();
+      const double d = (position - shift).norm();
       sum += d > reach ? 1.0 / d : d > 0.0 ? std::erf(per_split * d) / d : 2.0 * per_split / std::sqrt(pi);
     }
     return sum;
@@ -148,6 +152,7 @@ private:
 } // namespace
 
 ImageSettings rings_for_height(ImageSettings images, const ShearingBox& box, double height) {
+  assert(height >= 0.0);
   const double halves = std::ceil(2.0 * height / std::min(box.size_x, box.size_y));
   if (images.far)
     images.rings = std::max({1, images.rings, static_cast<int>(std::min<double>(halves, max_rings))});
@@ -174,11 +179,12 @@ Vec3 far_pull(const Lattice& lattice, const std::vector<Vec3>& near, const Vec3&
 }
 
 FarImages::FarImages(const ShearingBox& box, double offset, int rings, double height) {
+  assert(rings >= 1 && height >= 0.0);
   const double highest = 0.5 * rings * std::min(box.size_x, box.size_y);
-  ceiling_ = std::min(height, highest);
-  scale_ = {box.size_x, box.size_y, std::max(2.0 * ceiling_, 0.01 * highest)};
+  max_height_ = std::min(height, highest);
+  scale_ = {box.size_x, box.size_y, std::max(2.0 * max_height_, 0.01 * highest)};
   shape_ = shape_for(height_degree(rings, 0.5 * scale_.z() / highest));
-  const int heights = shape_.height_degree + 2; // even, like the nodes along x
+  const int heights = shape_.height_degree + 2; // even, as along x
   const FarPotential potential(box, offset, rings);
   const Eigen::MatrixXd in_plane = to_chebyshev(degree, node_count),
                         upward = to_chebyshev(shape_.height_degree, heights);
@@ -201,6 +207,7 @@ FarImages::FarImages(const ShearingBox& box, double offset, int rings, double he
       in_powers[p] += powers(c, p) * level;
   }
   for_each_monomial(shape_, [&](int a, int b, int c) { lattice_.push_back(in_powers[c](a, b)); });
+  assert(lattice_.size() == shape_.size);
 }
 
 double FarImages::potential(const Vec3& displacement) const {
@@ -213,9 +220,10 @@ double FarImages::potential(const Vec3& displacement) const {
   return sum;
 }
 
-// A difference's powers by the binomial theorem: (x − x′)^i is the sum of C(i, a) x^a (−x′)^(i−a).
+// Expands the powers of differences by the binomial theorem: (x − x′)^i = Σ_a C(i, a) x^a (−x′)^(i−a).
 FarImages::Coefficients FarImages::potential_of(const Coefficients& moments) const {
-  const TermPlaces places = places_of(shape_);
+  assert(moments.size() == shape_.size);
+  const TermIndices indices = indices_of(shape_);
   std::array<std::array<double, degree + 1>, degree + 1> choose{};
   for (int i = 0; i <= degree; ++i) {
     choose[i][0] = 1.0;
@@ -232,8 +240,8 @@ FarImages::Coefficients FarImages::potential_of(const Coefficients& moments) con
       for (int b = 0; b <= j; ++b)
         for (int a = 0; a <= i; ++a) {
           const double sign = (a + b + c) % 2 != 0 ? -1.0 : 1.0; // of the source's powers, as i + j + k is even
-          result[places[c][b][a]] +=
-              sign * weight * choose[i][a] * choose[j][b] * choose[k][c] * moments[places[k - c][j - b][i - a]];
+          result[indices[c][b][a]] +=
+              sign * weight * choose[i][a] * choose[j][b] * choose[k][c] * moments[indices[k - c][j - b][i - a]];
         }
   });
   return result;

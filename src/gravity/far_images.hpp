@@ -1,13 +1,12 @@
-// All images beyond the near ones, so that near images and far ones together make the exact periodic field
-// (lattice.hpp).
+// All images beyond the near ones, so that near and far images together give the exact periodic field (lattice.hpp).
 //
-// Seen from inside the cell, the potential of a unit mass's far images is a smooth function of the displacement from
-// it. Each solve fits that function by a polynomial in Δx, Δy and Δz (Chebyshev nodes, Ewald's sums), and the
-// polynomial of a difference splits: moments of the bodies, and a polynomial at each target. The cost is the same for
-// any number of images, and forces are equal and opposite to rounding because the function is even.
+// Inside the cell, the potential of a unit mass's far images is a smooth function of the displacement from it. Each
+// solve fits that function by a polynomial in Δx, Δy and Δz (Chebyshev nodes, Ewald's sums). A polynomial of a
+// difference factorises: moments of the bodies, and a polynomial at each target. The cost is independent of the number
+// of images, and forces are equal and opposite to rounding because the function is even.
 //
-// Errors (`test far_images`): some 1e-3 G Σ rms, worst at a shear offset of L_y/2, and much below in long boxes.
-// Heights count up to half the cell's shorter side a ring; a body farther out feels the far images as from there.
+// Errors (`test far_images`): some 1e-3 G Σ rms, worst at a shear offset of L_y/2, and far smaller in long boxes.
+// Heights are clamped to half the cell's shorter side per ring; a body beyond feels the far images as from there.
 #pragma once
 
 #include "far_kernels.hpp"
@@ -19,16 +18,18 @@
 #include <keeler/hill/shearing_box.hpp>
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
 #include <vector>
 
 namespace keeler {
 
-/// The settings with at least one ring, and with more where bodies stand as high as `height` (m) above a plane that is
-/// not much wider: one for each half of the shorter side, up to `most_rings`. Without far images they stay as they are.
+/// Returns the settings with enough rings for bodies at heights up to `height` (m): one per half of the shorter side,
+/// at least 1 and at most max_rings. Settings without far images are returned unchanged.
 ImageSettings rings_for_height(ImageSettings images, const ShearingBox& box, double height);
 inline constexpr int max_rings = 6;
 
-/// The greatest distance of a body from the plane, m.
+/// Returns the largest distance of a body from the mid-plane, m.
 template<class Body> double height_of(const std::vector<Body>& bodies) {
   double height = 0.0;
   for (const Body& body : bodies)
@@ -36,45 +37,47 @@ template<class Body> double height_of(const std::vector<Body>& bodies) {
   return height;
 }
 
-/// Shifts (m) of the images to be summed one by one: the rings asked for; with far images more along the shorter side
-/// of a long box, so that what lies beyond is far from every place in the cell. The offset must be folded (images.hpp).
+/// Returns the shifts (m) of the images to be summed one by one: the rings of the settings; with far images more along
+/// the shorter side of a long box, so that all others are far from every point of the cell. Precondition: the offset is
+/// folded (images.hpp).
 std::vector<Vec3> near_images(const ShearingBox& box, double offset, const ImageSettings& images);
 
 class FarImages {
 public:
-  /// What lies beyond near_images(box, offset, {rings, true}), for bodies no farther than `height` from the plane.
+  /// Fits all images beyond near_images(box, offset, {rings, true}), for bodies at heights up to `height` (m).
   FarImages(const ShearingBox& box, double offset, int rings, double height);
 
-  /// The potential of the far images of a unit mass at a displacement inside (±L_x, ±L_y, ±2 height), G = 1, 1/m, up
-  /// to a constant: the fitted polynomial.
+  /// Returns the fitted polynomial: the potential (1/m, G = 1, up to a constant) of the far images of a unit mass at a
+  /// displacement inside (±L_x, ±L_y, ±2 height).
   double potential(const Vec3& displacement) const;
 
-  /// What the far images of all bodies do to each of them, per G, kg/m², worked out in float or double. Bodies have
-  /// x, y, z inside the cell and a mass.
+  /// Returns the attraction per G (kg/m²) of the far images of all bodies on each of them, computed in float or double.
+  /// Bodies have x, y, z inside the cell and a mass.
   template<class Real, class Body>
   std::vector<Vec3> attractions(const std::vector<Body>& bodies, InstructionSet set) const;
 
 private:
-  using Coefficients = std::vector<double>; // of the monomials of shape_, in its order
+  using Coefficients = std::vector<double>; // of the monomials of shape_, in order
 
   Coefficients potential_of(const Coefficients& moments) const;
   template<class Real, class Body>
   void load(FarBlock<Real>& block, const std::vector<Body>& bodies, std::size_t begin) const;
 
   PolynomialShape shape_;
-  Vec3 scale_;           // the bounds of a displacement, m
-  double ceiling_ = 0.0; // heights are clamped to ± this, m
-  Coefficients lattice_; // potential of a unit mass's far images
+  Vec3 scale_;              // largest displacement along each axis, m
+  double max_height_ = 0.0; // heights are clamped to ± this, m
+  Coefficients lattice_;    // potential of a unit mass's far images
 };
 
 template<class Real, class Body>
 void FarImages::load(FarBlock<Real>& block, const std::vector<Body>& bodies, std::size_t begin) const {
+  assert(begin < bodies.size());
   block.count = std::min(block.capacity, bodies.size() - begin);
   for (std::size_t k = 0; k < block.count; ++k) {
     const Body& body = bodies[begin + k];
     block.x[k] = static_cast<Real>(body.x / scale_.x());
     block.y[k] = static_cast<Real>(body.y / scale_.y());
-    block.z[k] = static_cast<Real>(std::clamp(body.z, -ceiling_, ceiling_) / scale_.z());
+    block.z[k] = static_cast<Real>(std::clamp(body.z, -max_height_, max_height_) / scale_.z());
     block.mass[k] = static_cast<Real>(body.mass);
   }
 }
@@ -113,14 +116,14 @@ std::vector<Vec3> FarImages::attractions(const std::vector<Body>& bodies, Instru
   return result;
 }
 
-/// So few are dealt with pair by pair: a fit costs as much as some hundred exact pulls.
+/// Up to this number bodies are treated pair by pair: a fit costs as much as some hundred exact pairs.
 inline constexpr std::size_t few_bodies = 10;
 
-/// Pull of the far images of a unit mass at a displacement from it, exactly, G = 1, 1/m².
+/// Returns the exact attraction (1/m², G = 1) of the far images of a unit mass at a displacement from it.
 Vec3 far_pull(const Lattice& lattice, const std::vector<Vec3>& near, const Vec3& displacement);
 
-/// What the far images add to the acceleration of each body, m rad^-2; nothing where they do not count. Bodies stand in
-/// an order that depends on the problem alone.
+/// Returns the acceleration (m rad^-2) of each body by the far images; zero if the settings exclude them. Precondition:
+/// the order of the bodies depends on the problem alone.
 template<class Real, class Body>
 std::vector<Vec3> far_accelerations(const GravityProblem& problem, double offset, const ImageSettings& images,
                                     const std::vector<Body>& bodies, InstructionSet set) {

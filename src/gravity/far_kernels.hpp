@@ -1,5 +1,6 @@
-// Inner loops of the far images: moments of bodies, and slopes of a polynomial at bodies, compiled once for each
-// instruction set. As many sums side by side whatever the registers, so that they have the same bits.
+// Inner loops of the far images: moments of bodies, and gradients of a polynomial at bodies, compiled once per
+// instruction set. The number of partial sums does not depend on the width of the registers, so all sets give the same
+// bits.
 #pragma once
 
 #include <keeler/core/simd.hpp>
@@ -14,7 +15,7 @@ struct PolynomialShape {
   std::size_t size = 0; ///< monomials
 };
 
-/// Some bodies, in units of the polynomial; Real is float or double.
+/// A block of bodies, in units of the polynomial; Real is float or double.
 template<class Real> struct FarBlock {
   static constexpr std::size_t capacity = 512;
   alignas(64) Real x[capacity], y[capacity], z[capacity], mass[capacity];
@@ -22,14 +23,14 @@ template<class Real> struct FarBlock {
 };
 
 template<class Real> struct FarKernels {
-  /// Writes Σ mass x^a y^b z^c for every monomial. What stands behind the last body may be overwritten.
+  /// Writes Σ mass x^a y^b z^c for every monomial. May overwrite the block behind its last body.
   void (*gather)(FarBlock<Real>& block, const PolynomialShape& shape, double* moments);
 
-  /// Puts the polynomial's slopes along x, y and z at each body in the place of its x, y and z.
+  /// Replaces x, y and z of each body by the polynomial's derivatives along x, y and z.
   void (*slopes)(FarBlock<Real>& block, const PolynomialShape& shape, const Real* coefficients);
 };
 
-/// The set must be supported.
+/// Precondition: the processor supports the set.
 template<class Real> FarKernels<Real> far_kernels(InstructionSet set);
 template<> FarKernels<float> far_kernels(InstructionSet set);
 template<> FarKernels<double> far_kernels(InstructionSet set);

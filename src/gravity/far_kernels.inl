@@ -1,5 +1,5 @@
-// Text of the far images' kernels; see far_kernels.hpp. Included like kernels.inl, with KEELER_KERNEL_SPACE and
-// KEELER_LANES (of doubles) set. Several vectors of bodies go side by side: their chains hide each other's latency.
+// Source of the far images' kernels (far_kernels.hpp). Included like kernels.inl, with KEELER_KERNEL_SPACE and
+// KEELER_LANES (of doubles) set. Several vectors of bodies are interleaved, to hide the latency of their chains.
 
 namespace keeler::KEELER_KERNEL_SPACE {
 namespace {
@@ -9,15 +9,15 @@ template<class Real> struct Wide {
   static constexpr std::size_t lanes = 8 * KEELER_LANES / sizeof(Real);
 };
 
-constexpr int most_degrees = 15;
-constexpr std::size_t most_monomials = 700;
+constexpr int max_powers = 15;
+constexpr std::size_t max_monomials = 700;
 
 template<class Real> void pad(FarBlock<Real>& block, std::size_t bundle) {
   for (std::size_t k = block.count; k % bundle != 0; ++k)
     block.x[k] = block.y[k] = block.z[k] = block.mass[k] = 0;
 }
 
-// Body k adds to sum k % logical of each monomial, whatever the width of the registers.
+// Body k adds to partial sum k % logical of each monomial, for any width of the registers.
 template<class Real> void gather(FarBlock<Real>& block, const PolynomialShape& shape, double* moments) {
   using Lanes = typename Wide<Real>::Lanes;
   constexpr std::size_t logical = 64 / sizeof(Real), chains = 4, bundle = logical * chains;
@@ -25,14 +25,14 @@ template<class Real> void gather(FarBlock<Real>& block, const PolynomialShape& s
   for (std::size_t k = 0; k < shape.size; ++k)
     moments[k] = 0.0;
   for (std::size_t lane = 0; lane < logical; lane += Wide<Real>::lanes) {
-    Lanes sums[most_monomials];
+    Lanes sums[max_monomials];
     for (std::size_t k = 0; k < shape.size; ++k)
       sums[k] = Lanes{};
     for (std::size_t first = lane; first < block.count; first += bundle) {
       const auto at = [&](const Real* from, std::size_t j) {
         return *reinterpret_cast<const Lanes*>(from + first + logical * j);
       };
-      Lanes powers[most_degrees][chains], at_height[chains];
+      Lanes powers[max_powers][chains], at_height[chains];
       for (std::size_t j = 0; j < chains; ++j) {
         powers[0][j] = Lanes{} + 1;
         for (int a = 1; a <= shape.degree; ++a)
@@ -61,7 +61,7 @@ template<class Real> void gather(FarBlock<Real>& block, const PolynomialShape& s
   }
 }
 
-// Horner's rule, from the highest powers down: inward along x, around it y, around that z.
+// Horner's rule from the highest powers down: x in the inner loop, then y, then z.
 template<class Real> void slopes(FarBlock<Real>& block, const PolynomialShape& shape, const Real* coefficients) {
   using Lanes = typename Wide<Real>::Lanes;
   constexpr std::size_t chains = KEELER_LANES == 8 ? 4 : 2, bundle = Wide<Real>::lanes * chains;

@@ -1,14 +1,13 @@
-// The mesh solver's parts, and the steps of a solve that one process and one of many ranks take alike.
+// The mesh solver's data, and the steps of a solve that are common to one process and many ranks.
 #pragma once
 
 #include "force_split.hpp"
 #include "mesh.hpp"
 #include "mesh_choice.hpp"
-#include "mesh_shares.hpp"
 #include "near_forces.hpp"
-#include "places.hpp"
 #include "self_force.hpp"
 #include "sheared_transform.hpp"
+#include "sorted_particles.hpp"
 #include "wave_kernel.hpp"
 
 #include <keeler/core/exact_sum.hpp>
@@ -20,6 +19,7 @@
 
 namespace keeler {
 
+/// Exact sums of NearForces::Energy.
 struct NearSums {
   ExactSum potential, stress;
 
@@ -33,49 +33,50 @@ struct NearSums {
 struct FftSolver::Parts {
   Parts(const FftSettings& chosen, InstructionSet set);
 
-  /// Sets the radius and the particles' force on themselves as well. The heights and the number are those of all.
+  /// Chooses the mesh for `count` particles between the heights z, and sets the radius and the self-force.
   MeshShape choose_mesh(const ShearingBox& box, const Extent& z, std::size_t count);
 
+  /// Sorts the particles and spreads their masses on the mesh.
   void spread(const GravityProblem& problem, double offset);
+  /// As spread(), then turns the masses into the potential on the mesh.
   void fill_mesh(const GravityProblem& problem, double offset);
-  /// ½ Σ m_i m_j of the clouds' potential at the other particles, wave by wave, in units of mass: a particle's
-  /// potential in its own cloud is taken out. Collective.
+  /// Returns ½ Σ m_i m_j of the clouds' potential at the other particles, in units of mass: each particle's potential
+  /// in its own cloud is subtracted. Collective.
   double mesh_potential(const GravityProblem& problem, double offset);
-  /// Of the mesh that mesh_potential() had. Collective.
+  /// Returns what neighbours contribute. Precondition: mesh_potential() chose the mesh. Collective.
   NearForces::Energy near_energy(const GravityProblem& problem, double offset);
-  /// What a wave adds to mesh_potential(), of the mesh's waves and the potential's.
-  double wave_potential(std::size_t m, const std::complex<float>* from, const std::complex<float>* to) const;
-  /// Σ m² of some places that follow each other.
+  /// Returns the contribution of wave m to mesh_potential(), from its masses and its potential on the planes.
+  double wave_potential(std::size_t m, const std::complex<float>* masses, const std::complex<float>* potential) const;
+  /// Returns Σ m² over sorted particles [begin, end).
   ExactSum squared_masses(std::size_t begin, std::size_t end) const;
-  /// Over some tiles that follow each other.
+  /// Returns the sum over tiles [first_tile, first_tile + tiles).
   NearSums near_sums(const ShearingBox& box, double offset, std::size_t first_tile, std::size_t tiles);
 
-  /// Returns Σ m a over the tile, in units of mass. The accelerations have the indices of the places.
+  /// Writes the accelerations of a tile's particles at their indices, and returns Σ m a over the tile in units of mass.
   Vec3 accelerate_tile(const GravityProblem& problem, double offset, std::size_t tile, std::span<Vec3> accelerations);
 
-  /// One rank's part in a solve of many (fft_ranks.cpp).
-  void accelerate_share(const GravityProblem& problem, std::span<Vec3> accelerations);
-  double fraction_of_potential(const GravityProblem& problem, double offset);
-  NearForces::Energy fraction_of_near_energy(const GravityProblem& problem, double offset);
-  struct Known;
-  Known know(const GravityProblem& problem, double offset, bool with_neighbours);
-  void turn_to_waves(const Communicator& ranks, const Known& known);
-  std::vector<Blocks> columns_of_share(const Known& known);
-  std::vector<Blocks> waves_of_share(const Known& known);
-  void fill_share(const Communicator& ranks, const Known& known);
+  // the part of one rank in a solve of many (fft_distributed.cpp); all are collective
+  void accelerate_distributed(const GravityProblem& problem, std::span<Vec3> accelerations);
+  double mesh_potential_distributed(const GravityProblem& problem, double offset);
+  NearForces::Energy near_energy_distributed(const GravityProblem& problem, double offset);
+  struct DistributedSolve;
+  DistributedSolve begin_distributed(const GravityProblem& problem, double offset, bool with_neighbours);
+  void spread_distributed(const Communicator& ranks, const DistributedSolve& solve);
+  void fill_mesh_distributed(const Communicator& ranks, const DistributedSolve& solve);
 
   FftSettings settings;
   MeshKernels kernels;
   ForceSplit split;
   WaveKernel waves;
   NearForces near;
-  Places places;
+  SortedParticles sorted;
   Mesh mesh;
   ShearedTransform transform;
-  // of a rank's share
+  // of a distributed solve, kept for their memory
   HalfSpectrum by_columns, by_waves;
-  std::vector<InsideParticle> inside; // kept for its memory
-  double radius = 0.0;                // of the clouds in this solve, m
+  std::vector<FoldedParticle> folded;
+  // of the solve in progress
+  double radius = 0.0; // of the clouds, m
   SelfForce self{};
 };
 

@@ -4,6 +4,7 @@
 
 #include <keeler/core/units.hpp>
 
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
@@ -14,7 +15,7 @@ constexpr double fineness = 64.0, last_sample = 48.0;
 
 using Coefficients = Eigen::Matrix<double, term_count, 1>;
 
-// Nodes and weights of Gauss and Legendre's rule on 0 … 1: Newton's iteration on P_n.
+// Nodes and weights of the Gauss–Legendre rule on [0, 1], by Newton's iteration on P_n.
 struct Quadrature {
   explicit Quadrature(int n) {
     for (int i = 0; i < n; ++i) {
@@ -36,7 +37,7 @@ struct Quadrature {
   std::vector<double> nodes, weights;
 };
 
-// (1 − u²) u^2i.
+// Returns (1 − u²) u^2i for each i.
 Coefficients basis(double u) {
   Coefficients values;
   double value = 1.0 - u * u;
@@ -45,8 +46,9 @@ Coefficients basis(double u) {
   return values;
 }
 
-// The combination with the largest share of its power below the band, ∫₀¹ ψ = 1.
+// Returns the profile ψ with the largest fraction of its power below the band; ∫₀¹ ψ = 1.
 Coefficients most_concentrated(const Quadrature& rule, double band) {
+  assert(band > 0.0);
   using Matrix = Eigen::Matrix<double, term_count, term_count>;
   Matrix below = Matrix::Zero(), whole = Matrix::Zero();
   Coefficients integral = Coefficients::Zero();
@@ -66,7 +68,7 @@ Coefficients most_concentrated(const Quadrature& rule, double band) {
 
 } // namespace
 
-// With Φ(u) = ∫₀ᵘ ψ the potential of the cloud is Φ(u)/u, its attraction (Φ − u ψ)/u³ times the vector.
+// The potential of the cloud is Φ(u)/u with Φ(u) = ∫₀ᵘ ψ, and its attraction (Φ − u ψ)/u³ times the vector.
 ForceSplit::ForceSplit(double band) {
   const Quadrature rule(40);
   const Coefficients profile = most_concentrated(rule, band);
@@ -93,12 +95,13 @@ std::array<double, ForceSplit::terms + 1> ForceSplit::potential() const {
 }
 
 double ForceSplit::transform(double wave_number) const {
+  assert(wave_number >= 0.0);
   if (wave_number >= last_sample)
     return 0.0;
-  const double place = wave_number * fineness;
-  const auto k = static_cast<std::size_t>(place);
-  const double part = place - static_cast<double>(k);
-  return samples_[k] + part * (samples_[k + 1] - samples_[k]);
+  const double position = wave_number * fineness;
+  const auto k = static_cast<std::size_t>(position);
+  const double fraction = position - static_cast<double>(k);
+  return samples_[k] + fraction * (samples_[k + 1] - samples_[k]);
 }
 
 } // namespace keeler

@@ -1,14 +1,20 @@
-// A range of indices.
+// A half-open range of indices.
 #pragma once
 
+#include <cassert>
 #include <cstddef>
 
 namespace keeler {
 
+/// Invariant: begin <= end.
 struct IndexRange {
   std::size_t begin = 0, end = 0;
 
-  std::size_t size() const { return end - begin; }
+  std::size_t size() const {
+    assert(begin <= end);
+    return end - begin;
+  }
+  bool contains(std::size_t index) const { return index >= begin && index < end; }
 };
 
 } // namespace keeler

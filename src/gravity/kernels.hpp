@@ -1,15 +1,15 @@
-// The inner loops of gravity: a block of targets attracted by a list of sources, G = 1.
+// Inner loops of gravity: a block of targets attracted by a list of sources, G = 1.
 //
 // Lanes are targets: each target adds its sources one by one in the order of the list, so the bits do not depend on the
-// width of the registers. (Only `far_cells` has sources in its lanes, sixteen in every set.) All use + − × and integer
-// operations alone; the reciprocal root starts from the integer trick, not from an instruction that approximates it,
-// since those differ between processors. One source text is compiled once for each instruction set, with raw pointers
-// and no library code (an inline function that both a wide and a portable file emit could be kept by the linker in its
-// wide form, and then be met by a processor that lacks it).
+// width of the registers. (Only `far_cells` has sources in its lanes, sixteen in every set.) All kernels use + − × and
+// integer operations alone. The reciprocal root starts from integer arithmetic, not from an approximate instruction,
+// which would differ between processors. The source is compiled once per instruction set, with raw pointers and without
+// library code: the linker could keep the wide form of an inline function that two files emit, and a processor without
+// these instructions would execute it.
 //
-// Single precision: forces of single pairs are good to 4e-7, at any distance and anywhere, because places are kept as
-// sums of two floats and differences are taken part by part. Masses must be given in units that keep them below 1e4,
-// or the weight of an encounter at `same_place` overflows.
+// Single precision: the force of a pair is accurate to 4e-7, at any distance and position, because positions are sums
+// of two floats and differences are taken part by part. Precondition: masses are below 1e4 in the units chosen, or the
+// weight of a pair at min_distance overflows.
 #pragma once
 
 #include <keeler/core/simd.hpp>
@@ -25,7 +25,7 @@ struct PointSource {
   double mass;
 };
 
-/// The same in single precision: the place is (x, y, z) + (x_low, y_low, z_low).
+/// A source in single precision, at (x, y, z) + (x_low, y_low, z_low).
 struct SinglePoint {
   float x, y, z;
   float x_low, y_low, z_low;
@@ -41,32 +41,32 @@ struct CellSource {
   float xx, yy, zz, xy, xz, yz;
 };
 
-/// A run of consecutive points.
+/// Points [begin, begin + count).
 struct PointRange {
   std::uint32_t begin, count;
 };
 
-/// Up to `capacity` targets and what they have gathered so far. Entries behind the last target must be finite up to
-/// the next multiple of `widest`.
+/// Up to `capacity` targets and their accelerations so far. Precondition: entries behind the last target are finite up
+/// to the next multiple of `max_lanes`.
 struct TargetBlock {
   static constexpr std::size_t capacity = 128;
-  static constexpr std::size_t widest = 8;
+  static constexpr std::size_t max_lanes = 8;
   alignas(64) double x[capacity], y[capacity], z[capacity];
   alignas(64) double ax[capacity], ay[capacity], az[capacity];
 };
 
-/// The same for kernels in single precision. They sum in floats over some 128 sources and add these sums in doubles.
+/// Targets of kernels in single precision, which sum some 128 sources in floats and add these sums in doubles.
 struct SingleTargetBlock {
   static constexpr std::size_t capacity = TargetBlock::capacity;
-  static constexpr std::size_t widest = 16;
-  alignas(64) float x[capacity], y[capacity], z[capacity];                ///< place, for points
-  alignas(64) float x_low[capacity], y_low[capacity], z_low[capacity];    ///< what rounding left of it
+  static constexpr std::size_t max_lanes = 16;
+  alignas(64) float x[capacity], y[capacity], z[capacity];                ///< position, for points
+  alignas(64) float x_low[capacity], y_low[capacity], z_low[capacity];    ///< its remainder after rounding
   alignas(64) float from_x[capacity], from_y[capacity], from_z[capacity]; ///< relative to the origin, for cells
   alignas(64) double ax[capacity], ay[capacity], az[capacity];
 };
 
-/// Cells that act through a local expansion, relative to its centre; what lies behind the last one, up to the next
-/// multiple of sixteen, must have no moments and a place other than the centre.
+/// Cells that act through a local expansion, relative to its centre. Precondition: entries behind the last one, up to
+/// the next multiple of `lanes`, have zero moments and are not at the centre.
 struct FarCells {
   static constexpr std::size_t capacity = 256;
   static constexpr std::size_t lanes = 16;
@@ -80,16 +80,16 @@ struct LocalTerms {
   float rank1[3], rank2[6], rank3[10], rank4[15];
 };
 
-/// Two bodies are never this close (m); pairs that are attract as if they were. At distance zero, where a target meets
-/// itself, that is no attraction at all.
-inline constexpr double same_place = 1e-60;
-inline constexpr float same_place_single = 1e-10F;
+/// Lower bound of the distance (m) in the weight of a pair. At distance zero, where a target is one of its own sources,
+/// the attraction vanishes.
+inline constexpr double min_distance = 1e-60;
+inline constexpr float min_distance_single = 1e-10F;
 
 struct AttractionKernels {
   /// Adds Σ m d / |d|³ over point sources.
   void (*points)(TargetBlock& targets, std::size_t target_count, const PointSource* sources, std::size_t count);
 
-  /// The same in single precision, over runs of sources.
+  /// As points(), in single precision over ranges of sources.
   void (*points_single)(SingleTargetBlock& targets, std::size_t target_count, const SinglePoint* sources,
                         const PointRange* ranges, std::size_t range_count);
 
@@ -97,14 +97,14 @@ struct AttractionKernels {
   /// (e.g. Hernquist 1987, ApJS 64, 715).
   void (*cells)(SingleTargetBlock& targets, std::size_t target_count, const CellSource* sources, std::size_t count);
 
-  /// Adds what cells contribute to a local expansion, before traces are removed: local_expansion.hpp.
+  /// Adds the contributions of cells to a local expansion, before traces are removed (local_expansion.hpp).
   void (*far_cells)(LocalTerms& sums, const FarCells& cells, std::size_t count);
 
-  /// Adds the field of a local expansion, whose tensors are complete with their factors.
+  /// Adds the field of a local expansion. Precondition: its tensors are complete (local_expansion.hpp).
   void (*local)(SingleTargetBlock& targets, std::size_t target_count, const LocalTerms& terms);
 };
 
-/// The set must be supported.
+/// Returns the kernels of a set. Precondition: the processor supports it.
 AttractionKernels attraction_kernels(InstructionSet set);
 
 } // namespace keeler

@@ -1,4 +1,4 @@
-// Text of the kernels; see kernels.hpp. The including file sets KEELER_KERNEL_SPACE and KEELER_LANES and defines the
+// Source of the kernels (kernels.hpp). The including file sets KEELER_KERNEL_SPACE and KEELER_LANES and defines the
 // vectors of one register: Lanes and Longs (of doubles and 64-bit integers), Floats and Ints (twice as many lanes), and
 // larger(a, b), which is a > b ? a : b.
 
@@ -20,9 +20,9 @@ inline void store(double* to, const Lanes& value) {
   *reinterpret_cast<Lanes*>(to) = value;
 }
 
-// The root r = 1/√q in two steps, from the bits of q. The first leaves v ≈ √middle · r: middle is where the values of
-// h = middle − q v² centre, and those stay below 1.3e-3 of it. What remains is a polynomial in h, to second order.
-// First step: Moroz et al. 2018, "Fast calculation of inverse square root".
+// The root r = 1/√q in two steps. The first, from the bits of q, gives v ≈ √middle · r, where |h| < 1.3e-3 middle for
+// h = middle − q v² (Moroz et al. 2018, "Fast calculation of inverse square root"). The second is a polynomial in h, to
+// second order.
 constexpr double slope = 2.38924456, middle = 2.01796572;
 constexpr double inverse1 = 0.70395209813619219, inverse3 = 0.34884244605566223; // middle^(−1/2), middle^(−3/2)
 
@@ -44,14 +44,14 @@ template<class Real, class Integers, class Vector> inline void inverse_root(cons
 }
 
 void points(TargetBlock& t, std::size_t target_count, const PointSource* sources, std::size_t count) {
-  constexpr double nearest = same_place * same_place;
+  constexpr double nearest = min_distance * min_distance;
   for (std::size_t b = 0; b < target_count; b += KEELER_LANES) {
     const Lanes x = load(t.x + b), y = load(t.y + b), z = load(t.z + b);
     Lanes ax = load(t.ax + b), ay = load(t.ay + b), az = load(t.az + b);
     for (const PointSource* s = sources; s != sources + count; ++s) {
       const Lanes dx = s->x - x, dy = s->y - y, dz = s->z - z;
       const Lanes d2 = larger(dx * dx + dy * dy + dz * dz, Lanes{} + nearest);
-      Lanes root; // to 1e-9; its error h is taken out below
+      Lanes root; // to 1e-9; its error h is corrected below
       inverse_root<double, Longs>(d2, root);
       const Lanes root2 = root * root;
       const Lanes h = 1.0 - d2 * root2;
@@ -67,7 +67,7 @@ void points(TargetBlock& t, std::size_t target_count, const PointSource* sources
   }
 }
 
-// Adds a register's sums, times a number, to their doubles and empties it.
+// Adds a register's sums, times a factor, to their doubles and zeroes it.
 inline void flush(Floats& sum, double* to, double scale = 1.0) {
   alignas(64) float values[float_lanes];
   *reinterpret_cast<Floats*>(values) = sum;
@@ -81,7 +81,7 @@ inline void flush(Floats& sum, double* to, double scale = 1.0) {
 void points_single(SingleTargetBlock& t, std::size_t target_count, const SinglePoint* sources, const PointRange* ranges,
                    std::size_t range_count) {
   constexpr std::size_t chunk = 128;
-  constexpr float nearest = same_place_single * same_place_single;
+  constexpr float nearest = min_distance_single * min_distance_single;
   // 1/|d|³ = v³ scale (offset + h (tilt + h)), the expansion of (1 − h/middle)^(−3/2)
   constexpr double scale = 1.875 * inverse3 / (middle * middle);
   constexpr auto tilt = static_cast<float>(0.8 * middle), offset = static_cast<float>(middle * middle / 1.875);
@@ -148,7 +148,7 @@ void cells(SingleTargetBlock& t, std::size_t target_count, const CellSource* sou
   }
 }
 
-// Sixteen lanes in every set, as several registers where they are narrower.
+// Sixteen lanes in every set, in several registers if they are narrower.
 typedef float Sixteen __attribute__((vector_size(64), may_alias));
 typedef int SixteenInts __attribute__((vector_size(64), may_alias));
 
@@ -156,7 +156,7 @@ inline const Sixteen& load16(const float* from) {
   return *reinterpret_cast<const Sixteen*>(from);
 }
 
-// Always the same tree of sums.
+// Sums sixteen lanes; the tree of additions is fixed.
 inline float sum_of(const Sixteen& v) {
   float s[8];
   for (int k = 0; k < 8; ++k)
@@ -166,8 +166,8 @@ inline float sum_of(const Sixteen& v) {
   return (s[0] + s[2]) + (s[1] + s[3]);
 }
 
-// With r from the centre to the cell: m r/|r|³, 3 m r r/|r|⁵, 15/2 m r r r/|r|⁷, 35/2 m r r r r/|r|⁹, each the last one
-// times e = r/|r|² and a number; and of the quadrupole what it adds to the field and to its gradient.
+// Adds m r/|r|³, 3 m r r/|r|⁵, 15/2 m r r r/|r|⁷, 35/2 m r r r r/|r|⁹, with r from the centre to the cell: each term is
+// the previous one times e = r/|r|² and a factor. Adds the quadrupole's contributions to the field and its gradient.
 void far_cells(LocalTerms& sums, const FarCells& cells, std::size_t count) {
   Sixteen sum1[3]{}, sum2[6]{}, sum3[10]{}, sum4[15]{};
   for (std::size_t k = 0; k < count; k += FarCells::lanes) {
@@ -190,7 +190,7 @@ void far_cells(LocalTerms& sums, const FarCells& cells, std::size_t count) {
     sum1[1] += gy + (along1 * y - qy);
     sum1[2] += gz + (along1 * z - qz);
 
-    // the mass's share of rank 2, and 35/2 (r·Qr) r r/|r|⁹ − 5 (Qr r + r Qr)/|r|⁷ + Q/|r|⁵
+    // the mass's part of rank 2, and 35/2 (r·Qr) r r/|r|⁹ − 5 (Qr r + r Qr)/|r|⁷ + Q/|r|⁵
     const Sixteen hx = 3.0F * gx, hy = 3.0F * gy, hz = 3.0F * gz;
     const Sixteen along2 = 17.5F * rqr;
     const Sixteen px = along2 * x - 5.0F * qx, py = along2 * y - 5.0F * qy, pz = along2 * z - 5.0F * qz;
@@ -225,12 +225,12 @@ void far_cells(LocalTerms& sums, const FarCells& cells, std::size_t count) {
     sums.rank4[i] += sum_of(sum4[i]);
 }
 
-// rank1 + (rank2 + (rank3 + rank4 · t) · t) · t
+// Adds rank1 + (rank2 + (rank3 + rank4 · t) · t) · t.
 void local(SingleTargetBlock& t, std::size_t target_count, const LocalTerms& terms) {
   for (std::size_t b = 0; b < target_count; b += float_lanes) {
     const Floats x = load(t.from_x + b), y = load(t.from_y + b), z = load(t.from_z + b);
     const float* const c4 = terms.rank4;
-    // which of rank 4 belong to each of rank 3 and x, y, z: xxx → xxxx xxxy xxxz, xxy → xxxy xxyy xxyz, …
+    // entries of rank 4 for each entry of rank 3 and x, y, z: xxx → xxxx xxxy xxxz, xxy → xxxy xxyy xxyz, …
     const auto third = [&](int i, int ix, int iy, int iz) {
       return terms.rank3[i] + (c4[ix] * x + c4[iy] * y + c4[iz] * z);
     };

@@ -14,7 +14,7 @@ typedef long long Longs __attribute__((vector_size(64), may_alias));
 typedef float Floats __attribute__((vector_size(64), may_alias));
 typedef int Ints __attribute__((vector_size(64), may_alias));
 
-// All lanes; gcc 12 warns falsely at the plain forms.
+// The masks select all lanes; gcc 12 warns falsely about the plain forms.
 inline Lanes larger(const Lanes& a, const Lanes& b) {
   return _mm512_maskz_max_pd(0xff, a, b);
 }

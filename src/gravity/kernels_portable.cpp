@@ -1,4 +1,4 @@
-// Kernels for any processor: registers of 16 bytes, which is what x86-64 (SSE2) and 64-bit ARM both have.
+// Kernels for any processor: registers of 16 bytes, which both x86-64 (SSE2) and 64-bit ARM have.
 #include "far_kernels.hpp"
 #include "kernels.hpp"
 

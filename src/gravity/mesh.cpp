@@ -3,14 +3,16 @@
 #include <keeler/core/threads.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstring>
 
 namespace keeler {
 namespace {
 
-// 2^a 3^b 5^c, even; a multiple of 4 once that costs little.
+// Returns true for 2^a 3^b 5^c, even; above 96 only multiples of 4.
 bool transforms_fast(std::size_t n) {
+  assert(n > 0);
   if (n % (n >= 96 ? 4 : 2) != 0)
     return false;
   for (const std::size_t prime : {2u, 3u, 5u})
@@ -19,12 +21,13 @@ bool transforms_fast(std::size_t n) {
   return n == 1;
 }
 
-// In boxes of a few spacings a particle's own images stand in the same place of their cells as itself, and their errors
-// add up: such boxes get finer meshes, which cost next to nothing.
-constexpr std::size_t fewest_cells = 8;
+// A lower limit for boxes of a few spacings, where a particle and its images have nearly equal positions in their cells
+// and their errors add up. It costs almost nothing.
+constexpr std::size_t min_cells = 8;
 
+// Returns the smallest fast number of cells that are at most `spacing` wide.
 std::size_t fast_size(double length, double spacing) {
-  auto n = std::max(fewest_cells, static_cast<std::size_t>(std::ceil(length / spacing)));
+  auto n = std::max(min_cells, static_cast<std::size_t>(std::ceil(length / spacing)));
   while (!transforms_fast(n))
     ++n;
   return n;
@@ -33,13 +36,14 @@ std::size_t fast_size(double length, double spacing) {
 } // namespace
 
 MeshShape mesh_shape(const ShearingBox& box, double spacing, double plane_spacing, double low, double high) {
+  assert(spacing > 0.0 && plane_spacing > 0.0 && low <= high);
   MeshShape shape;
   shape.columns = fast_size(box.size_x, spacing);
   shape.rows = fast_size(box.size_y, spacing);
   shape.step_x = box.size_x / static_cast<double>(shape.columns);
   shape.step_y = box.size_y / static_cast<double>(shape.rows);
   shape.step_z = plane_spacing;
-  shape.per_x = static_cast<double>(shape.columns) / box.size_x; // as the tiles have it, to the bit (places.hpp)
+  shape.per_x = static_cast<double>(shape.columns) / box.size_x; // bitwise equal to TileFinder's
   shape.per_y = static_cast<double>(shape.rows) / box.size_y;
   shape.left = -0.5 * box.size_x;
   shape.bottom = -0.5 * box.size_y;
@@ -50,6 +54,7 @@ MeshShape mesh_shape(const ShearingBox& box, double spacing, double plane_spacin
 }
 
 void Mesh::reset(const MeshShape& shape, const IndexRange& columns) {
+  assert(columns.end <= shape.columns + MeshShape::ghosts);
   shape_ = shape;
   first_column_ = columns.begin;
   values_.resize_at_least(columns.size() * shape.column_length());
@@ -58,7 +63,7 @@ void Mesh::reset(const MeshShape& shape, const IndexRange& columns) {
       [&](std::size_t i) { std::memset(column(columns.begin + i), 0, shape.column_length() * sizeof(float)); }, 4);
 }
 
-MeshNumbers Mesh::numbers() {
+MeshView Mesh::view() {
   return {values_.data(),
           first_column_,
           shape_.column_length(),
@@ -68,9 +73,11 @@ MeshNumbers Mesh::numbers() {
           {shape_.columns, shape_.rows, shape_.planes - MeshShape::ghosts}};
 }
 
-void Mesh::spread(const Places& places, const IndexRange& tile_columns, const MeshKernels& kernels) {
-  const MeshNumbers mesh = numbers();
-  const Tiling& tiling = places.tiling();
+void Mesh::spread(const SortedParticles& sorted, const IndexRange& tile_columns, const MeshKernels& kernels) {
+  const MeshView mesh = view();
+  const Tiling& tiling = sorted.tiling();
+  assert(tile_columns.begin % slab(tiling) == 0 && tile_columns.end <= tiling.tile_columns());
+  assert(tiling.columns == shape_.columns && tiling.rows == shape_.rows);
   const std::size_t width = slab(tiling), first_slab = tile_columns.begin / width;
   const std::size_t end_slab = (tile_columns.end + width - 1) / width;
   for (const std::size_t parity : {0u, 1u}) {
@@ -79,8 +86,8 @@ void Mesh::spread(const Places& places, const IndexRange& tile_columns, const Me
                  [&](std::size_t half) {
                    const std::size_t begin = (from + 2 * half) * width;
                    const std::size_t end = std::min(begin + width, tile_columns.end);
-                   const std::size_t first = places.first(begin * tiling.tile_rows());
-                   kernels.spread(mesh, places.range(first, places.end(end * tiling.tile_rows() - 1) - first));
+                   const std::size_t first = sorted.first(begin * tiling.tile_rows());
+                   kernels.spread(mesh, sorted.range(first, sorted.end(end * tiling.tile_rows() - 1) - first));
                  },
                  1);
   }

@@ -1,12 +1,12 @@
-// Text of the mesh solver's kernels; see mesh_kernels.hpp. The including file sets KEELER_KERNEL_SPACE and
+// Source of the mesh solver's kernels (mesh_kernels.hpp). The including file sets KEELER_KERNEL_SPACE and
 // KEELER_LANES, defines Lanes, LanesInRow (anywhere in a row), IntLanes, lane_numbers, and
-//   Lanes difference(const double* from, double origin)     of KEELER_LANES numbers, in double, then rounded
+//   Lanes difference(const double* from, double origin)     KEELER_LANES differences in double, then rounded
 //   std::size_t append(NearSources&, std::size_t count, x, y, z, mass, inside)
-//                                                           puts the lanes where the integer vector `inside` is not 0
-//                                                           behind the first `count` ones; how many there are then
-//   Sixteen rows(const float* from, std::size_t stride)     four numbers from each of four rows
+//                                                           appends the lanes where the integer vector `inside` is not
+//                                                           0 to the first `count` sources; returns the new count
+//   Sixteen rows(const float* from, std::size_t stride)     loads four values from each of four rows
 //   void put_rows(float* to, std::size_t stride, const Sixteen&)
-//   Sixteen each_row(const Four&), all_rows(const Four&)    the number r in the whole row r; the four in every row
+//   Sixteen each_row(const Four&), all_rows(const Four&)    value r in all of row r; the four values in every row
 //   Four rows_sum(const Sixteen&)                           (row 0 + row 2) + (row 1 + row 3)
 // Everything here has internal linkage except `mesh`.
 
@@ -23,7 +23,7 @@ inline void store(float* to, const Lanes& value) {
   *reinterpret_cast<Lanes*>(to) = value;
 }
 
-// How far a coordinate is beyond ± half.
+// Returns the distance of a coordinate beyond ± half.
 inline Lanes beyond(const Lanes& coordinate, float half) {
   const IntLanes bits = reinterpret_cast<const IntLanes&>(coordinate) & 0x7fffffff;
   const Lanes gap = reinterpret_cast<const Lanes&>(bits) - half;
@@ -51,7 +51,7 @@ inline Sixteen operator+(const Sixteen& a, const Sixteen& b) {
   return result;
 }
 
-// The three sums of sixteen numbers: over the rows, then in halves.
+// Returns the sums of three times sixteen numbers: over the rows, then in halves.
 inline Four sums(const Sixteen& x, const Sixteen& y, const Sixteen& z) {
   const Four a = rows_sum(x), b = rows_sum(y), c = rows_sum(z);
   const Four ab = __builtin_shufflevector(a, b, 0, 1, 4, 5) + __builtin_shufflevector(a, b, 2, 3, 6, 7);
@@ -74,7 +74,8 @@ void gather(NearSources& sources, const ParticleRange& range, const NearGroup& g
   sources.count = count;
 }
 
-// value^(−3/2): a guess g at 1/√value from the bits, within 3.5 %, and a polynomial for (value g²)^(−3/2), within 7e-6.
+// Returns value^(−3/2): an estimate g of 1/√value from the bits, within 3.5 %, and a polynomial for (value g²)^(−3/2),
+// within 7e-6.
 inline Lanes inverse_cube(const Lanes& value) {
   const IntLanes bits = 0x5f3759df - (reinterpret_cast<const IntLanes&>(value) >> 1);
   const Lanes guess = reinterpret_cast<const Lanes&>(bits);
@@ -82,26 +83,26 @@ inline Lanes inverse_cube(const Lanes& value) {
   return guess * square * (6.57925456f - near_one * (11.85124836f - near_one * (8.46472286f - near_one * 2.19273577f)));
 }
 
-// Fills up the list with nothing; returns its length.
-std::size_t whole_list(NearSources& s) {
-  const std::size_t whole = (s.count + 15) / 16 * 16;
-  for (std::size_t k = s.count; k < whole; ++k) {
+// Pads the list with massless sources to a multiple of sixteen; returns its length.
+std::size_t padded_length(NearSources& s) {
+  const std::size_t padded = (s.count + 15) / 16 * 16;
+  for (std::size_t k = s.count; k < padded; ++k) {
     s.x[k] = s.y[k] = s.z[k] = 1.0f;
     s.mass[k] = 0.0f;
   }
-  return whole;
+  return padded;
 }
 
 void attract(NearTargets& t, std::size_t target_count, NearSources& s, const float* inside) {
-  const std::size_t whole = whole_list(s);
+  const std::size_t padded = padded_length(s);
   for (std::size_t i = 0; i < target_count; ++i) {
     const float x = t.x[i], y = t.y[i], z = t.z[i];
     Sixteen ax{}, ay{}, az{};
-    for (std::size_t k = 0; k < whole; k += 16)
+    for (std::size_t k = 0; k < padded; k += 16)
       for (int p = 0; p < parts; ++p) {
         const std::size_t at = k + static_cast<std::size_t>(p * KEELER_LANES);
         const Lanes dx = load(s.x + at) - x, dy = load(s.y + at) - y, dz = load(s.z + at) - z;
-        const Lanes d2 = dx * dx + (dy * dy + (dz * dz + same_near_place_squared));
+        const Lanes d2 = dx * dx + (dy * dy + (dz * dz + min_near_distance_squared));
         const Lanes cloud = ((inside[3] * d2 + inside[2]) * d2 + inside[1]) * d2 + inside[0];
         const Lanes weight = load(s.mass + at) * (inverse_cube(d2) - cloud);
         const Lanes used = d2 < 1.0f ? weight : Lanes{};
@@ -117,19 +118,19 @@ void attract(NearTargets& t, std::size_t target_count, NearSources& s, const flo
 }
 
 void energy(NearTargets& t, std::size_t target_count, NearSources& s, const float* inside, const float* cloud) {
-  const std::size_t whole = whole_list(s);
+  const std::size_t padded = padded_length(s);
   for (std::size_t i = 0; i < target_count; ++i) {
     const float x = t.x[i], y = t.y[i], z = t.z[i];
     Sixteen potential{}, stress{};
-    for (std::size_t k = 0; k < whole; k += 16)
+    for (std::size_t k = 0; k < padded; k += 16)
       for (int p = 0; p < parts; ++p) {
         const std::size_t at = k + static_cast<std::size_t>(p * KEELER_LANES);
         const Lanes dx = load(s.x + at) - x, dy = load(s.y + at) - y, dz = load(s.z + at) - z;
-        const Lanes d2 = dx * dx + (dy * dy + (dz * dz + same_near_place_squared)), cube = inverse_cube(d2);
+        const Lanes d2 = dx * dx + (dy * dy + (dz * dz + min_near_distance_squared)), cube = inverse_cube(d2);
         const Lanes smooth = (((cloud[4] * d2 + cloud[3]) * d2 + cloud[2]) * d2 + cloud[1]) * d2 + cloud[0];
         const Lanes pull = cube - (((inside[3] * d2 + inside[2]) * d2 + inside[1]) * d2 + inside[0]);
         const Lanes mass = d2 < 1.0f ? load(s.mass + at) : Lanes{};
-        const Lanes others = d2 > 2.0f * same_near_place_squared ? mass : Lanes{};
+        const Lanes others = d2 > 2.0f * min_near_distance_squared ? mass : Lanes{};
         potential.part[p] += others * (d2 * cube - smooth);
         stress.part[p] += others * dx * dy * pull;
       }
@@ -139,43 +140,43 @@ void energy(NearTargets& t, std::size_t target_count, NearSources& s, const floa
   }
 }
 
-// Where a particle stands on the mesh: node of its lowest share, and its places in the cell along x, y, z.
-struct OnMesh {
-  OnMesh(const MeshNumbers& mesh, const ParticleRange& range, std::size_t k) {
-    const double places[3] = {range.x[k], range.y[k], range.z[k]};
+// The position of a particle on the mesh: its lowest node, and the position in its cell along x, y, z, in [0, 1].
+struct MeshPosition {
+  MeshPosition(const MeshView& mesh, const ParticleRange& range, std::size_t k) {
+    const double position[3] = {range.x[k], range.y[k], range.z[k]};
     std::size_t cell[3];
     for (int axis = 0; axis < 3; ++axis) {
-      const double place = (places[axis] - mesh.corner[axis]) * mesh.per_metre[axis];
-      cell[axis] = place > 0.0 ? static_cast<std::size_t>(place) : 0;
+      const double in_cells = (position[axis] - mesh.corner[axis]) * mesh.per_metre[axis];
+      cell[axis] = in_cells > 0.0 ? static_cast<std::size_t>(in_cells) : 0;
       if (cell[axis] >= mesh.cells[axis])
-        cell[axis] = mesh.cells[axis] - 1; // rounding may put a coordinate on the far edge
-      part[axis] = static_cast<float>(place - static_cast<double>(cell[axis]));
+        cell[axis] = mesh.cells[axis] - 1; // by rounding a coordinate may be on the far edge
+      fraction[axis] = static_cast<float>(in_cells - static_cast<double>(cell[axis]));
     }
     node = mesh.values + (cell[0] - mesh.first_column) * mesh.column_length + cell[2] * mesh.row_length + cell[1];
   }
   float* node;
-  float part[3];
+  float fraction[3];
 };
 
-// Shares of a particle at t in [0, 1] of its cell in the four nodes around it: the cubic B-spline.
-inline Four shares(float t) {
+// Returns the weights of the four nodes around a particle at t in [0, 1] of its cell: the cubic B-spline.
+inline Four weights(float t) {
   const Four constant = {1.0f / 6, 4.0f / 6, 1.0f / 6, 0.0f}, linear = {-0.5f, 0.0f, 0.5f, 0.0f};
   const Four square = {0.5f, -1.0f, 0.5f, 0.0f}, cube = {-1.0f / 6, 0.5f, -0.5f, 1.0f / 6};
   return constant + t * (linear + t * (square + t * cube));
 }
 
-// Their slopes, a spacing.
-inline Four slopes(float t) {
+// Returns the derivatives of the weights, per spacing.
+inline Four derivatives(float t) {
   const Four linear = {-0.5f, 0.0f, 0.5f, 0.0f}, square = {1.0f, -2.0f, 1.0f, 0.0f};
   const Four cube = {-0.5f, 1.5f, -1.5f, 0.5f};
   return linear + t * (square + t * cube);
 }
 
-void spread(const MeshNumbers& mesh, const ParticleRange& range) {
+void spread(const MeshView& mesh, const ParticleRange& range) {
   for (std::size_t k = 0; k < range.count; ++k) {
-    const OnMesh at(mesh, range, k);
-    const Four x = range.mass[k] * shares(at.part[0]);
-    const Sixteen flat = each_row(shares(at.part[2])) * all_rows(shares(at.part[1]));
+    const MeshPosition at(mesh, range, k);
+    const Four x = range.mass[k] * weights(at.fraction[0]);
+    const Sixteen flat = each_row(weights(at.fraction[2])) * all_rows(weights(at.fraction[1]));
     for (std::size_t a = 0; a < 4; ++a) {
       float* const nodes = at.node + a * mesh.column_length;
       put_rows(nodes, mesh.row_length, rows(nodes, mesh.row_length) + x[a] * flat);
@@ -183,8 +184,8 @@ void spread(const MeshNumbers& mesh, const ParticleRange& range) {
   }
 }
 
-// first sin 2πt + second sin 4πt for t in [0, 1], by polynomials in v = 2t − 1: sin πv within 2e-5, cos πv within 0.01
-// (it makes 8 % of the sum).
+// Returns first sin 2πt + second sin 4πt for t in [0, 1], by polynomials in v = 2t − 1: sin πv within 2e-5, cos πv
+// within 0.01 (it contributes 8 % of the sum).
 inline Four harmonics(const Four& t, const SelfForce& self) {
   const Four v = 2.0f * t - 1.0f, v2 = v * v;
   const Four sine = v * (1.0f - v2) * (3.1415451f - v2 * (2.0245943f - v2 * (0.5163292f - 0.0625282f * v2)));
@@ -194,24 +195,25 @@ inline Four harmonics(const Four& t, const SelfForce& self) {
   return sine * (2.0f * second * cosine - first);
 }
 
-void pull(const MeshNumbers& mesh, const ParticleRange& range, const SelfForce& self, float* x, float* y, float* z) {
+void interpolate(const MeshView& mesh, const ParticleRange& range, const SelfForce& self, float* x, float* y,
+                 float* z) {
   const Four per_metre = {static_cast<float>(mesh.per_metre[0]), static_cast<float>(mesh.per_metre[1]),
                           static_cast<float>(mesh.per_metre[2]), 0.0f};
   for (std::size_t k = 0; k < range.count; ++k) {
-    const OnMesh at(mesh, range, k);
-    const Four share_x = shares(at.part[0]), slope_x = slopes(at.part[0]);
+    const MeshPosition at(mesh, range, k);
+    const Four weight_x = weights(at.fraction[0]), derivative_x = derivatives(at.fraction[0]);
     Sixteen flat{}, sloping{}; // sums over x
     for (std::size_t a = 0; a < 4; ++a) {
       const Sixteen nodes = rows(at.node + a * mesh.column_length, mesh.row_length);
-      flat = flat + share_x[a] * nodes;
-      sloping = sloping + slope_x[a] * nodes;
+      flat = flat + weight_x[a] * nodes;
+      sloping = sloping + derivative_x[a] * nodes;
     }
-    const Sixteen share_y = all_rows(shares(at.part[1])), share_z = each_row(shares(at.part[2]));
-    const Sixteen along_y = flat * share_z * all_rows(slopes(at.part[1]));
-    const Sixteen along_z = flat * share_y * each_row(slopes(at.part[2]));
-    const Four gradient = sums(sloping * share_z * share_y, along_y, along_z);
-    const Four parts_in_cell = {at.part[0], at.part[1], at.part[2], 0.0f};
-    const Four result = gradient * per_metre - range.mass[k] * harmonics(parts_in_cell, self);
+    const Sixteen weight_y = all_rows(weights(at.fraction[1])), weight_z = each_row(weights(at.fraction[2]));
+    const Sixteen along_y = flat * weight_z * all_rows(derivatives(at.fraction[1]));
+    const Sixteen along_z = flat * weight_y * each_row(derivatives(at.fraction[2]));
+    const Four gradient = sums(sloping * weight_z * weight_y, along_y, along_z);
+    const Four fractions = {at.fraction[0], at.fraction[1], at.fraction[2], 0.0f};
+    const Four result = gradient * per_metre - range.mass[k] * harmonics(fractions, self);
     x[k] = result[0];
     y[k] = result[1];
     z[k] = result[2];
@@ -242,6 +244,6 @@ void convolve(const float* from, std::size_t planes, const float* near, std::siz
 } // namespace
 
 extern const MeshKernels mesh;
-const MeshKernels mesh = {gather, attract, energy, spread, pull, convolve};
+const MeshKernels mesh = {gather, attract, energy, spread, interpolate, convolve};
 
 } // namespace keeler::KEELER_KERNEL_SPACE

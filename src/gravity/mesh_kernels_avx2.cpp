@@ -12,7 +12,7 @@ typedef float Lanes __attribute__((vector_size(32), may_alias));
 typedef float LanesInRow __attribute__((vector_size(32), aligned(4), may_alias));
 typedef int IntLanes __attribute__((vector_size(32), may_alias));
 
-// Numbers of one row, or of four rows one after the other.
+// Four values of one row, and of four consecutive rows.
 typedef float Four __attribute__((vector_size(16), may_alias));
 typedef float FourInRow __attribute__((vector_size(16), aligned(4), may_alias));
 struct Sixteen {

@@ -12,7 +12,7 @@ typedef float Lanes __attribute__((vector_size(64), may_alias));
 typedef float LanesInRow __attribute__((vector_size(64), aligned(4), may_alias));
 typedef int IntLanes __attribute__((vector_size(64), may_alias));
 
-// Numbers of one row, or of four rows one after the other.
+// Four values of one row, and of four consecutive rows.
 typedef float Four __attribute__((vector_size(16), may_alias));
 typedef float FourInRow __attribute__((vector_size(16), aligned(4), may_alias));
 struct Sixteen {
@@ -23,7 +23,7 @@ constexpr IntLanes lane_numbers = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13,
 
 inline Lanes difference(const double* from, double origin) {
   const __m512d shift = _mm512_set1_pd(origin);
-  // all lanes; gcc 12 warns falsely at the plain forms
+  // The masks select all lanes; gcc 12 warns falsely about the plain forms
   const __m256 low = _mm512_maskz_cvtpd_ps(0xff, _mm512_loadu_pd(from) - shift);
   const __m256 high = _mm512_maskz_cvtpd_ps(0xff, _mm512_loadu_pd(from + 8) - shift);
   const __m512d lower = _mm512_maskz_broadcast_f64x4(0xff, _mm256_castps_pd(low));

@@ -1,4 +1,4 @@
-// The mesh solver's kernels for any processor: four lanes, which is what x86-64 (SSE2) and 64-bit ARM both have.
+// The mesh solver's kernels for any processor: four lanes, which both x86-64 (SSE2) and 64-bit ARM have.
 #include "mesh_kernels.hpp"
 
 #define KEELER_KERNEL_SPACE mesh_portable
@@ -10,7 +10,7 @@ typedef float Lanes __attribute__((vector_size(16), may_alias));
 typedef float LanesInRow __attribute__((vector_size(16), aligned(4), may_alias));
 typedef int IntLanes __attribute__((vector_size(16), may_alias));
 
-// Numbers of one row, or of four rows one after the other.
+// Four values of one row, and of four consecutive rows.
 typedef float Four __attribute__((vector_size(16), may_alias));
 typedef float FourInRow __attribute__((vector_size(16), aligned(4), may_alias));
 struct Sixteen {

@@ -1,14 +1,16 @@
 #include "near_forces.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-// Bounds of some places, m.
+// Bounds of coordinates, m.
 struct Bounds {
   Bounds(const double* values, std::size_t count) : low(values[0]), high(values[0]) {
+    assert(count > 0);
     for (std::size_t k = 1; k < count; ++k) {
       low = std::min(low, values[k]);
       high = std::max(high, values[k]);
@@ -17,8 +19,8 @@ struct Bounds {
   double low, high;
 };
 
-// The group of these particles, and they as its targets, with nothing gathered yet.
-NearGroup around(const ParticleRange& own, float scale, NearTargets& targets) {
+// Returns the frame of a group of particles and makes them its targets, with zero accelerations.
+NearGroup make_group(const ParticleRange& own, float scale, NearTargets& targets) {
   const double* const coordinates[] = {own.x, own.y, own.z};
   float* const relative[] = {targets.x, targets.y, targets.z};
   float* const gathered[] = {targets.ax, targets.ay, targets.az};
@@ -49,16 +51,17 @@ NearForces::NearForces(const ForceSplit& split, InstructionSet set) : kernels_(m
                  [](double term) { return static_cast<float>(term); });
 }
 
-// Hands all neighbours of the targets to flush(sources), list by list.
+// Calls flush_list(sources) until it has seen all neighbours of the targets.
 template<class Flush>
-void NearForces::visit(const Places& places, const ShearingBox& box, double offset, double radius, std::size_t begin,
-                       std::size_t count, NearTargets& targets, const Flush& flush_list) const {
-  const ParticleRange own = places.range(begin, count);
+void NearForces::visit(const SortedParticles& sorted, const ShearingBox& box, double offset, double radius,
+                       std::size_t begin, std::size_t count, NearTargets& targets, const Flush& flush_list) const {
+  assert(count > 0 && count <= NearTargets::capacity && radius > 0.0);
+  const ParticleRange own = sorted.range(begin, count);
   const Bounds x(own.x, count), y(own.y, count);
-  NearGroup group = around(own, static_cast<float>(1.0 / radius), targets);
+  NearGroup group = make_group(own, static_cast<float>(1.0 / radius), targets);
   const double origin_x = group.origin_x, origin_y = group.origin_y;
 
-  const Tiling& tiling = places.tiling();
+  const Tiling& tiling = sorted.tiling();
   const auto axis = [&](double size, std::size_t cells, std::size_t tiles) {
     return CellAxis(size, size * static_cast<double>(tiling.side) / static_cast<double>(cells), tiles);
   };
@@ -74,11 +77,11 @@ void NearForces::visit(const Places& places, const ShearingBox& box, double offs
       if (NearSources::capacity - sources.count < NearSources::capacity / 4)
         flush();
       const std::size_t part = std::min(end - first, NearSources::capacity / 4);
-      kernels_.gather(sources, places.range(first, part), group);
+      kernels_.gather(sources, sorted.range(first, part), group);
       first += part;
     }
   };
-  const auto circle = [&](double from) { // what the cut-off circles around the group take of a column
+  const auto circle = [&](double from) { // the rows of a column within the cut-off of the group
     const double gap = std::max({0.0, from - x.high, x.low - from - tiles.x.width});
     const double reach = std::sqrt(std::max(0.0, radius * radius - gap * gap));
     return std::pair(y.low - reach, y.high + reach);
@@ -87,22 +90,22 @@ void NearForces::visit(const Places& places, const ShearingBox& box, double offs
                      [&](std::size_t first, std::size_t last, const Image& image) {
                        group.origin_x = origin_x - image.nx * box.size_x;
                        group.origin_y = origin_y + image.nx * offset - image.ny * box.size_y;
-                       gather(places.first(first), places.end(last));
+                       gather(sorted.first(first), sorted.end(last));
                      });
   flush();
 }
 
-void NearForces::attract(const Places& places, const ShearingBox& box, double offset, double radius, std::size_t begin,
-                         std::size_t count, NearTargets& targets) const {
-  visit(places, box, offset, radius, begin, count, targets,
+void NearForces::attract(const SortedParticles& sorted, const ShearingBox& box, double offset, double radius,
+                         std::size_t begin, std::size_t count, NearTargets& targets) const {
+  visit(sorted, box, offset, radius, begin, count, targets,
         [&](NearSources& sources) { kernels_.attract(targets, count, sources, inside_.data()); });
 }
 
-NearForces::Energy NearForces::energy(const Places& places, const ShearingBox& box, double offset, double radius,
-                                      std::size_t begin, std::size_t count) const {
-  const ParticleRange own = places.range(begin, count);
+NearForces::Energy NearForces::energy(const SortedParticles& sorted, const ShearingBox& box, double offset,
+                                      double radius, std::size_t begin, std::size_t count) const {
+  const ParticleRange own = sorted.range(begin, count);
   NearTargets targets;
-  visit(places, box, offset, radius, begin, count, targets,
+  visit(sorted, box, offset, radius, begin, count, targets,
         [&](NearSources& sources) { kernels_.energy(targets, count, sources, inside_.data(), potential_.data()); });
   Energy sum;
   for (std::size_t i = 0; i < count; ++i) {

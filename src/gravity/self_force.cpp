@@ -5,17 +5,19 @@
 #include <keeler/core/units.hpp>
 
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <vector>
 
 namespace keeler {
 namespace {
 
-// Of one axis, at the wave numbers k = π (i + ½) / (points × spacing): what a wave counts with when the other axes are
-// looked at, and in the harmonics 1 and 2 of its own.
+// One axis at the wave numbers k = π (i + ½) / (points × spacing): the weight of a wave in the sums of the other axes,
+// and in harmonics 1 and 2 of this axis.
 struct Axis {
   static constexpr int points = 16;
   explicit Axis(double spacing) {
+    assert(spacing > 0.0);
     const double step = pi / points;
     for (int i = 0; i < points; ++i) {
       const double angle = step * (i + 0.5), aliased = aliased_spline_squares(std::cos(angle));
@@ -26,7 +28,7 @@ struct Axis {
         double sum = 0.0;
         for (int alias = -4; alias <= 4; ++alias) {
           const double from = angle + 2.0 * pi * alias, to = from + 2.0 * pi * p;
-          // over −k, too: a sum that is odd in k would vanish
+          // over −k too: a sum that is odd in k would vanish
           const double back = -angle + 2.0 * pi * alias, back_to = back + 2.0 * pi * p;
           sum += to * spline_transform(to) * spline_transform(from) +
                  back_to * spline_transform(back_to) * spline_transform(back);

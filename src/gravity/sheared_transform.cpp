@@ -3,17 +3,19 @@
 #include <keeler/core/units.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <new>
 
 namespace keeler {
 namespace {
 
-// Complex numbers, from any of them on. (A deduced type would forget its alignment.)
+// Two complex numbers, aligned like one. (A deduced type would lose the alignment.)
 typedef float Two __attribute__((vector_size(16), aligned(8), may_alias));
-typedef double Whole __attribute__((may_alias)); // one complex number, to be moved in one go
+typedef double Whole __attribute__((may_alias)); // one complex number, moved at once
 
-Two exchanged(Two numbers) {
+// Swaps real and imaginary parts.
+Two swapped(Two numbers) {
   return __builtin_shufflevector(numbers, numbers, 1, 0, 3, 2);
 }
 
@@ -24,13 +26,15 @@ fftwf_complex* fftw(std::complex<float>* numbers) {
 } // namespace
 
 void HalfSpectrum::reset(std::span<const IndexRange> columns, const IndexRange& waves, std::size_t planes) {
+  assert(std::is_sorted(columns.begin(), columns.end(),
+                        [](const IndexRange& a, const IndexRange& b) { return a.begin < b.begin; }));
   columns_.clear();
   for (const IndexRange& range : columns)
     for (std::size_t begin = range.begin; begin < range.end; begin += block)
       columns_.push_back({begin, std::min(begin + block, range.end)});
   waves_ = waves;
   planes_ = planes;
-  numbers_.resize_at_least(blocks() * waves.size() * planes * block);
+  values_.resize_at_least(blocks() * waves.size() * planes * block);
 }
 
 ShearedTransform::~ShearedTransform() {
@@ -46,7 +50,7 @@ void ShearedTransform::destroy_plans() {
 
 void ShearedTransform::make_plans() {
   destroy_plans();
-  planned_columns_ = planned_rows_ = 0; // until all is there
+  planned_columns_ = planned_rows_ = 0; // not valid until all plans are made
   const auto columns = static_cast<int>(shape_.columns), rows = static_cast<int>(shape_.rows);
   AlignedArray<float> real;
   AlignedArray<Complex> one, other;
@@ -64,7 +68,8 @@ void ShearedTransform::make_plans() {
   planned_rows_ = shape_.rows;
 }
 
-void ShearedTransform::prepare(const MeshShape& shape, double offset_part, const IndexRange& waves) {
+void ShearedTransform::prepare(const MeshShape& shape, double offset_fraction, const IndexRange& waves) {
+  assert(std::fabs(offset_fraction) <= 0.5 && waves.end <= ShearedTransform::waves(shape));
   shape_ = shape;
   first_wave_ = waves.begin;
   if (shape.columns != planned_columns_ || shape.rows != planned_rows_)
@@ -72,38 +77,40 @@ void ShearedTransform::prepare(const MeshShape& shape, double offset_part, const
   scratch_.resize(static_cast<std::size_t>(threads()));
   for (auto& scratch : scratch_)
     scratch.resize_at_least(shape.planes * std::max(2 * row_length(), block * spectrum_row()));
-  turns_.resize_at_least(waves.size() * 2 * row_length());
-  offset_part_ = offset_part;
+  phases_.resize_at_least(waves.size() * 2 * row_length());
+  offset_fraction_ = offset_fraction;
   parallel_for(
       waves.size(),
       [&](std::size_t k) {
         const std::size_t m = waves.begin + k;
-        // e^{−i k_y d x / L_x} at each column, by powers of that of one spacing
-        const double angle = -2.0 * pi * offset_part * static_cast<double>(m) / static_cast<double>(shape.columns);
+        // e^{−i k_y d x / L_x} at each column, by powers of that at the first one
+        const double angle = -2.0 * pi * offset_fraction * static_cast<double>(m) / static_cast<double>(shape.columns);
         const std::complex<double> step(std::cos(angle), std::sin(angle));
-        std::complex<double> turn = 1.0;
+        std::complex<double> phase = 1.0;
         for (std::size_t i = 0; i < row_length(); ++i) {
-          const auto cosine = static_cast<float>(turn.real()), sine = static_cast<float>(turn.imag());
+          const auto cosine = static_cast<float>(phase.real()), sine = static_cast<float>(phase.imag());
           cosines(m)[i] = {cosine, cosine};
           sines(m)[i] = {-sine, sine};
-          turn = {turn.real() * step.real() - turn.imag() * step.imag(),
-                  turn.real() * step.imag() + turn.imag() * step.real()};
+          phase = {phase.real() * step.real() - phase.imag() * step.imag(),
+                   phase.real() * step.imag() + phase.imag() * step.real()};
         }
       },
       16);
 }
 
-double ShearedTransform::turns_x(std::size_t m, std::size_t n) const {
+double ShearedTransform::relative_kx(std::size_t m, std::size_t n) const {
   const auto columns = static_cast<double>(shape_.columns);
-  const double turns = static_cast<double>(n) + static_cast<double>(m) * offset_part_;
-  return turns - columns * std::nearbyint(turns / columns);
+  const double kx = static_cast<double>(n) + static_cast<double>(m) * offset_fraction_;
+  return kx - columns * std::nearbyint(kx / columns);
 }
 
 std::complex<float>* ShearedTransform::own_scratch() {
+  assert(static_cast<std::size_t>(omp_get_thread_num()) < scratch_.size());
   return scratch_[static_cast<std::size_t>(omp_get_thread_num())].data();
 }
 
 void ShearedTransform::forward_y(Mesh& mesh, HalfSpectrum& half) {
+  assert(half.waves().size() == waves());
   const std::size_t planes = shape_.planes, rows = shape_.rows;
   parallel_for(
       half.blocks(),
@@ -141,10 +148,10 @@ void ShearedTransform::forward_x(std::size_t m, HalfSpectrum& half, Complex* row
     const Two* const sine = reinterpret_cast<const Two*>(sines(m) + begin);
     const Two* const from = reinterpret_cast<const Two*>(half.wave(b, m));
     for (std::size_t k = 0; k < planes; ++k) {
-      Two* const to = reinterpret_cast<Two*>(rows + k * row_length() + begin); // later blocks write over the rest
+      Two* const to = reinterpret_cast<Two*>(rows + k * row_length() + begin); // later blocks overwrite the rest
       for (std::size_t c = 0; c < block / 2; ++c) {
         const Two value = from[k * (block / 2) + c];
-        to[c] = value * cosine[c] + exchanged(value) * sine[c];
+        to[c] = value * cosine[c] + swapped(value) * sine[c];
       }
     }
   }
@@ -171,13 +178,14 @@ void ShearedTransform::backward_x(std::size_t m, Complex* spectra, Complex* rows
     Two* const to = reinterpret_cast<Two*>(half.wave(b, m));
     for (std::size_t k = 0; k < planes; ++k) {
       const Two* const from = reinterpret_cast<const Two*>(rows + k * row_length() + begin);
-      for (std::size_t c = 0; c < block / 2; ++c) // back by the same turn
-        to[k * (block / 2) + c] = from[c] * cosine[c] - exchanged(from[c]) * sine[c];
+      for (std::size_t c = 0; c < block / 2; ++c) // the inverse phase
+        to[k * (block / 2) + c] = from[c] * cosine[c] - swapped(from[c]) * sine[c];
     }
   }
 }
 
 void ShearedTransform::backward_y(HalfSpectrum& half, Mesh& mesh) {
+  assert(half.waves().size() == waves());
   const std::size_t planes = shape_.planes, rows = shape_.rows;
   parallel_for(
       half.blocks(),

@@ -7,6 +7,7 @@
 #include <keeler/gravity/fft.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace keeler {
@@ -14,7 +15,7 @@ namespace {
 
 using Solver = GravitySettings::Solver;
 
-constexpr std::size_t few = 64; // particles: direct sums are cheapest
+constexpr std::size_t max_direct = 64; // particles: up to here direct sums are cheapest
 
 bool pairwise(const GravitySettings& settings) {
   return settings.solver == Solver::direct || settings.solver == Solver::tree;
@@ -22,6 +23,7 @@ bool pairwise(const GravitySettings& settings) {
 
 std::unique_ptr<FftSolver> make_fft(const GravitySettings& settings, std::span<const double> masses, double area,
                                     const Communicator& ranks) {
+  assert(area > 0.0);
   const std::size_t count = ranks.sum(masses.size());
   const double distance = std::sqrt(area / static_cast<double>(std::max<std::size_t>(count, 1)));
   const double cut =
@@ -35,8 +37,8 @@ std::unique_ptr<FftSolver> make_fft(const GravitySettings& settings, std::span<c
 GravitySettings chosen_for(std::size_t count, GravitySettings settings) {
   if (settings.solver != Solver::automatic)
     return settings;
-  settings.solver = count <= few ? Solver::direct : Solver::fft;
-  settings.images.rings = 2; // direct: one ring errs by up to 3e-5
+  settings.solver = count <= max_direct ? Solver::direct : Solver::fft;
+  settings.images.rings = 2; // direct: the error of one ring is up to 3e-5
   return settings;
 }
 

@@ -10,10 +10,10 @@
 
 namespace keeler {
 
-/// A cell attracts a group as a whole when size < opening_angle × (distance from the group's box to the cell's centre
-/// of mass) and the two boxes cannot overlap; otherwise it is opened, down to particles. The size is the longest side
-/// of the cell's tight box. Cells far beyond that act through the group's local expansion. Opening angle 0 gives the
-/// direct sum, in single precision. The net force is taken out: it is the tree's error.
+/// A cell attracts a group as a whole if size < opening_angle × (distance from the group's box to the cell's centre of
+/// mass) and the two boxes cannot overlap; otherwise it is opened, down to particles. The size is the longest side of
+/// the cell's tight box. Distant cells act through the group's local expansion. Opening angle 0 gives the direct sum,
+/// in single precision. The net force, an error of the tree, is subtracted.
 class TreeSolver final : public GravitySolver {
 public:
   TreeSolver(double opening_angle, const ImageSettings& images, InstructionSet set);
@@ -27,7 +27,7 @@ private:
   InstructionSet set_;
   AttractionKernels kernels_;
   CellTree tree_;
-  std::vector<std::uint32_t> places_;
+  std::vector<std::uint32_t> indices_; // of in_cell_, in the problem's arrays
   std::vector<PointSource> in_cell_;
 };
 

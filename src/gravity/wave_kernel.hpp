@@ -1,11 +1,11 @@
-// What the mesh does with a wave: from its masses on the planes to its potential there, in open space above and below.
+// The mesh's kernel: from a wave's masses on the planes to its potential there, with open space above and below.
 //
-// A wave k of mass per area on a thin plane pulls through e^{−k|Δz|} 2π/k, and with clouds in place of particles, only
-// the distances within a few cut-off radii differ from that. So the sum over planes is a short symmetric one, plus the
-// exponential tail, which two recursions along z carry however many planes there are. The factors are tabulated against
-// k; what the spreading and its counterpart, the interpolation, do to a wave is taken out of them in x, y and z in the
-// sense of least squares over all aliases of a wave (Hockney & Eastwood's optimal influence function, for the
-// potential). The wave k = 0 is kept: its tail is −2π |Δz|, the sheet's own attraction.
+// A wave k of mass per area on a thin plane attracts by e^{−k|Δz|} 2π/k. With clouds in place of particles, only
+// distances within a few cut-off radii differ from that. So the sum over planes is a short symmetric one, plus the
+// exponential tail, which two recursions along z compute for any number of planes. The factors are tabulated against k.
+// They deconvolve spreading and interpolation in x, y and z in the sense of least squares over all aliases of a wave
+// (Hockney & Eastwood's optimal influence function, for the potential). The wave k = 0 is kept: its tail is −2π |Δz|,
+// the attraction of a sheet.
 #pragma once
 
 #include "force_split.hpp"
@@ -20,21 +20,22 @@ namespace keeler {
 
 class WaveKernel {
 public:
-  /// For clouds of this radius and wave numbers k up to the highest one, both by the spacing of z. Higher waves are
-  /// left out.
-  WaveKernel(const ForceSplit& split, double radius, double highest_k);
+  /// Tabulates the kernel for clouds of this radius and wave numbers up to max_k, both in units of the spacing along z.
+  /// Higher waves are omitted.
+  WaveKernel(const ForceSplit& split, double radius, double max_k);
 
-  /// Before apply() on meshes of that shape.
+  /// Prepares scratch memory for apply() on meshes of that shape.
   void prepare(const MeshShape& shape);
 
-  /// From wave m's masses, all planes, to the potential at G = 1, without its sign (masses attract up its gradient).
+  /// Writes the potential `to` of wave m from its masses `from`, all planes, at G = 1 and without its sign:
+  /// accelerations point along its gradient. Precondition: prepare() was called for the shape.
   void apply(const MeshShape& shape, const ShearedTransform& transform, std::size_t m, const MeshKernels& kernels,
              const std::complex<float>* from, std::complex<float>* to);
 
 private:
-  static constexpr std::size_t block = 8; // waves at a time, which are 16 numbers
+  static constexpr std::size_t block = 8; // waves at a time: 16 numbers
 
-  /// Of a block of waves, number by number as MeshKernels::convolve takes them.
+  /// Factors of a block of waves, 16 numbers each, for MeshKernels::convolve.
   struct Factors {
     float *near, *far, *decay;
   };
@@ -44,11 +45,12 @@ private:
                         const Factors& factors) const;
   float window(double angle) const;
 
-  std::vector<float> table_; ///< for each k: near[0 … reach], and the factor of the tail times k; by the spacing of z
-  std::vector<float> window_;                ///< what takes the window out of one axis, against k times its spacing
-  std::vector<AlignedArray<float>> scratch_; ///< one a thread
+  /// For each k: near[0 … reach], and the factor of the tail times k; in units of the spacing along z.
+  std::vector<float> table_;
+  std::vector<float> window_;                ///< deconvolution of one axis, against k times its spacing
+  std::vector<AlignedArray<float>> scratch_; ///< per thread
   std::size_t reach_ = 0;
-  double highest_k_;
+  double max_k_;
 };
 
 } // namespace keeler

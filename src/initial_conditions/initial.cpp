@@ -209,11 +209,11 @@ PatchScale::Sphere largest_of(const Patch& patch, const Communicator& ranks) {
   PatchScale::Sphere largest;
   for (const double radius : patch.radii)
     largest.radius = std::max(largest.radius, radius);
-  largest.radius = ranks.largest(largest.radius);
+  largest.radius = ranks.max(largest.radius);
   for (std::size_t k = 0; k < patch.size(); ++k)
     if (patch.radii[k] == largest.radius)
       largest.mass = std::max(largest.mass, patch.masses[k]);
-  largest.mass = ranks.largest(largest.mass);
+  largest.mass = ranks.max(largest.mass);
   return largest;
 }
 

@@ -55,7 +55,7 @@ void Placing::find_octaves() {
   std::iota(order_.begin(), order_.end(), 0u);
   std::stable_sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) { return radii[a] > radii[b]; });
   for (std::size_t first = 0, last;; first = last) {
-    const double largest = slabs_.ranks().largest(first < order_.size() ? radii[order_[first]] : 0.0);
+    const double largest = slabs_.ranks().max(first < order_.size() ? radii[order_[first]] : 0.0);
     if (largest == 0.0)
       return;
     for (last = first; last < order_.size() && radii[order_[last]] >= 0.5 * largest;)

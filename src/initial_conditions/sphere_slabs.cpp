@@ -39,8 +39,8 @@ void SphereSlabs::add_copies(std::vector<Sphere>& spheres, double stretch) {
       largest = std::max(largest, sphere.radius);
       outside = std::max(outside, distance_outside(sphere.position));
     }
-  largest = ranks_.largest(largest);
-  outside = ranks_.largest(outside);
+  largest = ranks_.max(largest);
+  outside = ranks_.max(outside);
   sent_.assign(ranks_.size(), {});
   std::vector<std::vector<Sphere>> parcels(ranks_.size());
   for (std::size_t k = 0; k < own_; ++k) {

@@ -133,14 +133,14 @@ std::optional<double> shear_seen(const Moments& all, double shear) {
 }
 
 double largest_of(const std::vector<double>& values, const Communicator& ranks) {
-  return ranks.largest(values.empty() ? 0.0 : *std::max_element(values.begin(), values.end()));
+  return ranks.max(values.empty() ? 0.0 : *std::max_element(values.begin(), values.end()));
 }
 
 double extent_of(const Patch& patch, int axis, const Communicator& ranks) {
   double farthest = 0.0;
   for (const Vec3& position : patch.positions)
     farthest = std::max(farthest, std::fabs(position[axis]));
-  return 2.0 * ranks.largest(farthest);
+  return 2.0 * ranks.max(farthest);
 }
 
 double over(double size, double extent) {

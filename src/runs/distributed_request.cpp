@@ -23,7 +23,7 @@ std::string in_words(const std::optional<double>& number) {
   return number ? fmt::format("{}", *number) : "not given";
 }
 
-std::vector<Asked> asked_of(const RunOptions& options) {
+std::vector<RequestEntry> asked_of(const RunOptions& options) {
   const auto flag = [](bool given) { return given ? "given" : "not given"; };
   return {{"the folder", location(options.folder)},
           {"--force", flag(options.force)},
@@ -47,7 +47,7 @@ std::string fingerprint(const Scene& scene, const std::string& file) {
 void require_same_run(const Scene& scene, const RunOptions& options) {
   if (!options.ranks.distributed())
     return;
-  std::vector<Asked> request = asked_of(options);
+  std::vector<RequestEntry> request = asked_of(options);
   options.ranks.together([&] {
     for (const KeyInForce& key : keys_in_force(scene)) {
       request.push_back({key.path, key.value});

@@ -40,7 +40,7 @@ void Simulation::divide() {
     return;
   ranks_.together([&] { require_distributable(scene_, count_); });
   slabs_ = std::make_unique<Slabs>(ranks_, state_.box, scene_.planet.frequencies);
-  slabs_->divide(holding());
+  slabs_->distribute(holding());
 }
 
 // Returns the particles, and the accelerations of their last kicks, which the next half kick needs.
@@ -51,22 +51,22 @@ Slabs::Holding Simulation::holding() {
   return holding;
 }
 
-// Makes sure that the borders are valid for the next step.
-void Simulation::require_borders() {
-  if (slabs_->serve(state_.particles, state_.step_length))
+// Makes sure that the ghost layer is valid for the next step.
+void Simulation::require_ghost_layer() {
+  if (slabs_->is_valid(state_.particles, state_.step_length))
     return;
   drift_.release();
-  slabs_->make_borders(holding(), state_.epoch_offset(), state_.step_length);
+  slabs_->rebuild(holding(), state_.epoch_offset(), state_.step_length);
   find_moonlets();
 }
 
 // Every particle that may touch one of this rank's in the next step has a copy here, and that step begins at this
 // boundary.
 Overlap Simulation::largest_overlap_distributed() {
-  require_borders();
-  slabs_->add_copies(state_.particles);
+  require_ghost_layer();
+  slabs_->add_ghosts(state_.particles);
   const Overlap here = keeler::largest_overlap(patch_of(state_.particles));
-  slabs_->drop_copies(state_.particles);
+  slabs_->remove_ghosts(state_.particles);
   Overlap largest;
   for (const std::vector<Overlap>& of_rank : ranks_.exchange(std::vector(ranks_.size(), std::vector{here})))
     if (deeper(of_rank.front(), largest))
@@ -77,11 +77,11 @@ Overlap Simulation::largest_overlap_distributed() {
 void Simulation::collide_distributed() {
   const double offset = state_.epoch_offset();
   for (;;) {
-    require_borders();
-    slabs_->add_copies(state_.particles);
+    require_ghost_layer();
+    slabs_->add_ghosts(state_.particles);
     const bool done =
-        drift_.collide_distributed(state_.particles, slabs_->borders(), ranks_, state_.box, offset, state_.collisions);
-    slabs_->drop_copies(state_.particles);
+        drift_.collide_distributed(state_.particles, slabs_->ghosts(), ranks_, state_.box, offset, state_.collisions);
+    slabs_->remove_ghosts(state_.particles);
     if (done)
       return;
     slabs_->widen();

@@ -28,7 +28,7 @@ void require_fit(const Scene& scene, const Patch& start, const std::string& name
     if (!ranks.distributed())
       require_no_overlap(start, name);
   });
-  const double largest = ranks.largest(start.size() ? *std::max_element(start.radii.begin(), start.radii.end()) : 0.0);
+  const double largest = ranks.max(start.size() ? *std::max_element(start.radii.begin(), start.radii.end()) : 0.0);
   ranks.on_root([&] { require_room(start.box, largest, name); });
 }
 

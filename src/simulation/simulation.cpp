@@ -171,7 +171,7 @@ void Simulation::sort_when_due() {
     return;
   if constexpr (Communicator::possible)
     if (ranks_.distributed())
-      return slabs_->expire(); // new borders sort particles too
+      return slabs_->invalidate(); // the ghost layer is rebuilt, which sorts too
   const Stopwatch watch(split_.drift);
   drift_.release();
   undisturbed_ = false;

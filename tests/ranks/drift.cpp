@@ -1,4 +1,4 @@
-// A drift that ranks share against the plain one of the tests, which knows one list of all particles: the same bits.
+// Distributed drift against the tests' plain drift, which has all particles in one list: equal bits.
 #include "launched.hpp"
 
 #include "unit/collision/plain_drift.hpp"
@@ -25,20 +25,20 @@ public:
   Part(const Ring& ring, const CollisionSettings& settings, const Slabs::Reach& reach)
       : own(ring.particles), slabs(keeler_test::launched(), ring.box, ring.frequencies, reach),
         drift(settings, ring.frequencies, test::omega, ring.step), step_(ring.step) {
-    if (!keeler_test::launched().is_first())
+    if (!keeler_test::launched().is_root())
       own.bodies.clear(), own.ids.clear(), own.spins.clear();
-    slabs.divide({own, {}});
+    slabs.distribute({own, {}});
   }
 
   void collide(const ShearingBox& box, double offset, CollisionTally& tally) {
     for (bool done = false; !done;) {
-      if (!slabs.serve(own, step_)) {
+      if (!slabs.is_valid(own, step_)) {
         drift.release();
-        slabs.make_borders({own, {}}, offset, step_);
+        slabs.rebuild({own, {}}, offset, step_);
       }
-      slabs.add_copies(own);
-      done = drift.collide_distributed(own, slabs.borders(), keeler_test::launched(), box, offset, tally);
-      slabs.drop_copies(own);
+      slabs.add_ghosts(own);
+      done = drift.collide_distributed(own, slabs.ghosts(), keeler_test::launched(), box, offset, tally);
+      slabs.remove_ghosts(own);
       if (!done)
         slabs.widen();
     }
@@ -52,18 +52,18 @@ private:
   double step_;
 };
 
-// Those of the whole that the part owns, in its order.
+// Returns the particles of `whole` that `own` contains, in its order.
 Particles part_of(const Particles& whole, const Particles& own) {
-  std::map<std::uint64_t, std::size_t> places;
+  std::map<std::uint64_t, std::size_t> index_of;
   for (std::size_t k = 0; k < whole.size(); ++k)
-    places[whole.ids[k]] = k;
+    index_of[whole.ids[k]] = k;
   Particles part;
   part.rough = whole.rough;
   for (const std::uint64_t id : own.ids) {
     part.ids.push_back(id);
-    part.bodies.push_back(whole.bodies[places.at(id)]);
+    part.bodies.push_back(whole.bodies[index_of.at(id)]);
     if (whole.rough)
-      part.spins.push_back(whole.spins[places.at(id)]);
+      part.spins.push_back(whole.spins[index_of.at(id)]);
   }
   return part;
 }
@@ -71,10 +71,10 @@ Particles part_of(const Particles& whole, const Particles& own) {
 struct Walk {
   std::size_t contacts = 0;
   DriftCosts costs;
-  std::uint64_t borders = 0; // times made
+  std::uint64_t rebuilds = 0; // of the ghost layer
 };
 
-// Some steps of a scenario's patch; all ranks see the same patch.
+// Makes `steps` steps of a scenario's patch, which all ranks generate.
 Walk walk(const Scenario& s, std::uint64_t seed, int steps, const Slabs::Reach& reach = {}) {
   const Communicator& ranks = keeler_test::launched();
   const CollisionSettings settings = test::settings_of(s);
@@ -95,7 +95,7 @@ Walk walk(const Scenario& s, std::uint64_t seed, int steps, const Slabs::Reach& 
     part.own = part_of(ring.particles, part.own);
   }
   walked.costs = part.drift.costs();
-  walked.borders = part.slabs.times_made();
+  walked.rebuilds = part.slabs.rebuilds();
   return walked;
 }
 
@@ -116,8 +116,8 @@ TEST_CASE("ranks: the same bits as the plain drift, loose and dense, for steps f
     }
 }
 
-// Without copies beyond the near ones, and with hardly a margin, nearly every step is done again.
-TEST_CASE("ranks: where copies go other ways than their owners say, the step is done again, with the same bits") {
+// Without ghosts beyond the near ones, and with almost no margin, nearly every step is repeated.
+TEST_CASE("ranks: a step is repeated if ghosts leave their owners' paths, with the bits of the plain drift") {
   std::uint64_t again = 0, rounds = 0, strayed = 0;
   for (const double step : {2e-3, 1e-2, 4e-2})
     for (const double growth : {1.0, 1.5}) {
@@ -131,8 +131,8 @@ TEST_CASE("ranks: where copies go other ways than their owners say, the step is 
       rounds += walked.costs.rounds_again;
       strayed += walked.costs.steps - 25;
     }
-  MESSAGE(again, " steps again in ", rounds, " rounds, ", strayed, " with wider borders");
-  const bool many = keeler_test::launched().many();
+  MESSAGE(again, " steps repeated in ", rounds, " rounds, ", strayed, " with wider ghost layers");
+  const bool many = keeler_test::launched().distributed();
   CHECK(again >= (many ? 10 : 0));
   CHECK(rounds > (many ? again : 0));
   CHECK(strayed >= (many ? 1 : 0));
@@ -161,10 +161,10 @@ TEST_CASE(
   CHECK(walk(s, 3, 40).contacts > 20);
 }
 
-TEST_CASE("ranks: borders serve for many steps") {
+TEST_CASE("ranks: a ghost layer is valid for many steps") {
   Scenario s;
   s.count = 220;
   s.optical_depth = 0.2;
   s.step = two_pi * 1e-3;
-  CHECK(walk(s, 5, 60).borders < 30);
+  CHECK(walk(s, 5, 60).rebuilds < 30);
 }

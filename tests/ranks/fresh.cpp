@@ -1,4 +1,4 @@
-// Fresh starts that ranks make together, each in its slab, against one process that makes them alone: the same bits.
+// Fresh starts made by several ranks, each in its slab, against one process: equal bits.
 #include "launched.hpp"
 
 #include <keeler/core/error.hpp>
@@ -45,10 +45,10 @@ bool same(const Row& a, const Row& b) {
          a.velocity == b.velocity && a.spin == b.spin;
 }
 
-// On the first rank: how many particles are not the same in both.
+// Returns on the root the number of particles that differ.
 std::size_t differences(const Patch& whole, const Patch& part) {
   std::vector<Row> all = launched().gather(rows_of(part));
-  if (!launched().is_first())
+  if (!launched().is_root())
     return 0;
   std::sort(all.begin(), all.end(), [](const Row& a, const Row& b) { return a.id < b.id; });
   const std::vector<Row> expected = rows_of(whole);
@@ -73,7 +73,7 @@ const std::string equal = "sizes = { law = \"equal\", radius = 1.0 }\n",
 
 } // namespace
 
-TEST_CASE("a fresh start has the bits of one process, and each rank has its share") {
+TEST_CASE("a fresh start has the bits of one process, and each rank has its part") {
   for (const Scene& scene :
        {scene_with("[90, 60]", "optical_depth = 0.5\n" + equal),
         scene_with("[60, 40]", "optical_depth = 1.8\nvelocity_dispersion = 2.5\n" + equal), // hundreds of sweeps
@@ -89,17 +89,17 @@ TEST_CASE("a fresh start has the bits of one process, and each rank has its shar
     const Patch whole = initial_patch(scene), part = initial_patch(scene, {}, launched());
     CAPTURE(whole.size());
     CHECK(differences(whole, part) == 0);
-    CHECK(part.size() < 1.5 * static_cast<double>(whole.size()) / static_cast<double>(launched().count()));
+    CHECK(part.size() < 1.5 * static_cast<double>(whole.size()) / static_cast<double>(launched().size()));
     CHECK(std::is_sorted(part.ids.begin(), part.ids.end()));
     CHECK(part.orbital_frequency == whole.orbital_frequency);
     CHECK(part.offset == whole.offset);
   }
 }
 
-TEST_CASE("moonlets and aggregates are one process's too, at borders as well as inside") {
+TEST_CASE("moonlets and aggregates have the bits of one process, at bounds of slabs and inside") {
   const std::string friction = "[collisions.friction]\ntangential_restitution = 0.5\n";
-  for (const char* const place : {"0.0, 3.0, 0.0", "-44.0, 20.0, 1.0", "15.0, -10.0, 0.0"}) {
-    const std::string moonlet = std::string("[[moonlet]]\nplace = [") + place + "]\nradius = 7.0\ndensity = 700.0\n",
+  for (const char* const position : {"0.0, 3.0, 0.0", "-44.0, 20.0, 1.0", "15.0, -10.0, 0.0"}) {
+    const std::string moonlet = std::string("[[moonlet]]\nplace = [") + position + "]\nradius = 7.0\ndensity = 700.0\n",
                       aggregates = "[[particles.aggregate]]\ncount = 80\nplace = [-20.0, -15.0, 0.0]\nspin = 0.5\n"
                                    "[[particles.aggregate]]\ncount = 30\nplace = [30.0, 12.0, 0.0]\nfilling = 0.35\n";
     const Scene scene = scene_with("[90, 60]", "optical_depth = 0.4\n" + equal, aggregates + moonlet + friction);
@@ -107,7 +107,7 @@ TEST_CASE("moonlets and aggregates are one process's too, at borders as well as 
   }
 }
 
-TEST_CASE("each rank may have copies of all in a box of few particles") {
+TEST_CASE("each rank may have ghosts of all particles in a small box") {
   for (const char* const box : {"[9, 9]", "[5, 22]"}) {
     const Scene scene = scene_with(box, "optical_depth = 0.6\n" + equal);
     CHECK(differences(initial_patch(scene), initial_patch(scene, {}, launched())) == 0);
@@ -121,10 +121,10 @@ TEST_CASE("ranks may be more than particles") {
   }
 }
 
-TEST_CASE("small ones that are caught between large ones get the same other places") {
+TEST_CASE("small spheres caught between large ones are moved to the positions of one process") {
   UniformRequest request;
   std::vector<double> radii;
-  for (int k = 0; k <= 40; ++k) // from 1 to 10⁻⁴, ever more of them
+  for (int k = 0; k <= 40; ++k) // from 1 to 10⁻⁴, with growing numbers
     radii.insert(radii.end(), static_cast<std::size_t>(std::pow(10.0, 0.09 * k)), std::pow(10.0, -0.1 * k));
   const auto sum = [&](int power) {
     return std::accumulate(radii.begin(), radii.end(), 0.0,
@@ -137,9 +137,9 @@ TEST_CASE("small ones that are caught between large ones get the same other plac
   request.seed = 5;
   UniformRequest own = request;
   request.radii = radii;
-  const std::size_t count = radii.size(), ranks = launched().count();
-  own.first = count * launched().own() / ranks;
-  const std::size_t last = count * (launched().own() + 1) / ranks;
+  const std::size_t count = radii.size(), ranks = launched().size();
+  own.first = count * launched().rank() / ranks;
+  const std::size_t last = count * (launched().rank() + 1) / ranks;
   own.radii.assign(radii.begin() + static_cast<std::ptrdiff_t>(own.first),
                    radii.begin() + static_cast<std::ptrdiff_t>(last));
   CHECK(differences(uniform_patch(request), uniform_patch(own, {}, launched())) == 0);

@@ -1,4 +1,4 @@
-// The mesh solver on many ranks has the bits of one process, however the particles are dealt out.
+// The mesh solver on several ranks has the bits of one process, for any distribution of the particles.
 #include <keeler/gravity/fft.hpp>
 
 #include <keeler/core/error.hpp>
@@ -28,14 +28,15 @@ struct Sample {
   GravityProblem problem(double offset) const { return {positions, masses, ids, box, offset, 2.7e-3, {}}; }
 };
 
-// Masses by a power law over three decades; place(random) in parts of the box, and a height in metres.
-template<class Place>
-Sample sample(const char* name, std::size_t count, double size_x, double size_y, const Place& place) {
+// Makes particles with a power law of masses over three decades; position(random) is in units of the box along x and y,
+// and in metres along z.
+template<class Position>
+Sample sample(const char* name, std::size_t count, double size_x, double size_y, const Position& position) {
   Sample made{name, {size_x, size_y, 1.5, 0.0}, {}, {}, {}};
   for (std::size_t k = 0; k < count; ++k) {
     RandomStream random(11, RandomPurpose::position, k);
-    const Vec3 part = place(random);
-    made.positions.emplace_back(part.x() * size_x, part.y() * size_y, part.z());
+    const Vec3 p = position(random);
+    made.positions.emplace_back(p.x() * size_x, p.y() * size_y, p.z());
     made.masses.push_back(1e3 * std::pow(random.uniform() + 1e-3, -1.0));
     made.ids.push_back(5 * k + 2);
   }
@@ -83,32 +84,32 @@ std::vector<Sample> samples() {
   };
 }
 
-enum class Deal { by_id, by_place, to_last };
+enum class Distribution { by_id, by_position, to_last };
 
-// Whose particle it is at first: ranks that own nothing are among them.
-std::size_t owner(Deal deal, const Sample& state, std::size_t k, std::size_t ranks) {
-  if (deal == Deal::by_id)
+// Returns the owner of a particle; some ranks may own nothing.
+std::size_t owner(Distribution distribution, const Sample& state, std::size_t k, std::size_t ranks) {
+  if (distribution == Distribution::by_id)
     return (state.ids[k] * 0x9e3779b97f4a7c15u >> 33) % ranks;
-  const double place = state.positions[k].x() / state.box.size_x;
-  const auto slab = static_cast<std::size_t>((place - std::floor(place)) * static_cast<double>(ranks));
-  return deal == Deal::by_place ? std::min(slab, ranks - 1) : ranks - 1;
+  const double x = state.positions[k].x() / state.box.size_x;
+  const auto slab = static_cast<std::size_t>((x - std::floor(x)) * static_cast<double>(ranks));
+  return distribution == Distribution::by_position ? std::min(slab, ranks - 1) : ranks - 1;
 }
 
-struct Share {
+struct Part {
   Sample state;
-  std::vector<std::size_t> numbers; // in the whole
+  std::vector<std::size_t> indices; // in the whole sample
 };
 
-Share own_share(const Sample& whole, Deal deal) {
-  Share share{{whole.name, whole.box, {}, {}, {}}, {}};
+Part own_part(const Sample& whole, Distribution distribution) {
+  Part own{{whole.name, whole.box, {}, {}, {}}, {}};
   for (std::size_t k = whole.ids.size(); k-- > 0;)
-    if (owner(deal, whole, k, launched().count()) == launched().own()) {
-      share.state.positions.push_back(whole.positions[k]);
-      share.state.masses.push_back(whole.masses[k]);
-      share.state.ids.push_back(whole.ids[k]);
-      share.numbers.push_back(k);
+    if (owner(distribution, whole, k, launched().size()) == launched().rank()) {
+      own.state.positions.push_back(whole.positions[k]);
+      own.state.masses.push_back(whole.masses[k]);
+      own.state.ids.push_back(whole.ids[k]);
+      own.indices.push_back(k);
     }
-  return share;
+  return own;
 }
 
 std::vector<Vec3> solve(FftSolver& solver, GravityProblem problem, const Communicator& ranks) {
@@ -118,11 +119,11 @@ std::vector<Vec3> solve(FftSolver& solver, GravityProblem problem, const Communi
   return accelerations;
 }
 
-// Of the share, particles whose bits differ from those of the whole.
-std::size_t differing(const std::vector<Vec3>& whole, const Share& share, const std::vector<Vec3>& part) {
+// Returns the number of own accelerations whose bits differ from those of one process.
+std::size_t differing(const std::vector<Vec3>& whole, const Part& own, const std::vector<Vec3>& accelerations) {
   std::size_t count = 0;
-  for (std::size_t k = 0; k < part.size(); ++k)
-    count += std::memcmp(&whole[share.numbers[k]], &part[k], sizeof(Vec3)) != 0;
+  for (std::size_t k = 0; k < accelerations.size(); ++k)
+    count += std::memcmp(&whole[own.indices[k]], &accelerations[k], sizeof(Vec3)) != 0;
   return count;
 }
 
@@ -134,20 +135,21 @@ TEST_CASE("accelerations of fft and mesh on many ranks have the bits of one proc
       if (!short_range && cut > 3.0)
         continue;
       const FftSettings settings{1.4, cut, short_range};
-      FftSolver shared(settings, choose_instruction_set()); // its memory serves one state after the other
+      FftSolver distributed(settings, choose_instruction_set()); // reuses its memory for all states
       for (const Sample& whole : samples()) {
         FftSolver alone(settings, choose_instruction_set());
-        for (const double part : {0.0, 0.37, 0.499999, 0.83}) {
-          const double offset = part * whole.box.size_y;
+        for (const double fraction : {0.0, 0.37, 0.499999, 0.83}) {
+          const double offset = fraction * whole.box.size_y;
           const std::vector<Vec3> expected = solve(alone, whole.problem(offset), {});
-          for (const Deal deal : {Deal::by_id, Deal::by_place, Deal::to_last}) {
+          for (const Distribution distribution :
+               {Distribution::by_id, Distribution::by_position, Distribution::to_last}) {
             CAPTURE(whole.name);
             CAPTURE(short_range);
             CAPTURE(cut);
-            CAPTURE(part);
-            CAPTURE(static_cast<int>(deal));
-            const Share share = own_share(whole, deal);
-            CHECK(differing(expected, share, solve(shared, share.state.problem(offset), launched())) == 0);
+            CAPTURE(fraction);
+            CAPTURE(static_cast<int>(distribution));
+            const Part own = own_part(whole, distribution);
+            CHECK(differing(expected, own, solve(distributed, own.state.problem(offset), launched())) == 0);
           }
         }
       }
@@ -157,19 +159,20 @@ TEST_CASE("accelerations of fft and mesh on many ranks have the bits of one proc
 TEST_CASE("energy and stress on many ranks have the bits of one process, on each of them") {
   for (const bool short_range : {true, false}) {
     const FftSettings settings{1.4, 2.5, short_range};
-    FftSolver shared(settings, choose_instruction_set());
+    FftSolver distributed(settings, choose_instruction_set());
     for (const Sample& whole : samples()) {
       FftSolver alone(settings, choose_instruction_set());
-      for (const double part : {0.0, 0.37, 0.83}) {
-        const GravityEnergy expected = alone.energy(whole.problem(part * whole.box.size_y));
-        for (const Deal deal : {Deal::by_id, Deal::by_place, Deal::to_last}) {
+      for (const double fraction : {0.0, 0.37, 0.83}) {
+        const GravityEnergy expected = alone.energy(whole.problem(fraction * whole.box.size_y));
+        for (const Distribution distribution :
+             {Distribution::by_id, Distribution::by_position, Distribution::to_last}) {
           CAPTURE(whole.name);
           CAPTURE(short_range);
-          CAPTURE(part);
-          const Share share = own_share(whole, deal);
-          GravityProblem problem = share.state.problem(part * whole.box.size_y);
+          CAPTURE(fraction);
+          const Part own = own_part(whole, distribution);
+          GravityProblem problem = own.state.problem(fraction * whole.box.size_y);
           problem.ranks = launched();
-          const GravityEnergy found = shared.energy(problem);
+          const GravityEnergy found = distributed.energy(problem);
           CHECK(found.potential == expected.potential);
           CHECK(found.stress == expected.stress);
         }
@@ -178,16 +181,16 @@ TEST_CASE("energy and stress on many ranks have the bits of one process, on each
   }
 }
 
-TEST_CASE("a place that is nowhere on one rank is an error on all") {
+TEST_CASE("a position that is not finite on one rank is an error on all") {
   const Sample whole = samples().back();
-  Share share = own_share(whole, Deal::to_last);
+  Part own = own_part(whole, Distribution::to_last);
   FftSolver solver({1.4, 2.5, true}, choose_instruction_set());
   for (const double nowhere : {std::numeric_limits<double>::quiet_NaN(), 1e30}) {
-    if (std::isfinite(nowhere) && !launched().many())
-      continue; // one process takes it for a place at the edge
-    for (Vec3& position : share.state.positions)
+    if (std::isfinite(nowhere) && !launched().distributed())
+      continue; // one process treats it as a position at the edge
+    for (Vec3& position : own.state.positions)
       position.x() = nowhere;
-    CHECK_THROWS_AS(solve(solver, share.state.problem(0.0), launched()), Error);
+    CHECK_THROWS_AS(solve(solver, own.state.problem(0.0), launched()), Error);
   }
 }
 

@@ -1,4 +1,4 @@
-// The ranks that mpirun has started together for a test.
+// The ranks that mpirun started for a test.
 #pragma once
 
 #include <keeler/comm/communicator.hpp>

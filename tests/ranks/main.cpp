@@ -1,4 +1,4 @@
-// Runs the tests on every rank; all fail where one does.
+// Runs the tests on every rank; all ranks fail if one does.
 #define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 
@@ -7,7 +7,7 @@
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
 #include <sanitizer/lsan_interface.h>
-#define KEELER_LOOKS_FOR_LEAKS
+#define KEELER_CHECKS_LEAKS
 #endif
 #endif
 
@@ -16,17 +16,17 @@ using namespace keeler;
 namespace {
 Communicator ranks;
 
-// What MPI keeps of its start is not ours to find: parts of it are unloaded, and cannot be named in lsan.supp.
+// Excludes what MPI keeps from its start: parts of it are unloaded later and cannot be named in lsan.supp.
 Communicator start() {
-#ifdef KEELER_LOOKS_FOR_LEAKS
+#ifdef KEELER_CHECKS_LEAKS
   const __lsan::ScopedDisabler not_here;
 #endif
   return Communicator::launched();
 }
 
-// While MPI is still loaded, so that lsan.supp tells what it keeps from ours.
+// Returns true if memory leaked. Precondition: MPI is still loaded, so that lsan.supp can exclude what it keeps.
 bool leaks() {
-#ifdef KEELER_LOOKS_FOR_LEAKS
+#ifdef KEELER_CHECKS_LEAKS
   return __lsan_do_recoverable_leak_check() != 0;
 #else
   return false;
@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
   ranks = start();
   doctest::Context context(argc, argv);
   if (!ranks.is_root())
-    context.setOption("minimal", true); // speaks of failures alone
+    context.setOption("minimal", true); // prints failures only
   const bool failed = ranks.any(context.run() != 0 || leaks());
   finish_ranks();
   return failed ? 1 : 0;

@@ -1,8 +1,8 @@
-// A rank of another build of Keeler, as far as it can tell.
+// A rank that reports another build of Keeler.
 #include <keeler/comm/communicator.hpp>
 #include <keeler/core/version.hpp>
 
-// in place of those of keeler_core
+// replaces the definitions of keeler_core
 std::string keeler::program_version() {
   return "0.0.0";
 }

@@ -1,5 +1,5 @@
-// Particles of all ranks in files, in the hash and on their way to their owners, against their slow twins: one process
-// that has them all at once. The same bytes.
+// Particles of all ranks in files, in the hash and on migration, against one process that has all particles: equal
+// bytes.
 #include "launched.hpp"
 
 #include "field_rows.hpp"
@@ -25,7 +25,7 @@ using keeler_test::launched;
 
 namespace {
 
-// Ids without gaps, from a number on, or some of very many.
+// Ids without gaps from 0 or from some number on, or with gaps.
 enum class Ids { dense, later, sparse };
 
 Particles all_particles(std::size_t count, Ids ids, bool rough) {
@@ -34,7 +34,7 @@ Particles all_particles(std::size_t count, Ids ids, bool rough) {
   for (std::size_t k = 0; k < count; ++k) {
     RandomStream random(7, RandomPurpose::position, k);
     const auto number = [&] { return 200.0 * (random.uniform() - 0.5); };
-    const std::uint64_t id = (k * 7919) % count; // in no order: 7919 is a prime that divides no count here
+    const std::uint64_t id = (k * 7919) % count; // not sorted: the prime 7919 divides no count here
     all.ids.push_back(ids == Ids::dense   ? id
                       : ids == Ids::later ? id + 1000000
                                           : id * id * 1234567 + (id + 1 == count ? ~std::uint64_t{0} / 2 : 0));
@@ -52,9 +52,9 @@ void append(Particles& to, const Particles& from, std::size_t k) {
     to.spins.push_back(from.spins[k]);
 }
 
-// Uneven parts, one of them without any where there are three ranks or more.
+// Returns an uneven part; with three ranks or more one part is empty.
 Particles part_of(const Particles& all, std::size_t rank) {
-  const std::size_t holders = std::max<std::size_t>(1, launched().count() - (launched().count() > 2 ? 1 : 0));
+  const std::size_t holders = std::max<std::size_t>(1, launched().size() - (launched().size() > 2 ? 1 : 0));
   Particles part;
   part.rough = all.rough;
   for (std::size_t k = 0; k < all.size(); ++k)
@@ -80,16 +80,16 @@ bool same(const Particles& a, const Particles& b) {
   return same_bytes(a.bodies, b.bodies) && same_bytes(a.ids, b.ids) && same_bytes(a.spins, b.spins);
 }
 
-// A folder of the first rank's that all know.
+// A folder that the root makes and all ranks use.
 class SharedFolder {
 public:
   SharedFolder() {
-    if (launched().is_first())
+    if (launched().is_root())
       folder_ = std::make_unique<test::TemporaryFolder>();
     path_ = folder_ ? folder_->path().string() : "";
     launched().broadcast(path_);
   }
-  ~SharedFolder() { launched().any(false); } // when all are here it goes
+  ~SharedFolder() { launched().any(false); } // removes the folder after all ranks arrived
   SharedFolder(const SharedFolder&) = delete;
   SharedFolder& operator=(const SharedFolder&) = delete;
 
@@ -106,7 +106,8 @@ TEST_CASE("particles of all ranks come in the order of their ids, in pieces of o
   for (const Ids ids : {Ids::dense, Ids::later, Ids::sparse})
     for (const std::size_t rows : {1, 64, 999, 1000, 5000}) {
       CAPTURE(rows);
-      const Particles all = all_particles(rows == 1 ? 37 : 1999, ids, rows == 64), own = part_of(all, launched().own());
+      const Particles all = all_particles(rows == 1 ? 37 : 1999, ids, rows == 64),
+                      own = part_of(all, launched().rank());
       Particles found;
       found.rough = all.rough;
       std::size_t last = rows;
@@ -117,12 +118,12 @@ TEST_CASE("particles of all ranks come in the order of their ids, in pieces of o
         for (std::size_t k = 0; k < piece.size(); ++k)
           append(found, piece, k);
       });
-      CHECK((launched().is_first() ? same(found, sorted(all)) : found.size() == 0));
+      CHECK((launched().is_root() ? same(found, sorted(all)) : found.size() == 0));
     }
 }
 
-TEST_CASE("what a piece throws on the first rank all throw") {
-  const Particles own = part_of(all_particles(1000, Ids::dense, false), launched().own());
+TEST_CASE("an error of a piece on the root is thrown on all ranks") {
+  const Particles own = part_of(all_particles(1000, Ids::dense, false), launched().rank());
   int pieces = 0;
   CHECK_THROWS_AS(visit_by_id(own, launched(), 100,
                               [&](const Particles&) {
@@ -132,26 +133,26 @@ TEST_CASE("what a piece throws on the first rank all throw") {
                   Error);
 }
 
-TEST_CASE("rows of a field come in the order of the ranks, and never more than fit") {
+TEST_CASE("rows of a field come in the order of the ranks, in pieces of limited size") {
   const Particles all = all_particles(1999, Ids::dense, false);
-  Particles own = part_of(all, launched().own()), whole;
-  for (std::size_t rank = 0; rank < launched().count(); ++rank) {
+  Particles own = part_of(all, launched().rank()), whole;
+  for (std::size_t rank = 0; rank < launched().size(); ++rank) {
     const Particles part = part_of(all, rank);
     for (std::size_t k = 0; k < part.size(); ++k)
       append(whole, part, k);
   }
   FieldTable table;
   own.list_fields(table);
-  for (const std::size_t most : {std::size_t{1}, std::size_t{5000}, FieldRows::largest_piece}) {
-    const FieldRows rows(table.fields()[0], launched(), most);
+  for (const std::size_t max_bytes : {std::size_t{1}, std::size_t{5000}, FieldRows::largest_piece}) {
+    const FieldRows rows(table.fields()[0], launched(), max_bytes);
     CHECK(rows.count() == all.size());
     std::vector<std::byte> found;
     rows.visit([&](std::size_t first, std::size_t count, std::span<const std::byte> bytes) {
-      CHECK(first * sizeof(Body) == (launched().is_first() ? found.size() : first * sizeof(Body)));
-      CHECK(count * sizeof(Body) <= std::max(most, sizeof(Body)));
+      CHECK(first * sizeof(Body) == (launched().is_root() ? found.size() : first * sizeof(Body)));
+      CHECK(count * sizeof(Body) <= std::max(max_bytes, sizeof(Body)));
       found.insert(found.end(), bytes.begin(), bytes.end());
     });
-    if (launched().is_first()) {
+    if (launched().is_root()) {
       REQUIRE(found.size() == whole.size() * sizeof(Body));
       CHECK(std::memcmp(found.data(), whole.bodies.data(), found.size()) == 0);
     }
@@ -162,9 +163,9 @@ TEST_CASE("a checkpoint that ranks write is that of one process, byte by byte, a
   const SharedFolder folder;
   const CheckpointHeader header{"title = \"pieces\"\n", {{"version", "0"}}};
   const Particles all = all_particles(1999, Ids::later, true);
-  Particles own = part_of(all, launched().own()), whole;
+  Particles own = part_of(all, launched().rank()), whole;
   whole.rough = true;
-  for (std::size_t rank = 0; rank < launched().count(); ++rank) {
+  for (std::size_t rank = 0; rank < launched().size(); ++rank) {
     const Particles part = part_of(all, rank);
     for (std::size_t k = 0; k < part.size(); ++k)
       append(whole, part, k);
@@ -176,25 +177,25 @@ TEST_CASE("a checkpoint that ranks write is that of one process, byte by byte, a
     table.scalar("number", number, "1", "the same on all");
     return table;
   };
-  write_checkpoint(folder / "shared.h5", table_of(own), header, launched());
+  write_checkpoint(folder / "distributed.h5", table_of(own), header, launched());
   launched().on_root([&] {
     write_checkpoint(folder / "alone.h5", table_of(whole), header);
-    CHECK(read_file(folder / "shared.h5") == read_file(folder / "alone.h5"));
+    CHECK(read_file(folder / "distributed.h5") == read_file(folder / "alone.h5"));
   });
   Particles read;
   read.rough = true;
   number = 0.0;
-  const Checkpoint checkpoint(folder / "shared.h5", launched());
+  const Checkpoint checkpoint(folder / "distributed.h5", launched());
   CHECK(checkpoint.header().scene == header.scene);
   checkpoint.read(table_of(read));
   CHECK(number == 0.1);
-  CHECK(read.size() <= all.size() / launched().count() + 1);
+  CHECK(read.size() <= all.size() / launched().size() + 1);
   Particles found;
   found.rough = true;
   found.bodies = launched().gather(read.bodies);
   found.ids = launched().gather(read.ids);
   found.spins = launched().gather(read.spins);
-  CHECK((!launched().is_first() || same(found, whole)));
+  CHECK((!launched().is_root() || same(found, whole)));
 }
 
 TEST_CASE("a snapshot whose particles come from all ranks is that of one process, byte by byte") {
@@ -206,22 +207,22 @@ TEST_CASE("a snapshot whose particles come from all ranks is that of one process
     patch.orbital_frequency = 1.3e-4;
     return patch;
   };
-  std::optional<SnapshotFile> shared;
+  std::optional<SnapshotFile> distributed;
   launched().on_root([&] {
     write_snapshot(folder / "alone.hdf", patch_of(all), meta);
-    shared.emplace(folder / "shared.hdf", patch_of(Particles()), all.size(), true, meta);
+    distributed.emplace(folder / "distributed.hdf", patch_of(Particles()), all.size(), true, meta);
   });
-  visit_by_id(part_of(all, launched().own()), launched(), SnapshotFile::piece,
-              [&](const Particles& piece) { shared->add(patch_of(piece)); });
+  visit_by_id(part_of(all, launched().rank()), launched(), SnapshotFile::piece,
+              [&](const Particles& piece) { distributed->add(patch_of(piece)); });
   launched().on_root([&] {
-    shared->finish();
-    CHECK(read_file(folder / "shared.hdf") == read_file(folder / "alone.hdf"));
+    distributed->finish();
+    CHECK(read_file(folder / "distributed.hdf") == read_file(folder / "alone.hdf"));
   });
 }
 
 TEST_CASE("a damaged checkpoint is an error on all ranks") {
   const SharedFolder folder;
-  Particles own = part_of(all_particles(100, Ids::dense, false), launched().own());
+  Particles own = part_of(all_particles(100, Ids::dense, false), launched().rank());
   FieldTable table;
   own.list_fields(table);
   write_checkpoint(folder / "a.h5", table, {}, launched());
@@ -233,11 +234,11 @@ TEST_CASE("a damaged checkpoint is an error on all ranks") {
   CHECK_THROWS_AS(Checkpoint(folder / "a.h5", launched()), Error);
 }
 
-TEST_CASE("particles that one rank has, or that ranks have anyhow, go to their owners") {
+TEST_CASE("particles on one rank, or distributed at random, are sent to their owners") {
   const Particles all = all_particles(20011, Ids::dense, true);
   for (const bool with_one : {true, false}) {
-    Particles own = with_one ? Particles() : part_of(all, launched().own());
-    if (with_one && launched().own() == launched().count() - 1)
+    Particles own = with_one ? Particles() : part_of(all, launched().rank());
+    if (with_one && launched().rank() == launched().size() - 1)
       own = all;
     own.rough = true;
     std::vector<Vec3> rows, none;
@@ -245,8 +246,8 @@ TEST_CASE("particles that one rank has, or that ranks have anyhow, go to their o
       rows.push_back({body.elements.guiding_x, body.mass, 0.0});
     ShearingBox box{200.0, 200.0, 1.5, 0.0};
     Slabs slabs(launched(), box, Frequencies{});
-    slabs.divide({own, {&rows, &none}});
-    CHECK(static_cast<double>(own.size()) < 1.1 * static_cast<double>(all.size() / launched().count()));
+    slabs.distribute({own, {&rows, &none}});
+    CHECK(static_cast<double>(own.size()) < 1.1 * static_cast<double>(all.size() / launched().size()));
     CHECK(rows.size() == own.size());
     for (std::size_t k = 0; k < std::min(rows.size(), own.size()); ++k)
       REQUIRE(rows[k] == Vec3(own.bodies[k].elements.guiding_x, own.bodies[k].mass, 0.0));
@@ -255,6 +256,6 @@ TEST_CASE("particles that one rank has, or that ranks have anyhow, go to their o
     found.bodies = launched().gather(own.bodies);
     found.ids = launched().gather(own.ids);
     found.spins = launched().gather(own.spins);
-    CHECK((!launched().is_first() || same(sorted(found), sorted(all))));
+    CHECK((!launched().is_root() || same(sorted(found), sorted(all))));
   }
 }

@@ -1,6 +1,6 @@
 #!/bin/bash
-# run.sh KEELER SOURCE_DIR MPIEXEC OTHER_BUILD: runs that ranks share have the bits of one process, whatever their number, that of
-# threads, and that of ranks after a restart; and errors end all of them with one line of Keeler's and its exit code.
+# run.sh KEELER SOURCE_DIR MPIEXEC OTHER_BUILD: distributed runs have the bits of one process, for any number of ranks and
+# threads, and of ranks after a restart; errors end all ranks with one line of Keeler's and its exit code.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/../cli/helpers.sh"
 mpiexec=$3 other_build=$4
@@ -10,9 +10,9 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 # containers of
 transport=(--mca btl 'self,tcp')
 export PMIX_MCA_gds=hash
 
-# shared RANKS THREADS CODE ARGUMENT...: by so many ranks, the program ends with this code; output as of runs(), without
-# what the launcher says
-shared() {
+# on_ranks RANKS THREADS CODE ARGUMENT...: runs the program on RANKS ranks and checks its exit code; output as of runs(),
+# without the launcher's lines
+on_ranks() {
   local ranks=$1 threads=$2 expected=$3 code=0
   shift 3
   "$mpiexec" -n "$ranks" --oversubscribe --bind-to none "${transport[@]}" -x OMP_NUM_THREADS="$threads" "$keeler" "$@" \
@@ -21,7 +21,7 @@ shared() {
   [ "$code" -eq "$expected" ] || fail "$ranks ranks, $*: exit $code instead of $expected: $(tail -n 20 "$work/all")"
 }
 
-scene() { # NAME TEXT: common parts come from here
+scene() { # NAME TEXT: writes a scene; adds the common keys
   cat - >"$work/$1.toml" <<END
 title = "$1"
 [planet]
@@ -74,7 +74,7 @@ step = "auto"
 end = 0.125
 [output]
 series_every = 0.03125'
-# it goes round the edge of the box
+# it crosses the edge of the box
 scene moonlet '[box]
 size = [120, 60]
 [particles]
@@ -116,20 +116,20 @@ for name in uniform wakes sizes moonlet; do
   runs 0 run "$work/$name.toml" -o "$work/$name-1"
   for ranks in "2 1" "2 2" "3 1" "4 2" "8 1"; do
     read -r count threads <<<"$ranks"
-    shared "$count" "$threads" 0 run "$work/$name.toml" -o "$work/$name-$count-$threads"
+    on_ranks "$count" "$threads" 0 run "$work/$name.toml" -o "$work/$name-$count-$threads"
     same "$name, $count ranks of $threads threads" "$work/$name-1" "$work/$name-$count-$threads"
   done
 done
 
-# Stopped on 4 ranks, on with 3, then on one.
-shared 4 1 0 run "$work/wakes.toml" -o "$work/cut" --set time.end=0.1
-shared 3 1 0 resume "$work/cut" --until 0.16
+# Stopped on 4 ranks, resumed on 3, then on one.
+on_ranks 4 1 0 run "$work/wakes.toml" -o "$work/cut" --set time.end=0.1
+on_ranks 3 1 0 resume "$work/cut" --until 0.16
 runs 0 resume "$work/cut" --until 0.2
 [ "$(state_hash "$work/cut")" = "$(state_hash "$work/wakes-1")" ] || fail "4, 3, 1 ranks: state_hash differs"
 same_series "4, 3, 1 ranks" "$work/wakes-1" "$work/cut"
 
-# More particles than come at once: the same files, and resumed, the first rank keeps far from what one process takes.
-# (It writes, with some 40 MB for pieces of files and messages, however few particles it has: so there are many here.)
+# More particles than one piece: equal files, and after resuming the root needs far less memory than one process. (It
+# writes, with some 40 MB for pieces of files and messages for any number of particles: so there are many here.)
 scene many '[box]
 size = [6000, 600]
 [particles]
@@ -143,15 +143,15 @@ end = 4e-3
 series_every = 2e-3'
 peak() { text peak_memory_mb "$1/summary.json"; }
 runs 0 run "$work/many.toml" -o "$work/many-1"
-shared 4 1 0 run "$work/many.toml" -o "$work/many-4"
+on_ranks 4 1 0 run "$work/many.toml" -o "$work/many-4"
 same "many" "$work/many-1" "$work/many-4"
 (
   ulimit -f 18000 # a checkpoint's second piece does not fit
-  shared 4 1 4 resume "$work/many-4" --until 8e-3
+  on_ranks 4 1 4 resume "$work/many-4" --until 8e-3
   report >/dev/null
 ) || fail "many: a full disk"
 [ "$(find "$work/many-4" -name 'checkpoint_*' | wc -l)" -eq 1 ] || fail "many: a full disk: other checkpoints"
-shared 4 1 0 resume "$work/many-4" --until 8e-3
+on_ranks 4 1 0 resume "$work/many-4" --until 8e-3
 runs 0 resume "$work/many-1" --until 8e-3
 same "many, resumed" "$work/many-1" "$work/many-4"
 awk "BEGIN { exit !($(peak "$work/many-4") < 0.85 * $(peak "$work/many-1")) }" ||
@@ -170,16 +170,16 @@ step = 2e-3
 end = 4e-3
 END
 runs 0 run "$work/from.toml" -o "$work/from-1"
-shared 4 1 0 run "$work/from.toml" -o "$work/from-4"
+on_ranks 4 1 0 run "$work/from.toml" -o "$work/from-4"
 same "a snapshot as start" "$work/from-1" "$work/from-4"
 awk "BEGIN { exit !($(peak "$work/from-4") < 0.75 * $(peak "$work/from-1")) }" ||
   fail "a snapshot as start: the first of 4 ranks took $(peak "$work/from-4") MB, one process $(peak "$work/from-1") MB"
 
-# What cannot be shared yet is refused by name, before anything is written.
+# Features that ranks do not support yet are refused by name, before anything is written.
 refused() { # WORDS ARGUMENT...
   local words=$1
   shift
-  shared 2 1 2 "$@"
+  on_ranks 2 1 2 "$@"
   [ "$(wc -l <"$work/err")" -eq 1 ] || fail "$words: not one line: $(cat "$work/all")"
   grep -qF -- "$words" "$work/err" || fail "no '$words' in: $(cat "$work/err")"
   [ ! -e "$work/none" ] || fail "$words: something was written"
@@ -194,8 +194,8 @@ refused "'keeler bench drift' is for one process" bench drift --count 100
 refused 'particles.count' run "$work/uniform.toml" -o "$work/none" --set particles.count=-1
 refused "is not empty" run "$work/uniform.toml" -o "$work/uniform-1"
 
-# Ranks that are asked for different runs begin none: exit 2 on all, one line that names the difference, nothing written.
-# differ WORDS FIRST OTHERS: arguments of the first rank and of two others, which are in the folders a and b
+# Ranks with different requests start no run: exit 2 on all, one line that names the difference, nothing written.
+# differ WORDS FIRST OTHERS: arguments of the root, in folder a, and of two other ranks, in folder b
 mkdir "$work/a" "$work/b"
 differ() {
   local words=$1 code=0 of_first of_others
@@ -212,7 +212,7 @@ differ() {
   [ ! -e "$work/none" ] || fail "$words: something was written"
 }
 uniform="run $work/uniform.toml -o $work/none"
-differ 'rank 1 is asked for something else than rank 0: it has title = "wakes", and rank 0 has title = "uniform"' \
+differ 'the request of rank 1 differs from that of rank 0: it has title = "wakes", and rank 0 has title = "uniform"' \
   "$uniform" "run $work/wakes.toml -o $work/none"
 differ 'it has time.end = 0.3, and rank 0 has time.end = 0.2' "$uniform" "$uniform --set time.end=0.3"
 differ 'it has no gravity.' "$uniform --set gravity.solver=fft --set gravity.kick_every=1" "$uniform"
@@ -237,7 +237,7 @@ differ 'it has --count = 3000, and rank 0 has --count = 1000' 'bench step --coun
 differ 'it has --repeats = 2' 'bench step --count 1000 --solver fft --repeats 1' \
   'bench step --count 1000 --solver fft --repeats 2'
 differ "'keeler info' is for one process" "$uniform" "info $work/uniform-1"
-# one name, and another file in the folder of each
+# one name, but different files in the two folders
 cp "$(last_of "$work/uniform-1")" "$work/a/start.hdf"
 cp "$(last_of "$work/uniform-4-2" | sed s/000002/000001/)" "$work/b/start.hdf"
 differ "the content of '/proc/self/cwd/start.hdf' = KEELER-SEAL" "$uniform --from /proc/self/cwd/start.hdf" \
@@ -246,31 +246,31 @@ printf '1.0\n2.0\n' >"$work/a/radii.txt"
 printf '1.0\n2.5\n' >"$work/b/radii.txt"
 sed 's|law = "equal", radius = 1.0|law = "file", path = "/proc/self/cwd/radii.txt"|' "$work/uniform.toml" >"$work/radii.toml"
 differ "the content of '/proc/self/cwd/radii.txt'" "run $work/radii.toml -o $work/none" "run $work/radii.toml -o $work/none"
-# Threads and the words of a path are each rank's own.
+# Threads and the spelling of a path may differ between ranks.
 (cd "$work" && OMP_NUM_THREADS=1 "$mpiexec" --oversubscribe --bind-to none "${transport[@]}" \
   -n 1 -wdir "$work/a" "$keeler" run "$work/uniform.toml" -o ../mixed --threads 1 : \
   -n 1 -wdir "$work" "$keeler" run uniform.toml -o mixed --threads 2 >"$work/out" 2>"$work/all") ||
   fail "own threads and paths: $(cat "$work/all")"
 same "own threads and paths" "$work/uniform-1" "$work/mixed"
 
-# A start that is not there is told before what else would be refused.
-shared 2 1 4 run "$work/wakes.toml" -o "$work/none" --from "$work/absent.hdf" --set gravity.solver=tree
+# A missing start is reported before features that are refused.
+on_ranks 2 1 4 run "$work/wakes.toml" -o "$work/none" --from "$work/absent.hdf" --set gravity.solver=tree
 grep -qF "start.from names '$work/absent.hdf', which does not exist" "$work/err" || fail "absent: $(cat "$work/err")"
 
-# Two builds do not share a run, whichever comes first.
+# Two builds do not start one run, in either order.
 for programs in "$other_build : $keeler" "$keeler : $other_build"; do
   first=${programs%% : *} second=${programs##* : } code=0
   "$mpiexec" --oversubscribe "${transport[@]}" -n 1 "$first" run "$work/uniform.toml" -o "$work/none" : \
     -n 1 "$second" run "$work/uniform.toml" -o "$work/none" >"$work/all" 2>&1 || code=$?
   [ "$code" -eq 2 ] || fail "$programs: exit $code instead of 2: $(cat "$work/all")"
   [ ! -e "$work/none" ] || fail "$programs: something was written"
-  if [ "$first" = "$other_build" ]; then # else the other one speaks, and it has no words
+  if [ "$first" = "$other_build" ]; then # else the other program reports, and it prints nothing
     grep -qE '^keeler: rank 1 runs another build of Keeler' "$work/all" || fail "$programs: $(cat "$work/all")"
   fi
 done
 
-# A bench says what ranks gain, and what they tell each other.
-shared 2 1 0 bench step --count 3000 --solver fft --repeats 1 --json
+# A bench prints the gain by ranks and the cost of their communication.
+on_ranks 2 1 0 bench step --count 3000 --solver fft --repeats 1 --json
 python3 - "$work/out" <<'END' || fail "bench step: $(cat "$work/out")"
 import json, sys
 bench = json.load(open(sys.argv[1]))
@@ -279,19 +279,19 @@ exchange = bench["exchange"]
 assert 0 < exchange["ns"] < bench["ns_per_particle_step"] and exchange["messages"] > 1 and exchange["bytes"] > 48
 END
 
-# A full disk, which a limit on file size stands for: exit 4, the last checkpoint is good.
-shared 2 1 0 run "$work/wakes.toml" -o "$work/full" --set time.end=0.1
+# A full disk, emulated by a limit on file size: exit 4, and the last checkpoint is good.
+on_ranks 2 1 0 run "$work/wakes.toml" -o "$work/full" --set time.end=0.1
 (
   ulimit -f 40
-  shared 2 1 4 resume "$work/full" --until 0.198
+  on_ranks 2 1 4 resume "$work/full" --until 0.198
   report >/dev/null
 ) || fail "a full disk"
 [ "$(grep -c '^keeler: ' "$work/err")" -eq 1 ] || fail "a full disk: not one line: $(cat "$work/err")"
 grep -q "free some space, then continue with" "$work/err" || fail "a full disk: $(cat "$work/err")"
-shared 2 1 0 resume "$work/full" --until 0.198
+on_ranks 2 1 0 resume "$work/full" --until 0.198
 same "after a full disk" "$work/wakes-1" "$work/full"
 
-# A rank is killed: all end, not with success, and the last checkpoint goes on.
+# A rank is killed: all end without success, and the run can be resumed from the last checkpoint.
 "$mpiexec" -n 3 --oversubscribe -x OMP_NUM_THREADS=1 "$keeler" run "$work/wakes.toml" -o "$work/killed" \
   --set time.end=50 --set output.checkpoint_every=0.02 --set output.snapshot_every=0.1 >/dev/null 2>&1 &
 launcher=$!
@@ -303,5 +303,5 @@ pkill -KILL -f -n -- "$keeler run $work/wakes.toml -o $work/killed" || fail "the
 code=0
 wait $launcher || code=$?
 [ "$code" -ne 0 ] || fail "a killed rank: exit 0"
-shared 2 1 0 resume "$work/killed" --until 1
+on_ranks 2 1 0 resume "$work/killed" --until 1
 report

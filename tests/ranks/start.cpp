@@ -1,4 +1,4 @@
-// Starts that ranks read or are given in parts, against one process that has all: the same bits and the same errors.
+// Starts that ranks read or get in parts, against one process: equal bits and errors.
 #include "launched.hpp"
 
 #include "unit/files/disk.hpp"
@@ -42,17 +42,17 @@ end = 0.1
                      "test scene", overrides);
 }
 
-// A snapshot that the first rank has written.
+// A snapshot that the root has written.
 class SharedSnapshot {
 public:
   explicit SharedSnapshot(const Patch& patch) {
-    if (launched().is_first())
+    if (launched().is_root())
       folder_ = std::make_unique<test::TemporaryFolder>();
     path_ = folder_ ? (*folder_ / "start.hdf").string() : "";
     launched().broadcast(path_);
     launched().on_root([&] { write_snapshot(path_, patch, {scene().resolved, {}}); });
   }
-  ~SharedSnapshot() { launched().any(false); } // when all are here it goes
+  ~SharedSnapshot() { launched().any(false); } // removes the folder after all ranks arrived
   SharedSnapshot(const SharedSnapshot&) = delete;
   SharedSnapshot& operator=(const SharedSnapshot&) = delete;
 
@@ -66,17 +66,17 @@ private:
   std::string path_;
 };
 
-// Those whose id leaves this rank's number: an odd part of the patch.
+// Returns the particles whose id modulo the number of ranks is this rank.
 Patch part_of(Patch patch) {
   const auto keep = [&](auto& rows) {
     std::size_t kept = 0;
     for (std::size_t k = 0; k < rows.size(); ++k)
-      if (patch.ids[k] % launched().count() == launched().own())
+      if (patch.ids[k] % launched().size() == launched().rank())
         rows[kept++] = rows[k];
     rows.resize(kept);
   };
   keep(patch.positions), keep(patch.velocities), keep(patch.radii), keep(patch.masses), keep(patch.spins);
-  keep(patch.ids); // all others go by them
+  keep(patch.ids); // last: all others depend on the ids
   return patch;
 }
 
@@ -89,7 +89,7 @@ template<class Row> bool same_bytes(const std::vector<Row>& a, const std::vector
          (a.empty() || std::memcmp(static_cast<const void*>(a.data()), b.data(), a.size() * sizeof(Row)) == 0);
 }
 
-// What an error says, with all ranks' words.
+// Returns the text of the error that `work` throws.
 template<class Work> std::string words_of(const Work& work) {
   try {
     work();
@@ -107,7 +107,7 @@ std::string hash_after(Simulation& simulation, const Scene& its, int steps) {
 
 } // namespace
 
-TEST_CASE("a snapshot is read in parts that follow each other, and without a seal by the first rank") {
+TEST_CASE("a snapshot is read in consecutive parts, and without a seal by the root") {
   for (const bool rough : {false, true}) {
     const Patch patch = initial_patch(rough ? scene({"collisions.friction.tangential_restitution=0.5"}) : scene());
     const SharedSnapshot file(patch);
@@ -116,12 +116,12 @@ TEST_CASE("a snapshot is read in parts that follow each other, and without a sea
       if (!sealed)
         file.drop_seal();
       const Patch part = read_snapshot(file.path(), launched()).patch;
-      CHECK((!sealed || part.size() <= whole.size() / launched().count() + 1));
-      CHECK((sealed || part.size() == (launched().is_first() ? whole.size() : 0)));
+      CHECK((!sealed || part.size() <= whole.size() / launched().size() + 1));
+      CHECK((sealed || part.size() == (launched().is_root() ? whole.size() : 0)));
       const auto positions = of_all(part.positions), velocities = of_all(part.velocities), spins = of_all(part.spins);
       const auto radii = of_all(part.radii), masses = of_all(part.masses);
       const auto ids = of_all(part.ids);
-      if (!launched().is_first())
+      if (!launched().is_root())
         continue;
       CHECK(same_bytes(positions, whole.positions));
       CHECK(same_bytes(velocities, whole.velocities));
@@ -135,14 +135,14 @@ TEST_CASE("a snapshot is read in parts that follow each other, and without a sea
 
 TEST_CASE("ids that do not increase from one part to the next are an error on all ranks") {
   Patch patch = initial_patch(scene());
-  const std::size_t border = patch.size() / launched().count();
+  const std::size_t border = patch.size() / launched().size();
   patch.ids[border] = patch.ids[border - 1];
   const SharedSnapshot file(patch);
   CHECK(words_of([&] { read_snapshot(file.path(), launched()); }).find("ParticleIDs do not increase") !=
         std::string::npos);
 }
 
-TEST_CASE("a run from a snapshot has the bits of one process, whoever reads which particles") {
+TEST_CASE("a run from a snapshot has the bits of one process, for any distribution of the particles read") {
   const SharedSnapshot file(initial_patch(scene()));
   for (const char* keep : {"1.0", "0.6"})
     for (const bool rough : {false, true}) {
@@ -152,13 +152,13 @@ TEST_CASE("a run from a snapshot has the bits of one process, whoever reads whic
       std::string text = "[planet]\npreset = \"saturn-a-ring\"\n[start]\nfrom = \"" + file.path() +
                          "\"\n[time]\nstep = 2e-3\nend = 0.1\n";
       const Scene from = parse_scene(text, "test scene", overrides);
-      Simulation alone(from, initial_patch(from)), shared(from, initial_patch(from, {}, launched()), launched()),
+      Simulation alone(from, initial_patch(from)), distributed(from, initial_patch(from, {}, launched()), launched()),
           odd(from, part_of(initial_patch(from)), launched());
       const std::string expected = hash_after(alone, from, 20);
-      CHECK(hash_after(shared, from, 20) == expected);
+      CHECK(hash_after(distributed, from, 20) == expected);
       CHECK(hash_after(odd, from, 20) == expected);
-      CHECK(shared.state().energy.epicyclic == alone.state().energy.epicyclic);
-      CHECK(shared.state().energy.spin == alone.state().energy.spin);
+      CHECK(distributed.state().energy.epicyclic == alone.state().energy.epicyclic);
+      CHECK(distributed.state().energy.spin == alone.state().energy.spin);
       CHECK(scale_of(initial_patch(from, {}, launched()), launched()).particle_count == alone.count());
     }
 }
@@ -172,7 +172,7 @@ TEST_CASE("particles of two ranks that overlap are named as one process names th
   CHECK(words_of([&] { Simulation(scene(), part_of(patch), launched()); }) == expected);
 }
 
-TEST_CASE("what no ring has is an error on all ranks, in the words of one process") {
+TEST_CASE("an impossible state is an error on all ranks, in the words of one process") {
   const Patch patch = initial_patch(scene());
   const auto words = [](const Patch& start) {
     const SharedSnapshot file(start);
@@ -192,19 +192,19 @@ TEST_CASE("what no ring has is an error on all ranks, in the words of one proces
   CHECK(words(none).find("holds no particles") != std::string::npos);
 }
 
-TEST_CASE("a stop that one rank is asked for while a start is made ends all in the same words") {
+TEST_CASE("a stop requested on one rank during a start ends all ranks with one message") {
   const test::TemporaryFolder own;
   std::string folder = (own / "run").string();
-  launched().broadcast(folder); // all are asked for the same
+  launched().broadcast(folder); // all ranks get one request
   RunOptions options;
   options.folder = folder;
   options.ranks = launched();
   RunRequests requests;
   int calls = 0;
-  options.start_progress = [&](const StartProgress&) { requests.stop = ++calls == 3 && launched().is_first(); };
+  options.start_progress = [&](const StartProgress&) { requests.stop = ++calls == 3 && launched().is_root(); };
   const std::string words = words_of([&] { start_run(scene(), options, requests); });
   CHECK(words.find("stopped before the first step (on request)") == 0);
   CHECK(calls == 3);
   CHECK_FALSE(std::filesystem::exists(options.folder));
-  launched().any(false); // when all are here it goes
+  launched().any(false); // removes the folder after all ranks arrived
 }

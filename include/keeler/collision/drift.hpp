@@ -9,7 +9,7 @@
 #include <keeler/collision/settings.hpp>
 #include <keeler/comm/communicator.hpp>
 #include <keeler/core/field_table.hpp>
-#include <keeler/decomposition/borders.hpp>
+#include <keeler/decomposition/ghost_layer.hpp>
 #include <keeler/finders/finder.hpp>
 #include <keeler/hill/shearing_box.hpp>
 #include <keeler/particles/store.hpp>
@@ -111,11 +111,11 @@ public:
   void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally,
                bool undisturbed = false);
 
-  /// The same of a step that ranks share: own particles and copies (slabs/borders.hpp), which have the bits of their
-  /// owners. All ranks call it at once, with an exact finder and no onlookers. The own particles become what they would
-  /// on one rank, and each contact counts on all ranks. Returns false on all, with everything as it was, where an own
-  /// particle of one went farther than the margin.
-  bool collide_distributed(Particles& particles, const Borders& borders, const Communicator& ranks,
+  /// The same of a step that ranks share: own particles and copies (decomposition/ghost_layer.hpp), which have the bits
+  /// of their owners. All ranks call it at once, with an exact finder and no onlookers. The own particles become what
+  /// they would on one rank, and each contact counts on all ranks. Returns false on all, with everything as it was,
+  /// where an own particle of one went farther than the margin.
+  bool collide_distributed(Particles& particles, const GhostLayer& borders, const Communicator& ranks,
                            const ShearingBox& box, double offset, CollisionTally& tally);
 
   const Finder& finder() const;

@@ -1,12 +1,14 @@
-// The processes that share one run, and what they tell each other. Only a build with KEELER_MPI has more than one; in
-// any other build distributed() is false while compiling, and what depends on it is left out.
+// The processes (ranks) of one run and their collective communication. Only a build with KEELER_MPI has more than one
+// rank. In any other build distributed() is false at compile time, and code that depends on it is left out.
 //
-// Every call of many ranks but rank(), size() and distributed() is collective: all make it, in the same order.
+// Every member function but rank(), size(), distributed() and is_root() is collective: all ranks call it, in the same
+// order.
 #pragma once
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/exact_sum.hpp>
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -19,13 +21,13 @@
 
 namespace keeler {
 
-/// Bytes for each rank, or from each, by its number.
+/// One byte buffer per rank, to send to it or received from it.
 using Parcels = std::vector<std::vector<std::byte>>;
 
-/// Equal blocks of bytes at equal distances: sent from where they stand, or received there.
+/// Equally long blocks of bytes at a constant stride in memory (MPI's hvector): sent from there, or received there.
 struct Blocks {
   std::byte* first = nullptr;
-  std::size_t count = 0, size = 0, stride = 0; ///< stride: bytes from one block's begin to the next one's
+  std::size_t count = 0, size = 0, stride = 0; ///< stride: bytes from the begin of one block to that of the next
 };
 
 class Communicator {
@@ -38,8 +40,9 @@ public:
 
   /// This process alone.
   Communicator() = default;
-  /// All that the launcher (mpirun) started together; this process alone where there is no launcher. To be called once,
-  /// when the program begins. Throws UsageError in a build without ranks of which a launcher has started several.
+  /// Returns the ranks that the launcher (mpirun) started together, or this process alone without a launcher.
+  /// Precondition: called once, when the program begins. Throws UsageError in a build without MPI when a launcher has
+  /// started several processes.
   static Communicator launched();
 
   std::size_t rank() const {
@@ -55,36 +58,41 @@ public:
     return rank_ == 0;
   }
 
-  /// Hands each rank its parcel and returns one from each; one's own comes back as it is.
+  /// Sends parcels[r] to rank r and returns the parcels received, by sender. The rank's parcel to itself is moved.
+  /// Precondition: parcels.size() == size().
   Parcels exchange(Parcels parcels) const;
-  /// The same of rows.
+  /// Sends rows[r] to rank r and returns the rows received, by sender. Precondition: rows.size() == size().
   template<class Row> std::vector<std::vector<Row>> exchange(const std::vector<std::vector<Row>>& rows) const;
 
-  /// The same of blocks in place, as many and as large where they are sent as where they are received.
+  /// Sends sent[r] to rank r and receives received[r] from it, without intermediate buffers. Precondition: sender and
+  /// receiver agree on the count and size of the blocks.
   void exchange(std::span<const Blocks> sent, std::span<const Blocks> received) const;
 
-  /// On the first rank what all have, in the order of the ranks, less than 2 GiB in all; nothing on the others.
+  /// Returns on the root the bytes of all ranks, in the order of the ranks; nothing on the others. Precondition: less
+  /// than 2 GiB in all.
   std::vector<std::byte> gather(std::vector<std::byte> bytes) const;
-  /// The same of rows.
+  /// Returns on the root the rows of all ranks, in the order of the ranks; limits as above.
   template<class Row> std::vector<Row> gather(const std::vector<Row>& rows) const;
 
-  /// Over all ranks, number by number: modulo 2⁶⁴.
+  /// Replaces each number by its sum over all ranks, modulo 2⁶⁴.
   void sum(std::span<std::uint64_t> numbers) const;
   std::uint64_t sum(std::uint64_t number) const {
     sum(std::span(&number, 1));
     return number;
   }
-  /// Each becomes the sum of those of all ranks.
+  /// Replaces each exact sum by the exact sum over all ranks.
   void merge(std::initializer_list<ExactSum*> sums) const;
-  double largest(double number) const;
-  double least(double number) const {
-    return -largest(-number);
+  /// Returns the extremum over all ranks.
+  double max(double number) const;
+  double min(double number) const {
+    return -max(-number);
   }
+  /// Returns true on all ranks if `here` is true on one.
   bool any(bool here) const {
-    return largest(here ? 1.0 : 0.0) > 0.0;
+    return max(here ? 1.0 : 0.0) > 0.0;
   }
 
-  /// What the first rank has, on all.
+  /// Replaces the bytes or the text by the root's. Precondition: all ranks give equal numbers of bytes.
   void broadcast(std::span<std::byte> bytes) const;
   void broadcast(std::string& text) const;
   template<class Value> Value broadcast(Value value) const {
@@ -93,42 +101,45 @@ public:
     return value;
   }
 
-  /// Runs on every rank, or on the first one alone. Where it throws an Error on one, all throw: the least such rank
-  /// what it threw, the others an Error of that code and those words, of which they need not speak.
+  /// Runs the work on every rank, or on the root alone. If it throws an Error on any rank, all ranks throw: the lowest
+  /// such rank its own exception, the others an Error of the same code and text, which they need not report.
   void together(const std::function<void()>& work) const;
   void on_root(const std::function<void()>& work) const;
 
 private:
-  Communicator(std::size_t rank, std::size_t size) : rank_(rank), size_(size) {}
+  Communicator(std::size_t rank, std::size_t size) : rank_(rank), size_(size) {
+    assert(rank < size);
+  }
 
-  /// Sends some bytes to each rank, but oneself, from where they stand. `room` says where so many of a rank's go.
+  /// Sends sent[r] to every other rank r. `allocate` returns the memory for `size` bytes received from a rank.
   void exchange(const std::vector<std::span<const std::byte>>& sent,
-                const std::function<std::byte*(std::size_t rank, std::size_t size)>& room) const;
+                const std::function<std::byte*(std::size_t rank, std::size_t size)>& allocate) const;
 
   std::size_t rank_ = 0, size_ = 1;
 };
 
-/// What this rank's calls of Ranks have cost so far.
+/// Communication of this rank since the start of the program.
 struct ExchangeCosts {
-  double seconds = 0.0;                  ///< wall time: sending, receiving, and waiting for the others
-  std::uint64_t messages = 0, bytes = 0; ///< sent to others by exchange()
-  std::uint64_t common = 0;  ///< calls in which all ranks get the same: sums, least, largest, what the first has
-  std::uint64_t largest = 0; ///< bytes sent from here, or brought here, by one call: a part of the particles' at most
+  double seconds = 0.0;                  ///< wall time of communication, waiting for other ranks included
+  std::uint64_t messages = 0, bytes = 0; ///< sent to other ranks by exchange()
+  std::uint64_t collectives = 0;         ///< calls of sum(), merge(), max(), min(), any() and broadcast()
+  std::uint64_t max_bytes = 0;           ///< the most bytes that one call sent from or received on this rank
 };
 const ExchangeCosts& exchange_costs();
 
-/// Of a launched program at its end: waits for the others.
+/// Ends a launched program that has succeeded; waits for the other ranks.
 void finish_ranks();
-/// The same of a rank that ends with an error, and this code. Where the others do not know of it, they wait for this
-/// rank somewhere else: then all are ended at once.
+/// Ends a rank that failed with this code. If the other ranks do not know of the error they wait for this rank in some
+/// other call; then it aborts all ranks.
 void fail_ranks(ExitCode code);
-/// Whether somebody else tells the user of the error that this rank ends with.
-bool another_rank_speaks();
+/// True if another rank reports the error that ends this rank.
+bool another_rank_reports();
 
 template<class Row> std::vector<Row> Communicator::gather(const std::vector<Row>& rows) const {
   static_assert(std::is_trivially_destructible_v<Row>);
   const auto own = std::as_bytes(std::span(rows));
   const std::vector<std::byte> bytes = gather(std::vector<std::byte>(own.begin(), own.end()));
+  assert(bytes.size() % sizeof(Row) == 0);
   std::vector<Row> all(bytes.size() / sizeof(Row));
   if (!bytes.empty())
     std::memcpy(static_cast<void*>(all.data()), bytes.data(), bytes.size());
@@ -137,13 +148,15 @@ template<class Row> std::vector<Row> Communicator::gather(const std::vector<Row>
 
 template<class Row>
 std::vector<std::vector<Row>> Communicator::exchange(const std::vector<std::vector<Row>>& rows) const {
-  static_assert(std::is_trivially_destructible_v<Row>); // plain numbers; those of Eigen are not copied trivially
+  static_assert(std::is_trivially_destructible_v<Row>); // plain numbers; Eigen's vectors are not trivially copyable
+  assert(rows.size() == size_);
   std::vector<std::vector<Row>> received(rows.size());
   received[rank()] = rows[rank()];
   std::vector<std::span<const std::byte>> sent;
-  for (const std::vector<Row>& its : rows)
-    sent.push_back(std::as_bytes(std::span(its)));
+  for (const std::vector<Row>& to_rank : rows)
+    sent.push_back(std::as_bytes(std::span(to_rank)));
   exchange(sent, [&](std::size_t rank, std::size_t size) {
+    assert(size % sizeof(Row) == 0);
     received[rank].resize(size / sizeof(Row));
     return reinterpret_cast<std::byte*>(received[rank].data());
   });

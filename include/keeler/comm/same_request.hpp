@@ -1,4 +1,5 @@
-// What ranks are asked for: each has a command line and files of its own, and a run needs the same on all of them.
+// Check that all ranks were started with the same request: each process reads its own command line and files, and a run
+// needs the same on all ranks.
 #pragma once
 
 #include <keeler/comm/communicator.hpp>
@@ -8,13 +9,13 @@
 
 namespace keeler {
 
-/// One thing that a process is asked for: an option, or a key of a scene.
-struct Asked {
+/// One entry of a request: an option of the command line, or a key of a scene.
+struct RequestEntry {
   std::string name, value; ///< as messages show them: "time.end", "2.0"
 };
 
-/// Collective. Throws UsageError, which names the first difference, where a rank is asked for something else than the
-/// first one. Each name occurs once.
-void require_same_request(const std::vector<Asked>& request, const Communicator& ranks);
+/// Throws UsageError on all ranks if the request of any rank differs from the root's; the message names the first
+/// difference. Collective. Precondition: each name occurs once.
+void require_same_request(const std::vector<RequestEntry>& request, const Communicator& ranks);
 
 } // namespace keeler

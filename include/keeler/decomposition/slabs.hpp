@@ -1,11 +1,12 @@
-// How ranks divide the box: slabs across it, whose particles they own, migration, and copies of neighbours' particles.
+// Domain decomposition: ranks divide the box into slabs across x. A rank owns the particles of its slab and holds
+// ghosts of particles near it (ghost_layer.hpp).
 //
-// A particle stays with its owner until the borders are made anew: when one has gone farther than the margin, or when
-// memory is sorted. Where bounds, margins and copies are never shows in a result.
+// A particle keeps its owner until the ghost layer is rebuilt: when a particle has moved farther than the margin, or
+// when memory is sorted. No result depends on the bounds, the margin or the choice of ghosts.
 #pragma once
 
 #include <keeler/comm/communicator.hpp>
-#include <keeler/decomposition/borders.hpp>
+#include <keeler/decomposition/ghost_layer.hpp>
 #include <keeler/particles/store.hpp>
 
 #include <cstddef>
@@ -16,16 +17,18 @@ namespace keeler {
 
 class Slabs {
 public:
-  /// What a rank holds of the particles it owns: the store, and other rows in its order.
+  /// What a rank stores of its own particles: the store, and further rows in its order (empty on all ranks, or one row
+  /// per particle).
   struct Holding {
     Particles& particles;
     std::vector<std::vector<Vec3>*> rows;
   };
 
-  /// How far copies reach. No result depends on it, but time does.
+  /// The width of the ghost layer. It changes the cost and no result.
   struct Reach {
-    double growth = 12.0; ///< of the margin, over what one step needs: learnt as steps go by
-    /// Rows of spheres of the mean radius beyond the near copies: a wrong path is seldom handed on so often in a step.
+    double growth = 12.0; ///< margin over the excursion of one step; adapted as the run goes on
+    /// Width of the layer beyond the near ghosts, in diameters of the mean sphere: a wrong path rarely spreads through
+    /// more contacts than that in one step.
     double rows_beyond = 8.0;
   };
 
@@ -33,50 +36,53 @@ public:
       : Slabs(ranks, box, frequencies, Reach()) {}
   Slabs(const Communicator& ranks, const ShearingBox& box, const Frequencies& frequencies, const Reach& reach);
 
-  /// Each particle goes to its owner from the rank that has it, whichever that is; all may be with one.
-  void divide(Holding holding);
+  /// Sends each particle to its owner, from any distribution of the particles over the ranks. Collective.
+  void distribute(Holding holding);
 
-  /// Whether the borders are good for a step of that length.
-  bool serve(const Particles& particles, double step);
-  /// For steps of that length and particles where they are at `offset`: particles go to their owners, in the order of
-  /// their places, and copies are chosen. Bounds move where the ranks' loads have become uneven.
-  void make_borders(Holding holding, double offset, double step);
-  /// The borders serve no more.
-  void expire() { made_ = false; }
-  /// The step could not be done with these borders: the next ones are twice as wide, and so on, until each rank has
-  /// copies of all.
+  /// True if the ghost layer is valid for a step of this length. Collective.
+  bool is_valid(const Particles& particles, double step);
+  /// Rebuilds the ghost layer for particles at `offset` and steps of this length: balances the bounds if the load is
+  /// uneven, sends particles to their owners, sorts them by cells, and chooses the ghosts. Collective.
+  void rebuild(Holding holding, double offset, double step);
+  /// Marks the ghost layer as invalid.
+  void invalidate() { is_built_ = false; }
+  /// Marks the ghost layer as invalid and at least doubles the margin of the next one, for a step that failed with this
+  /// layer. Repeated calls end where each rank has ghosts of all particles.
   void widen() {
-    widest_ = min_margin_ = 2.0 * borders_.margin;
-    expire();
+    assert(is_built_);
+    max_excursion_ = min_margin_ = 2.0 * ghosts_.margin;
+    invalidate();
   }
 
-  /// Copies behind the own particles, as their owners have them now; and away with them.
-  void add_copies(Particles& particles);
-  void drop_copies(Particles& particles) const;
+  /// Appends the ghosts, in their owners' present state, to the own particles. Collective. Precondition: the ghost
+  /// layer is valid and `particles` has own particles only.
+  void add_ghosts(Particles& particles);
+  /// Removes the ghosts from the store.
+  void remove_ghosts(Particles& particles) const;
 
-  const Borders& borders() const { return borders_; }
-  std::uint64_t times_made() const { return times_made_; }
+  const GhostLayer& ghosts() const { return ghosts_; }
+  std::uint64_t rebuilds() const { return rebuilds_; }
 
 private:
-  void learn();
-  std::size_t owner(double across) const;
-  bool is_within(double across, std::size_t rank, double reach) const;
-  template<class Visit> void for_each_within(double across, double reach, const Visit& visit) const;
-  void balance(const std::vector<double>& across);
-  void migrate(Holding& holding, const std::vector<double>& across) const;
-  void lend(const Particles& particles, double step);
-  double largest_way(const Particles& particles, const std::vector<double>& references, double step) const;
+  void adapt_growth();
+  std::size_t owner(double x) const;
+  bool is_within(double x, std::size_t rank, double reach) const;
+  template<class Visit> void for_each_within(double x, double reach, const Visit& visit) const;
+  void balance(const std::vector<double>& x);
+  void migrate(Holding& holding, const std::vector<double>& x) const;
+  void choose_ghosts(const Particles& particles, double step);
+  double max_excursion(const Particles& particles, const std::vector<double>& references, double step) const;
 
   Communicator ranks_;
   ShearingBox box_;
-  std::vector<double> bounds_; // of slab r: [bounds_[r], bounds_[r + 1]), m
-  bool made_ = false;
-  Borders borders_;
-  Particles copies_; // as they were when the borders were made: all but paths and spins stays
+  std::vector<double> bounds_; // slab r is [bounds_[r], bounds_[r + 1]), m; ascending
+  bool is_built_ = false;
+  GhostLayer ghosts_;
+  Particles ghost_particles_; // as sent when the layer was built; paths and spins are updated each step
   Reach reach_;
-  double widest_ = 0.0;     // the largest way since the borders were made, m
-  double min_margin_ = 0.0; // of the next borders, m
-  std::uint64_t times_made_ = 0;
+  double max_excursion_ = 0.0; // since the layer was built, m
+  double min_margin_ = 0.0;    // of the next layer, m
+  std::uint64_t rebuilds_ = 0;
 };
 
 } // namespace keeler

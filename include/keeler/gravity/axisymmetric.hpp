@@ -1,11 +1,11 @@
-// Radial self-gravity alone: the pull of the surface density averaged along the orbit, as a thin sheet in the
-// mid-plane. It is what simulations of viscous overstability use (Salo & Schmidt 2010; Lehmann, Schmidt & Salo 2017),
-// whose waves are axisymmetric: no wakes form, and the layer's own vertical pull is put into ν (planet.vertical_ratio).
+// Radial self-gravity alone: the attraction of the surface density averaged along the orbit, as a thin sheet in the
+// mid-plane. Simulations of viscous overstability use it (Salo & Schmidt 2010; Lehmann, Schmidt & Salo 2017): its
+// waves are axisymmetric, no wakes form, and ν contains the layer's vertical self-gravity (planet.vertical_ratio).
 //
 //   Σ(x) = ⟨Σ⟩ + Σ_n (S_n exp(i k_n x) + c.c.)     k_n = 2π n / L_x, n = 1 … L_x / shortest_wavelength
 //   Φ(x) = −2π G Σ_n (S_n / k_n) exp(i k_n x) + c.c.     g_x = −dΦ/dx
 //
-// Shorter waves are the noise of single particles and must be cut off: a particle is no line along the orbit.
+// Shorter waves are the noise of single particles and must be cut off, since a particle is not a line along the orbit.
 #pragma once
 
 #include <keeler/gravity/solver.hpp>
@@ -15,26 +15,26 @@
 
 namespace keeler {
 
-/// What the mesh of the radial waves is for a box of that width (m), before there is one: its nodes, a whole number
-/// that grows as size_x / shortest_wavelength without a bound, and its bytes on that many threads.
+/// Return the number of nodes of the mesh for a box of this width (m), a whole number without an upper bound, and the
+/// mesh's bytes on `threads` threads. Both can be called before a solver exists.
 double radial_mesh_nodes(double size_x, double shortest_wavelength);
 double radial_mesh_bytes(double size_x, double shortest_wavelength, int threads);
 
-/// "gravity.shortest_wavelength = 1e-18 m is too short (why); raise it", where no mesh over a box of that width has
-/// such waves; empty where one has.
+/// Returns the error, e.g. "gravity.shortest_wavelength = 1e-18 m is too short (why); raise it", if no mesh over a box
+/// of this width (m) has such waves; otherwise an empty string.
 std::string radial_mesh_fault(double size_x, double shortest_wavelength);
 
 class AxisymmetricSolver final : public GravitySolver, public EnergyMeter {
 public:
-  /// `shortest_wavelength` in m. Solving throws UsageError with radial_mesh_fault(), or where
-  /// there is no memory for the mesh.
+  /// `shortest_wavelength` in m, positive. Solving throws UsageError with radial_mesh_fault(), or if there is not
+  /// enough memory for the mesh.
   explicit AxisymmetricSolver(double shortest_wavelength);
   ~AxisymmetricSolver() override;
 
-  /// The exact sum over the waves to 1e-8 of the largest. Momentum is kept, and no particle pulls itself.
+  /// Writes the sum over the waves, to 1e-8 of the largest wave. Momentum is conserved; particles have no self-force.
   void accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) override;
 
-  /// Φ of the waves, that of each particle with itself included, which is constant. No torque: the stress is 0.
+  /// Returns Φ of the waves; it includes each particle's self-energy, a constant. There is no torque: the stress is 0.
   GravityEnergy energy(const GravityProblem& problem) override;
 
   std::string name() const override { return "axisymmetric"; }

@@ -1,4 +1,4 @@
-// Gravity as the exact sum over all pairs and images: the reference, and the best choice for a few hundred particles.
+// Gravity as the exact sum over all pairs and images: the reference for all solvers.
 #pragma once
 
 #include <keeler/core/simd.hpp>
@@ -6,7 +6,7 @@
 
 namespace keeler {
 
-/// Of the sums over pairs. Single precision (with sums in doubles) is good to some 3e-7 and twice as fast.
+/// Precision of the sums over pairs. Single (with sums in doubles) is accurate to some 3e-7 and twice as fast.
 enum class Precision { double_precision, single_precision };
 
 class DirectSolver final : public GravitySolver {
@@ -22,8 +22,8 @@ private:
   Precision precision_;
 };
 
-/// Accelerations (m rad^-2) of some of the particles by that sum: what other solvers' errors are
-/// measured against. With all images and three rings the error is below 1e-6 G Σ.
+/// Returns the accelerations (m rad^-2) of the particles with the indices `sample`, by the direct sum: the reference
+/// for errors of other solvers. With all images and three rings the error is below 1e-6 G Σ.
 std::vector<Vec3> sampled_accelerations(const GravityProblem& problem, std::span<const std::size_t> sample,
                                         const ImageSettings& images, InstructionSet set,
                                         Precision precision = Precision::double_precision);

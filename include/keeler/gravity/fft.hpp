@@ -1,9 +1,9 @@
 // Gravity by a mesh and neighbours (P³M; Hockney & Eastwood, Computer Simulation Using Particles): truly shear-periodic
 // in x and y, open in z.
 //
-// Each particle's attraction is split into that of a smooth round cloud, which a mesh carries and transforms to and
-// fro, and the rest, which vanishes outside the cloud exactly and is summed over neighbours. The mesh stays square at
-// any shear offset. Rings suit it: hard spheres cap the density, so no particle has very many neighbours.
+// Each particle's attraction is split into that of a smooth spherical cloud, computed on a mesh by Fourier transforms,
+// and the rest, which vanishes exactly outside the cloud and is summed over neighbours. The mesh stays rectangular at
+// any shear offset. Planetary rings suit the method: hard spheres limit the density, and so the number of neighbours.
 #pragma once
 
 #include <keeler/core/simd.hpp>
@@ -15,23 +15,23 @@
 namespace keeler {
 
 struct FftSettings {
-  double spacing = 0.0;    ///< of the mesh, m; it takes this or a little less (or more, where particles are few)
-  double cut = 2.5;        ///< radius of the cloud, beyond which neighbours need no sum, in spacings; at least 1
+  double spacing = 0.0;    ///< of the mesh, m; the mesh may be slightly finer, or coarser for few particles
+  double cut = 2.5;        ///< radius of the cloud, which is the cut-off of the neighbour sum, in spacings; at least 1
   bool short_range = true; ///< false: the smooth part alone, for mean fields
 };
 
-/// The cheapest spacing of the mesh, in mean distances of particles, (their number an area)^−1/2.
+/// The cheapest spacing of the mesh, in mean particle distances, (number per area)^−1/2.
 inline constexpr double cheapest_spacing = 1.6;
 
-/// Bytes of the mesh and of its waves for so many particles, which lie within `height` (m) from the lowest to the
-/// highest; what is kept a particle is not in it. For estimates: `spacing` is that of FftSettings.
+/// Returns the bytes of the mesh and its waves for `count` particles in a layer of total height `height` (m), without
+/// the memory per particle. For estimates; `spacing` is that of FftSettings.
 double mesh_bytes(const ShearingBox& box, double spacing, double height, std::size_t count);
 
-/// √⟨m²⟩ / ⟨m⟩: 1 for equal masses. The same bits in any order. Collective: of the masses of all ranks.
+/// Returns √⟨m²⟩ / ⟨m⟩ over all ranks: 1 for equal masses. The bits do not depend on the order. Collective.
 double mass_spread(std::span<const double> masses, const Communicator& ranks = {});
 
-/// A cut, from 2 to 16, for a rms error of the force over its rms, with that spacing. It kept errors down to 1e-4 in
-/// every patch measured (docs/dev/gravity-fft.md).
+/// Returns the cut, from 2 to 16, for a required rms error of the force over its rms, at the cheapest spacing. Errors
+/// down to 1e-4 were kept in every patch measured (docs/dev/gravity-fft.md). Precondition: both arguments are positive.
 double cut_for(double force_error, double mass_spread);
 
 class FftSolver final : public GravitySolver, public EnergyMeter {
@@ -41,10 +41,10 @@ public:
 
   void accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) override;
 
-  /// By the same mesh and neighbours.
+  /// Returns energy and stress of the same mesh and neighbours. Collective.
   GravityEnergy energy(const GravityProblem& problem) override;
 
-  std::string name() const override; ///< "mesh" without the short range
+  std::string name() const override; ///< "fft", or "mesh" without the short range
 
 private:
   struct Parts;

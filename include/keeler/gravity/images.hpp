@@ -1,8 +1,8 @@
-// Which periodic images attract one by one: rings of boxes around the cell. What lies farther out: far_images.hpp.
+// The periodic images that are summed one by one: rings of boxes around the cell. Images farther out: far_images.hpp.
 //
 // With a shear offset a whole column of boxes slides along y. The images of a column are numbered so that its middle
-// box is the one nearest to y = 0: the set of boxes then depends on the offset modulo L_y only, holds (−s) with every
-// shift s, and reaches equally far to both sides on the average over a shear period.
+// box is the one nearest to y = 0. So the set of boxes depends on the offset modulo L_y only, contains −s with every
+// shift s, and reaches equally far to both sides on average over a shear period.
 #pragma once
 
 #include <keeler/core/vector.hpp>
@@ -12,20 +12,20 @@
 
 namespace keeler {
 
-/// The shear offset folded into [−L_y/2, L_y/2], exactly.
+/// Returns the shear offset folded into [−L_y/2, L_y/2], exactly.
 double folded_offset(const ShearingBox& box, double offset);
 
-/// Which images attract.
+/// The images that attract.
 struct ImageSettings {
   int rings = 1;   ///< rings of boxes around the cell that are summed one by one (1 is 9 boxes)
-  bool far = true; ///< and all images beyond, so that the force is truly periodic; otherwise exactly these rings act
+  bool far = true; ///< add all images beyond: the force is truly periodic; else exactly these rings act
 };
 
-/// Shifts (m) of all boxes of so many rings along x and along y, (2 rings_x + 1) (2 rings_y + 1) of them, the cell's
-/// own zero shift included, in a fixed order. The offset must be folded.
+/// Returns the shifts (m) of the (2 rings_x + 1) (2 rings_y + 1) boxes around the cell, in a fixed order; the shift 0
+/// of the cell is one of them. Precondition: the offset is folded.
 std::vector<Vec3> image_shifts(const ShearingBox& box, double offset, int rings_x, int rings_y);
 
-/// The image of a position that lies in the cell. The offset must be folded.
+/// Returns the image of a position inside the cell. Precondition: the offset is folded.
 Vec3 into_cell(const ShearingBox& box, double offset, const Vec3& position);
 
 } // namespace keeler

@@ -1,4 +1,4 @@
-// How many images of the box a solver by pairs sums one by one: what long boxes cost.
+// The number of images that a pairwise solver sums one by one: the cost of long boxes.
 #pragma once
 
 #include <keeler/gravity/images.hpp>
@@ -7,8 +7,8 @@
 
 namespace keeler {
 
-/// The cell itself included: with the far images 9 of a square box, and about 4.6 for each time that a long one is as
-/// long as wide.
+/// Returns the number of near images, the cell included: with far images 9 for a square box, and about 4.6 per unit of
+/// the aspect ratio of a long one.
 std::size_t near_image_count(const ShearingBox& box, const ImageSettings& images);
 
 } // namespace keeler

@@ -133,7 +133,7 @@ private:
 
   // in distributed runs (distributed.cpp)
   void divide();
-  void require_borders();
+  void require_ghost_layer();
   void collide_distributed();
   Overlap largest_overlap_distributed();
   Slabs::Holding holding();

@@ -1,4 +1,4 @@
-// Radial self-gravity: against the exact pull of one wave, and against the plain sum over all waves and particles.
+// Radial self-gravity against the exact field of one wave, and against the plain sum over all waves and particles.
 #include <keeler/gravity/axisymmetric.hpp>
 
 #include "clumped_state.hpp"
@@ -17,7 +17,7 @@ using namespace keeler_test;
 
 namespace {
 
-// 2π G Σ_n i S_n exp(i k_n x) + c.c., S_n summed particle by particle.
+// Returns 2π G Σ_n i S_n exp(i k_n x) + c.c., S_n summed particle by particle.
 std::vector<double> by_plain_sums(const ClumpedState& state, int waves) {
   const GravityProblem p = state.problem();
   std::vector<double> pulls(state.positions.size());
@@ -44,7 +44,7 @@ double plain_potential(const ClumpedState& state, int waves) {
   return sum;
 }
 
-// Particles at even spacing, their masses modulated by one wave, at any height and place along the orbit.
+// Particles at even spacing, their masses modulated by one wave, at any height and position along the orbit.
 ClumpedState one_wave(int n, double amplitude) {
   constexpr std::size_t count = 400;
   ClumpedState state;
@@ -62,7 +62,7 @@ ClumpedState one_wave(int n, double amplitude) {
 } // namespace
 
 // A thin sheet with Σ = ⟨Σ⟩ + S cos kx has Φ = −(2π G S / |k|) exp(−|k||z|) cos kx (Binney & Tremaine 2008, eq. 5.161):
-// in its plane the pull is −2π G S sin kx.
+// in its plane the acceleration is −2π G S sin kx.
 TEST_CASE("one wave of the surface density pulls as a thin sheet does") {
   const double amplitude = 0.2;
   for (const int n : {1, 3, 12}) {
@@ -103,7 +103,7 @@ TEST_CASE("forces and energy are those of the plain sum over waves and particles
   }
 }
 
-TEST_CASE("radial forces keep the momentum, and are the slope of the energy") {
+TEST_CASE("radial forces conserve momentum and are the gradient of the energy") {
   ClumpedState state = clumped_state(800, 4, 30.0);
   AxisymmetricSolver solver(12.0);
   const std::vector<Vec3> a = accelerations(solver, state.problem());
@@ -127,7 +127,7 @@ TEST_CASE("radial forces keep the momentum, and are the slope of the energy") {
   CHECK(slope == doctest::Approx(-state.masses[heaviest] * a[heaviest].x()).epsilon(1e-5));
 }
 
-TEST_CASE("a lone particle does not pull itself, and a box without waves is refused") {
+TEST_CASE("a lone particle has no self-force, and a box without waves is refused") {
   ClumpedState state = clumped_state(1, 1);
   AxisymmetricSolver solver(state.box.size_x / 9.0);
   const double scale = state.problem().newton_g * state.masses[0] / state.box.area();
@@ -137,7 +137,7 @@ TEST_CASE("a lone particle does not pull itself, and a box without waves is refu
   for (const double wavelength : {1e-18, 1e-8 * state.box.size_x, 1e-300}) {
     AxisymmetricSolver too_short(wavelength);
     CHECK_THROWS_WITH_AS(accelerations(too_short, state.problem()), doctest::Contains("too short"), UsageError);
-    CHECK_THROWS_AS(accelerations(too_short, state.problem()), UsageError); // and again: nothing is half made
+    CHECK_THROWS_AS(accelerations(too_short, state.problem()), UsageError); // and again: no state is left behind
   }
   state.positions[0].x() = NAN;
   CHECK_THROWS_AS(accelerations(solver, state.problem()), InvariantError);

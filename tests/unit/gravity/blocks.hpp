@@ -1,4 +1,4 @@
-// Blocks of targets and lists of sources to test kernels on, and the plain loop that they must equal.
+// Blocks of targets and lists of sources for tests of kernels, and the plain loop that kernels must equal.
 #pragma once
 
 #include "single.hpp"
@@ -12,27 +12,27 @@ namespace keeler_test {
 
 using namespace keeler;
 
-struct Place {
+struct Point {
   double x, y, z;
 };
 
-inline TargetBlock targets_at(const std::vector<Place>& places) {
+inline TargetBlock targets_at(const std::vector<Point>& points) {
   TargetBlock targets{};
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    targets.x[k] = places[k].x;
-    targets.y[k] = places[k].y;
-    targets.z[k] = places[k].z;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    targets.x[k] = points[k].x;
+    targets.y[k] = points[k].y;
+    targets.z[k] = points[k].z;
   }
   return targets;
 }
 
-/// With the origin at (0, 0, 0).
+/// Returns the targets in single precision, with the origin at (0, 0, 0).
 inline SingleTargetBlock in_single(const TargetBlock& from) {
   SingleTargetBlock targets{};
   for (std::size_t k = 0; k < TargetBlock::capacity; ++k) {
-    split_place(from.x[k], targets.x[k], targets.x_low[k]);
-    split_place(from.y[k], targets.y[k], targets.y_low[k]);
-    split_place(from.z[k], targets.z[k], targets.z_low[k]);
+    split_position(from.x[k], targets.x[k], targets.x_low[k]);
+    split_position(from.y[k], targets.y[k], targets.y_low[k]);
+    split_position(from.z[k], targets.z[k], targets.z_low[k]);
     targets.from_x[k] = static_cast<float>(from.x[k]);
     targets.from_y[k] = static_cast<float>(from.y[k]);
     targets.from_z[k] = static_cast<float>(from.z[k]);
@@ -40,8 +40,8 @@ inline SingleTargetBlock in_single(const TargetBlock& from) {
   return targets;
 }
 
-inline SingleTargetBlock single_targets_at(const std::vector<Place>& places) {
-  return in_single(targets_at(places));
+inline SingleTargetBlock single_targets_at(const std::vector<Point>& points) {
+  return in_single(targets_at(points));
 }
 
 inline std::vector<SinglePoint> in_single(const std::vector<PointSource>& sources) {
@@ -51,13 +51,13 @@ inline std::vector<SinglePoint> in_single(const std::vector<PointSource>& source
   return points;
 }
 
-/// Within a few units of the origin.
+/// Returns sources within a few units of the origin.
 inline TargetBlock random_targets() {
   RandomStream random(11, RandomPurpose::position, 0);
-  std::vector<Place> places;
+  std::vector<Point> points;
   for (std::size_t k = 0; k < TargetBlock::capacity; ++k)
-    places.push_back({random.normal(), random.normal(), random.normal()});
-  return targets_at(places);
+    points.push_back({random.normal(), random.normal(), random.normal()});
+  return targets_at(points);
 }
 
 inline std::vector<PointSource> random_points(std::size_t count) {
@@ -68,7 +68,7 @@ inline std::vector<PointSource> random_points(std::size_t count) {
   return points;
 }
 
-/// At 10 units from the origin, with quadrupoles as strong as their masses.
+/// Returns cells 10 units from the origin, with quadrupoles of the size of their masses.
 inline std::vector<CellSource> random_cells(std::size_t count) {
   RandomStream random(12, RandomPurpose::position, 0);
   const auto normal = [&] { return static_cast<float>(random.normal()); };
@@ -82,7 +82,7 @@ inline std::vector<CellSource> random_cells(std::size_t count) {
   return cells;
 }
 
-/// The same as a list for a local expansion about the origin.
+/// Returns the cells as a list for a local expansion about the origin.
 inline FarCells far_cells(const std::vector<CellSource>& cells) {
   FarCells far{};
   for (float& x : far.x)
@@ -92,7 +92,7 @@ inline FarCells far_cells(const std::vector<CellSource>& cells) {
   return far;
 }
 
-/// What the kernel `points` must add to empty sums.
+/// Returns the sums that the kernel `points` must compute.
 inline TargetBlock plain_sum(const TargetBlock& from, std::size_t count, const std::vector<PointSource>& sources) {
   TargetBlock targets = from;
   for (std::size_t k = 0; k < count; ++k) {

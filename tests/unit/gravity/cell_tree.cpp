@@ -13,18 +13,18 @@ namespace {
 
 struct Input {
   std::vector<PointSource> particles;
-  std::vector<std::uint32_t> places;
+  std::vector<std::uint32_t> indices;
   std::vector<std::uint64_t> ids;
 
   void add(const Vec3& p, double mass, std::uint64_t id) {
-    places.push_back(static_cast<std::uint32_t>(places.size()));
+    indices.push_back(static_cast<std::uint32_t>(indices.size()));
     particles.push_back({p.x(), p.y(), p.z(), mass});
     ids.push_back(id);
   }
 
   CellTree tree() const {
     CellTree tree;
-    tree.build(particles, places, ids);
+    tree.build(particles, indices, ids);
     return tree;
   }
 };
@@ -36,7 +36,7 @@ Input input_of(const ClumpedState& state) {
   return input;
 }
 
-// Box and moments of a cell straight from their definitions.
+// Checks box and moments of a cell against their definitions.
 void check_cell(const CellTree& tree, std::size_t index) {
   using Long3 = Eigen::Matrix<long double, 3, 1>;
   using Long33 = Eigen::Matrix<long double, 3, 3>;
@@ -68,7 +68,7 @@ void check_cell(const CellTree& tree, std::size_t index) {
   CHECK(Eigen::Vector3f(box.low) == low);
   CHECK(Eigen::Vector3f(box.high) == high);
   CHECK(cell.size == (high - low).maxCoeff());
-  CHECK(cell.reach > reach - 1e-4F); // rounding of places up to 100 m
+  CHECK(cell.reach > reach - 1e-4F); // rounding of positions up to 100 m
   CHECK(cell.reach < 1.8F * cell.size + 1e-4F);
   const double extent = std::max(1e-3, static_cast<double>(cell.size)), whole = static_cast<double>(mass);
   CHECK(moments.mass == doctest::Approx(whole).epsilon(1e-7));
@@ -105,16 +105,16 @@ TEST_CASE("cells partition the particles in preorder, with tight boxes and true 
   }
 }
 
-TEST_CASE("the tree's particles are the given ones, in an order that does not depend on theirs") {
+TEST_CASE("the tree has the given particles, in an order that does not depend on that of the input") {
   Input input = input_of(clumped_state(2000, 6));
-  for (std::size_t k = 0; k < 40; ++k) // ties, for the ids to decide
+  for (std::size_t k = 0; k < 40; ++k) // ties, decided by the ids
     input.particles[k].x = input.particles[0].x;
   const CellTree tree = input.tree();
   Input other;
   for (std::size_t k = 0; k < 2000; ++k) { // 1999 is prime
     const std::size_t from = (k * 1999 + 7) % 2000;
     other.particles.push_back(input.particles[from]);
-    other.places.push_back(input.places[from]);
+    other.indices.push_back(input.indices[from]);
   }
   other.ids = input.ids;
   const CellTree reordered = other.tree();
@@ -140,10 +140,10 @@ TEST_CASE("the tree ends where no split is possible") {
     input.particles[k].x = k % 3 == 0 ? std::nextafter(1.0F, 2.0F) : 1.0F;
   CHECK(input.tree().cells().size() == 3);
 
-  for (std::size_t k = 0; k < 700; ++k) // each split takes off one particle, until floats end
+  for (std::size_t k = 0; k < 700; ++k) // each split separates one particle, down to the smallest floats
     input.particles[k].x = std::ldexp(1.0, -static_cast<int>(k % 140));
   const CellTree deep = input.tree();
-  CHECK(deep.cells().size() == 2 * CellTree::deepest + 1);
+  CHECK(deep.cells().size() == 2 * CellTree::max_depth + 1);
 }
 
 } // namespace cell_tree_test

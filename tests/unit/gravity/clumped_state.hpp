@@ -1,4 +1,4 @@
-// A clumped patch to test solvers on: three quarters of the particles in trailing elongated clumps like self-gravity
+// A clumped patch for tests of solvers: three quarters of the particles in trailing elongated clumps like self-gravity
 // wakes, the rest a thin background, and no two spheres overlap (a buried pair would dominate every rms).
 #pragma once
 
@@ -30,7 +30,7 @@ struct ClumpedState {
   GravityProblem problem() const { return {positions, masses, ids, box, offset, newton_g(1.3175e-4)}; }
 };
 
-// Columns of cells as wide as the largest sphere: whoever might overlap a newcomer is in its own or a neighbouring one.
+// Cells as wide as the largest sphere: spheres that overlap a new one are in its cell or a neighbouring one.
 class OverlapGrid {
 public:
   OverlapGrid(const ShearingBox& box, double width)
@@ -63,7 +63,7 @@ private:
   std::vector<std::vector<std::size_t>> columns_;
 };
 
-// Anywhere in a square, in the plane.
+// Returns a random point of a square in the plane.
 inline Vec3 place_evenly(RandomStream& random, double side) {
   Vec3 p = Vec3::Zero();
   p.x() = (random.uniform() - 0.5) * side;
@@ -71,8 +71,8 @@ inline Vec3 place_evenly(RandomStream& random, double side) {
   return p;
 }
 
-/// Optical depth about 0.6 for spheres of 1 m; contacts across the edge are not avoided. Radii are drawn evenly in
-/// their logarithm between 1 m / size_range and 1 m.
+/// Returns a patch of optical depth about 0.6 for spheres of 1 m; spheres may overlap across the edge. Radii are
+/// uniform in their logarithm between 1 m / size_range and 1 m.
 inline ClumpedState clumped_state(std::size_t count, std::uint64_t seed, double size_range = 1.0) {
   constexpr double pitch = 20.0 / 180.0 * pi, length = 25.0, width = 5.0, height = 2.5; // m
   const double side = std::sqrt(static_cast<double>(std::max<std::size_t>(count, 10)) * pi / 0.6);
@@ -113,7 +113,7 @@ inline std::vector<Vec3> accelerations(GravitySolver& solver, const GravityProbl
   return result;
 }
 
-/// The exact periodic force, pair by pair, by Ewald's sums to that tolerance.
+/// Returns the exact periodic force, pair by pair, by Ewald's sums to that tolerance.
 inline std::vector<Vec3> exact_pair_by_pair(const ClumpedState& state, double tolerance = 1e-15) {
   const GravityProblem problem = state.problem();
   const Lattice lattice(state.box, state.offset, tolerance);
@@ -130,7 +130,7 @@ inline std::vector<Vec3> exact_pair_by_pair(const ClumpedState& state, double to
   return result;
 }
 
-/// Root of Σ |a − b|² / Σ |b|².
+/// Returns the root of Σ |a − b|² / Σ |b|².
 inline double rms_error(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   double error = 0.0, whole = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) {

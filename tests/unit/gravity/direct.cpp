@@ -15,8 +15,8 @@ namespace {
 
 using Long3 = Eigen::Matrix<long double, 3, 1>;
 
-// The sum over all pairs and images, as it is defined: columns n_x = −rings … rings, and in each of them the boxes
-// that reach no farther than (rings + ½) L_y. Positions must be inside the cell.
+// Returns the sum over all pairs and images by definition: columns n_x = −rings … rings, and in each of them the boxes
+// within (rings + ½) L_y. Precondition: positions are inside the cell.
 std::vector<Vec3> naive(const GravityProblem& problem, int rings) {
   const ShearingBox& box = problem.box;
   std::vector<Vec3> result;
@@ -65,16 +65,16 @@ TEST_CASE("the direct sum equals the triple loop in extended precision") {
     for (const int rings : {0, 1, 2}) {
       state.offset = part * state.box.size_y;
       if (part == 0.5)
-        state.offset += 1e-9; // at one half both numberings of a column are equally near
+        state.offset += 1e-9; // at one half two numberings of a column are equally near
       for (Vec3& p : state.positions)
         p = into_cell(state.box, folded_offset(state.box, state.offset), p);
       DirectSolver solver = direct(rings);
-      // 1e-14: places of 15 m hold contacts of 2 m to about 1e-15, and sums of 4000 terms add a little
+      // 1e-14: coordinates of 15 m hold contacts of 2 m to about 1e-15, and sums of 4000 terms add a little
       CHECK(rms_error(accelerations(solver, state.problem()), naive(state.problem(), rings)) < 1e-14);
     }
 }
 
-TEST_CASE("in single precision the direct sum is good to a few 1e-7, for equal spheres and for 1:1000") {
+TEST_CASE("in single precision the direct sum is accurate to a few 1e-7, for equal spheres and for 1:1000") {
   for (const double size_range : {1.0, 1000.0}) {
     const ClumpedState state = clumped_state(1500, 7, size_range);
     DirectSolver exact = direct(1, true), fast({}, choose_instruction_set(), Precision::single_precision);
@@ -84,7 +84,7 @@ TEST_CASE("in single precision the direct sum is good to a few 1e-7, for equal s
   }
 }
 
-TEST_CASE("single precision too gives the same bits for all threads and instruction sets") {
+TEST_CASE("single precision gives equal bits for all threads and instruction sets") {
   const ClumpedState state = clumped_state(700, 8, 10.0);
   const int before = threads();
   set_threads(1);
@@ -106,7 +106,7 @@ TEST_CASE("a contact across the sheared edge counts at its true distance") {
   state.offset = 20.0;
   state.masses = {1000.0, 1000.0};
   state.ids = {1, 2};
-  state.positions = {Vec3(31.0, 3.0, 0.0), Vec3(-31.0, 3.0 + 20.0, 0.0)}; // its image stands at (33, 3, 0)
+  state.positions = {Vec3(31.0, 3.0, 0.0), Vec3(-31.0, 3.0 + 20.0, 0.0)}; // its image is at (33, 3, 0)
   const GravityProblem problem = state.problem();
   DirectSolver solver = direct(1);
   const Vec3 a = accelerations(solver, problem)[0];
@@ -115,7 +115,7 @@ TEST_CASE("a contact across the sheared edge counts at its true distance") {
   CHECK((a - Vec3(newton, 0.0, 0.0)).norm() < 1e-2 * newton); // other images: at 40 m and more, (2/40)² each
 }
 
-TEST_CASE("the direct sum keeps the momentum") {
+TEST_CASE("the direct sum conserves momentum") {
   for (const double part : {0.0, 0.37, 0.5, 0.9}) {
     ClumpedState state = clumped_state(700, 3, 5.0);
     state.offset = part * state.box.size_y;
@@ -138,7 +138,7 @@ TEST_CASE("the direct sum with all images is the sum of the lattice's field over
     for (Vec3& p : state.positions)
       p = into_cell(state.box, folded_offset(state.box, state.offset), p);
     const std::vector<Vec3> exact = exact_pair_by_pair(state);
-    double last = 1e-3; // two spheres in contact pull a hundred times as strongly as the sheet
+    double last = 1e-3; // two spheres in contact attract a hundred times more than the sheet
     for (const int rings : {1, 2, 3}) {
       DirectSolver solver = direct(rings, true);
       const double error = rms_error(accelerations(solver, state.problem()), exact);
@@ -149,7 +149,7 @@ TEST_CASE("the direct sum with all images is the sum of the lattice's field over
   }
 }
 
-TEST_CASE("in a box that is higher than it is wide, too") {
+TEST_CASE("the direct sum is exact in a box that is higher than wide") {
   for (const double height : {15.0, 40.0, 60.0}) {
     ClumpedState state;
     state.box = {20.0, 24.0, 1.5, 0.0};

@@ -17,7 +17,7 @@ using namespace keeler_test;
 
 namespace {
 
-// All pairs and images, and each particle's own images: exact but for rounding.
+// Returns the sum over all pairs and images, a particle's own images included: exact up to rounding.
 double exact_potential(const ClumpedState& state) {
   const Lattice lattice(state.box, state.offset);
   double sum = 0.0;
@@ -36,7 +36,7 @@ ClumpedState sheared(ClumpedState state, double strain) {
   return state;
 }
 
-// The slope of the exact potential: a difference of fourth order.
+// Returns the derivative of the exact potential by a difference of fourth order.
 double exact_stress(const ClumpedState& state) {
   constexpr double h = 1e-3;
   const auto at = [&](double strain) { return exact_potential(sheared(state, strain)); };
@@ -55,7 +55,7 @@ TEST_CASE("potential energy and shear stress are those of the lattice, at any of
     ClumpedState state = clumped_state(300, 5);
     state.offset = part * state.box.size_y;
     const double potential = exact_potential(state), stress = exact_stress(state);
-    // of this size are the parts of the stress, which all but cancel in so few clumps
+    // the size of the terms of the stress, which nearly cancel in so few clumps
     double scale = 0.0;
     for (const double m : state.masses)
       scale += m * m / 3.0;
@@ -71,7 +71,7 @@ TEST_CASE("potential energy and shear stress are those of the lattice, at any of
   }
 }
 
-TEST_CASE("the energy of a patch has the same bits for any number of threads") {
+TEST_CASE("the energy of a patch has equal bits for any number of threads") {
   const ClumpedState state = clumped_state(3000, 2);
   set_threads(1);
   const GravityEnergy one = by_fft(state, 2.5);

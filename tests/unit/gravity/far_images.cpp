@@ -21,7 +21,7 @@ struct Mass {
 
 } // namespace
 
-TEST_CASE("far images pull as Ewald's sums say, in boxes of any shape, at any offset, thin and thick") {
+TEST_CASE("far images attract as Ewald's sums say, in boxes of any shape, at any offset, thin and thick") {
   for (const ShearingBox& box : {ShearingBox{60.0, 60.0, 1.5, 0.0}, ShearingBox{60.0, 48.0, 1.5, 0.0},
                                  ShearingBox{20.0, 400.0, 1.5, 0.0}, ShearingBox{300.0, 60.0, 1.5, 0.0}})
     for (const double height : {0.0, 0.02, 0.1, 0.4})
@@ -32,14 +32,14 @@ TEST_CASE("far images pull as Ewald's sums say, in boxes of any shape, at any of
         double error = 0.0, whole = 0.0;
         for (std::uint64_t k = 0; k < 40; ++k) {
           RandomStream random(2, RandomPurpose::position, k);
-          const auto place = [&] {
+          const auto random_mass = [&] {
             Mass m{0.0, 0.0, 0.0, 1.0};
             m.x = (random.uniform() - 0.5) * box.size_x;
             m.y = (random.uniform() - 0.5) * box.size_y;
             m.z = (2.0 * random.uniform() - 1.0) * highest;
             return m;
           };
-          const Mass target = place(), source = place();
+          const Mass target = random_mass(), source = random_mass();
           const std::vector<Vec3> pulls =
               far.attractions<double>(std::vector<Mass>{target, source}, choose_instruction_set());
           const Vec3 exact = far_pull(Lattice(box, offset), near_images(box, offset, {}),
@@ -57,7 +57,7 @@ TEST_CASE("far images pull as Ewald's sums say, in boxes of any shape, at any of
       }
 }
 
-TEST_CASE("many bodies feel what each of them does, whatever the instruction set") {
+TEST_CASE("the field of many bodies is the sum of their fields, in all instruction sets") {
   const ClumpedState state = clumped_state(1100, 3, 3.0); // three blocks, the last one not full
   const double offset = folded_offset(state.box, state.offset);
   std::vector<Mass> bodies;
@@ -84,7 +84,7 @@ TEST_CASE("many bodies feel what each of them does, whatever the instruction set
     }
 }
 
-TEST_CASE("a body high above the others feels the far images from the highest place that counts") {
+TEST_CASE("a body high above the others feels the far images from the largest height allowed") {
   const ShearingBox box{50.0, 50.0, 1.5, 0.0};
   const FarImages far(box, 7.0, 1, 1e6);
   const InstructionSet set = choose_instruction_set();

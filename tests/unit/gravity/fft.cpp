@@ -19,7 +19,7 @@ using namespace keeler_test;
 
 namespace {
 
-// The exact periodic force on many particles in a layer: to 1e-6 G Σ with three rings.
+// Returns the exact periodic force on many particles in a layer, to 1e-6 G Σ with three rings.
 std::vector<Vec3> exact(const ClumpedState& state, int rings = 1) {
   DirectSolver solver({rings, true}, choose_instruction_set());
   return accelerations(solver, state.problem());
@@ -34,7 +34,7 @@ double error_of(const ClumpedState& state, const FftSettings& settings) {
   return rms_error(by_fft(state, settings), exact(state));
 }
 
-// Without overlap, but else anywhere in a layer.
+// Returns random positions in a layer, without overlaps.
 ClumpedState random_state(std::size_t count, std::uint64_t seed, ShearingBox box, double height) {
   ClumpedState state;
   state.box = box;
@@ -58,7 +58,7 @@ ClumpedState random_state(std::size_t count, std::uint64_t seed, ShearingBox box
   return state;
 }
 
-// Two bodies of that distance, elsewhere and in another direction for each k.
+// Returns two bodies at a distance; their position and direction depend on k.
 ClumpedState pair_of(double distance, int k) {
   ClumpedState state;
   state.box = {90.0, 80.0, 1.5, 0.0};
@@ -127,12 +127,12 @@ TEST_CASE("settings for a required error keep it") {
       const double error = rms_error(by_fft(state, settings), reference);
       MESSAGE("wanted " << wanted << ": " << settings.spacing << " m, cut " << settings.cut << ", error " << error);
       CHECK(error < wanted);
-      CHECK(error > 0.1 * wanted); // or it would be dearer than need be
+      CHECK(error > 0.1 * wanted); // or it would cost more than necessary
     }
   }
 }
 
-TEST_CASE("the cut grows with what is asked for and with the spread of masses, within its limits") {
+TEST_CASE("the cut grows with the accuracy required and with the spread of masses, within its limits") {
   for (const double spread : {1.0, 1.5, 4.0, 20.0, 1e4}) {
     double last = 1.9999;
     for (double wanted = 0.1; wanted > 0.99e-5; wanted *= 0.99) {
@@ -146,7 +146,7 @@ TEST_CASE("the cut grows with what is asked for and with the spread of masses, w
   }
 }
 
-TEST_CASE("the spread of masses is that of the distribution, with the same bits in any order") {
+TEST_CASE("the spread of masses is that of the distribution, with equal bits in any order") {
   CHECK(mass_spread({}) == 1.0);
   CHECK(mass_spread(std::vector<double>(10, 3.0)) == doctest::Approx(1.0).epsilon(1e-15));
   CHECK(mass_spread(std::vector<double>{1.0, 3.0}) == doctest::Approx(std::sqrt(5.0) / 2.0).epsilon(1e-15));
@@ -172,7 +172,7 @@ TEST_CASE("two spheres in contact attract each other as Newton has it") {
   CHECK(worst < 5e-3);
 }
 
-TEST_CASE("no pair stands out: distances from well inside the cloud to well outside it") {
+TEST_CASE("the error of a pair is small at all distances, from well inside the cloud to well outside it") {
   FftSolver solver({4.0, 2.25}, choose_instruction_set());
   for (const double distance : {0.5, 4.0, 8.9, 9.1, 14.0, 40.0})
     for (int k = 0; k < 20; ++k) {
@@ -209,7 +209,7 @@ TEST_CASE("waves in the surface density, and the sheet itself, are those of theo
     for (int i = 0; i < 60; ++i) {
       RandomStream random(9, RandomPurpose::position, static_cast<std::uint64_t>(i));
       Vec3 p = place_evenly(random, 100.0);
-      p.z() = 0.7 + (i % 2 == 0 ? 1 : -1) * (4.0 + 20.0 * random.uniform()); // lattice spacings away and farther
+      p.z() = 0.7 + (i % 2 == 0 ? 1 : -1) * (4.0 + 20.0 * random.uniform()); // at least some lattice spacings away
       add(p, 0.0);
     }
     const double sheet = 2.0 * pi * state.problem().newton_g * sigma;
@@ -247,7 +247,7 @@ TEST_CASE("the mesh solver exerts no net force") {
   }
 }
 
-TEST_CASE("forces pass over a wrap of the offset, and over the edge of the cell, without a step") {
+TEST_CASE("forces are continuous at a wrap of the offset and at the edge of the cell") {
   ClumpedState state = clumped_state(1500, 5);
   const FftSettings settings{4.0, 2.25};
   state.offset = 1e-9;
@@ -273,11 +273,11 @@ TEST_CASE("forces pass over a wrap of the offset, and over the edge of the cell,
       mean += a[k].norm() / static_cast<double>(a.size());
     }
     MESSAGE("crossing an edge, largest jump by the mean force: " << jump / mean);
-    CHECK(jump < 5e-3 * mean); // the share in ghosts falls on other rows: the error is another one
+    CHECK(jump < 5e-3 * mean); // weights in ghosts go to other rows: the error differs
   }
 }
 
-TEST_CASE("the edges of the cell pull nowhere") {
+TEST_CASE("the edges of the cell exert no mean force") {
   ClumpedState state = clumped_state(2500, 6);
   const FftSettings settings{4.0, 2.25};
   for (const double part : {0.0, 0.3, 0.5}) {
@@ -353,7 +353,7 @@ TEST_CASE("boxes of a few radii, long ones and tall ones; none, one and two part
       CHECK(a.allFinite());
 }
 
-TEST_CASE("a particle alone feels nothing, one that has strayed far feels the layer and it feels it") {
+TEST_CASE("a lone particle feels nothing; a distant particle and the layer attract each other") {
   ClumpedState state = clumped_state(150, 11);
   state.positions[17] = Vec3(3.0, 2.0, 1500.0);
   const std::vector<Vec3> a = by_fft(state, {3.0, 2.5}), b = exact_pair_by_pair(state, 1e-10);
@@ -375,7 +375,7 @@ TEST_CASE("radii that span three decades cost no accuracy") {
   CHECK(error < 4e-3); // small particles are closer to each other than the mesh is fine
 }
 
-TEST_CASE("bodies at one place give nothing but numbers") {
+TEST_CASE("bodies at equal positions give finite accelerations") {
   ClumpedState state = clumped_state(200, 13);
   for (std::size_t k = 0; k < 150; ++k)
     state.positions[k] = state.positions[150] + Vec3(k % 3 == 1 ? 1e-9 : 0.0, k % 3 == 2 ? 1e-120 : 0.0, 0.0);

@@ -34,13 +34,13 @@ TEST_CASE("the boxes around the cell lie evenly on both sides of it at any offse
     }
 }
 
-TEST_CASE("any image of a place comes back into the cell as the same place") {
+TEST_CASE("any image of a position is folded back to that position") {
   const double offset = folded_offset(box, 41.5);
-  const Vec3 place(40.25, -30.5, 2.0);
+  const Vec3 position(40.25, -30.5, 2.0);
   for (const int nx : {-2, 0, 1})
     for (const int ny : {-3, 0, 2}) { // all numbers have few bits: exact
-      const Vec3 image = place + box.displacement({nx, ny}, 41.5);
-      CHECK(into_cell(box, offset, image) == place);
+      const Vec3 image = position + box.displacement({nx, ny}, 41.5);
+      CHECK(into_cell(box, offset, image) == position);
     }
 }
 

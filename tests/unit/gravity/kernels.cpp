@@ -17,7 +17,7 @@ using namespace keeler_test;
 
 namespace {
 
-// −φ at a place: m/d + (d·Q d) / (2 d⁵).
+// Returns −φ at a position: m/d + (d·Q d) / (2 d⁵).
 long double potential(const CellSource& c, long double x, long double y, long double z) {
   const long double dx = c.x - x, dy = c.y - y, dz = c.z - z;
   const long double d2 = dx * dx + dy * dy + dz * dz, d = std::sqrt(d2);
@@ -26,7 +26,7 @@ long double potential(const CellSource& c, long double x, long double y, long do
   return c.mass / d + dqd / (2 * d2 * d2 * d);
 }
 
-// Largest |a − b| over the targets, relative to the larger of b's own length and `floor`.
+// Returns the largest |a − b| over the targets, relative to the larger of b's own length and `floor`.
 template<class A, class B> double worst(const A& a, const B& b, std::size_t count) {
   double error = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
@@ -52,9 +52,9 @@ TEST_CASE("a pair attracts by Newton's law, at any distance and anywhere, in bot
   RandomStream random(13, RandomPurpose::position, 0);
   double worst_double = 0.0, worst_single = 0.0;
   for (int k = 0; k < 2000; ++k) {
-    const Place target = {1e3 * random.normal(), 1e4 * random.normal(), 10.0 * random.normal()};
+    const Point target = {1e3 * random.normal(), 1e4 * random.normal(), 10.0 * random.normal()};
     const double distance = std::pow(10.0, 8.0 * random.uniform() - 3.0); // 1 mm to 100 km
-    const Place source = {target.x + distance * random.normal(), target.y + distance * random.normal(),
+    const Point source = {target.x + distance * random.normal(), target.y + distance * random.normal(),
                           target.z + distance * random.normal()};
     const std::vector<PointSource> sources = {{source.x, source.y, source.z, 0.3}};
     const std::vector<SinglePoint> singles = in_single(sources);
@@ -88,7 +88,7 @@ TEST_CASE("single precision loses nothing over many sources") {
 
 TEST_CASE("a target among the sources does not attract itself, but its neighbours do at any distance") {
   const AttractionKernels kernels = attraction_kernels(InstructionSet::portable);
-  const Place at = {8123.456789, -377.7654321, 3.1415926535};
+  const Point at = {8123.456789, -377.7654321, 3.1415926535};
   const double gap = 1e-5; // m, and thousands away from the origin
   const std::vector<PointSource> sources = {{at.x, at.y, at.z, 1.0}, {at.x + gap, at.y, at.z, 1e-6}};
   const std::vector<SinglePoint> singles = in_single(sources);
@@ -99,7 +99,7 @@ TEST_CASE("a target among the sources does not attract itself, but its neighbour
   kernels.points_single(in_float, 1, singles.data(), &all, 1);
   const double distance = sources[1].x - at.x, newton = 1e-6 / (distance * distance);
   CHECK(in_double.ax[0] == doctest::Approx(newton).epsilon(1e-14));
-  CHECK(in_float.ax[0] == doctest::Approx(newton).epsilon(1e-5)); // the place is kept to 2^-48 of 8 km, 3e-11 m
+  CHECK(in_float.ax[0] == doctest::Approx(newton).epsilon(1e-5)); // positions are stored to 2^-48 of 8 km, 3e-11 m
   CHECK(in_double.ay[0] == 0.0);
   CHECK(in_float.ay[0] == 0.0);
 }
@@ -123,7 +123,7 @@ TEST_CASE("a cell's attraction is the gradient of its quadrupole potential") {
   }
 }
 
-TEST_CASE("kernels of all instruction sets give the same bits, for every number of targets") {
+TEST_CASE("kernels of all instruction sets give equal bits, for every number of targets") {
   const TargetBlock start = random_targets();
   std::vector<PointSource> points = random_points(170);
   points.push_back({start.x[5], start.y[5], start.z[5], 1.0}); // a target among its own sources

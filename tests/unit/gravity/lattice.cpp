@@ -13,8 +13,8 @@ using namespace keeler;
 
 namespace {
 
-// The same field by another sum (Lekner 1991, Physica A 176, 485): row by row along y, each row by its waves, whose
-// profiles across are Bessel functions; the rows' means, line masses, add up to a closed form. No split, no erfc.
+// The lattice's field by another sum (Lekner 1991, Physica A 176, 485): row by row along y, each row by its waves,
+// whose profiles across are Bessel functions; the rows' means, line masses, have a closed sum. No split, no erfc.
 Vec3 by_rows(const ShearingBox& box, double offset, const Vec3& at) {
   const double per_y = 2.0 * pi / box.size_y, per_x = 2.0 * pi / box.size_x;
   const double beat = std::cosh(per_x * at.z()) - std::cos(per_x * at.x());
@@ -33,7 +33,7 @@ Vec3 by_rows(const ShearingBox& box, double offset, const Vec3& at) {
 
 } // namespace
 
-TEST_CASE("the lattice's field is the same by Ewald's sum and row by row") {
+TEST_CASE("Ewald's sum of the lattice's field equals the sum row by row") {
   for (const ShearingBox& box :
        {ShearingBox{50.0, 50.0, 1.5, 0.0}, ShearingBox{40.0, 100.0, 1.5, 0.0}, ShearingBox{300.0, 60.0, 1.5, 0.0}}) {
     for (const double part : {0.0, 0.3, 0.5, 0.99}) {
@@ -51,7 +51,7 @@ TEST_CASE("the lattice's field is the same by Ewald's sum and row by row") {
   }
 }
 
-TEST_CASE("the lattice's potential has the acceleration for its slope") {
+TEST_CASE("the gradient of the lattice's potential is minus the acceleration") {
   const ShearingBox box{50.0, 70.0, 1.5, 0.0};
   const Lattice lattice(box, 20.0);
   const double h = 1e-3;
@@ -65,7 +65,7 @@ TEST_CASE("the lattice's potential has the acceleration for its slope") {
   }
 }
 
-TEST_CASE("near a mass it attracts as Newton has it, far above as a sheet, and every image alike") {
+TEST_CASE("a lattice attracts as a point mass nearby, as a sheet far above, and equally at every image") {
   const ShearingBox box{50.0, 70.0, 1.5, 0.0};
   const Lattice lattice(box, 33.0);
   const Vec3 near(1e-3, 2e-3, -2e-3);

@@ -24,7 +24,7 @@ SingleTargetBlock targets_within(double scale) {
   return in_single(targets);
 }
 
-// Relative rms error of the expansion against the cells themselves.
+// Returns the relative rms error of the expansion against the cells.
 double expansion_error(const std::vector<CellSource>& cells, double scale) {
   const AttractionKernels kernels = attraction_kernels(InstructionSet::portable);
   SingleTargetBlock exact = targets_within(scale), expanded = exact;
@@ -59,7 +59,7 @@ std::vector<CellSource> cells_all_around(double quadrupole) {
 
 } // namespace
 
-TEST_CASE("a local expansion is right to third order in the distance from its centre") {
+TEST_CASE("a local expansion is exact to third order in the distance from its centre") {
   const std::vector<CellSource> cells = cells_all_around(0.0);
   const double wide = expansion_error(cells, 0.8), half = expansion_error(cells, 0.4);
   MESSAGE("rms error at 0.8 and 0.4 of 10: " << wide << " " << half);

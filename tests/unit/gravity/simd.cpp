@@ -13,7 +13,7 @@ using namespace keeler;
 
 namespace {
 
-// Sets KEELER_SIMD for one scope and puts back what was there.
+// Sets KEELER_SIMD for one scope and restores its value.
 class Environment {
 public:
   explicit Environment(const char* value) {

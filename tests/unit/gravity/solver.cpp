@@ -1,4 +1,4 @@
-// What every solver behind the interface promises, each one checked the same way.
+// The guarantees of the solver interface, checked for every solver.
 #include <keeler/gravity/solver.hpp>
 
 #include "clumped_state.hpp"
@@ -30,7 +30,7 @@ std::vector<Vec3> solve(GravitySettings::Solver solver, const ClumpedState& stat
   return accelerations(*gravity, state.problem());
 }
 
-// The same state in another memory order; order[k] is where particle k of the new state stood.
+// Returns a state in another memory order; order[k] is the old index of particle k.
 ClumpedState reordered(const ClumpedState& state, const std::vector<std::size_t>& order) {
   ClumpedState other = state;
   for (std::size_t k = 0; k < order.size(); ++k) {
@@ -50,7 +50,7 @@ std::vector<std::size_t> shuffled(std::size_t count) {
 
 } // namespace
 
-TEST_CASE("solvers go by their names") {
+TEST_CASE("solvers have the names of the settings") {
   using enum GravitySettings::Solver;
   const std::vector<double> masses(1000, 1.0);
   for (const auto& [solver, name] :
@@ -131,13 +131,13 @@ TEST_CASE("offsets a whole box length apart are the same problem") {
   }
 }
 
-TEST_CASE("which image of a particle is handed in does not matter") {
+TEST_CASE("accelerations do not depend on which image of a particle is given") {
   const ClumpedState state = clumped_state(500, 16);
   ClumpedState moved = state;
   for (std::size_t k = 0; k < moved.positions.size(); ++k)
     moved.positions[k] +=
         state.box.displacement({static_cast<int>(k % 5) - 2, static_cast<int>(k % 3) - 1}, state.offset);
-  for (const auto solver : all_solvers) // the round trip costs a rounding of places up to 150 m
+  for (const auto solver : all_solvers) // the round trip rounds coordinates up to 150 m
     CHECK(rms_error(solve(solver, moved), solve(solver, state)) < 1e-12);
 }
 
@@ -155,7 +155,7 @@ TEST_CASE("crossing the edge of the cell changes forces by no more than the fit 
       if (k != crosser)
         others = std::max(others, (after[k] - before[k]).norm());
     MESSAGE("jump / G Sigma: " << (after[crosser] - before[crosser]).norm() / sheet);
-    // the tree groups other particles when one changes its side
+    // the tree's groups change when a particle changes sides
     const double bound = solver == GravitySettings::Solver::direct ? 1e-3 : 0.05;
     CHECK((after[crosser] - before[crosser]).norm() < bound * sheet);
     CHECK(others < bound * sheet);

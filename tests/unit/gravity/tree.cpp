@@ -40,7 +40,7 @@ TEST_CASE("the tree's error in a clumped state is what its opening angle promise
   }
 }
 
-TEST_CASE("the tree keeps the momentum") {
+TEST_CASE("the tree conserves momentum") {
   const ClumpedState state = clumped_state(4000, 1);
   const std::vector<Vec3> a = by_tree(state, 0.7);
   Vec3 sum = Vec3::Zero();
@@ -49,7 +49,7 @@ TEST_CASE("the tree keeps the momentum") {
     sum += state.masses[k] * a[k];
     whole += state.masses[k] * a[k].norm();
   }
-  CHECK(sum.norm() < 1e-13 * whole); // the mean is taken out; rounding of 4000 terms
+  CHECK(sum.norm() < 1e-13 * whole); // the mean is subtracted; rounding of 4000 terms
 }
 
 TEST_CASE("with more rings and at other offsets the tree still follows the direct sum") {
@@ -84,8 +84,8 @@ TEST_CASE("touching spheres attract by Newton's law, wherever they are and whate
     }
 }
 
-TEST_CASE("two grains touch, far from the middle of their group, as they would alone") {
-  // The box of the group is kept wide by two lonely particles; the grains stand 100 m from its centre.
+TEST_CASE("two touching grains far from the middle of their group attract each other as if alone") {
+  // Two distant particles make the group's box wide; the grains are 100 m from its centre.
   ClumpedState state;
   state.box = {9000.0, 8000.0, 1.5, 0.0};
   state.positions = {Vec3(-100.0, -100.0, 0.0), Vec3(100.0, 100.0, 0.0), Vec3(90.1, 50.3, 1.7),
@@ -100,21 +100,21 @@ TEST_CASE("two grains touch, far from the middle of their group, as they would a
 }
 
 TEST_CASE("an angle of any size never opens a cell onto itself") {
-  // With a huge angle only the rule on overlapping boxes forbids taking the own cell as a whole.
+  // With a huge angle only the rule on overlapping boxes prevents a group from taking its own cell as a whole.
   const ClumpedState state = clumped_state(300, 8);
   for (const Vec3& a : by_tree(state, 1e9))
     CHECK(a.allFinite());
   CHECK(rms_error(by_tree(state, 1e9), by_direct(state)) < 0.5);
 }
 
-TEST_CASE("a particle far from all others feels them as they are") {
+TEST_CASE("a particle far from all others feels their exact field") {
   ClumpedState state = clumped_state(1000, 9);
   state.positions[17].z() = 5000.0; // cells of at most 80 m: the octupole term is below (80/5000)³ = 4e-6
   const std::vector<Vec3> exact = by_direct(state), a = by_tree(state, 0.7);
   double scale = 0.0;
   for (const Vec3& v : exact)
     scale += v.norm() / 1000.0;
-  // all share the correction that keeps the momentum: some 3e-4 of what the others feel
+  // all get the correction that conserves momentum: some 3e-4 of the others' accelerations
   CHECK((a[17] - exact[17]).norm() < 4e-6 * exact[17].norm() + 5e-4 * scale);
 }
 
@@ -132,7 +132,7 @@ TEST_CASE("a particle alone feels nothing: its own images cancel") {
   }
 }
 
-TEST_CASE("particles at one place neither hang the tree nor give anything but numbers") {
+TEST_CASE("particles at equal positions end the tree's splitting and give finite accelerations") {
   ClumpedState state = clumped_state(200, 3);
   for (std::size_t k = 0; k < 150; ++k)
     state.positions[k] = state.positions[150] + Vec3(k % 3 == 1 ? 1e-14 : 0.0, k % 3 == 2 ? 1e-120 : 0.0, 0.0);

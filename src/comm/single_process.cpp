@@ -1,13 +1,14 @@
-// Ranks of a build without KEELER_MPI: there is one, and it has nobody to tell anything.
+// Single-process build (no KEELER_MPI): every collective is a no-op.
 #include <keeler/comm/communicator.hpp>
 
+#include <cassert>
 #include <cstdlib>
 #include <string>
 
 namespace keeler {
 namespace {
 
-// How many the launchers of MPI say that they have started.
+// True if the environment of an MPI launcher says that it has started several processes.
 bool one_of_several() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"})
     if (const char* const size = std::getenv(name); size && std::atoi(size) > 1)
@@ -19,23 +20,25 @@ bool one_of_several() {
 
 Communicator Communicator::launched() {
   if (one_of_several())
-    throw UsageError(
-        "this Keeler was built without ranks, and a launcher of MPI has started several of it, which would "
-        "all do the same; start one, or build with -DKEELER_MPI=ON");
+    throw UsageError("this build of Keeler has no MPI, but an MPI launcher has started several processes of it, which "
+                     "would all do the same work; start one process, or build with -DKEELER_MPI=ON");
   return {};
 }
 
 Parcels Communicator::exchange(Parcels parcels) const {
+  assert(parcels.size() == size_);
   return parcels;
 }
-void Communicator::exchange(const std::vector<std::span<const std::byte>>&,
-                            const std::function<std::byte*(std::size_t, std::size_t)>&) const {}
+void Communicator::exchange([[maybe_unused]] const std::vector<std::span<const std::byte>>& sent,
+                            const std::function<std::byte*(std::size_t, std::size_t)>&) const {
+  assert(sent.size() == size_);
+}
 std::vector<std::byte> Communicator::gather(std::vector<std::byte> bytes) const {
   return bytes;
 }
 void Communicator::sum(std::span<std::uint64_t>) const {}
 void Communicator::merge(std::initializer_list<ExactSum*>) const {}
-double Communicator::largest(double number) const {
+double Communicator::max(double number) const {
   return number;
 }
 void Communicator::broadcast(std::span<std::byte>) const {}
@@ -52,7 +55,7 @@ const ExchangeCosts& exchange_costs() {
 }
 void finish_ranks() {}
 void fail_ranks(ExitCode) {}
-bool another_rank_speaks() {
+bool another_rank_reports() {
   return false;
 }
 
