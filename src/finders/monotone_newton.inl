@@ -80,7 +80,7 @@ struct Bounds {
   Reals span;
   Reals contact;         // gap_error at contact: a smaller |f| is contact
   Reals gap, slope;      // errors of f and f′ as evaluated
-  Reals min_curvature; // lower bound on f″
+  Reals min_curvature;   // lower bound on f″
   Reals third;           // bound on |f‴|
   Reals curvature_error; // error of f″ as evaluated
   Reals rise;            // bound on the decrease of f′ per time, backwards
