@@ -94,9 +94,9 @@ inline HalfFields load_half(const Line* lines) {
 }
 
 inline void store_lines(Line* lines, const Words& x, const Words& y, const Singles& z, const Singles& u,
-                        const Singles& v, const Singles& w, const Singles& size, const Words& place) {
+                        const Singles& v, const Singles& w, const Singles& size, const Words& tag) {
   __m128 first[4] = {reinterpret_cast<__m128>(x), reinterpret_cast<__m128>(y), z, u},
-         second[4] = {v, w, size, reinterpret_cast<__m128>(place)};
+         second[4] = {v, w, size, reinterpret_cast<__m128>(tag)};
   _MM_TRANSPOSE4_PS(first[0], first[1], first[2], first[3]);
   _MM_TRANSPOSE4_PS(second[0], second[1], second[2], second[3]);
   for (int k = 0; k < 4; ++k) {

@@ -119,9 +119,9 @@ inline HalfFields load_half(const Line* lines) {
 }
 
 inline void store_lines(Line* lines, const Words& x, const Words& y, const Singles& z, const Singles& u,
-                        const Singles& v, const Singles& w, const Singles& size, const Words& place) {
-  __m256 r[8] = {reinterpret_cast<__m256>(x),    reinterpret_cast<__m256>(y), z, u, v, w, size,
-                 reinterpret_cast<__m256>(place)};
+                        const Singles& v, const Singles& w, const Singles& size, const Words& tag) {
+  __m256 r[8] = {reinterpret_cast<__m256>(x),  reinterpret_cast<__m256>(y), z, u, v, w, size,
+                 reinterpret_cast<__m256>(tag)};
   transpose(r);
   for (int k = 0; k < 8; ++k)
     _mm256_store_ps(reinterpret_cast<float*>(lines + k), r[k]);

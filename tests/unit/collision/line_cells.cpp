@@ -36,7 +36,7 @@ struct Sorted {
     const double largest = seed % 2 ? 1.0 : 40.0;
     for (std::size_t k = 0; k < count; ++k) {
       lines.push_back(anywhere(std::min(std::pow(random.uniform(), -0.7), largest) / largest));
-      lines.back().place = static_cast<std::uint32_t>(k);
+      lines.back().tag = static_cast<std::uint32_t>(k);
     }
     cells.build(lines, box, box.size_y * (random.uniform() - 0.5), half, 1.0 / largest);
   }
@@ -77,9 +77,9 @@ struct Sorted {
   }
   std::vector<std::uint32_t> by_cells(const Line& line, const LineSpan& when) {
     std::vector<std::uint32_t> found;
-    found.resize(cells.near(line, when, found, tested));
+    found.resize(cells.find_near(line, when, found, tested));
     for (std::uint32_t& slot : found)
-      slot = cells.place(slot);
+      slot = cells.particle(slot);
     std::sort(found.begin(), found.end());
     return found;
   }
@@ -90,7 +90,7 @@ struct Sorted {
     for (std::size_t begin = 0; begin < cells.size(); begin += block)
       tested += cells.sweep_pairs(begin, std::min(begin + block, cells.size()), span(), buffer,
                                   [&](std::size_t i, std::size_t j) {
-                                    found.push_back(std::minmax<std::size_t>(cells.place(i), cells.place(j)));
+                                    found.push_back(std::minmax<std::size_t>(cells.particle(i), cells.particle(j)));
                                   });
     std::sort(found.begin(), found.end());
     return found;
@@ -152,7 +152,7 @@ TEST_CASE("whoever has a new line is found where it is, slow or fast, near its o
       }
       if (!sorted.cells.one_image(line))
         continue;
-      line.place = static_cast<std::uint32_t>(place);
+      line.tag = static_cast<std::uint32_t>(place);
       sorted.cells.replace(place, line);
       sorted.lines[place] = line;
       slow += std::fabs(line.u) < 0.1 / sorted.half;
@@ -160,7 +160,7 @@ TEST_CASE("whoever has a new line is found where it is, slow or fast, near its o
     for (const Line& line : sorted.lines)
       for (const LineSpan& when : {sorted.span(), sorted.rest()}) {
         const std::vector<std::uint32_t> expected = sorted.plainly(line, when);
-        CAPTURE(line.place);
+        CAPTURE(line.tag);
         CHECK((sorted.by_cells(line, when) == expected));
         found += expected.size();
       }

@@ -105,9 +105,9 @@ struct ListedPatch {
   void hit(std::size_t i, double time, double speed) {
     change_velocity(i, time, random_velocity(speed));
     if (!lists.changed(i, time))
-      lists.list_anew(i);
+      lists.rebuild_list(i);
     if (lists.reaches_far())
-      lists.make_for_step();
+      lists.rebuild_for_step();
   }
 
   // Calls visit(image) for those of a pair that may touch from then on, by the exact test.
@@ -228,7 +228,7 @@ inline void hit_some(ListedPatch& patch, Seen& seen) {
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
   std::reverse(touched.begin(), touched.end()); // in any order
   CHECK(mutual(patch.lists, count));
-  patch.lists.touched(touched);
+  patch.lists.mark_dirty(touched);
 }
 
 inline void kick_all(ListedPatch& patch) {

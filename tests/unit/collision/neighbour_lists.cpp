@@ -42,8 +42,8 @@ TEST_CASE("at every step, and after every hit, the lists visit whoever may touch
       CAPTURE(seed);
       ListedPatch patch(settings[s], seed);
       drift(patch, 48, seen);
-      built += patch.lists.built;
-      anew += patch.lists.listed_anew;
+      built += patch.lists.counts().rebuilds;
+      anew += patch.lists.counts().renewed;
     }
   MESSAGE(seen.pairs << " pairs at begins (" << seen.more << " not exactly) and " << seen.partners << " partners in "
                      << seen.steps << " steps; " << built << " times built, " << anew << " listed anew");
@@ -121,8 +121,8 @@ TEST_CASE("who is carried off, grows, changes places, comes or goes between step
       }
       patch.undisturbed = false;
     }
-    built += patch.lists.built;
-    anew += patch.lists.listed_anew;
+    built += patch.lists.counts().rebuilds;
+    anew += patch.lists.counts().renewed;
   }
   MESSAGE(seen.steps << " steps, " << built << " times built, " << anew << " listed anew");
   CHECK(seen.pairs > 10000);
@@ -136,13 +136,13 @@ TEST_CASE("a hit that changes nothing lists nobody anew, at an edge of the box n
   for (int step = 0; step < 40; ++step) {
     drift(patch, 1, seen);
     REQUIRE(patch.begin());
-    const std::uint64_t before = patch.lists.listed_anew;
+    const std::uint64_t before = patch.lists.counts().renewed;
     for (std::size_t i = 0; i < patch.particles.size(); ++i)
       patch.hit(i, patch.centred(patch.setting.step), 0.0);
-    CHECK(patch.lists.listed_anew == before);
+    CHECK(patch.lists.counts().renewed == before);
     std::vector<std::uint32_t> touched(patch.particles.size());
     std::iota(touched.begin(), touched.end(), 0u);
-    patch.lists.touched(touched);
+    patch.lists.mark_dirty(touched);
     patch.move_on();
   }
 }
@@ -156,14 +156,14 @@ TEST_CASE("when particles go, so does what was known of their next steps") {
     REQUIRE(patch.begin());
     const std::uint32_t last[] = {199};
     patch.hit(last[0], 0.0, 50.0); // leaves its slack some steps later
-    patch.lists.touched(last);
+    patch.lists.mark_dirty(last);
     patch.move_on();
     patch.particles.bodies.resize(100);
     patch.particles.ids.resize(100);
     patch.undisturbed = false;
-    const std::uint64_t before = patch.lists.listed_anew;
+    const std::uint64_t before = patch.lists.counts().renewed;
     drift(patch, 3, seen);
-    CHECK(patch.lists.listed_anew == before);
+    CHECK(patch.lists.counts().renewed == before);
   }
 }
 
@@ -197,8 +197,8 @@ TEST_CASE("thousands of particles have the same lists and pairs for any number o
           kick_all(*patch);
       }
     }
-    CHECK(one.lists.built == three.lists.built);
-    CHECK(one.lists.listed_anew == three.lists.listed_anew);
+    CHECK(one.lists.counts().rebuilds == three.lists.counts().rebuilds);
+    CHECK(one.lists.counts().renewed == three.lists.counts().renewed);
   }
   set_threads(before);
   CHECK(pairs > 20000);
@@ -224,7 +224,7 @@ TEST_CASE("when a hit makes somebody so fast that it may meet others through sev
   CHECK(partners > 20);
   CHECK(through_several > 0);
   const std::uint32_t touched[] = {7};
-  patch.lists.touched(touched);
+  patch.lists.mark_dirty(touched);
   patch.move_on();
   CHECK_FALSE(patch.begin()); // nor do the lists serve in the next step
   patch.change_velocity(7, -patch.half(), -0.9999 * patch.state_velocity(7));
@@ -238,9 +238,9 @@ TEST_CASE("when a hit makes somebody too fast for the life of the lists, all are
   Seen seen;
   drift(patch, 3, seen);
   REQUIRE(patch.begin());
-  const std::uint64_t built = patch.lists.built;
+  const std::uint64_t built = patch.lists.counts().rebuilds;
   patch.hit(7, 0.0, 0.1 * patch.box.size_x / patch.setting.step);
-  CHECK(patch.lists.built == built + 1);
+  CHECK(patch.lists.counts().rebuilds == built + 1);
   REQUIRE_FALSE(patch.lists.reaches_far());
   std::size_t partners = 0;
   for (std::size_t i = 0; i < patch.particles.size(); ++i) {
@@ -250,10 +250,10 @@ TEST_CASE("when a hit makes somebody too fast for the life of the lists, all are
   }
   CHECK(partners > 20);
   const std::uint32_t touched[] = {7};
-  patch.lists.touched(touched);
+  patch.lists.mark_dirty(touched);
   patch.move_on();
   REQUIRE(patch.begin()); // with a shorter life
-  CHECK(patch.lists.built == built + 2);
+  CHECK(patch.lists.counts().rebuilds == built + 2);
   drift(patch, 10, seen);
 }
 
@@ -289,7 +289,7 @@ TEST_CASE("of nobody, and of one particle, there are no pairs") {
       CHECK(patch.visited(patch.lists).empty());
       for (std::size_t i = 0; i < count; ++i)
         CHECK(patch.visited_partners(i, 0.0).empty());
-      patch.lists.touched({});
+      patch.lists.mark_dirty({});
       patch.move_on();
     }
   }
