@@ -147,39 +147,57 @@ void LineCells::sort(std::span<const Line> lines, std::size_t cells) {
     level.begin = starts_[level.first_cell];
     level.end = starts_[level.first_cell + static_cast<std::size_t>(level.columns * level.rows)];
   }
-  assert(sorted());
+  assert(sound());
 }
 
-// True if each line has one slot, in the range of its cell.
-bool LineCells::sorted() const {
-  for (std::size_t k = 0; k < slots_.size(); ++k)
-    if (lines_[slots_[k]].tag != k || slots_[k] < starts_[cells_[k]] || slots_[k] >= starts_[cells_[k] + 1])
+bool LineCells::sound() const {
+  for (std::size_t k = 0; k < slots_.size(); ++k) {
+    const Line& own = line(k);
+    if (own.tag != k || slots_[k] < starts_[cells_[k]] || slots_[k] >= starts_[cells_[k] + 1])
       return false;
+    const Level& level = levels_[level_of_cell(cells_[k])];
+    const Distance stray = distance(own, cells_[k], level);
+    const double rounding_x = 1.0 / per_metre_x_, rounding_y = 1.0 / per_metre_y_;
+    if (stray.x > level.stray_x + rounding_x || stray.y > level.stray_y + rounding_y || reach_x(own) > level.reach_x ||
+        reach_y(own) > level.reach_y)
+      return false;
+  }
   return true;
 }
 
-void LineCells::replace(std::size_t particle, const Line& line) {
-  assert(particle < slots_.size());
-  auto level = levels_.begin();
-  while (level + 1 != levels_.end() && cells_[particle] >= (level + 1)->first_cell)
+std::size_t LineCells::level_of_cell(std::size_t cell) const {
+  std::size_t level = 0;
+  while (level + 1 < levels_.size() && cell >= levels_[level + 1].first_cell)
     ++level;
-  const auto rows = static_cast<std::size_t>(level->rows);
-  const std::size_t cell = cells_[particle] - level->first_cell;
-  const auto from_middle = [](std::int32_t value, std::size_t number, std::int64_t cells) {
+  return level;
+}
+
+// Returns how far a line's position is outside a cell of the level; the box is periodic.
+LineCells::Distance LineCells::distance(const Line& line, std::size_t cell, const Level& level) const {
+  const auto rows = static_cast<std::size_t>(level.rows);
+  const std::size_t number = cell - level.first_cell;
+  const auto from_middle = [](std::int32_t value, std::size_t index, std::int64_t cells) {
     const double size = full_turn / static_cast<double>(cells);
-    return static_cast<double>(value) + 0.5 * full_turn - (static_cast<double>(number) + 0.5) * size;
+    return static_cast<double>(value) + 0.5 * full_turn - (static_cast<double>(index) + 0.5) * size;
   };
   const auto beyond = [](double off, std::int64_t cells) {
     const double nearest = off - full_turn * std::rint(off / full_turn);
     return std::max(0.0, std::fabs(nearest) - 0.5 * full_turn / static_cast<double>(cells));
   };
-  const double off_x = from_middle(line.x, cell / rows, level->columns);
+  const double off_x = from_middle(line.x, number / rows, level.columns);
   const double outward = -std::rint(off_x / full_turn);
-  const double off_y = from_middle(line.y, cell % rows, level->rows) - outward * frame_.offset_y;
-  level->stray_x = std::max(level->stray_x, beyond(off_x, level->columns) / per_metre_x_);
-  level->stray_y = std::max(level->stray_y, beyond(off_y, level->rows) / per_metre_y_);
-  level->reach_x = std::max(level->reach_x, reach_x(line));
-  level->reach_y = std::max(level->reach_y, reach_y(line));
+  const double off_y = from_middle(line.y, number % rows, level.rows) - outward * frame_.offset_y;
+  return {beyond(off_x, level.columns) / per_metre_x_, beyond(off_y, level.rows) / per_metre_y_};
+}
+
+void LineCells::replace(std::size_t particle, const Line& line) {
+  assert(particle < slots_.size());
+  Level& level = levels_[level_of_cell(cells_[particle])];
+  const Distance stray = distance(line, cells_[particle], level);
+  level.stray_x = std::max(level.stray_x, stray.x);
+  level.stray_y = std::max(level.stray_y, stray.y);
+  level.reach_x = std::max(level.reach_x, reach_x(line));
+  level.reach_y = std::max(level.reach_y, reach_y(line));
   lines_[slots_[particle]] = line;
   lines_[slots_[particle]].tag = static_cast<std::uint32_t>(particle);
 }

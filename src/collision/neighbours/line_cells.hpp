@@ -59,6 +59,9 @@ public:
   void release() { *this = {}; }
   std::size_t bytes() const;
 
+  /// True if the invariants hold.
+  bool sound() const;
+
 private:
   struct Level {
     std::uint64_t count = 0;
@@ -75,6 +78,9 @@ private:
     double half_x, half_y; // m
     double reach_x;        // of the lines in all the time that the cells are valid
   };
+  struct Distance {
+    double x, y; // m
+  };
   static constexpr int max_levels = 32;
   struct Measured;
 
@@ -83,7 +89,8 @@ private:
   void sort(std::span<const Line> lines, std::size_t cells);
   int level_of(const Line& line) const;
   std::size_t cell_of(const Line& line, const Level& level) const;
-  bool sorted() const;
+  std::size_t level_of_cell(std::size_t cell) const;
+  Distance distance(const Line& line, std::size_t cell, const Level& level) const;
   double reach_x(const Line& line) const { return line.size + half_ * std::fabs(line.u); }
   double reach_y(const Line& line) const { return line.size + half_ * std::fabs(line.v); }
   Rectangle rectangle(std::size_t first, std::size_t last) const;

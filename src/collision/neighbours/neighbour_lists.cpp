@@ -182,8 +182,8 @@ bool NeighbourLists::sound() const {
   if (!valid_ || lists_.size() > max_checked)
     return true;
   const StepInterval &lists = references_.lifetime(), &interval = interval_.steps();
-  return 0 <= lists.age && lists.age - interval.age + interval.length <= lists.length && lists_.sound() &&
-         pairs_.sound(lists_.size()) && interval_.sound(lists_.size());
+  return lists.age - interval.age + interval.length <= lists.length && references_.sound(lists_.size()) &&
+         lists_.sound() && pairs_.sound(lists_.size()) && interval_.sound(lists_.size());
 }
 
 } // namespace keeler

@@ -82,4 +82,16 @@ std::span<const std::uint32_t> ReferencePaths::find_neighbours(const SearchConte
   return std::span(buffer).first(count);
 }
 
+bool ReferencePaths::sound(std::size_t particles) const {
+  if (lifetime_.age < 0 || lines_.size() != particles + kernel_padding || cells_.size() != particles || !cells_.sound())
+    return false;
+  for (std::size_t i = 0; i < particles; ++i) {
+    const Line &line = lines_[i], &sorted = cells_.line(i);
+    if (sorted.x != line.x || sorted.y != line.y || sorted.z != line.z || sorted.u != line.u || sorted.v != line.v ||
+        sorted.w != line.w || !(sorted.size >= line.size))
+      return false;
+  }
+  return true;
+}
+
 } // namespace keeler

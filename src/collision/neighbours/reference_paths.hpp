@@ -47,6 +47,8 @@ public:
 
   void prefetch(std::size_t i) const { __builtin_prefetch(&lines_[i]); }
   void release() { cells_.release(); }
+  /// True if the cells hold these lines, with rounding, of so many particles.
+  bool sound(std::size_t particles) const;
   std::size_t bytes() const { return cells_.bytes() + lines_.capacity() * sizeof(Line); }
 
 private:

@@ -60,13 +60,13 @@ TEST_CASE("a pruning interval ends with the lists, before a disturbance is due, 
   policy.begin_step(true);
   CHECK(policy.pruning_interval(0, 1000, 8, fresh, 1e-3) == 8);
   CHECK(policy.pruning_interval(0, 1000, 8, {47, 50}, 1e-3) == 3);
-  CHECK(policy.pruning_interval(0, 1000, 8, fresh, 0.05) == 4);  // 0.2 rad
-  CHECK(policy.pruning_interval(0, 1000, 8, fresh, 0.5) == 1);   //
+  CHECK(policy.pruning_interval(0, 1000, 8, fresh, 0.05) == 4);   // 0.2 rad
+  CHECK(policy.pruning_interval(0, 1000, 8, fresh, 0.5) == 1);    //
   CHECK(policy.pruning_interval(200, 1000, 8, fresh, 1e-3) == 3); // 25 a step, of 100
   CHECK(policy.pruning_interval(900, 1000, 1, fresh, 1e-3) == 1);
   for (int kick = 0; kick < 3; ++kick) { // a disturbance every five steps
     policy.begin_step(false);
-    CHECK(policy.pruning_interval(0, 1000, 8, fresh, 1e-3) == (kick ? 5 : 8));
+    CHECK(policy.pruning_interval(0, 1000, 8, fresh, 1e-3) == (kick ? 5 : 2));
     for (int step = 0; step < 4; ++step)
       policy.begin_step(true);
   }

@@ -101,13 +101,13 @@ TEST_CASE("an asymmetric list is not sound") {
 }
 
 TEST_CASE("lists that have been replaced over and over are outgrown until they are laid out again") {
-  Matrix matrix(1, 40);
+  Matrix matrix(1, 150);
   CHECK_FALSE(matrix.lists.outgrown());
   for (int k = 0; k < 2000 && !matrix.lists.outgrown(); ++k)
-    matrix.replace(static_cast<std::uint32_t>(k % 40), 0.02 * (k % 50));
+    matrix.replace(static_cast<std::uint32_t>(k % 150), 0.02 * (k % 50));
   CHECK(matrix.lists.outgrown());
   CHECK(matrix.lists.sound());
-  matrix.lists.lay_out(std::vector<std::uint32_t>(40), [](std::size_t k) { return static_cast<std::uint32_t>(k); });
+  matrix.lists.lay_out(std::vector<std::uint32_t>(150), [](std::size_t k) { return static_cast<std::uint32_t>(k); });
   CHECK_FALSE(matrix.lists.outgrown());
 }
 
