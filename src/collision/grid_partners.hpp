@@ -24,7 +24,7 @@ public:
     assert(step > 0.0);
   }
 
-  /// Begins a step: bins the particles. `every_candidate`: visits all pairs that the cells hold, also those that cannot
+  /// Begins a step: bins the particles. `every_candidate`: visits all pairs that the cells hold, even if they cannot
   /// touch. Throws InvariantError if elements are not finite, or as require_reach(). Precondition: the particles stay
   /// where they are in memory until the step ends.
   void begin(const Particles& particles, const ShearingBox& box, double offset, bool every_candidate);

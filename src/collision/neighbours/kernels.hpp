@@ -23,7 +23,7 @@ using LineSweep = std::size_t (*)(const Line& line, const Line* lines, const Lin
 using LineGroupSweep = std::size_t (*)(const Line* lines, std::size_t first, std::size_t last, const LineFrame& frame,
                                        const LineSpan& span, std::size_t begin, std::size_t end, LinePair* found);
 
-/// Filters pairs[0, count): keeps, in order, the pairs whose lines may touch during `span`. Returns the number kept.
+/// Filters pairs[0, count): keeps, in order, the pairs of lines that may touch during `span`. Returns the number kept.
 using LinePairFilter = std::size_t (*)(const Line* lines, const LineFrame& frame, const LineSpan& span,
                                        const LinePair* pairs, std::size_t count, LinePair* kept);
 
@@ -41,9 +41,9 @@ struct FollowFrame {
 };
 
 /// Makes the lines of the particles [begin, end) that are tangent to their paths in the middle of the span. Writes to
-/// `escaped` the particles that may leave their reference path by more than the skin within the span, or whose elements
-/// are not finite, and returns their number. `bodies` holds eight doubles per particle (Body); `size` of a reference
-/// path is radius + skin + curvature.
+/// `escaped` the particles that may leave their reference path by more than the skin within the span, or have elements
+/// that are not finite, and returns their number. `bodies` holds eight doubles per particle (Body); `size` of a
+/// reference path is radius + skin + curvature.
 using LineFollow = std::size_t (*)(const double* bodies, const Line* references, const FollowFrame& frame,
                                    std::size_t begin, std::size_t end, Line* lines, std::uint32_t* escaped);
 

@@ -23,7 +23,7 @@ inline Integers minus(const Integers& a, const Integers& b) {
   return (Integers)((Unsigned)a - (Unsigned)b);
 }
 
-// Returns a bit for each lane whose pair of lines may touch.
+// Returns one bit per lane: set if its two lines may touch.
 inline unsigned may_touch(const Fields& line, const Fields& other, const LineFrame& frame, const LineSpan& span) {
   const Integers offset = Integers{} + frame.offset_y;
   const Integers across = minus(other.x, line.x);

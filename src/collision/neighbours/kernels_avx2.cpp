@@ -1,4 +1,4 @@
-// Lines for AVX2: eight lanes. Compiled with -mavx2.
+// The kernels for AVX2, with eight lanes. Compiled with -mavx2.
 #include "kernels.hpp"
 
 #include <immintrin.h>
@@ -18,7 +18,7 @@ struct Fields {
   Floats z, u, v, w, size;
 };
 
-// Eight lines of eight numbers, transposed.
+// Loads eight lines of eight numbers and transposes them.
 template<class LineAt> inline Fields load(const LineAt& line_at) {
   __m256 r[8], t[8];
   for (std::size_t k = 0; k < 8; ++k)
@@ -56,7 +56,7 @@ inline unsigned nonzero(const Longs& mask) {
   return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(mask)));
 }
 
-// Four rows of eight numbers, transposed by halves.
+// Loads four rows of eight numbers and transposes them by halves.
 inline void load_bodies(const double* rows, Doubles fields[8]) {
   for (int half = 0; half < 8; half += 4) {
     __m256d r[4];

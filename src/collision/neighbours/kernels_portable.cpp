@@ -1,4 +1,4 @@
-// Lines for any processor: four lanes.
+// The kernels for any processor, with four lanes.
 #include "kernels.hpp"
 
 #define KEELER_KERNEL_SPACE kernels_portable

@@ -18,8 +18,8 @@ inline constexpr double full_turn = 4294967296.0; // 2³²
 struct alignas(32) Line {
   std::int32_t x = 0, y = 0;
   float z = 0.0f, u = 0.0f, v = 0.0f, w = 0.0f, size = 0.0f;
-  /// In cells: the particle's index. In a pruning interval: not 0 if x, y is another image than the particle's
-  /// position.
+  /// The index of the particle, in cells; in a pruning interval, 1 if x, y is not the particle's position but another
+  /// image of it.
   std::uint32_t tag = 0;
 };
 

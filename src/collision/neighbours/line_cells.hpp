@@ -24,8 +24,8 @@ namespace keeler {
 
 class LineCells {
 public:
-  /// Sorts lines into cells. They are those of the instant when the box has the shear offset `offset` (m), and valid
-  /// for `half` (rad) before and after. `min_reach` (m): reach of the smallest particle at rest, where levels begin.
+  /// Sorts lines into cells. Their instant is when the box has the shear offset `offset` (m), and they are valid for
+  /// `half` (rad) before and after. `min_reach` (m): reach of the smallest particle at rest, where levels begin.
   /// Precondition: lines[k].tag == k.
   void build(std::span<const Line> lines, const ShearingBox& box, double offset, double half, double min_reach);
 
@@ -104,7 +104,7 @@ private:
     return static_cast<std::uint32_t>(line.x) + (std::uint32_t{1} << 31);
   }
   static std::uint32_t along(const Line& line) { return static_cast<std::uint32_t>(line.y) + (std::uint32_t{1} << 31); }
-  // Returns where lines are whose images `boxes` boxes outward are at y.
+  // Returns the position along the box of lines that have their images `boxes` boxes outward at y.
   std::uint32_t image_y(std::uint32_t y, int boxes) const {
     return y + static_cast<std::uint32_t>(boxes) * static_cast<std::uint32_t>(frame_.offset_y);
   }

@@ -25,7 +25,7 @@ struct ListedPairs::Parts {
   std::size_t first_slot(std::size_t part) const { return std::min(slots, first_block(part) * slots_per_block); }
 
   std::size_t slots, blocks, count;
-  std::vector<std::vector<LinePair>> crossing; // pairs whose second slot is in another part
+  std::vector<std::vector<LinePair>> crossing; // pairs with the second slot in another part
   std::vector<std::uint32_t> entries;          // of each slot
 };
 

@@ -1,5 +1,5 @@
-// Every pair of the neighbour lists once: the pairs found when all lists were rebuilt, without the pairs of particles
-// whose list was rebuilt by itself since; these particles' whole lists stand in for them.
+// The pairs of the neighbour lists, each once: the pairs found when all lists were rebuilt; but particles with a list
+// rebuilt by itself since then contribute their whole lists instead.
 #pragma once
 
 #include "line_cells.hpp"
@@ -21,7 +21,7 @@ inline std::size_t pair_count(const PaddedPairs& pairs) {
 /// index. So each pair occurs once when all blocks of the marked particles are visited.
 PaddedPairs pairs_of_lists(const VerletList& list, std::span<const std::uint32_t> particles, const MarkedSet& marked);
 
-/// Blocks of at most that many marked particles, whose whole lists are visited together.
+/// Number of marked particles in a block; the whole lists of a block are visited together.
 inline constexpr std::size_t marked_block = 64;
 inline std::size_t marked_blocks(const MarkedSet& marked) {
   return (marked.size() + marked_block - 1) / marked_block;

@@ -15,8 +15,8 @@ bool NeighbourLists::begin(const Particles& particles, const ShearingBox& box, d
   references_.begin_step();
   interval_.begin_step();
   policy_.begin_step(undisturbed);
-  const bool lived = std::exchange(valid_, false); // until nothing can throw any more
-  const bool usable = lived && valid_for(particles, box, offset);
+  const bool were_valid = std::exchange(valid_, false); // until nothing can throw any more
+  const bool usable = were_valid && valid_for(particles, box, offset);
   last_box_ = box;
   last_offset_ = offset;
   step_.emplace(particles, frequencies_, box, offset, step_length_);
@@ -26,7 +26,7 @@ bool NeighbourLists::begin(const Particles& particles, const ShearingBox& box, d
     interval_.look_ahead(step());
     updated = undisturbed && !interval_.steps().over() ? update(interval_.escaped()) : begin_interval();
   }
-  valid_ = updated || rebuild(lived);
+  valid_ = updated || rebuild(were_valid);
   interval_.clear_escaped();
   if (!valid_)
     step_.reset();
@@ -44,8 +44,8 @@ bool NeighbourLists::valid_for(const Particles& particles, const ShearingBox& bo
 }
 
 // Rebuilds all lists, with a lifetime for which nearest images suffice. Returns false if there is none.
-bool NeighbourLists::rebuild(bool lived) {
-  int lifetime = policy_.choose_lifetime(lived, references_.lifetime(), step_length_);
+bool NeighbourLists::rebuild(bool were_valid) {
+  int lifetime = policy_.choose_lifetime(were_valid, references_.lifetime(), step_length_);
   while (!references_.rebuild(step(), lifetime, interval_.buffer()) && lifetime > 1)
     lifetime = policy_.halve_lifetime();
   return fill_lists();

@@ -1,15 +1,17 @@
-// Neighbour lists with a skin (Verlet 1967), kept over many steps and many hits: which pairs may touch in a step.
+// Neighbour lists with a skin (Verlet 1967), kept over many steps and many hits. They yield the pairs that may touch in
+// a step.
 //
-// Each thing lives as long as its object:
-//   run                ReferencePaths, VerletList and their memory; RebuildPolicy, which decides when to rebuild
-//   lists              the contents of these: when lists are rebuilt each particle gets a reference path, the straight
-//                      line of its path about the middle of the lists' lifetime, with a skin. Two particles are on each
-//                      other's list if their reference paths come within contact plus both skins in that time. A list
-//                      is valid as long as its particles stay within their skin, hit or kicked as they may be. A
-//                      particle that leaves its skin gets a new reference path and list. All lists are rebuilt when
-//                      they expire or when too many particles have left.
-//   pruning interval   PruningInterval: a few steps between disturbances, with the pruned pairs of the lists
+// When lists are rebuilt each particle gets a reference path: the straight line of its path about the middle of the
+// lists' lifetime, with a skin. Two particles are on each other's list if their reference paths come within contact
+// plus both skins in that time. A list is valid as long as its particles stay within their skin, hit or kicked as they
+// may be. A particle that leaves its skin gets a new reference path and list. All lists are rebuilt when they expire or
+// when too many particles have left.
+//
+// Data by lifetime:
+//   lists              ReferencePaths, VerletList, ListedPairs
+//   pruning interval   PruningInterval: lines and pruned pairs for a few steps between disturbances
 //   step               SearchContext, from begin() to mark_dirty()
+//   run                RebuildPolicy, which decides when lists and intervals end
 //
 // Invariant: a pair that is on no list cannot touch in the step, nor one that is not pruned and of which neither
 // particle is dirty, through any image, unless begin() returned false or reaches_far() holds.
@@ -59,7 +61,7 @@ public:
   bool begin(const Particles& particles, const ShearingBox& box, double offset, bool undisturbed);
 
   /// Sets whether pairs that straight lines in double precision prove apart are left out, so that the pairs visited do
-  /// not depend on the lists. From then on; true at first.
+  /// not depend on the lists. The default is true.
   void visit_exactly(bool exactly) { exactly_ = exactly; }
 
   /// Calls visit(i, j, image of j) for every pair that may touch in this step as long as no path changes. Blocks, of
@@ -67,7 +69,7 @@ public:
   template<class Visit> void visit_block(std::size_t block, const Visit& visit) const;
   std::size_t blocks() const { return interval_.pair_blocks() + marked_blocks(interval_.dirty()); }
 
-  /// Every particle that particle i may touch in the step.
+  /// Returns every particle that i may touch in the step.
   std::span<const std::uint32_t> list(std::size_t i) const { return lists_.list(i); }
   /// True if its list is long, as a large body's is.
   bool has_many(std::size_t i) const { return lists_.length(i) >= many; }
@@ -97,9 +99,9 @@ public:
   /// suffice for that either, reaches_far() holds on and only visit_everywhere() may be called.
   void rebuild_for_step();
 
-  /// The position of a particle's reference path across the box, as a fraction of it (2⁻³²).
+  /// Returns the position of a particle's reference path across the box, as a fraction of it (2⁻³²).
   std::uint32_t across(std::size_t i) const { return references_.across(i); }
-  /// Upper bound on that distance between two particles on each other's list.
+  /// Returns an upper bound on that distance between two particles on each other's list.
   std::uint64_t farthest_across() const { return references_.cells().farthest_across(); }
 
   Image nearest_image(const Body& a, const Body& b) const { return step().nearest_image(a, b); }
@@ -127,7 +129,7 @@ private:
   template<class Visit> void visit_pairs(const PaddedPairs& pairs, const Visit& visit) const;
 
   bool valid_for(const Particles& particles, const ShearingBox& box, double offset) const;
-  bool rebuild(bool lived);
+  bool rebuild(bool were_valid);
   bool fill_lists();
   bool begin_interval();
   bool update(std::span<const std::uint32_t> escaped);
@@ -143,7 +145,7 @@ private:
   VerletList lists_;
   ListedPairs pairs_;
   PruningInterval interval_;
-  bool valid_ = false;   // the lists, in the next step
+  bool valid_ = false;   // whether the next step may use the lists
   ShearingBox last_box_; // of the last step,
   double last_offset_ = 0.0;
 

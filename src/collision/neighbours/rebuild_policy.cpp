@@ -15,11 +15,11 @@ void RebuildPolicy::begin_step(bool undisturbed) {
   ++undisturbed_;
 }
 
-int RebuildPolicy::choose_lifetime(bool lived, const StepInterval& lists, double step) {
+int RebuildPolicy::choose_lifetime(bool valid, const StepInterval& lists, double step) {
   assert(step > 0.0);
   constexpr double max_time = 1.0; // rad: bounds and rounding are good for that long
   constexpr int max_steps = 64;
-  if (lived && lists.age > 0) {
+  if (valid && lists.age > 0) {
     const double cost = cost_ / lists.age;
     if (last_cost_ > 0.0 && cost > last_cost_)
       growth_ = growth_ > 1.0 ? 0.8 : 1.25;

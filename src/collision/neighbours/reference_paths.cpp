@@ -11,10 +11,10 @@ namespace {
 
 constexpr double skin_fraction = 0.4; // of the mean radius
 
-// Of all particles, in one pass.
+// Statistics of the radii, and the first particle with bad elements.
 struct RadiiTotal {
   double sum = 0.0, min = HUGE_VAL;
-  std::size_t not_finite = ~std::size_t{0}; // the first particle with such elements
+  std::size_t not_finite = ~std::size_t{0};
   void operator+=(const RadiiTotal& other) {
     sum += other.sum;
     min = std::min(min, other.min);

@@ -20,17 +20,17 @@ public:
   /// images suffice for all pairs. `buffer` is overwritten. Throws InvariantError if elements are not finite.
   bool rebuild(const SearchContext& step, int lifetime, std::vector<Line>& buffer);
 
-  /// The next step begins.
+  /// Begins the next step.
   void begin_step() { ++lifetime_.age; }
 
-  /// Gives particle i a reference path from its present path; `to_middle` is that of the rest of the lifetime.
-  /// Returns true if nearest images suffice for its pairs. Precondition: its elements are finite.
+  /// Gives particle i a reference path from its present path; `to_middle`: to_middle_of_rest(). Returns true if nearest
+  /// images suffice for its pairs. Precondition: its elements are finite.
   bool renew(const SearchContext& step, std::size_t i, const Rotation& to_middle);
   Rotation to_middle_of_rest(const SearchContext& step) const {
     return {step.frequencies, lifetime_.to_middle_of_rest(step.step)};
   }
 
-  /// Returns the neighbours of particle i in the rest of the lifetime, itself among them. They are in `buffer`. Adds to
+  /// Returns the neighbours of particle i in the rest of the lifetime, including i itself, in `buffer`. Adds to
   /// `tested` the number of lines tested.
   std::span<const std::uint32_t> find_neighbours(const SearchContext& step, std::size_t i,
                                                  std::vector<std::uint32_t>& buffer, std::uint64_t& tested) const;
@@ -40,14 +40,14 @@ public:
   const Line* lines() const { return lines_.data(); } ///< by particle; `size` is radius + skin + curvature
   const Line& line(std::size_t i) const { return lines_[i]; }
 
-  /// The position of a reference path across the box, as a fraction of it (2⁻³²).
+  /// Returns the position of a reference path across the box, as a fraction of it (2⁻³²).
   std::uint32_t across(std::size_t i) const {
     return static_cast<std::uint32_t>(lines_[i].x) + (std::uint32_t{1} << 31);
   }
 
   void prefetch(std::size_t i) const { __builtin_prefetch(&lines_[i]); }
   void release() { cells_.release(); }
-  /// True if the cells hold these lines, with rounding, of so many particles.
+  /// True if there are lines of so many particles, and the cells hold them with rounding.
   bool sound(std::size_t particles) const;
   std::size_t bytes() const { return cells_.bytes() + lines_.capacity() * sizeof(Line); }
 
@@ -56,7 +56,7 @@ private:
   double skin_ = 0.0; // m
   double mean_radius_ = 0.0, min_radius_ = 0.0;
   std::vector<Line> lines_;
-  LineCells cells_; // of the lines, their size with rounding
+  LineCells cells_; // hold the lines, with rounding in their size
 };
 
 } // namespace keeler

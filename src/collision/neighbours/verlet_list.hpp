@@ -1,4 +1,4 @@
-// The neighbour list of each particle (Verlet 1967), in one array, with room behind each list for more entries.
+// The neighbour lists of all particles (Verlet 1967) in one array, with room behind each list for more entries.
 //
 // Invariants: entries are symmetric, j on the list of i and i on the list of j, each once, i not on its own; no list
 // reaches into the room of another.
@@ -20,7 +20,8 @@ public:
   /// Throws InvariantError if they are too many. Precondition: particle is a permutation of [0, lengths.size()).
   template<class Particle> void lay_out(std::span<const std::uint32_t> lengths, const Particle& particle);
 
-  /// Appends an entry where lay_out() made room for it, not yet symmetric. Several threads may call it for different i.
+  /// Appends an entry to the list of i; the caller makes it symmetric. Several threads may call it for different i.
+  /// Precondition: lay_out() made room for it.
   void put(std::uint32_t i, std::uint32_t entry) {
     Range& range = ranges_[i];
     assert(range.count < range.room);
@@ -36,14 +37,14 @@ public:
     return {entries_.data() + ranges_[i].begin, ranges_[i].count};
   }
 
-  /// True if replaced lists have left so many holes that laying out all again is better.
+  /// True if replaced lists have left so many holes that a new layout is better.
   bool outgrown() const { return entries_.size() > 2 * entries_laid_out_ + 4096; }
 
   /// Brings what a search along the list of i needs into the cache, with lines[j] of its entries: stages 0, 1 and 2,
   /// some time apart.
   void prefetch(std::size_t i, int stage, const Line* lines) const;
 
-  /// Frees the entries. Precondition of any other call but size(): lay_out() follows.
+  /// Frees the entries. Precondition: of the other calls only lay_out() and size() follow.
   void release() { entries_ = {}; }
   std::size_t bytes() const { return ranges_.capacity() * sizeof(Range) + entries_.capacity() * sizeof(std::uint32_t); }
 

@@ -1,5 +1,5 @@
-// The cell list of straight lines against all lines tried with each other: the pairs that a life begins with, and what
-// a line finds by itself, before and after lines have been replaced.
+// The cell list of straight lines against the test of all pairs of lines: the pairs of a rebuild, and the search of a
+// single line, before and after lines have been replaced.
 #include "neighbours/line_cells.hpp"
 
 #include <keeler/core/random.hpp>
@@ -20,10 +20,10 @@ namespace {
 
 using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
-// Random lines in a box: of one size or many, in a wide box or in one so narrow that there are a few columns or rows.
+// Random lines of one size or many, in a wide box or in one so narrow that it has few columns or rows.
 struct Sorted {
   RandomStream random;
-  bool sheared; // in a long span, by fast lines across: what they meet there has moved along with the shear
+  bool sheared; // long span and lines fast across the box, where the shear moves their partners along
   double half;  // of the span, rad
   ShearingBox box;
   std::vector<Line> lines;
@@ -45,7 +45,7 @@ struct Sorted {
     return static_cast<std::size_t>(random.uniform() * static_cast<double>(count));
   }
 
-  // A few are fast.
+  // Returns a random line; a few are fast.
   Line anywhere(double size, double fast = 2.0) {
     const auto fraction = [&] {
       return static_cast<std::int32_t>(static_cast<std::uint32_t>(random.uniform() * 4294967296.0));
@@ -65,7 +65,7 @@ struct Sorted {
   LineSpan span() const { return {static_cast<float>(-half), static_cast<float>(half)}; }
   LineSpan rest() const { return {static_cast<float>(0.3 * half), static_cast<float>(half)}; }
 
-  // Places of all that one may touch, in order: one against all, and by the cells.
+  // Return the lines that `line` may touch, in order: by testing all, and by the cells.
   std::vector<std::uint32_t> plainly(const Line& line, const LineSpan& when) const {
     std::vector<Line> all = lines;
     all.resize(lines.size() + kernel_padding);
@@ -99,7 +99,7 @@ struct Sorted {
 
 } // namespace
 
-TEST_CASE("a life begins with the pairs that each line finds by itself, which are those of all tried with all") {
+TEST_CASE("the pairs of a rebuild are those that each line finds by itself and those of testing all pairs") {
   std::size_t pairs = 0, boxes = 0;
   std::uint64_t tested = 0, all = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
@@ -131,7 +131,7 @@ TEST_CASE("a life begins with the pairs that each line finds by itself, which ar
   CHECK(tested < all / 3);
 }
 
-TEST_CASE("whoever has a new line is found where it is, slow or fast, near its old place or not") {
+TEST_CASE("a replaced line is found where it is, slow or fast, near its old position or not") {
   std::size_t found = 0, boxes = 0, slow = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     Sorted sorted(seed, 500);
@@ -140,9 +140,9 @@ TEST_CASE("whoever has a new line is found where it is, slow or fast, near its o
     CAPTURE(seed);
     ++boxes;
     for (std::size_t change = 0; change < 1 + 40 * (seed % 4); ++change) {
-      const std::size_t place = sorted.below(change % 2 ? 20 : sorted.lines.size()); // some again and again
+      const std::size_t place = sorted.below(change % 2 ? 20 : sorted.lines.size()); // some repeatedly
       Line line = sorted.anywhere(sorted.lines[place].size * (0.5 + sorted.random.uniform()), 10.0);
-      if (seed % 8 == 1) { // in its old place, faster or larger
+      if (seed % 8 == 1) { // in its old position, faster or larger
         line.x = sorted.lines[place].x;
         line.y = sorted.lines[place].y;
       } else if (change % 4 > 0) { // close to where it was, or through an edge
@@ -165,13 +165,13 @@ TEST_CASE("whoever has a new line is found where it is, slow or fast, near its o
         found += expected.size();
       }
   }
-  MESSAGE(found << " found in " << boxes << " boxes; " << slow << " slow ones have new lines");
+  MESSAGE(found << " found in " << boxes << " boxes; " << slow << " slow lines replaced");
   CHECK(boxes > 30);
   CHECK(found > 50000);
   CHECK(slow > 1000);
 }
 
-TEST_CASE("a line that would reach around the box is told, be it there from the start or a new one") {
+TEST_CASE("a line that would reach around the box is reported, when cells are built and when it is new") {
   Sorted sorted(2);
   CHECK(sorted.cells.one_image());
   Line line = sorted.lines[0];
