@@ -261,7 +261,7 @@ void DriftEngine::undo_changes() {
     if (through_grid_)
       grid_.changed(place);
     else if (!lists_.reaches_far() && !lists_.changed(place, step_at_hand_.begin))
-      orbits.list_anew(place);
+      orbits.rebuild_list(place);
     finder().changed(place);
   }
   forget_changes();

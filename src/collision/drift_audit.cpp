@@ -18,10 +18,10 @@ void compare(NeighbourAudit& audit, std::uint32_t place, const std::vector<Plain
     if (audit.missed || std::find(offered.begin(), offered.end(), partner) != offered.end())
       continue;
     const Particles& particles = *step.particles;
-    const Body &body = particles.bodies[place], &other = particles.bodies[partner.place];
+    const Body &body = particles.bodies[place], &other = particles.bodies[partner.index];
     const Elements el = step.box.image_of(other.elements, partner.image, step.offset) - body.elements;
     const double distance = state_at(el, step.frequencies, Rotation()).position.norm();
-    audit.missed = {particles.ids[place], particles.ids[partner.place], partner.image,
+    audit.missed = {particles.ids[place], particles.ids[partner.index], partner.image,
                     distance / (body.radius + other.radius), after_hit};
   }
 }

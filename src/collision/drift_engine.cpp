@@ -87,7 +87,7 @@ void DriftEngine::carry_out(const std::vector<Event>& first, CollisionTally& tal
 
 void DriftEngine::end_step() {
   if (!through_grid_)
-    lists_.touched(touched_);
+    lists_.mark_dirty(touched_);
   if (takes_records_)
     takes_records_->recorded(records_);
   if (particles_->size())
@@ -258,10 +258,10 @@ std::vector<Event> DriftEngine::solve() {
 
 DriftCosts DriftEngine::costs() const {
   DriftCosts costs = costs_;
-  costs.lists_made = lists_.built;
-  costs.pairs_tested = lists_.tested;
-  costs.listed = lists_.listed;
-  costs.listed_anew = lists_.listed_anew;
+  costs.lists_made = lists_.counts().rebuilds;
+  costs.pairs_tested = lists_.counts().tested;
+  costs.listed = lists_.counts().listed;
+  costs.listed_anew = lists_.counts().renewed;
   costs.deferred = optimistic_.deferred;
   costs.in_sequence = optimistic_.last_deferred;
   costs.rolled_back = optimistic_.rolled_back;

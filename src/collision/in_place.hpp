@@ -31,7 +31,7 @@ struct DriftEngine::InPlace {
     if (drift.through_grid_)
       drift.grid_.changed(i);
     else if (!drift.lists_.reaches_far() && !drift.lists_.changed(i, time))
-      list_anew(i);
+      rebuild_list(i);
     drift.finder().changed(i);
     if (drift.watch_)
       drift.watch_->changed(i);
@@ -39,10 +39,10 @@ struct DriftEngine::InPlace {
 
   void set_spin(std::uint32_t i, const Vec3& spin) { drift.particles_->spins[i] = spin; }
 
-  void list_anew(std::uint32_t i) {
-    drift.lists_.list_anew(i);
+  void rebuild_list(std::uint32_t i) {
+    drift.lists_.rebuild_list(i);
     if (drift.lists_.reaches_far())
-      drift.lists_.make_for_step();
+      drift.lists_.rebuild_for_step();
   }
 
   // Who watches sees partners in the order of their ids and images.

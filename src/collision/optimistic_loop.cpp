@@ -139,7 +139,7 @@ void OptimisticLoop::restore(const Domain& domain, std::size_t number, bool alon
   newest_[change.place] = change.earlier;
   const bool stays = lists_->changed(change.place, change.begin);
   if (!stays && alone) // as the last round has listed it anew since
-    lists_->list_anew(change.place);
+    lists_->rebuild_list(change.place);
 }
 
 // The domain's last contact, of which nobody knows yet.

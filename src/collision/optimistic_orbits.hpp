@@ -172,7 +172,7 @@ struct OptimisticLoop::Orbits {
     body.elements = elements;
     if (!all.lists_->changed(i, time)) {
       if (is_last())
-        all.lists_->list_anew(i);
+        all.lists_->rebuild_list(i);
       else
         leaves_slack = true;
     }

@@ -1,5 +1,5 @@
-// Whoever may touch a particle within the step at hand: among all others and through all images, without lists, cells
-// or single precision. It is what these are held against.
+// The plain search for the partners of a particle within a step: all other particles through all images, without lists,
+// cells or single precision. Audits and tests compare the fast searches with it.
 #pragma once
 
 #include <keeler/finders/straight_line.hpp>
@@ -7,19 +7,20 @@
 #include <keeler/particles/store.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <vector>
 
 namespace keeler {
 
 struct PlainPartner {
-  std::uint32_t place = 0;
+  std::uint32_t index = 0; ///< in the store
   Image image;
   friend bool operator==(const PlainPartner&, const PlainPartner&) = default;
 };
 
-/// No image of the other comes near, since its guiding centre is too far out or in. Nearly all are ruled out by this
-/// before anything that costs more.
+/// True if no image of `other` comes near because its guiding centre is too far out or in. This cheap test rejects
+/// nearly all particles. `allowance` (m) is added to the contact distance.
 inline bool too_far_out(const Body& body, const Body& other, double allowance, double size_x) {
   const auto bound = [](const Elements& el) { return std::fabs(el.e_cos) + std::fabs(el.e_sin); }; // of e
   const double x = std::fabs(other.elements.guiding_x - body.elements.guiding_x);
@@ -27,21 +28,22 @@ inline bool too_far_out(const Body& body, const Body& other, double allowance, d
                            body.radius + other.radius + allowance + bound(body.elements) + bound(other.elements);
 }
 
-/// The partners of the particle at that place, by the straight lines of the step. `start` gives the time (rad after the
-/// epoch) from which on a place has its present orbit; `offset` is the box's at the epoch.
+/// Returns the partners of particle i by the straight lines of the step. start(k) is the time (rad after the epoch) at
+/// which particle k got its present orbit; `offset` is the shear offset at the epoch.
 template<class Start>
 std::vector<PlainPartner> plain_search(const Particles& particles, const ShearingBox& box, double offset,
-                                       const StraightLineTest& test, std::uint32_t place, const Start& start) {
+                                       const StraightLineTest& test, std::uint32_t i, const Start& start) {
+  assert(i < particles.size() && box.size_x > 0.0 && box.size_y > 0.0);
   std::vector<PlainPartner> partners;
   const Frequencies& f = test.frequencies;
-  const Body& body = particles.bodies[place];
+  const Body& body = particles.bodies[i];
   for (std::uint32_t j = 0; j < particles.size(); ++j) {
-    if (j == place)
+    if (j == i)
       continue;
     const Body& other = particles.bodies[j];
     if (too_far_out(body, other, test.allowance, box.size_x))
       continue;
-    // x − X is never more than e, y − Y + S X t never more than 2e/κ
+    // |x − X| <= e and |y − Y + S X t| <= 2e/κ
     const double e = body.elements.eccentricity() + other.elements.eccentricity();
     const double contact = body.radius + other.radius + test.allowance;
     const double x = other.elements.guiding_x - body.elements.guiding_x, reach_x = contact + e;
@@ -55,7 +57,7 @@ std::vector<PlainPartner> plain_search(const Particles& particles, const Shearin
                  last_y = static_cast<std::int32_t>(std::floor((-there + reach_y) / box.size_y));
       for (std::int32_t ny = first_y; ny <= last_y; ++ny) {
         const Vec3 shift = box.displacement({nx, ny}, offset);
-        if (test.may_touch(body, other, shift.x(), shift.y(), std::max(start(place), start(j))))
+        if (test.may_touch(body, other, shift.x(), shift.y(), std::max(start(i), start(j))))
           partners.push_back({j, {nx, ny}});
       }
     }

@@ -17,7 +17,7 @@ extern const Kernels table;
 
 namespace {
 
-// Most ranges and lists are short: eight lanes are quicker there.
+// Up to this length of a range or list, eight lanes are faster than sixteen; most are that short.
 constexpr std::size_t few = 8;
 
 std::size_t sweep(const Line& line, const Line* lines, const LineFrame& frame, const LineSpan& span,

@@ -1,15 +1,15 @@
-// Text of the kernels; see kernels.hpp. The including file sets KEELER_KERNEL_SPACE and defines
+// The kernels of kernels.hpp for one instruction set. The including file sets KEELER_KERNEL_SPACE and defines
 //   Floats, Integers, Unsigned    vectors of `lanes` lanes of 32 bits
-//   Fields load(line_at)          the lines that line_at(0), line_at(1) … point to, a vector a field
-//   unsigned nonzero(Integers)    a bit a lane
+//   Fields load(line_at)          the lines at line_at(0), line_at(1) …, one vector per field
+//   unsigned nonzero(Integers)    one bit per lane
 //   Doubles, Longs                vectors of `halves` lanes of 64 bits
-//   Singles, Words                and of 32 bits
-//   unsigned nonzero(Longs)       a bit a lane
-//   void load_bodies(const double* rows, Doubles fields[8])        `halves` rows of eight
-//   HalfFields load_half(const Line*)          `halves` lines that follow each other, a vector of Words or Singles a field
-//   void store_lines(Line*, Words x, Words y, Singles z, u, v, w, size, Words place)
-// Only plain arrays and these vectors: no inline function of another file may be compiled here, for the linker would be
-// free to take it for all processors. Everything here has internal linkage except `table`.
+//   Singles, Words                vectors of `halves` lanes of 32 bits
+//   unsigned nonzero(Longs)       one bit per lane
+//   void load_bodies(const double* rows, Doubles fields[8])    loads `halves` rows of eight
+//   HalfFields load_half(const Line*)                          loads `halves` consecutive lines, one vector per field
+//   void store_lines(Line*, Words x, Words y, Singles z, u, v, w, size, Words tag)
+// Only plain arrays and these vectors: no inline function of another file may be compiled here, since the linker could
+// use it on all processors. Everything here has internal linkage except `table`.
 
 namespace keeler::KEELER_KERNEL_SPACE {
 namespace {
@@ -18,16 +18,16 @@ inline Floats floats(const Integers& values) {
   return __builtin_convertvector(values, Floats);
 }
 
-// Differences wrap: those of unsigned integers, to be defined in C++.
+// Returns the difference modulo 2³², by unsigned integers, for which C++ defines it.
 inline Integers minus(const Integers& a, const Integers& b) {
   return (Integers)((Unsigned)a - (Unsigned)b);
 }
 
-// A bit for each pair of lines, lane by lane, that may touch.
-inline unsigned near(const Fields& line, const Fields& other, const LineFrame& frame, const LineSpan& span) {
+// Returns one bit per lane: set if its two lines may touch.
+inline unsigned may_touch(const Fields& line, const Fields& other, const LineFrame& frame, const LineSpan& span) {
   const Integers offset = Integers{} + frame.offset_y;
   const Integers across = minus(other.x, line.x);
-  // an image one box inward is ahead by the offset, one outward behind: seen by the overflow of the difference
+  // the image one box inward is ahead by the offset, the one outward behind; the difference overflows if it is nearer
   const Integers outward = ~(across >> 31);
   const Integers wrapped = ((other.x ^ line.x) & (other.x ^ across)) >> 31;
   const Integers behind = minus(outward, offset ^ outward) & wrapped;
@@ -58,11 +58,11 @@ inline unsigned first_lanes(std::size_t count) {
 
 std::size_t sweep(const Line& line, const Line* lines, const LineFrame& frame, const LineSpan& span,
                   const std::uint32_t* indices, std::size_t count, std::uint32_t* kept) {
-  const Fields own = all_lanes(line);
+  const Fields one = all_lanes(line);
   std::size_t keeps = 0;
   for (std::size_t k = 0; k < count; k += lanes) {
     const Fields others = load([&](std::size_t n) { return lines + indices[k + n]; });
-    for (unsigned bits = near(own, others, frame, span) & first_lanes(count - k); bits; bits &= bits - 1)
+    for (unsigned bits = may_touch(one, others, frame, span) & first_lanes(count - k); bits; bits &= bits - 1)
       kept[keeps++] = indices[k + static_cast<unsigned>(__builtin_ctz(bits))];
   }
   return keeps;
@@ -70,14 +70,14 @@ std::size_t sweep(const Line& line, const Line* lines, const LineFrame& frame, c
 
 std::size_t sweep_group(const Line* lines, std::size_t first, std::size_t last, const LineFrame& frame,
                         const LineSpan& span, std::size_t begin, std::size_t end, LinePair* found) {
-  const bool after = first < end; // the first line: then a line takes in those behind itself only
+  const bool after = first < end; // the range is behind the first line: each line is tested with the lines behind it
   std::size_t count = 0;
   for (std::size_t k = begin; k < end; k += lanes) {
     const Fields others = load([&](std::size_t n) { return lines + k + n; });
     const unsigned inside = first_lanes(end - k);
     const std::size_t stop = after && k + lanes - 1 < last ? k + lanes - 1 : last;
     for (std::size_t m = first; m < stop; ++m) {
-      unsigned bits = near(all_lanes(lines[m]), others, frame, span) & inside;
+      unsigned bits = may_touch(all_lanes(lines[m]), others, frame, span) & inside;
       if (after && m >= k)
         bits &= ~0u << (m + 1 - k);
       for (; bits; bits &= bits - 1)
@@ -94,20 +94,20 @@ std::size_t filter(const Line* lines, const LineFrame& frame, const LineSpan& sp
   for (std::size_t k = 0; k < count; k += lanes) {
     const Fields first = load([&](std::size_t n) { return lines + pairs[k + n].first; });
     const Fields second = load([&](std::size_t n) { return lines + pairs[k + n].second; });
-    for (unsigned bits = near(first, second, frame, span) & first_lanes(count - k); bits; bits &= bits - 1)
+    for (unsigned bits = may_touch(first, second, frame, span) & first_lanes(count - k); bits; bits &= bits - 1)
       kept[keeps++] = pairs[k + static_cast<unsigned>(__builtin_ctz(bits))];
   }
   return keeps;
 }
 
-constexpr double whole_numbers = 6755399441055744.0; // 1.5 · 2⁵²: doubles above it are whole numbers
-constexpr double single = 4e-6;                      // of a path: what single precision may do to a line
+constexpr double whole_numbers = 6755399441055744.0; // 1.5 · 2⁵²: doubles above it are integers
+constexpr double single = 4e-6;                      // relative bound on the rounding of a line
 
 inline Doubles rounded(const Doubles& value) {
   return (value + whole_numbers) - whole_numbers;
 }
 
-// The lowest 32 bits of a whole number.
+// Returns the lowest 32 bits of an integer.
 inline Words words(const Doubles& whole) {
   return __builtin_convertvector((Longs)(whole + whole_numbers), Words);
 }
@@ -128,7 +128,7 @@ inline Singles singles(const Doubles& values) {
   return __builtin_convertvector(values, Singles);
 }
 
-// Lanes of particles from k on; returns a bit for each that may leave its reference.
+// Makes the lines of one vector of particles. Returns a bit for each that may leave its reference path.
 inline unsigned follow_some(const double* rows, const Line* references, const FollowFrame f, Line* lines) {
   Doubles b[8];
   load_bodies(rows, b);
@@ -138,7 +138,7 @@ inline unsigned follow_some(const double* rows, const Line* references, const Fo
   const Doubles gy = b[1] - (f.shear * f.after) * gx;
   const Doubles u = f.kappa * es, v = (2.0 - f.shear) * ec, w = f.nu * ic; // v: beyond the shear at x = X − e cos
   const Doubles curvature = (0.5 * f.half * f.half) * (2.0 * f.kappa * (magnitude(ec) + magnitude(es)) +
-                                                        f.nu * f.nu * (magnitude(is) + magnitude(ic)));
+                                                       f.nu * f.nu * (magnitude(is) + magnitude(ic)));
   const Doubles size = radius + curvature;
   const Doubles path = f.half * (magnitude(u) + magnitude(v) + magnitude(w));
   const Doubles room = single * (size + path + magnitude(is)) + f.allowance;
@@ -151,7 +151,7 @@ inline unsigned follow_some(const double* rows, const Line* references, const Fo
   store_lines(lines, words(x), words(y), singles(is), singles(u), singles(v), singles(w), singles(size + room),
               __builtin_convertvector(is_image, Words));
 
-  // how far from the reference's nearest image
+  // offset from the nearest image of the reference path
   const HalfFields r = load_half(references);
   const Doubles rx = doubles(r.x), ru = doubles(r.u), rv = doubles(r.v), rw = doubles(r.w);
   const Doubles along = rv - rx * (f.shear * f.size_x / full_turn); // speed
@@ -167,12 +167,12 @@ inline unsigned follow_some(const double* rows, const Line* references, const Fo
   const Doubles square = dx * dx + dy * dy + dz * dz + du * du + dv * dv + dw * dw;
   const Doubles product = magnitude(2.0 * (dx * du + dy * dv + dz * dw));
   const Doubles limit = doubles(r.size) - size - room;
-  const Longs stays = (Longs)(square + product <= limit * limit) & (Longs)(limit >= 0.0); // at both ends, so between
+  const Longs stays = (Longs)(square + product <= limit * limit) & (Longs)(limit >= 0.0); // at both ends, so in between
   return ~nonzero(stays);
 }
 
 std::size_t follow(const double* bodies, const Line* references, const FollowFrame& frame, std::size_t begin,
-                   std::size_t end, Line* lines, std::uint32_t* leavers) {
+                   std::size_t end, Line* lines, std::uint32_t* escaped) {
   std::size_t count = 0;
   for (std::size_t k = begin; k < end; k += halves) {
     const std::size_t here = end - k < halves ? end - k : halves;
@@ -185,9 +185,9 @@ std::size_t follow(const double* bodies, const Line* references, const FollowFra
     }
     for (std::size_t n = 0; n < halves; ++n)
       __builtin_prefetch(rows + 8 * (16 + n));
-    for (unsigned leaves = follow_some(rows, references + k, frame, lines + k) & ((1u << here) - 1u); leaves;
-         leaves &= leaves - 1)
-      leavers[count++] = static_cast<std::uint32_t>(k + static_cast<unsigned>(__builtin_ctz(leaves)));
+    for (unsigned bits = follow_some(rows, references + k, frame, lines + k) & ((1u << here) - 1u); bits;
+         bits &= bits - 1)
+      escaped[count++] = static_cast<std::uint32_t>(k + static_cast<unsigned>(__builtin_ctz(bits)));
   }
   return count;
 }

@@ -1,4 +1,4 @@
-// Lines for AVX2: eight lanes. Compiled with -mavx2.
+// The kernels for AVX2, with eight lanes. Compiled with -mavx2.
 #include "kernels.hpp"
 
 #include <immintrin.h>
@@ -18,7 +18,7 @@ struct Fields {
   Floats z, u, v, w, size;
 };
 
-// Eight lines of eight numbers, transposed.
+// Loads eight lines of eight numbers and transposes them.
 template<class LineAt> inline Fields load(const LineAt& line_at) {
   __m256 r[8], t[8];
   for (std::size_t k = 0; k < 8; ++k)
@@ -56,7 +56,7 @@ inline unsigned nonzero(const Longs& mask) {
   return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(mask)));
 }
 
-// Four rows of eight numbers, transposed by halves.
+// Loads four rows of eight numbers and transposes them by halves.
 inline void load_bodies(const double* rows, Doubles fields[8]) {
   for (int half = 0; half < 8; half += 4) {
     __m256d r[4];
@@ -94,9 +94,9 @@ inline HalfFields load_half(const Line* lines) {
 }
 
 inline void store_lines(Line* lines, const Words& x, const Words& y, const Singles& z, const Singles& u,
-                        const Singles& v, const Singles& w, const Singles& size, const Words& place) {
+                        const Singles& v, const Singles& w, const Singles& size, const Words& tag) {
   __m128 first[4] = {reinterpret_cast<__m128>(x), reinterpret_cast<__m128>(y), z, u},
-         second[4] = {v, w, size, reinterpret_cast<__m128>(place)};
+         second[4] = {v, w, size, reinterpret_cast<__m128>(tag)};
   _MM_TRANSPOSE4_PS(first[0], first[1], first[2], first[3]);
   _MM_TRANSPOSE4_PS(second[0], second[1], second[2], second[3]);
   for (int k = 0; k < 4; ++k) {

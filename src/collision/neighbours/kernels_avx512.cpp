@@ -1,4 +1,4 @@
-// Lines for AVX-512: sixteen lanes. Compiled with -mavx512f.
+// The kernels for AVX-512, with sixteen lanes. Compiled with -mavx512f.
 #include "kernels.hpp"
 
 #include <immintrin.h>
@@ -18,8 +18,8 @@ struct Fields {
   Floats z, u, v, w, size;
 };
 
-// Sixteen lines of eight numbers, transposed: line k beside line k + 8 in one register, then as eight lines of each
-// half.
+// Loads sixteen lines of eight numbers and transposes them: line k beside line k + 8 in one register, then eight lines
+// per half.
 template<class LineAt> inline Fields load(const LineAt& line_at) {
   __m512 r[8], t[8];
   for (std::size_t k = 0; k < 8; ++k) {
@@ -37,7 +37,7 @@ template<class LineAt> inline Fields load(const LineAt& line_at) {
     r[k + 2] = _mm512_shuffle_ps(t[k + 1], t[k + 3], 0x44);
     r[k + 3] = _mm512_shuffle_ps(t[k + 1], t[k + 3], 0xee);
   }
-  // r[k] holds fields k and k + 4 of lines 0-3 or, from k = 4 on, 4-7; then of those eight lines on
+  // r[k] holds fields k and k + 4 of lines 0-3 or, for k >= 4, of lines 4-7, and of the lines eight further on
   const __m512i first = _mm512_setr_epi32(0, 1, 2, 3, 16, 17, 18, 19, 8, 9, 10, 11, 24, 25, 26, 27);
   const __m512i second = _mm512_setr_epi32(4, 5, 6, 7, 20, 21, 22, 23, 12, 13, 14, 15, 28, 29, 30, 31);
   return {reinterpret_cast<Integers>(_mm512_permutex2var_ps(r[0], first, r[4])),
@@ -63,7 +63,7 @@ inline unsigned nonzero(const Longs& mask) {
   return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(mask), reinterpret_cast<__m512i>(mask));
 }
 
-// Eight rows of eight numbers, transposed.
+// Loads eight rows of eight numbers and transposes them.
 inline void load_bodies(const double* rows, Doubles fields[8]) {
   __m512d r[8], t[8];
   for (int k = 0; k < 8; ++k)
@@ -89,7 +89,7 @@ struct HalfFields {
   Singles z, u, v, w, size;
 };
 
-// Eight rows of eight numbers of 32 bits, transposed.
+// Transposes eight rows of eight numbers of 32 bits.
 inline void transpose(__m256 r[8]) {
   __m256 t[8];
   for (int k = 0; k < 8; k += 2) {
@@ -119,9 +119,9 @@ inline HalfFields load_half(const Line* lines) {
 }
 
 inline void store_lines(Line* lines, const Words& x, const Words& y, const Singles& z, const Singles& u,
-                        const Singles& v, const Singles& w, const Singles& size, const Words& place) {
-  __m256 r[8] = {reinterpret_cast<__m256>(x),    reinterpret_cast<__m256>(y), z, u, v, w, size,
-                 reinterpret_cast<__m256>(place)};
+                        const Singles& v, const Singles& w, const Singles& size, const Words& tag) {
+  __m256 r[8] = {reinterpret_cast<__m256>(x),  reinterpret_cast<__m256>(y), z, u, v, w, size,
+                 reinterpret_cast<__m256>(tag)};
   transpose(r);
   for (int k = 0; k < 8; ++k)
     _mm256_store_ps(reinterpret_cast<float*>(lines + k), r[k]);

@@ -1,4 +1,4 @@
-// Lines for any processor: four lanes.
+// The kernels for any processor, with four lanes.
 #include "kernels.hpp"
 
 #define KEELER_KERNEL_SPACE kernels_portable
@@ -73,12 +73,12 @@ inline HalfFields load_half(const Line* lines) {
 }
 
 inline void store_lines(Line* lines, const Words& x, const Words& y, const Singles& z, const Singles& u,
-                        const Singles& v, const Singles& w, const Singles& size, const Words& place) {
+                        const Singles& v, const Singles& w, const Singles& size, const Words& tag) {
   for (std::size_t n = 0; n < halves; ++n) {
     Line& line = lines[n];
     line.x = x[n], line.y = y[n], line.z = z[n];
     line.u = u[n], line.v = v[n], line.w = w[n];
-    line.size = size[n], line.place = static_cast<std::uint32_t>(place[n]);
+    line.size = size[n], line.tag = static_cast<std::uint32_t>(tag[n]);
   }
 }
 

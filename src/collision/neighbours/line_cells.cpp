@@ -13,14 +13,14 @@
 namespace keeler {
 namespace {
 
-constexpr std::size_t block_size = 4096;   // lines
-constexpr double nearest_share = 0.45;     // of the box: what reaches less far has one image in reach
-constexpr double cells_per_particle = 2.0; // no more,
-constexpr double fewest_cells = 64.0;      // unless these are
-constexpr std::size_t max_in_group = 8;    // lines that look around together,
-constexpr std::int64_t fewest_columns = 8; // for that
-constexpr double longest_group = 4.0;      // in reaches of their level
-constexpr std::uint32_t few_lines = 8;     // of a level: looked at all together
+constexpr std::size_t lines_per_block = 4096;
+constexpr double nearest_fraction = 0.45;  // of the box: up to that reach, only the nearest image can touch
+constexpr double cells_per_particle = 2.0; // at most, of a level,
+constexpr double min_cells = 64.0;         // unless these are more
+constexpr std::size_t max_in_group = 8;    // lines that look up the cells in reach together,
+constexpr std::int64_t min_columns = 8;    // in levels with at least so many columns
+constexpr double max_group_length = 4.0;   // in reaches of their level
+constexpr std::uint32_t few_lines = 8;     // of a level: all are tested
 
 } // namespace
 
@@ -29,12 +29,12 @@ struct LineCells::Measured {
   std::array<double, max_levels> reach_x{}, reach_y{};
 };
 
-// Those that reach less than 2 of the least, then up to 8, 32, ...: each level that there is costs a look-up.
+// Level 0: a reach below 2 of the smallest; then below 8, 32, … Each level in use costs every search a look-up.
 int LineCells::level_of(const Line& line) const {
   const double reach = std::max(reach_x(line), reach_y(line));
-  return reach < 2.0 * least_ || without(Acceleration::levels)
+  return reach < 2.0 * min_reach_ || without(Acceleration::levels)
              ? 0
-             : (std::min(std::ilogb(reach / least_), 2 * max_levels - 3) + 1) / 2;
+             : (std::min(std::ilogb(reach / min_reach_), 2 * max_levels - 3) + 1) / 2;
 }
 
 std::size_t LineCells::cell_of(const Line& line, const Level& level) const {
@@ -45,10 +45,12 @@ std::size_t LineCells::cell_of(const Line& line, const Level& level) const {
          static_cast<std::size_t>(part(line.x, level.columns) * level.rows + part(line.y, level.rows));
 }
 
-void LineCells::build(std::span<const Line> lines, const ShearingBox& box, double offset, double half, double least) {
+void LineCells::build(std::span<const Line> lines, const ShearingBox& box, double offset, double half,
+                      double min_reach) {
+  assert(half > 0.0 && (lines.empty() || min_reach > 0.0));
   box_ = box;
   half_ = half;
-  least_ = least;
+  min_reach_ = min_reach;
   per_metre_x_ = full_turn / box.size_x;
   per_metre_y_ = full_turn / box.size_y;
   frame_ = {static_cast<float>(box.size_x / full_turn), static_cast<float>(box.size_y / full_turn),
@@ -58,15 +60,15 @@ void LineCells::build(std::span<const Line> lines, const ShearingBox& box, doubl
   sort(lines, lay_out_cells());
 }
 
-// Which levels there are and how far each reaches.
+// Finds the levels in use and the largest reach of each.
 void LineCells::measure(std::span<const Line> lines) {
   const std::size_t count = lines.size();
-  std::vector<Measured> measured((count + block_size - 1) / block_size);
+  std::vector<Measured> measured((count + lines_per_block - 1) / lines_per_block);
   parallel_for(
       measured.size(),
       [&](std::size_t b) {
         Measured& m = measured[b];
-        for (std::size_t k = b * block_size; k < std::min(count, (b + 1) * block_size); ++k) {
+        for (std::size_t k = b * lines_per_block; k < std::min(count, (b + 1) * lines_per_block); ++k) {
           const int level = level_of(lines[k]);
           ++m.counts[level];
           m.reach_x[level] = std::max(m.reach_x[level], reach_x(lines[k]));
@@ -88,17 +90,19 @@ void LineCells::measure(std::span<const Line> lines) {
   }
 }
 
-// Columns as wide as two lines of the level reach together, rows of half of that: ranges end close to what is in reach.
-// Where that makes too many cells, they are larger; where lines are few, longer. Returns how many cells there are.
+// Chooses columns as wide as two lines of the level reach together and rows of half of that, so that ranges end close
+// to the reach. Cells are larger where they would be too many, and longer where lines are few. Returns the number of
+// cells.
 std::size_t LineCells::lay_out_cells() {
   std::size_t cells = 0;
   double two_farthest[2] = {0.0, 0.0};
   for (Level& level : levels_) {
-    const double most = std::max(cells_per_particle * static_cast<double>(level.count), fewest_cells);
+    const double max_cells = std::max(cells_per_particle * static_cast<double>(level.count), min_cells);
     double columns = box_.size_x / (2.0 * level.reach_x), rows = box_.size_y / level.reach_y;
-    columns = std::min(columns, std::max(fewest_cells, columns / std::sqrt(std::max(1.0, columns * rows / most))));
+    columns = std::min(columns, std::max(min_cells, columns / std::sqrt(std::max(1.0, columns * rows / max_cells))));
     level.columns = static_cast<std::int64_t>(std::max(1.0, columns));
-    level.rows = static_cast<std::int64_t>(std::max(1.0, std::min(rows, most / static_cast<double>(level.columns))));
+    level.rows =
+        static_cast<std::int64_t>(std::max(1.0, std::min(rows, max_cells / static_cast<double>(level.columns))));
     level.first_cell = cells;
     cells += static_cast<std::size_t>(level.columns * level.rows);
     const double reach = std::max(level.reach_x, level.reach_y);
@@ -106,15 +110,15 @@ std::size_t LineCells::lay_out_cells() {
     two_farthest[1] = reach;
   }
   const double sheared = 1.0 + box_.shear * half_;
-  one_image_ = (two_farthest[0] + two_farthest[1]) * sheared < nearest_share * std::min(box_.size_x, box_.size_y);
+  one_image_ = (two_farthest[0] + two_farthest[1]) * sheared < nearest_fraction * std::min(box_.size_x, box_.size_y);
   return cells;
 }
 
 bool LineCells::one_image(const Line& line) const {
-  const double own = std::max(reach_x(line), reach_y(line));
+  const double reach = std::max(reach_x(line), reach_y(line));
   const double farthest = levels_.empty() ? 0.0 : std::max(levels_.back().reach_x, levels_.back().reach_y);
   const double sheared = 1.0 + box_.shear * half_;
-  return (own + std::max(own, farthest)) * sheared < nearest_share * std::min(box_.size_x, box_.size_y);
+  return (reach + std::max(reach, farthest)) * sheared < nearest_fraction * std::min(box_.size_x, box_.size_y);
 }
 
 std::uint64_t LineCells::farthest_across() const {
@@ -134,7 +138,7 @@ void LineCells::sort(std::span<const Line> lines, std::size_t cells) {
       [&](std::size_t k) {
         cells_[k] = static_cast<std::uint32_t>(cell_of(lines[k], levels_[level_index_[level_of(lines[k])]]));
       },
-      block_size);
+      lines_per_block);
   counting_sort(cells_, cells, starts_, [&](std::size_t k, std::size_t slot) {
     slots_[k] = static_cast<std::uint32_t>(slot);
     lines_[slot] = lines[k];
@@ -143,71 +147,89 @@ void LineCells::sort(std::span<const Line> lines, std::size_t cells) {
     level.begin = starts_[level.first_cell];
     level.end = starts_[level.first_cell + static_cast<std::size_t>(level.columns * level.rows)];
   }
-  assert((assert_sorted(), true));
+  assert(sound());
 }
 
-#ifndef NDEBUG
-// Each line has one slot, in the range of its cell.
-void LineCells::assert_sorted() const {
+bool LineCells::sound() const {
   for (std::size_t k = 0; k < slots_.size(); ++k) {
-    assert(lines_[slots_[k]].place == k); // and so no two have the same
-    assert(starts_[cells_[k]] <= slots_[k] && slots_[k] < starts_[cells_[k] + 1]);
+    const Line& own = line(k);
+    if (own.tag != k || slots_[k] < starts_[cells_[k]] || slots_[k] >= starts_[cells_[k] + 1])
+      return false;
+    const Level& level = levels_[level_of_cell(cells_[k])];
+    const Distance stray = distance(own, cells_[k], level);
+    const double rounding_x = 1.0 / per_metre_x_, rounding_y = 1.0 / per_metre_y_;
+    if (stray.x > level.stray_x + rounding_x || stray.y > level.stray_y + rounding_y || reach_x(own) > level.reach_x ||
+        reach_y(own) > level.reach_y)
+      return false;
   }
+  return true;
 }
-#endif
 
-void LineCells::replace(std::size_t place, const Line& line) {
-  auto level = levels_.begin();
-  while (level + 1 != levels_.end() && cells_[place] >= (level + 1)->first_cell)
+std::size_t LineCells::level_of_cell(std::size_t cell) const {
+  std::size_t level = 0;
+  while (level + 1 < levels_.size() && cell >= levels_[level + 1].first_cell)
     ++level;
-  const auto rows = static_cast<std::size_t>(level->rows);
-  const std::size_t cell = cells_[place] - level->first_cell;
-  const auto from_middle = [](std::int32_t value, std::size_t number, std::int64_t cells) {
+  return level;
+}
+
+// Returns how far a line's position is outside a cell of the level; the box is periodic.
+LineCells::Distance LineCells::distance(const Line& line, std::size_t cell, const Level& level) const {
+  const auto rows = static_cast<std::size_t>(level.rows);
+  const std::size_t number = cell - level.first_cell;
+  const auto from_middle = [](std::int32_t value, std::size_t index, std::int64_t cells) {
     const double size = full_turn / static_cast<double>(cells);
-    return static_cast<double>(value) + 0.5 * full_turn - (static_cast<double>(number) + 0.5) * size;
+    return static_cast<double>(value) + 0.5 * full_turn - (static_cast<double>(index) + 0.5) * size;
   };
   const auto beyond = [](double off, std::int64_t cells) {
     const double nearest = off - full_turn * std::rint(off / full_turn);
     return std::max(0.0, std::fabs(nearest) - 0.5 * full_turn / static_cast<double>(cells));
   };
-  const double off_x = from_middle(line.x, cell / rows, level->columns);
+  const double off_x = from_middle(line.x, number / rows, level.columns);
   const double outward = -std::rint(off_x / full_turn);
-  const double off_y = from_middle(line.y, cell % rows, level->rows) - outward * frame_.offset_y;
-  level->stray_x = std::max(level->stray_x, beyond(off_x, level->columns) / per_metre_x_);
-  level->stray_y = std::max(level->stray_y, beyond(off_y, level->rows) / per_metre_y_);
-  level->reach_x = std::max(level->reach_x, reach_x(line));
-  level->reach_y = std::max(level->reach_y, reach_y(line));
-  lines_[slots_[place]] = line;
-  lines_[slots_[place]].place = static_cast<std::uint32_t>(place);
+  const double off_y = from_middle(line.y, number % rows, level.rows) - outward * frame_.offset_y;
+  return {beyond(off_x, level.columns) / per_metre_x_, beyond(off_y, level.rows) / per_metre_y_};
 }
 
-LineCells::Window LineCells::window(const Line& line, const LineSpan& span) const {
+void LineCells::replace(std::size_t particle, const Line& line) {
+  assert(particle < slots_.size());
+  Level& level = levels_[level_of_cell(cells_[particle])];
+  const Distance stray = distance(line, cells_[particle], level);
+  level.stray_x = std::max(level.stray_x, stray.x);
+  level.stray_y = std::max(level.stray_y, stray.y);
+  level.reach_x = std::max(level.reach_x, reach_x(line));
+  level.reach_y = std::max(level.reach_y, reach_y(line));
+  lines_[slots_[particle]] = line;
+  lines_[slots_[particle]].tag = static_cast<std::uint32_t>(particle);
+}
+
+LineCells::Rectangle LineCells::rectangle(const Line& line, const LineSpan& span) const {
   const double begin = std::max<double>(span.begin, -half_), end = std::min<double>(span.end, half_);
-  const double middle = 0.5 * (begin + end), half = 0.5 * (end - begin); // its size has room for what is beyond
+  const double middle = 0.5 * (begin + end), half = 0.5 * (end - begin); // the size allows for the rest of the span
   const auto on = [&](float speed, double per_metre) { return static_cast<std::int64_t>(middle * speed * per_metre); };
   return {across(line) + on(line.u, per_metre_x_), along(line) + static_cast<std::uint32_t>(on(line.v, per_metre_y_)),
           line.size + half * std::fabs(line.u), line.size + half * std::fabs(line.v), reach_x(line)};
 }
 
-// Lines that follow each other and stand close together look around together: up to this slot. Not where that might be
-// all around a narrow box.
+// Returns the end of the group that begins with the slot `first`: lines behind each other and close together. Groups
+// have one line in a narrow box, which they might surround.
 std::size_t LineCells::group_end(std::size_t first, std::size_t end, const Level& level) const {
-  if (level.columns < fewest_columns || without(Acceleration::groups))
+  if (level.columns < min_columns || without(Acceleration::groups))
     return first + 1;
   const auto near_x = static_cast<std::int64_t>(2.0 * level.reach_x * per_metre_x_);
-  const auto near_y = static_cast<std::int64_t>(longest_group * level.reach_y * per_metre_y_);
+  const auto near_y = static_cast<std::int64_t>(max_group_length * level.reach_y * per_metre_y_);
   std::size_t last = first + 1;
-  const auto stands_near = [&](const Line& line) {
+  const auto is_near = [&](const Line& line) {
     return std::abs(std::int64_t{line.x} - lines_[first].x) < near_x &&
            std::abs(std::int64_t{line.y} - lines_[first].y) < near_y;
   };
-  while (last < end && last - first < max_in_group && stands_near(lines_[last]))
+  while (last < end && last - first < max_in_group && is_near(lines_[last]))
     ++last;
   return last;
 }
 
-// Of a group.
-LineCells::Window LineCells::window(std::size_t first, std::size_t last) const {
+// Returns the rectangle of a group of slots.
+LineCells::Rectangle LineCells::rectangle(std::size_t first, std::size_t last) const {
+  assert(first < last && last <= size());
   const Line& line = lines_[first];
   std::int64_t left = line.x, right = left, back = line.y, front = back;
   double reach[2] = {reach_x(line), reach_y(line)};
@@ -227,10 +249,10 @@ LineCells::Window LineCells::window(std::size_t first, std::size_t last) const {
           reach[0] + half_x / per_metre_x_, reach[1] + half_y / per_metre_y_, reach[0]};
 }
 
-std::size_t LineCells::near(const Line& line, const LineSpan& span, std::vector<std::uint32_t>& buffer,
-                            std::uint64_t& tested) const {
+std::size_t LineCells::find_near(const Line& line, const LineSpan& span, std::vector<std::uint32_t>& buffer,
+                                 std::uint64_t& tested) const {
   std::size_t count = 0;
-  const Window from = window(line, span);
+  const Rectangle around = rectangle(line, span);
   const auto take = [&](std::uint32_t begin, std::uint32_t end) {
     const std::size_t room = count + (end - begin) + kernel_padding;
     if (buffer.size() < room)
@@ -239,10 +261,10 @@ std::size_t LineCells::near(const Line& line, const LineSpan& span, std::vector<
     count += end - begin;
   };
   for (const Level& level : levels_)
-    if (level.end - level.begin <= few_lines) // to find those in reach would take longer
+    if (level.end - level.begin <= few_lines) // finding the cells in reach would take longer
       take(level.begin, level.end);
     else
-      ranges_in(level, from, 0, take);
+      ranges_in(level, around, 0, take);
   if (count == 0)
     return 0;
   std::fill_n(buffer.begin() + static_cast<std::ptrdiff_t>(count), kernel_padding, buffer[count - 1]);

@@ -1,18 +1,21 @@
-// A cell list (Allen & Tildesley 2017, §5.3.2) of straight lines over a span of time, with the boxes that they reach.
+// A cell list (Allen & Tildesley 2017, §5.3.2) of straight lines over a span of time.
 //
-// Lines stand in levels by how far they reach in the span (slack and path, in steps of 4), each level with cells of its
-// own size; a line is looked up in its own level and in all finer ones, so that a moonlet or a fast particle costs what
-// it reaches and nobody else anything (hierarchical cells: Iwai et al. 1999; Ogarko & Luding 2012). Cells are columns
-// of a level, rows within a column, so that what a line can reach in a column is one or two ranges of slots.
+// Cells are hierarchical (Iwai et al. 1999; Ogarko & Luding 2012): a line's level is how far it reaches in the span
+// (size and path, in steps of a factor 4), and each level has cells of a suitable size. A search of pairs tests a line
+// against its level and all finer ones, so a moonlet or a fast particle costs what it reaches, and the other lines next
+// to nothing. Cells are columns of a level and rows within a column, so the cells of a column in reach of a line are
+// one or two ranges of slots.
 //
-// Invariants: each line has one slot, in the range of its cell; a line stands within its level's stray of its cell, and
-// reaches no farther than its level.
+// Invariants: each line has one slot, in the range of its cell; its position is within its level's `stray` of its cell,
+// and its reach is at most its level's.
 #pragma once
 
 #include "kernels.hpp"
 
 #include <keeler/hill/shearing_box.hpp>
 
+#include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -21,54 +24,62 @@ namespace keeler {
 
 class LineCells {
 public:
-  /// Sorts lines in, of which each `place` says its number. They are of an instant when the box has that shear offset,
-  /// and serve for `half` (rad) before and after. Levels begin at `least`, m: what the smallest reach at rest.
-  void build(std::span<const Line> lines, const ShearingBox& box, double offset, double half, double least);
+  /// Sorts lines into cells. Their instant is when the box has the shear offset `offset` (m), and they are valid for
+  /// `half` (rad) before and after. `min_reach` (m): reach of the smallest particle at rest, where levels begin.
+  /// Precondition: lines[k].tag == k.
+  void build(std::span<const Line> lines, const ShearingBox& box, double offset, double half, double min_reach);
 
-  /// Whether no two lines may meet through more than one image, and that one is the nearest.
+  /// True if no two lines can meet through another image than the nearest one.
   bool one_image() const { return one_image_; }
-  /// The same for one more line.
+  /// True if `line` cannot meet the others through another image than the nearest one.
   bool one_image(const Line& line) const;
 
   std::size_t size() const { return slots_.size(); }
   const LineFrame& frame() const { return frame_; }
-  std::uint32_t place(std::size_t slot) const { return lines_[slot].place; }
-  const Line& line(std::size_t place) const { return lines_[slots_[place]]; }
+  std::uint32_t particle(std::size_t slot) const { return lines_[slot].tag; }
+  const Line& line(std::size_t particle) const { return lines_[slots_[particle]]; }
 
-  /// No two lines that may touch stand farther apart across the box, as a fraction of it (2⁻³²).
+  /// Upper bound on the distance across the box of two lines that may touch, as a fraction of the box (2⁻³²).
   std::uint64_t farthest_across() const;
 
-  /// A particle has a new line, which takes the slot of the old one.
-  void replace(std::size_t place, const Line& line);
+  /// Replaces the line of a particle, which keeps its slot.
+  void replace(std::size_t particle, const Line& line);
 
-  /// Pairs of slots that may touch in the span, of the slots [begin, end) with all after them: found(slot, slot).
-  /// Returns how many pairs were tested.
+  /// Calls found(slot, slot) for each pair of lines that may touch during the span, the first in the slots [begin, end)
+  /// and the second in the same level behind it, or in a finer level. Returns the number of pairs tested.
   template<class Found>
   std::uint64_t sweep_pairs(std::size_t begin, std::size_t end, const LineSpan& span, std::vector<LinePair>& buffer,
                             const Found& found) const;
 
-  /// Slots of lines that may touch this one in the span, put into the buffer; returns how many. Adds to `tested`.
-  std::size_t near(const Line& line, const LineSpan& span, std::vector<std::uint32_t>& buffer,
-                   std::uint64_t& tested) const;
+  /// Writes the slots of the lines that may touch `line` during the span to `buffer`, which grows as needed. Returns
+  /// their number, and adds the number of lines tested to `tested`.
+  std::size_t find_near(const Line& line, const LineSpan& span, std::vector<std::uint32_t>& buffer,
+                        std::uint64_t& tested) const;
 
   void release() { *this = {}; }
   std::size_t bytes() const;
 
+  /// True if the invariants hold.
+  bool sound() const;
+
 private:
   struct Level {
     std::uint64_t count = 0;
-    double reach_x = 0.0, reach_y = 0.0; // the farthest of its lines, m
-    double stray_x = 0.0, stray_y = 0.0; // how far they may stand from their cells, m
+    double reach_x = 0.0, reach_y = 0.0; // largest of its lines, m
+    double stray_x = 0.0, stray_y = 0.0; // largest distance of a line's position from its cell, m
     std::int64_t columns = 1, rows = 1;
     std::size_t first_cell = 0;
     std::uint32_t begin = 0, end = 0; // slots
   };
-  // The places that a line, or each of several, takes in a span: so many metres around one.
-  struct Window {
-    std::int64_t x;  // across
-    std::uint32_t y; // along
-    double around_x, around_y;
-    double reach_x; // of the lines in the whole span
+  // A rectangle that contains a line, or each of several, during a span.
+  struct Rectangle {
+    std::int64_t x;        // centre, across
+    std::uint32_t y;       // and along the box
+    double half_x, half_y; // m
+    double reach_x;        // of the lines in all the time that the cells are valid
+  };
+  struct Distance {
+    double x, y; // m
   };
   static constexpr int max_levels = 32;
   struct Measured;
@@ -78,44 +89,45 @@ private:
   void sort(std::span<const Line> lines, std::size_t cells);
   int level_of(const Line& line) const;
   std::size_t cell_of(const Line& line, const Level& level) const;
-  void assert_sorted() const; // there with assertions only
+  std::size_t level_of_cell(std::size_t cell) const;
+  Distance distance(const Line& line, std::size_t cell, const Level& level) const;
   double reach_x(const Line& line) const { return line.size + half_ * std::fabs(line.u); }
   double reach_y(const Line& line) const { return line.size + half_ * std::fabs(line.v); }
-  Window window(std::size_t first, std::size_t last) const;
-  Window window(const Line& line, const LineSpan& span) const;
+  Rectangle rectangle(std::size_t first, std::size_t last) const;
+  Rectangle rectangle(const Line& line, const LineSpan& span) const;
   std::size_t group_end(std::size_t first, std::size_t end, const Level& level) const;
   template<class Range>
-  void ranges_in(const Level& level, const Window& from, std::uint32_t after, const Range& range) const;
+  void ranges_in(const Level& level, const Rectangle& around, std::uint32_t after, const Range& range) const;
   template<class Cells>
   void rows_in(const Level& level, std::size_t cell, std::uint32_t y, std::int64_t far, const Cells& cells) const;
   static std::uint32_t across(const Line& line) {
     return static_cast<std::uint32_t>(line.x) + (std::uint32_t{1} << 31);
   }
   static std::uint32_t along(const Line& line) { return static_cast<std::uint32_t>(line.y) + (std::uint32_t{1} << 31); }
-  // Where to look for those whose images stand so many boxes outward.
+  // Returns the position along the box of lines that have their images `boxes` boxes outward at y.
   std::uint32_t image_y(std::uint32_t y, int boxes) const {
     return y + static_cast<std::uint32_t>(boxes) * static_cast<std::uint32_t>(frame_.offset_y);
   }
 
   ShearingBox box_;
   double half_ = 0.0;
-  double least_ = 1.0;
+  double min_reach_ = 1.0; // m
   bool one_image_ = false;
   LineFrame frame_{};
   double per_metre_x_ = 0.0, per_metre_y_ = 0.0; // box fractions, in units of 2⁻³²
   Kernels kernels_ = kernels(choose_instruction_set());
 
-  std::vector<Level> levels_;         // the finest first; without empty ones
-  int level_index_[max_levels] = {};  // of level_of()
+  std::vector<Level> levels_;         // finest first, without empty ones
+  int level_index_[max_levels] = {};  // in levels_, by level_of()
   std::vector<std::uint32_t> starts_; // first slot of each cell
-  std::vector<std::uint32_t> cells_;  // of each place
-  std::vector<std::uint32_t> slots_;  // of each place
-  std::vector<Line> lines_;           // by slot, and padding
+  std::vector<std::uint32_t> cells_;  // by particle
+  std::vector<std::uint32_t> slots_;  // by particle
+  std::vector<Line> lines_;           // by slot, with padding behind
 };
 
-// Slots from `after` on that lie in the level's cells within reach; of columns that end before it none.
+// Calls range(begin, end) for the slots, from `after` on, of the level's cells in reach of the rectangle.
 template<class Range>
-void LineCells::ranges_in(const Level& level, const Window& from, std::uint32_t after, const Range& range) const {
+void LineCells::ranges_in(const Level& level, const Rectangle& around, std::uint32_t after, const Range& range) const {
   if (level.end <= after)
     return;
   const auto cells = [&](std::size_t from_cell, std::size_t to_cell) {
@@ -123,13 +135,13 @@ void LineCells::ranges_in(const Level& level, const Window& from, std::uint32_t 
     if (begin < end)
       range(begin, end);
   };
-  const double sheared = box_.shear * half_ * (from.reach_x + level.reach_x);
-  const double metres_x = from.around_x + level.reach_x + level.stray_x;
-  const double metres_y = from.around_y + level.reach_y + level.stray_y + sheared;
+  const double sheared = box_.shear * half_ * (around.reach_x + level.reach_x);
+  const double metres_x = around.half_x + level.reach_x + level.stray_x;
+  const double metres_y = around.half_y + level.reach_y + level.stray_y + sheared;
   const std::int64_t far_x = static_cast<std::int64_t>(metres_x * per_metre_x_) + 4;
   const std::int64_t far_y = static_cast<std::int64_t>(metres_y * per_metre_y_) + 4;
-  const std::int64_t first = (from.x - far_x) * level.columns >> 32, last = (from.x + far_x) * level.columns >> 32;
-  if (last - first >= level.columns) { // all columns, each once: images on either side
+  const std::int64_t first = (around.x - far_x) * level.columns >> 32, last = (around.x + far_x) * level.columns >> 32;
+  if (last - first >= level.columns) { // all columns, each once
     cells(level.first_cell, level.first_cell + static_cast<std::size_t>(level.columns * level.rows));
     return;
   }
@@ -137,11 +149,12 @@ void LineCells::ranges_in(const Level& level, const Window& from, std::uint32_t 
     const int boxes = c < 0 ? -1 : c >= level.columns ? 1 : 0; // outward
     const std::size_t cell = level.first_cell + static_cast<std::size_t>((c - boxes * level.columns) * level.rows);
     if (after == 0 || starts_[cell + static_cast<std::size_t>(level.rows)] > after)
-      rows_in(level, cell, image_y(from.y, boxes), far_y, cells);
+      rows_in(level, cell, image_y(around.y, boxes), far_y, cells);
   }
 }
 
-// The cells of one column, the first of which is `cell`, within reach of a place along the orbit; the box is round.
+// Calls cells(first, last) for the cells of one column, which begins with `cell`, within `far` of y in the periodic
+// box.
 template<class Cells>
 void LineCells::rows_in(const Level& level, std::size_t cell, std::uint32_t y, std::int64_t far,
                         const Cells& cells) const {
@@ -166,32 +179,34 @@ void LineCells::rows_in(const Level& level, std::size_t cell, std::uint32_t y, s
 template<class Found>
 std::uint64_t LineCells::sweep_pairs(std::size_t begin, std::size_t end, const LineSpan& span,
                                      std::vector<LinePair>& buffer, const Found& found) const {
+  assert(begin <= end && end <= size());
   std::uint64_t tested = 0;
-  // the slots [first, last) with the others of a range
+  // tests the slots [first, last) against a range
   const auto sweep = [&](std::size_t first, std::size_t last, std::uint32_t low, std::uint32_t high) {
-    const std::size_t most = (last - first) * (high - low);
-    if (buffer.size() < most)
-      buffer.resize(most);
+    const std::size_t all = (last - first) * (high - low);
+    if (buffer.size() < all)
+      buffer.resize(all);
     const std::size_t count = kernels_.sweep_group(lines_.data(), first, last, frame_, span, low, high, buffer.data());
     for (std::size_t k = 0; k < count; ++k)
       found(buffer[k].first, buffer[k].second);
-    tested += most;
-    for (std::size_t slot = first + 1; low > first && slot < last; ++slot) // behind itself only
+    tested += all;
+    for (std::size_t slot = first + 1; low > first && slot < last;
+         ++slot) // a line is tested against the lines behind it only
       tested -= std::min<std::size_t>(std::max<std::size_t>(slot + 1, low), high) - low;
   };
-  auto own = levels_.begin();
+  auto level = levels_.begin();
   for (std::size_t first = begin, last = begin; first < end; first = last) {
-    while (first >= own->end)
-      ++own;
-    last = group_end(first, std::min<std::size_t>(end, own->end), *own);
-    ranges_in(*own, window(first, last), static_cast<std::uint32_t>(first) + 1,
+    while (first >= level->end)
+      ++level;
+    last = group_end(first, std::min<std::size_t>(end, level->end), *level);
+    ranges_in(*level, rectangle(first, last), static_cast<std::uint32_t>(first) + 1,
               [&](std::uint32_t low, std::uint32_t high) { sweep(first, last, low, high); });
-    if (own == levels_.begin())
+    if (level == levels_.begin())
       continue;
-    for (std::size_t slot = first; slot < last; ++slot) { // finer ones are much smaller than the group
-      const Window from = window(slot, slot + 1);
-      for (auto finer = levels_.begin(); finer != own; ++finer)
-        ranges_in(*finer, from, 0, [&](std::uint32_t low, std::uint32_t high) { sweep(slot, slot + 1, low, high); });
+    for (std::size_t slot = first; slot < last; ++slot) { // finer lines are much smaller than the group
+      const Rectangle around = rectangle(slot, slot + 1);
+      for (auto finer = levels_.begin(); finer != level; ++finer)
+        ranges_in(*finer, around, 0, [&](std::uint32_t low, std::uint32_t high) { sweep(slot, slot + 1, low, high); });
     }
   }
   return tested;

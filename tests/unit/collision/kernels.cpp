@@ -1,4 +1,4 @@
-// The kernels that tell which lines come into contact, in single precision and in every instruction set, against double
+// The kernels that find the lines in contact, in single precision and in every instruction set, against double
 // precision.
 #include "neighbours/kernels.hpp"
 
@@ -20,7 +20,7 @@ using namespace keeler;
 namespace {
 
 constexpr double full_turn = 4294967296.0; // 2³², the box
-constexpr double single = 4e-6;            // of a path: what sizes allow for single precision, as those of the lists do
+constexpr double single = 4e-6;            // relative bound on rounding in line sizes, as in the lists
 constexpr std::size_t number = 61;         // lines, no multiple of any vector's length
 constexpr InstructionSet all_sets[] = {InstructionSet::portable, InstructionSet::avx2, InstructionSet::avx512};
 
@@ -30,16 +30,16 @@ std::int32_t wrapped(double fraction) {
 
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-// One line, and a row of others: half of them anywhere, half so that they pass the one at about the contact's distance
-// some time in the span, many through an edge of the box. All reach less than 0.45 of the box, as the sweep asks.
+// One line and a row of others. Half of these are anywhere; the others pass the one at about the contact distance
+// within the span, many through an edge of the box. All reach less than 0.45 of the box, as the sweep requires.
 struct Row {
   test::RandomVectors random;
   double size_x, size_y, shear, offset, speed, half; // m, m, -, m, m/rad, rad
   LineFrame frame;
   Line one;
   std::vector<double> radii;            // of the others
-  std::vector<Line> others;             // and padding that touches the one: it must not be taken in
-  static constexpr double radius = 1.0; // of the one, and the largest
+  std::vector<Line> others;             // and padding that touches the one line but must not be kept
+  static constexpr double radius = 1.0; // of the one line, and the largest
 
   explicit Row(std::uint64_t seed) : random(seed) {
     shear = 1.0 + random.uniform();
@@ -52,7 +52,7 @@ struct Row {
     frame = {static_cast<float>(size_x / full_turn), static_cast<float>(size_y / full_turn), static_cast<float>(shear),
              wrapped(offset / size_y * full_turn)};
     one = line(anywhere(), radius);
-    if (random.uniform() < 0.6) // about an edge
+    if (random.uniform() < 0.6) // near an edge
       one.x = static_cast<std::int32_t>((random.uniform() < 0.5 ? -1.0 : 1.0) *
                                         (0.5 * full_turn - 1.0 - random.uniform() * radius / size_x * full_turn));
     for (std::size_t k = 0; k < number; ++k) {
@@ -62,12 +62,12 @@ struct Row {
     others.resize(number + kernel_padding, one);
   }
 
-  double decades(double least, double most) { return std::pow(10.0, least + (most - least) * random.uniform()); }
+  double decades(double low, double high) { return std::pow(10.0, low + (high - low) * random.uniform()); }
   std::size_t below(std::size_t count) {
     return static_cast<std::size_t>(random.uniform() * static_cast<double>(count));
   }
 
-  // Fields of a line without its size.
+  // Returns a random line without a size.
   Line anywhere() {
     const Vec3 v = speed * random.uniform() * random.direction();
     return {wrapped(full_turn * (random.uniform() - 0.5)),
@@ -80,7 +80,7 @@ struct Row {
             0};
   }
 
-  // At a distance of about the contact at some time. An image n boxes outward stands behind by n offsets.
+  // Returns a line at about the contact distance at some time. An image n boxes outward is behind by n offsets.
   Line passing(double r) {
     Line line = anywhere();
     const double off = (random.uniform() < 0.5 ? -1.0 : 1.0) * decades(-8.0, -1.0),
@@ -103,7 +103,7 @@ struct Row {
     return line;
   }
 
-  // The smallest distance in the span, of all images beside the box.
+  // Returns the smallest distance in the span, through all images next to the box.
   double nearest(const Line& a, const Line& b) const {
     double least = HUGE_VAL;
     for (const int n : {-1, 0, 1}) {
@@ -141,7 +141,7 @@ struct Row {
     std::vector<LinePair> given, kept(pairs.size());
     for (const auto& [first, second] : pairs)
       given.push_back({first, second});
-    given.resize(pairs.size() + kernel_padding, LinePair{number, number}); // which touch, and are none of the pairs
+    given.resize(pairs.size() + kernel_padding, LinePair{number, number}); // which touch but are not among the pairs
     kept.resize(kernels(set).filter(others.data(), frame, span(), given.data(), pairs.size(), kept.data()));
     Pairs found;
     for (const LinePair& pair : kept)
@@ -152,7 +152,7 @@ struct Row {
 
 } // namespace
 
-TEST_CASE("no line that comes into contact is left out, and few others are kept") {
+TEST_CASE("no line in contact is rejected, and few others are kept") {
   std::size_t contacts = 0, across = 0, kept = 0;
   for (std::uint64_t seed = 1; seed <= test::draws(4000); ++seed) {
     const Row row(seed);
@@ -175,7 +175,7 @@ TEST_CASE("no line that comes into contact is left out, and few others are kept"
   CHECK(static_cast<double>(kept) < 1.01 * static_cast<double>(contacts));
 }
 
-TEST_CASE("all instruction sets leave out the same lines, of any stretch of a row") {
+TEST_CASE("all instruction sets reject the same lines, in any part of a row") {
   for (std::uint64_t seed = 1; seed <= test::draws(2000); ++seed) {
     Row row(seed);
     const std::size_t begin = row.below(number), some = begin + row.below(number + 1 - begin);
@@ -195,7 +195,7 @@ TEST_CASE("a group of lines finds what each of them finds, and each pair within 
   for (std::uint64_t seed = 1; seed <= test::draws(2000); ++seed) {
     Row row(seed);
     for (Line& line : row.others)
-      line.size *= 20.0f; // they stand about the one line, and few would touch each other
+      line.size *= 20.0f; // they are around the one line, and few would touch each other
     const std::size_t first = row.below(number), last = first + 1 + row.below(std::min<std::size_t>(8, number - first));
     const bool before = seed % 2 == 0;
     const std::size_t begin = before ? row.below(first + 1) : first + 1,
@@ -218,7 +218,7 @@ TEST_CASE("a group of lines finds what each of them finds, and each pair within 
   CHECK(pairs > test::draws(10000));
 }
 
-TEST_CASE("of a list of pairs those are kept, in their order, of which one line finds the other") {
+TEST_CASE("the filter keeps, in order, the pairs of which one line finds the other") {
   std::size_t contacts = 0, kept = 0, given = 0;
   for (std::uint64_t seed = 1; seed <= test::draws(2000); ++seed) {
     CAPTURE(seed);

@@ -1,5 +1,5 @@
-// The kernel that makes the lines of a window from orbits, in every instruction set: lines against the true paths, and
-// who leaves its reference.
+// The kernel that makes the lines of a pruning interval from orbits, in every instruction set: lines against the true
+// paths, and the particles that leave their reference path.
 #include "neighbours/kernels.hpp"
 
 #include "draws.hpp"
@@ -30,8 +30,8 @@ std::int32_t wrapped(double fraction) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(std::llround(fraction)));
 }
 
-// Bodies about whose paths references run that they leave by up to twice the slack; some stand far from theirs. All
-// stand up to some boxes outside the cell.
+// Bodies with reference paths that they leave by up to twice the skin; some are far from theirs. Some bodies are
+// several boxes outside the cell.
 struct Followed {
   test::RandomVectors random;
   Frequencies f;
@@ -40,7 +40,7 @@ struct Followed {
   FollowFrame frame;
   std::vector<Body> bodies;
   std::vector<Line> references;
-  std::vector<double> curvature; // of each in the span, m
+  std::vector<double> curvature; // of each path in the span, m
 
   explicit Followed(std::uint64_t seed) : random(seed) {
     f.kappa = 0.7 + 0.3 * random.uniform();
@@ -75,7 +75,7 @@ struct Followed {
   double decades(double least, double most) { return std::pow(10.0, least + (most - least) * random.uniform()); }
   double centred(double width) { return width * (random.uniform() - 0.5); }
   Rotation middle() const { return Rotation(f, after); }
-  // So long after the middle. No whole number of boxes along the orbit is taken off.
+  // Returns the shear offset `time` (rad) after the middle, not reduced to the box.
   double offset_at(double time) const { return offset + box.shear * box.size_x * (after + time); }
 
   void add(std::size_t k) {
@@ -95,14 +95,14 @@ struct Followed {
     curvature.push_back(0.5 * half * half *
                         (2.0 * f.kappa * (std::fabs(el.e_cos) + std::fabs(el.e_sin)) +
                          f.nu * f.nu * (std::fabs(el.i_sin) + std::fabs(el.i_cos))) *
-                        1.5); // at the epoch; it may turn until the middle
+                        1.5); // at the epoch; it may change until the middle
     bodies.push_back(body);
     references.push_back(reference(body, decades(-1.5, 0.5) + 2.0 * curvature.back(), k % 11 == 0));
   }
 
-  Line reference(const Body& body, double slack, bool far) {
+  Line reference(const Body& body, double skin, bool far) {
     const State s = state_at(body.elements, f, middle());
-    const double off = 2.0 * slack * random.uniform() * random.uniform(), part = random.uniform();
+    const double off = 2.0 * skin * random.uniform() * random.uniform(), part = random.uniform();
     Vec3 position = s.position + part * off * random.direction();
     Vec3 velocity = s.velocity + (1.0 - part) * off / half * random.direction();
     if (far)
@@ -115,11 +115,11 @@ struct Followed {
             static_cast<float>(velocity.x()),
             static_cast<float>(velocity.y() + box.shear * position.x()),
             static_cast<float>(velocity.z()),
-            static_cast<float>(body.radius + slack),
+            static_cast<float>(body.radius + skin),
             0};
   }
 
-  // How far the true path gets from a line of this age in the span.
+  // Returns the largest distance of the true path from a line of this age in the span.
   double farthest(const Body& body, const Line& line, double age) const {
     constexpr int times = 16;
     double most = 0.0;
@@ -128,7 +128,7 @@ struct Followed {
     return most;
   }
 
-  // So long after the middle, when the line is older by `age`.
+  // Returns that distance `time` (rad) after the middle, when the line is older by `age`.
   double distance(const Body& body, const Line& line, double age, double time) const {
     const Vec3 path = state_at(body.elements, f, Rotation(f, after + time)).position;
     const double x = line.x / full_turn * box.size_x, y = line.y / full_turn * box.size_y, t = age + time;
@@ -142,13 +142,13 @@ struct Followed {
 
   struct Lines {
     std::vector<Line> lines;
-    std::vector<std::uint32_t> leavers;
+    std::vector<std::uint32_t> escaped;
   };
   Lines follow(InstructionSet set, std::size_t begin, std::size_t end, float untouched = 0.0f) const {
     Lines all{std::vector<Line>(number + kernel_padding, Line{0, 0, untouched, 0.0f, 0.0f, 0.0f, 0.0f, 0}),
               std::vector<std::uint32_t>(end - begin)};
-    all.leavers.resize(kernels(set).follow(&bodies[0].elements.guiding_x, references.data(), frame, begin, end,
-                                           all.lines.data(), all.leavers.data()));
+    all.escaped.resize(kernels(set).follow(&bodies[0].elements.guiding_x, references.data(), frame, begin, end,
+                                           all.lines.data(), all.escaped.data()));
     return all;
   }
 };
@@ -159,7 +159,8 @@ bool same(const Line& a, const Line& b) {
 
 } // namespace
 
-TEST_CASE("a line holds its true path, and who leaves the reference by more than the slack is listed") {
+TEST_CASE(
+    "a line contains its true path, and particles that leave their reference path by more than the skin are listed") {
   std::size_t leave = 0, listed = 0, stay = 0, outside = 0;
   for (std::uint64_t seed = 1; seed <= test::draws(1500); ++seed) {
     const Followed followed(seed);
@@ -176,14 +177,14 @@ TEST_CASE("a line holds its true path, and who leaves the reference by more than
       if (!(room < 1.1 * (followed.curvature[k] + 1e-4 * (line.size + followed.heat)) + 2.0 * followed.frame.allowance))
         CHECK(room <
               1.1 * (followed.curvature[k] + 1e-4 * (line.size + followed.heat)) + 2.0 * followed.frame.allowance);
-      const double off = followed.farthest(body, reference, followed.since), slack = reference.size - body.radius;
-      const bool leaves = std::binary_search(found.leavers.begin(), found.leavers.end(), k);
-      const bool well_inside = off + 2.0 * room < 0.9 * slack;
-      if (off > slack && !leaves)
-        CHECK(off <= slack);
+      const double off = followed.farthest(body, reference, followed.since), skin = reference.size - body.radius;
+      const bool leaves = std::binary_search(found.escaped.begin(), found.escaped.end(), k);
+      const bool well_inside = off + 2.0 * room < 0.9 * skin;
+      if (off > skin && !leaves)
+        CHECK(off <= skin);
       if (well_inside && leaves)
-        CHECK(off + 2.0 * room >= 0.9 * slack);
-      leave += off > slack;
+        CHECK(off + 2.0 * room >= 0.9 * skin);
+      leave += off > skin;
       listed += leaves;
       stay += well_inside;
       outside += std::fabs(body.elements.guiding_x) > 0.5 * followed.box.size_x;
@@ -195,22 +196,21 @@ TEST_CASE("a line holds its true path, and who leaves the reference by more than
   CHECK(outside > test::draws(5000));
 }
 
-TEST_CASE(
-    "all instruction sets make the same lines and list the same leavers, of any stretch from a multiple of 8 on") {
+TEST_CASE("all instruction sets make the same lines and find the same escaped particles, from any multiple of 8 on") {
   for (std::uint64_t seed = 1; seed <= test::draws(600); ++seed) {
     Followed followed(seed);
     const std::size_t begin = 8 * static_cast<std::size_t>(followed.random.uniform() * 8.0);
     const std::size_t end = begin + static_cast<std::size_t>(followed.random.uniform() * double(number + 1 - begin));
     const Followed::Lines all = followed.follow(InstructionSet::portable, 0, number);
-    std::vector<std::uint32_t> leavers;
-    std::copy_if(all.leavers.begin(), all.leavers.end(), std::back_inserter(leavers),
+    std::vector<std::uint32_t> escaped;
+    std::copy_if(all.escaped.begin(), all.escaped.end(), std::back_inserter(escaped),
                  [&](std::uint32_t k) { return k >= begin && k < end; });
     for (const InstructionSet set : all_sets)
       if (supports(set)) {
         CAPTURE(seed);
         CAPTURE(instruction_set_name(set));
         const Followed::Lines some = followed.follow(set, begin, end, 77.0f);
-        CHECK((some.leavers == leavers));
+        CHECK((some.escaped == escaped));
         const auto wrong = [&](std::size_t k) {
           const bool inside = k >= begin && k < end;
           return inside ? !same(some.lines[k], all.lines[k]) : k < begin && some.lines[k].z != 77.0f;
@@ -222,7 +222,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("whoever is not finite leaves its reference, and nobody beside it") {
+TEST_CASE("a particle that is not finite escapes, and none beside it") {
   constexpr double huge = std::numeric_limits<double>::infinity();
   Followed followed(3);
   for (std::size_t k = 0; k < number; ++k) // all stay
@@ -241,7 +241,7 @@ TEST_CASE("whoever is not finite leaves its reference, and nobody beside it") {
             CAPTURE(field);
             CAPTURE(value);
             CAPTURE(instruction_set_name(set));
-            CHECK((followed.follow(set, 0, number).leavers == std::vector<std::uint32_t>{k}));
+            CHECK((followed.follow(set, 0, number).escaped == std::vector<std::uint32_t>{k}));
           }
         body = before;
       }

@@ -1,5 +1,5 @@
-// The cell list of straight lines against all lines tried with each other: the pairs that a life begins with, and what
-// a line finds by itself, before and after lines have been replaced.
+// The cell list of straight lines against the test of all pairs of lines: the pairs of a rebuild, and the search of a
+// single line, before and after lines have been replaced.
 #include "neighbours/line_cells.hpp"
 
 #include <keeler/core/random.hpp>
@@ -20,10 +20,10 @@ namespace {
 
 using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
-// Random lines in a box: of one size or many, in a wide box or in one so narrow that there are a few columns or rows.
+// Random lines of one size or many, in a wide box or in one so narrow that it has few columns or rows.
 struct Sorted {
   RandomStream random;
-  bool sheared; // in a long span, by fast lines across: what they meet there has moved along with the shear
+  bool sheared; // long span and lines fast across the box, where the shear moves their partners along
   double half;  // of the span, rad
   ShearingBox box;
   std::vector<Line> lines;
@@ -36,7 +36,7 @@ struct Sorted {
     const double largest = seed % 2 ? 1.0 : 40.0;
     for (std::size_t k = 0; k < count; ++k) {
       lines.push_back(anywhere(std::min(std::pow(random.uniform(), -0.7), largest) / largest));
-      lines.back().place = static_cast<std::uint32_t>(k);
+      lines.back().tag = static_cast<std::uint32_t>(k);
     }
     cells.build(lines, box, box.size_y * (random.uniform() - 0.5), half, 1.0 / largest);
   }
@@ -45,7 +45,7 @@ struct Sorted {
     return static_cast<std::size_t>(random.uniform() * static_cast<double>(count));
   }
 
-  // A few are fast.
+  // Returns a random line; a few are fast.
   Line anywhere(double size, double fast = 2.0) {
     const auto fraction = [&] {
       return static_cast<std::int32_t>(static_cast<std::uint32_t>(random.uniform() * 4294967296.0));
@@ -65,7 +65,7 @@ struct Sorted {
   LineSpan span() const { return {static_cast<float>(-half), static_cast<float>(half)}; }
   LineSpan rest() const { return {static_cast<float>(0.3 * half), static_cast<float>(half)}; }
 
-  // Places of all that one may touch, in order: one against all, and by the cells.
+  // Return the lines that `line` may touch, in order: by testing all, and by the cells.
   std::vector<std::uint32_t> plainly(const Line& line, const LineSpan& when) const {
     std::vector<Line> all = lines;
     all.resize(lines.size() + kernel_padding);
@@ -77,9 +77,9 @@ struct Sorted {
   }
   std::vector<std::uint32_t> by_cells(const Line& line, const LineSpan& when) {
     std::vector<std::uint32_t> found;
-    found.resize(cells.near(line, when, found, tested));
+    found.resize(cells.find_near(line, when, found, tested));
     for (std::uint32_t& slot : found)
-      slot = cells.place(slot);
+      slot = cells.particle(slot);
     std::sort(found.begin(), found.end());
     return found;
   }
@@ -90,7 +90,7 @@ struct Sorted {
     for (std::size_t begin = 0; begin < cells.size(); begin += block)
       tested += cells.sweep_pairs(begin, std::min(begin + block, cells.size()), span(), buffer,
                                   [&](std::size_t i, std::size_t j) {
-                                    found.push_back(std::minmax<std::size_t>(cells.place(i), cells.place(j)));
+                                    found.push_back(std::minmax<std::size_t>(cells.particle(i), cells.particle(j)));
                                   });
     std::sort(found.begin(), found.end());
     return found;
@@ -99,7 +99,7 @@ struct Sorted {
 
 } // namespace
 
-TEST_CASE("a life begins with the pairs that each line finds by itself, which are those of all tried with all") {
+TEST_CASE("the pairs of a rebuild are those that each line finds by itself and those of testing all pairs") {
   std::size_t pairs = 0, boxes = 0;
   std::uint64_t tested = 0, all = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
@@ -131,7 +131,7 @@ TEST_CASE("a life begins with the pairs that each line finds by itself, which ar
   CHECK(tested < all / 3);
 }
 
-TEST_CASE("whoever has a new line is found where it is, slow or fast, near its old place or not") {
+TEST_CASE("a replaced line is found where it is, slow or fast, near its old position or not") {
   std::size_t found = 0, boxes = 0, slow = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     Sorted sorted(seed, 500);
@@ -140,9 +140,9 @@ TEST_CASE("whoever has a new line is found where it is, slow or fast, near its o
     CAPTURE(seed);
     ++boxes;
     for (std::size_t change = 0; change < 1 + 40 * (seed % 4); ++change) {
-      const std::size_t place = sorted.below(change % 2 ? 20 : sorted.lines.size()); // some again and again
+      const std::size_t place = sorted.below(change % 2 ? 20 : sorted.lines.size()); // some repeatedly
       Line line = sorted.anywhere(sorted.lines[place].size * (0.5 + sorted.random.uniform()), 10.0);
-      if (seed % 8 == 1) { // in its old place, faster or larger
+      if (seed % 8 == 1) { // in its old position, faster or larger
         line.x = sorted.lines[place].x;
         line.y = sorted.lines[place].y;
       } else if (change % 4 > 0) { // close to where it was, or through an edge
@@ -152,7 +152,7 @@ TEST_CASE("whoever has a new line is found where it is, slow or fast, near its o
       }
       if (!sorted.cells.one_image(line))
         continue;
-      line.place = static_cast<std::uint32_t>(place);
+      line.tag = static_cast<std::uint32_t>(place);
       sorted.cells.replace(place, line);
       sorted.lines[place] = line;
       slow += std::fabs(line.u) < 0.1 / sorted.half;
@@ -160,18 +160,18 @@ TEST_CASE("whoever has a new line is found where it is, slow or fast, near its o
     for (const Line& line : sorted.lines)
       for (const LineSpan& when : {sorted.span(), sorted.rest()}) {
         const std::vector<std::uint32_t> expected = sorted.plainly(line, when);
-        CAPTURE(line.place);
+        CAPTURE(line.tag);
         CHECK((sorted.by_cells(line, when) == expected));
         found += expected.size();
       }
   }
-  MESSAGE(found << " found in " << boxes << " boxes; " << slow << " slow ones have new lines");
+  MESSAGE(found << " found in " << boxes << " boxes; " << slow << " slow lines replaced");
   CHECK(boxes > 30);
   CHECK(found > 50000);
   CHECK(slow > 1000);
 }
 
-TEST_CASE("a line that would reach around the box is told, be it there from the start or a new one") {
+TEST_CASE("a line that would reach around the box is reported, when cells are built and when it is new") {
   Sorted sorted(2);
   CHECK(sorted.cells.one_image());
   Line line = sorted.lines[0];

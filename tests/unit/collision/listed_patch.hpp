@@ -1,5 +1,5 @@
-// A patch that drifts, is hit and is kicked as in a run, with its neighbour lists, and what they should hold: all pairs
-// through all images.
+// A patch that drifts, is hit and is kicked as in a run, with its neighbour lists, and the brute-force search of all
+// pairs through all images that these must equal.
 #pragma once
 
 #include "neighbours/neighbour_lists.hpp"
@@ -17,7 +17,7 @@
 
 namespace keeler::test {
 
-// A pair that may touch: places, the lower first, and the image of the higher.
+// A pair that may touch: particle indices, the lower first, and the image of the higher.
 using FoundPair = std::tuple<std::size_t, std::size_t, std::int32_t, std::int32_t>;
 
 inline FoundPair pair_of(std::size_t i, std::size_t j, const Image& image) {
@@ -27,18 +27,18 @@ inline FoundPair pair_of(std::size_t i, std::size_t j, const Image& image) {
 
 struct Setting {
   std::size_t count = 200;
-  double depth = 0.4;        // the optical depth
-  double ratio = 1.0;        // of the largest radius, 1 m, to the smallest
+  double depth = 0.4;        // optical depth
+  double ratio = 1.0;        // largest radius, 1 m, over the smallest
   double heat = 1.0;         // m
   double step = 0.02;        // rad
   double elongation = 1.0;   // of the box, along the orbit
-  double hits = 0.1;         // a particle and a step
-  double speed = 0.0;        // of hits, m/rad, beyond what heat makes them
-  std::size_t kick_each = 0; // so many steps, if any
+  double hits = 0.1;         // per particle and step
+  double speed = 0.0;        // of hits, m/rad, added to that from heat
+  std::size_t kick_each = 0; // number of steps between kicks; 0: none
   Frequencies frequencies{};
 };
 
-// A patch that drifts as in a run. Spheres may overlap: nobody asks when they touch.
+// A patch that drifts as in a run. Spheres may overlap, since contacts are not searched for.
 struct ListedPatch {
   Setting setting;
   RandomStream random;
@@ -91,7 +91,7 @@ struct ListedPatch {
   }
 
   Vec3 random_velocity(double speed) { return speed * Vec3(random.normal(), random.normal(), random.normal()); }
-  // Beyond the shear of its guiding centre, when the step begins.
+  // Returns the velocity relative to the local shear when the step begins.
   Vec3 state_velocity(std::size_t i) const {
     const Elements& el = particles.bodies[i].elements;
     const State s = state_at(el, setting.frequencies, Rotation(setting.frequencies, -half()));
@@ -101,16 +101,16 @@ struct ListedPatch {
     kick(particles.bodies[i].elements, dv, setting.frequencies, Rotation(setting.frequencies, time));
   }
 
-  // As the drift does, and by how much it is told.
+  // Hits particle i with a random velocity change and updates the lists as the drift does.
   void hit(std::size_t i, double time, double speed) {
     change_velocity(i, time, random_velocity(speed));
     if (!lists.changed(i, time))
-      lists.list_anew(i);
+      lists.rebuild_list(i);
     if (lists.reaches_far())
-      lists.make_for_step();
+      lists.rebuild_for_step();
   }
 
-  // Calls visit(image) for those of a pair that may touch from then on, by the exact test.
+  // Calls visit(image) for each image of j through which the pair may touch from `start` on, by the exact test.
   template<class Visit>
   void visit_images(std::size_t i, std::size_t j, double start, int far, const Visit& visit) const {
     const StraightLineTest test{setting.frequencies, half(), half(), 1e-13 * (box.size_x + box.size_y)};
@@ -125,7 +125,7 @@ struct ListedPatch {
       }
   }
 
-  // Through images beside the nearest, too, where it takes too long now and then only.
+  // Tries the images beside the nearest one too, but only in every eighth step, since that takes long.
   std::vector<FoundPair> all_pairs() const {
     std::vector<FoundPair> all;
     const int far = steps % 8 == 0 ? 1 : 0;
@@ -167,8 +167,8 @@ inline bool once_each(const std::vector<FoundPair>& sorted) {
   return std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
 }
 
-// Each on the list of each on its own, once, and not on its own.
-inline bool mutual(const NeighbourLists& lists, std::size_t count) {
+// True if lists are symmetric, without duplicates, and no particle is on its own list.
+inline bool symmetric(const NeighbourLists& lists, std::size_t count) {
   std::vector<std::pair<std::size_t, std::size_t>> forth, back;
   for (std::size_t i = 0; i < count; ++i)
     for (const std::uint32_t j : lists.list(i)) {
@@ -186,7 +186,7 @@ struct Seen {
   std::size_t pairs = 0, partners = 0, steps = 0, more = 0;
 };
 
-// What a step begins with, told exactly and not.
+// Checks the pairs at the begin of a step, with and without the exact test.
 inline void check_begin(ListedPatch& patch, Seen& seen) {
   const std::vector<FoundPair> expected = patch.all_pairs();
   patch.lists.visit_exactly(true);
@@ -201,20 +201,20 @@ inline void check_begin(ListedPatch& patch, Seen& seen) {
   ++seen.steps;
 }
 
-// Pairs are hit at random times, some particles again and again; whoever is hit, and anybody else, finds its partners.
+// Hits random pairs at random times, some particles repeatedly, and checks the partners of these and of others.
 inline void hit_some(ListedPatch& patch, Seen& seen) {
   const std::size_t count = patch.particles.size();
   std::vector<double> times(static_cast<std::size_t>(0.5 * patch.setting.hits * static_cast<double>(count)));
   for (double& time : times)
     time = patch.centred(patch.setting.step);
   std::sort(times.begin(), times.end());
-  std::vector<std::uint32_t> touched;
+  std::vector<std::uint32_t> hit;
   for (const double time : times) {
     const double speed = (patch.below(6) ? 0.3 : 5.0) * (0.1 + patch.setting.heat) + patch.setting.speed;
     const std::size_t both[] = {patch.below(patch.below(4) ? count : 10), patch.below(count)};
     for (const std::size_t i : both) {
       patch.hit(i, time, speed);
-      touched.push_back(static_cast<std::uint32_t>(i));
+      hit.push_back(static_cast<std::uint32_t>(i));
     }
     for (const std::size_t i : {both[0], both[1], patch.below(count)}) {
       const std::vector<FoundPair> expected = patch.all_partners(i, time);
@@ -224,11 +224,11 @@ inline void hit_some(ListedPatch& patch, Seen& seen) {
       seen.partners += expected.size();
     }
   }
-  std::sort(touched.begin(), touched.end());
-  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-  std::reverse(touched.begin(), touched.end()); // in any order
-  CHECK(mutual(patch.lists, count));
-  patch.lists.touched(touched);
+  std::sort(hit.begin(), hit.end());
+  hit.erase(std::unique(hit.begin(), hit.end()), hit.end());
+  std::reverse(hit.begin(), hit.end()); // in any order
+  CHECK(symmetric(patch.lists, count));
+  patch.lists.mark_dirty(hit);
 }
 
 inline void kick_all(ListedPatch& patch) {
@@ -242,7 +242,7 @@ inline void drift(ListedPatch& patch, int steps, Seen& seen) {
     CAPTURE(patch.steps);
     REQUIRE(patch.begin());
     check_begin(patch, seen);
-    CHECK(mutual(patch.lists, patch.particles.size()));
+    CHECK(symmetric(patch.lists, patch.particles.size()));
     hit_some(patch, seen);
     patch.move_on();
     if (patch.setting.kick_each && patch.steps % static_cast<std::int64_t>(patch.setting.kick_each) == 0)

@@ -1,4 +1,5 @@
-// The drift phase over many steps with all that it may keep from one to the next, against its plain twin, bit by bit.
+// The drift phase over many steps, with everything that it keeps from one to the next, against the plain algorithm, bit
+// by bit.
 #include "draws.hpp"
 #include "unit/collision/spheres.hpp"
 #include "unit/collision/twin.hpp"
@@ -18,7 +19,7 @@ using test::Twin;
 
 namespace {
 
-// The collisions of a scenario's patch in some steps. The neighbours are kept.
+// Returns the number of collisions of a scenario's patch in some steps, with lists kept from step to step.
 std::size_t walk(const Scenario& s, std::uint64_t seed, int steps) {
   Ring ring(test::make_patch(s, seed), test::settings_of(s), s.step);
   ring.keeps_neighbours = true;
@@ -93,7 +94,7 @@ TEST_CASE("the same bits as the plain twin: general frequencies, sizes 1:30, sti
 
 TEST_CASE("the same bits as the plain twin: a moonlet among spheres a thousandth of its size") {
   for (const double step : {1e-4, 1e-3, 1e-2})
-    for (const double side : {3.0, 50.0}) { // one where the moonlet's images are near, one where cells can be small
+    for (const double side : {3.0, 50.0}) { // images of the moonlet are near; cells can be small
       CAPTURE(step);
       CAPTURE(side);
       Ring ring = ring_of(test::swarm(240, 1e-3, 0.02, 0.05, 7), side, two_pi * step);
@@ -106,7 +107,7 @@ TEST_CASE("the same bits as the plain twin: one particle outruns the others' bou
   s.count = 100;
   s.step = two_pi * 1e-3;
   for (const double times : {30.0, 300.0})
-    for (const double mass : {1.0, 1e4}) { // the heavy one makes each that it hits fast, in the midst of a window
+    for (const double mass : {1.0, 1e4}) { // the heavy one speeds up each particle that it hits, in mid-interval
       CAPTURE(times);
       CAPTURE(mass);
       Patch patch = test::make_patch(s, 9);
@@ -115,7 +116,7 @@ TEST_CASE("the same bits as the plain twin: one particle outruns the others' bou
       Ring ring(patch, {}, s.step);
       CHECK(walk(ring, 60) > 30);
     }
-  // quiet lists for some steps, and then something fast comes flying in
+  // quiet lists for some steps, then a fast particle arrives
   std::vector<test::Sphere> spheres;
   for (int k = 0; k < 60; ++k)
     spheres.push_back({{4.0 * (k % 8 - 4), 4.0 * (test::quotient(k, 8) - 4), 0.0}, Vec3::Zero(), 1.0, 1.0});
@@ -128,7 +129,7 @@ TEST_CASE("the same bits as the plain twin: one particle outruns the others' bou
   }
 }
 
-// Nothing has any eccentricity at first, so all bounds are small; heavy ones throw light ones at each other.
+// Without eccentricity at first all bounds are small; heavy particles throw light ones at each other.
 TEST_CASE("the same bits as the plain twin: cold states that heat up within a step") {
   std::size_t collisions = 0;
   for (std::uint64_t seed = 1; seed <= test::draws(20); ++seed)
@@ -146,7 +147,7 @@ TEST_CASE("the same bits as the plain twin: cold states that heat up within a st
   CHECK(collisions > test::draws(5000));
 }
 
-TEST_CASE("the same bits as the plain twin: one strong kick in the midst of a quiet window") {
+TEST_CASE("the same bits as the plain twin: one strong kick in the middle of a quiet interval") {
   for (const double kick : {0.5, 5.0, 50.0, 500.0})
     for (const double step : {1e-4, 3e-4, 1e-3})
       for (const int at : {1, 4, 7, 10}) {
@@ -172,7 +173,7 @@ TEST_CASE("the same bits as the plain twin: kicks between the steps") {
   struct Case {
     double size; // rΩ
     int every;
-    double rare; // of every 17th step, in its stead
+    double rare; // instead, in every 17th step
   };
   for (const Case& c :
        {Case{1e-3, 1, 1e-3}, Case{0.1, 1, 0.1}, Case{0.3, 3, 0.3}, Case{1e-6, 1, 3.0}, Case{1e-9, 1, 200.0}})
@@ -203,12 +204,12 @@ TEST_CASE("the same bits as the plain twin: kicks between the steps") {
 }
 
 TEST_CASE("the same bits as the plain twin: boxes of a few radii, where two particles meet in several images") {
-  std::size_t collisions = 0, images = 0, both = 0; // with an image; two images of one pair in one step
+  std::size_t collisions = 0, images = 0, both = 0; // through an image; through two images of one pair in one step
   for (const double side : {2.2, 2.6, 3.2, 4.0, 5.0, 7.0})
     for (const double step : {1e-4, 1e-3, 1e-2, 5e-2})
       for (const double speed : {1.0, 20.0}) {
         test::RandomVectors random(static_cast<std::uint64_t>(10 * side));
-        std::vector<test::Sphere> spheres; // one above the other, three diameters of a layer
+        std::vector<test::Sphere> spheres; // one above the other, layers of three diameters
         for (int k = 0; k < 4; ++k)
           spheres.push_back({{0.4 * side * (random.uniform() - 0.5), side * (random.uniform() - 0.5), 2.1 * (k - 1.5)},
                              speed * random.direction()});
@@ -246,7 +247,7 @@ TEST_CASE("the same bits as the plain twin: a thousand particles on 1, 2, 3 and 
   set_threads(before);
 }
 
-// Simulation with gravity: the kicks are done again here from the accelerations that it publishes.
+// Simulation with gravity: the kicks are repeated here from the accelerations that it publishes.
 TEST_CASE("the same bits as the plain twin: a run with self-gravity, kicks every step and every third step") {
   for (const int every : {1, 3}) {
     CAPTURE(every);

@@ -1,5 +1,5 @@
-// The neighbour lists step by step, against all pairs through all images: particles that drift, are hit, kicked,
-// carried off and change their places in the store. By their exact test the lists must visit the same pairs, each once.
+// The neighbour lists step by step against all pairs through all images, while particles drift, are hit, kicked, moved
+// elsewhere, and reordered in the store. With the exact test the lists must visit exactly these pairs, each once.
 #include "neighbours/neighbour_lists.hpp"
 
 #include "unit/collision/listed_patch.hpp"
@@ -21,42 +21,42 @@ namespace neighbour_lists_test {
 using namespace keeler;
 using namespace keeler::test;
 
-TEST_CASE("at every step, and after every hit, the lists visit whoever may touch, each pair once") {
+TEST_CASE("at every step and after every hit the lists visit each pair that may touch once") {
   const Setting settings[] = {
       {},                                                                                  // dense and warm
-      {.hits = 1.0, .kick_each = 1},                                                       // at rest never
-      {.heat = 0.1, .step = 0.005, .hits = 0.02},                                          // lists live long
+      {.hits = 1.0, .kick_each = 1},                                                       // kicked at every step
+      {.heat = 0.1, .step = 0.005, .hits = 0.02},                                          // long lifetimes
       {.heat = 0.1, .step = 0.005, .hits = 0.05, .kick_each = 5},                          //
       {.count = 400, .ratio = 10.0, .heat = 0.3, .hits = 0.1, .kick_each = 3},             //
-      {.count = 400, .depth = 0.1, .ratio = 10.0, .heat = 3.0, .step = 0.03, .hits = 0.0}, // nothing but paths
-      {.depth = 1.0, .heat = 0.1, .step = 0.004, .hits = 0.01, .speed = 30.0}, // who is hit leaves its slack in time
-      {.depth = 1.0, .heat = 0.1, .step = 0.02, .hits = 0.02, .speed = 30.0},  // within the step
+      {.count = 400, .depth = 0.1, .ratio = 10.0, .heat = 3.0, .step = 0.03, .hits = 0.0}, // no hits
+      {.depth = 1.0, .heat = 0.1, .step = 0.004, .hits = 0.01, .speed = 30.0}, // a hit particle leaves its skin later
+      {.depth = 1.0, .heat = 0.1, .step = 0.02, .hits = 0.02, .speed = 30.0},  // or within the step
       {.depth = 0.2, .heat = 0.5, .step = 0.1, .elongation = 2.0, .frequencies = {0.8, 2.5}},
       {.count = 300, .depth = 0.5, .heat = 0.05, .step = 0.01, .elongation = 0.3, .hits = 0.3},
   };
   Seen seen;
-  std::uint64_t built = 0, anew = 0;
+  std::uint64_t rebuilds = 0, renewed = 0;
   for (std::size_t s = 0; s < std::size(settings); ++s)
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
       CAPTURE(s);
       CAPTURE(seed);
       ListedPatch patch(settings[s], seed);
       drift(patch, 48, seen);
-      built += patch.lists.built;
-      anew += patch.lists.listed_anew;
+      rebuilds += patch.lists.counts().rebuilds;
+      renewed += patch.lists.counts().renewed;
     }
   MESSAGE(seen.pairs << " pairs at begins (" << seen.more << " not exactly) and " << seen.partners << " partners in "
-                     << seen.steps << " steps; " << built << " times built, " << anew << " listed anew");
+                     << seen.steps << " steps; " << rebuilds << " rebuilds, " << renewed << " lists renewed");
   CHECK(seen.pairs > 80000);
   CHECK(seen.partners > 20000);
-  CHECK(built < seen.steps / 3);
-  CHECK(anew > 1200);
+  CHECK(rebuilds < seen.steps / 3);
+  CHECK(renewed > 1200);
 }
 
 namespace {
 
-// What may happen to a patch besides drift, hits and kicks, for each of which nothing need be as it was.
-void change_places(ListedPatch& patch, std::size_t swaps) {
+// Changes of a patch besides drift, hits and kicks; after each one the step is not undisturbed.
+void reorder(ListedPatch& patch, std::size_t swaps) {
   for (std::size_t k = 0; k < swaps; ++k) {
     const std::size_t a = patch.below(patch.particles.size()), b = patch.below(patch.particles.size());
     std::swap(patch.particles.bodies[a], patch.particles.bodies[b]);
@@ -64,7 +64,7 @@ void change_places(ListedPatch& patch, std::size_t swaps) {
   }
 }
 
-void carry_off(ListedPatch& patch, std::size_t number) {
+void move_elsewhere(ListedPatch& patch, std::size_t number) {
   for (std::size_t k = 0; k < number; ++k) {
     Elements& el = patch.particles.bodies[patch.below(patch.particles.size())].elements;
     el.guiding_x = patch.centred(patch.box.size_x);
@@ -77,7 +77,7 @@ void grow(ListedPatch& patch, std::size_t number) {
     patch.particles.bodies[patch.below(patch.particles.size())].radius *= 1.7;
 }
 
-// Some come and some go.
+// Adds particles, or removes some.
 void replace_some(ListedPatch& patch, std::size_t number) {
   Particles& particles = patch.particles;
   for (std::size_t k = 0; k < number; ++k)
@@ -93,9 +93,9 @@ void replace_some(ListedPatch& patch, std::size_t number) {
 
 } // namespace
 
-TEST_CASE("who is carried off, grows, changes places, comes or goes between steps is found all the same") {
+TEST_CASE("particles that are moved, grow, are reordered, added or removed between steps are found") {
   Seen seen;
-  std::uint64_t built = 0, anew = 0;
+  std::uint64_t rebuilds = 0, renewed = 0;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     CAPTURE(seed);
     ListedPatch patch({.count = 200, .ratio = seed % 2 ? 1.0 : 10.0, .heat = 0.3, .step = 0.01, .hits = 0.05}, seed);
@@ -105,10 +105,10 @@ TEST_CASE("who is carried off, grows, changes places, comes or goes between step
       const std::size_t number = patch.below(4) ? 1 + patch.below(3) : 300; // a few, or nearly all
       switch (patch.below(5)) {
       case 0:
-        change_places(patch, number);
+        reorder(patch, number);
         break;
       case 1:
-        carry_off(patch, number);
+        move_elsewhere(patch, number);
         break;
       case 2:
         grow(patch, std::min<std::size_t>(number, 3));
@@ -121,49 +121,49 @@ TEST_CASE("who is carried off, grows, changes places, comes or goes between step
       }
       patch.undisturbed = false;
     }
-    built += patch.lists.built;
-    anew += patch.lists.listed_anew;
+    rebuilds += patch.lists.counts().rebuilds;
+    renewed += patch.lists.counts().renewed;
   }
-  MESSAGE(seen.steps << " steps, " << built << " times built, " << anew << " listed anew");
+  MESSAGE(seen.steps << " steps, " << rebuilds << " rebuilds, " << renewed << " lists renewed");
   CHECK(seen.pairs > 10000);
-  CHECK(built < seen.steps * 3 / 4);
-  CHECK(anew > 300);
+  CHECK(rebuilds < seen.steps * 3 / 4);
+  CHECK(renewed > 300);
 }
 
-TEST_CASE("a hit that changes nothing lists nobody anew, at an edge of the box neither") {
+TEST_CASE("a hit that changes nothing rebuilds no list, also at an edge of the box") {
   ListedPatch patch({.count = 200, .heat = 0.5, .step = 0.01, .hits = 0.0}, 1);
   Seen seen;
   for (int step = 0; step < 40; ++step) {
     drift(patch, 1, seen);
     REQUIRE(patch.begin());
-    const std::uint64_t before = patch.lists.listed_anew;
+    const std::uint64_t before = patch.lists.counts().renewed;
     for (std::size_t i = 0; i < patch.particles.size(); ++i)
       patch.hit(i, patch.centred(patch.setting.step), 0.0);
-    CHECK(patch.lists.listed_anew == before);
-    std::vector<std::uint32_t> touched(patch.particles.size());
-    std::iota(touched.begin(), touched.end(), 0u);
-    patch.lists.touched(touched);
+    CHECK(patch.lists.counts().renewed == before);
+    std::vector<std::uint32_t> hit(patch.particles.size());
+    std::iota(hit.begin(), hit.end(), 0u);
+    patch.lists.mark_dirty(hit);
     patch.move_on();
   }
 }
 
-TEST_CASE("when particles go, so does what was known of their next steps") {
+TEST_CASE("when particles are removed, so is what was noted about their next steps") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
     ListedPatch patch({.count = 200, .heat = 0.01, .step = 0.005, .hits = 0.0}, seed);
     Seen seen;
-    drift(patch, 9, seen); // windows are several steps long
+    drift(patch, 9, seen); // pruning intervals have several steps
     REQUIRE(patch.begin());
     const std::uint32_t last[] = {199};
-    patch.hit(last[0], 0.0, 50.0); // leaves its slack some steps later
-    patch.lists.touched(last);
+    patch.hit(last[0], 0.0, 50.0); // leaves its skin some steps later
+    patch.lists.mark_dirty(last);
     patch.move_on();
     patch.particles.bodies.resize(100);
     patch.particles.ids.resize(100);
     patch.undisturbed = false;
-    const std::uint64_t before = patch.lists.listed_anew;
+    const std::uint64_t before = patch.lists.counts().renewed;
     drift(patch, 3, seen);
-    CHECK(patch.lists.listed_anew == before);
+    CHECK(patch.lists.counts().renewed == before);
   }
 }
 
@@ -197,14 +197,14 @@ TEST_CASE("thousands of particles have the same lists and pairs for any number o
           kick_all(*patch);
       }
     }
-    CHECK(one.lists.built == three.lists.built);
-    CHECK(one.lists.listed_anew == three.lists.listed_anew);
+    CHECK(one.lists.counts().rebuilds == three.lists.counts().rebuilds);
+    CHECK(one.lists.counts().renewed == three.lists.counts().renewed);
   }
   set_threads(before);
   CHECK(pairs > 20000);
 }
 
-TEST_CASE("when a hit makes somebody so fast that it may meet others through several images, all are looked through") {
+TEST_CASE("a particle so fast that it may meet others through several images is searched through all images") {
   ListedPatch patch({.count = 120, .step = 0.05, .hits = 0.1}, 1);
   Seen seen;
   drift(patch, 3, seen);
@@ -223,24 +223,24 @@ TEST_CASE("when a hit makes somebody so fast that it may meet others through sev
   }
   CHECK(partners > 20);
   CHECK(through_several > 0);
-  const std::uint32_t touched[] = {7};
-  patch.lists.touched(touched);
+  const std::uint32_t hit[] = {7};
+  patch.lists.mark_dirty(hit);
   patch.move_on();
-  CHECK_FALSE(patch.begin()); // nor do the lists serve in the next step
+  CHECK_FALSE(patch.begin()); // the lists are not valid in the next step either
   patch.change_velocity(7, -patch.half(), -0.9999 * patch.state_velocity(7));
   patch.undisturbed = false;
   REQUIRE(patch.begin());
   check_begin(patch, seen);
 }
 
-TEST_CASE("when a hit makes somebody too fast for the life of the lists, all are made anew for the step alone") {
+TEST_CASE("when a particle gets too fast for the lifetime of the lists, all are rebuilt for the step alone") {
   ListedPatch patch({.count = 400, .step = 0.05, .hits = 0.1}, 1);
   Seen seen;
   drift(patch, 3, seen);
   REQUIRE(patch.begin());
-  const std::uint64_t built = patch.lists.built;
+  const std::uint64_t rebuilds = patch.lists.counts().rebuilds;
   patch.hit(7, 0.0, 0.1 * patch.box.size_x / patch.setting.step);
-  CHECK(patch.lists.built == built + 1);
+  CHECK(patch.lists.counts().rebuilds == rebuilds + 1);
   REQUIRE_FALSE(patch.lists.reaches_far());
   std::size_t partners = 0;
   for (std::size_t i = 0; i < patch.particles.size(); ++i) {
@@ -249,15 +249,15 @@ TEST_CASE("when a hit makes somebody too fast for the life of the lists, all are
     partners += expected.size();
   }
   CHECK(partners > 20);
-  const std::uint32_t touched[] = {7};
-  patch.lists.touched(touched);
+  const std::uint32_t hit[] = {7};
+  patch.lists.mark_dirty(hit);
   patch.move_on();
-  REQUIRE(patch.begin()); // with a shorter life
-  CHECK(patch.lists.built == built + 2);
+  REQUIRE(patch.begin()); // with a shorter lifetime
+  CHECK(patch.lists.counts().rebuilds == rebuilds + 2);
   drift(patch, 10, seen);
 }
 
-TEST_CASE("in a box so large that places are rounded by more than the slack, neighbours are found") {
+TEST_CASE("in a box so large that positions are rounded by more than the skin, neighbours are found") {
   ListedPatch patch({.count = 60, .depth = 2e-16, .hits = 0.2}, 1);
   for (Body& body : patch.particles.bodies) { // a clump
     body.elements.guiding_x = patch.centred(20.0);
@@ -268,7 +268,7 @@ TEST_CASE("in a box so large that places are rounded by more than the slack, nei
   CHECK(seen.pairs > 200);
 }
 
-TEST_CASE("elements that are not finite are told, when the lists are made and later") {
+TEST_CASE("elements that are not finite are refused, when the lists are built and later") {
   for (const int steps : {0, 1, 3}) {
     ListedPatch patch({.count = 100}, 1);
     Seen seen;
@@ -279,7 +279,7 @@ TEST_CASE("elements that are not finite are told, when the lists are made and la
   }
 }
 
-TEST_CASE("of nobody, and of one particle, there are no pairs") {
+TEST_CASE("no particle, or a single one, has no pairs") {
   for (const std::size_t count : {0, 1}) {
     ListedPatch patch({.count = 100}, 1);
     patch.particles.bodies.resize(count);
@@ -289,7 +289,7 @@ TEST_CASE("of nobody, and of one particle, there are no pairs") {
       CHECK(patch.visited(patch.lists).empty());
       for (std::size_t i = 0; i < count; ++i)
         CHECK(patch.visited_partners(i, 0.0).empty());
-      patch.lists.touched({});
+      patch.lists.mark_dirty({});
       patch.move_on();
     }
   }
