@@ -31,7 +31,7 @@ void time_calls(const DriftBenchSettings& settings, const Scene& scene, const Si
 
 struct Everything final : DriftObserver {
   bool wants_every_candidate() const override { return true; }
-  bool looks_on() const override { return false; }
+  bool wants_events() const override { return false; }
 };
 
 } // namespace

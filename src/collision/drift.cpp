@@ -22,8 +22,8 @@ DriftPhase::~DriftPhase() = default;
 DriftPhase::DriftPhase(DriftPhase&& other) noexcept = default;
 DriftPhase& DriftPhase::operator=(DriftPhase&& other) noexcept = default;
 
-void DriftPhase::set_pace(double step, double kick_pull, double rest_pull) {
-  engine_->set_pace(step, kick_pull, rest_pull);
+void DriftPhase::set_step(double step, double kick_pull, double rest_pull) {
+  engine_->set_step(step, kick_pull, rest_pull);
 }
 
 std::span<const SlowPair> DriftPhase::slow_pairs() const {

@@ -111,7 +111,7 @@ private:
   std::optional<Series> moonlets_;        // the same; only where the scene has some
   std::optional<ContactLog> contact_log_; // the first rank's, to which the others give theirs
   struct ForFirst final : DriftObserver {
-    bool looks_on() const override { return false; }
+    bool wants_events() const override { return false; }
     bool wants_records() const override { return true; }
   } for_first_;
   std::int64_t sound_step_ = -1; // whose state was sound

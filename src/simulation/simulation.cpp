@@ -119,7 +119,7 @@ void Simulation::decide_when_due() {
 void Simulation::set_pace() {
   const bool pairs = scene_.gravity && scene_.gravity->by_pairs();
   const double pull = pairs ? newton_g(scene_.planet.orbital_frequency) * kick_interval() : 0.0;
-  drift_.set_pace(state_.step_length, pull, carries() ? state_.resting.looked_at() * pull : 0.0);
+  drift_.set_step(state_.step_length, pull, carries() ? state_.resting.looked_at() * pull : 0.0);
 }
 
 // Before any order in memory changes.

@@ -13,7 +13,7 @@ namespace {
 
 struct Domains final : DriftObserver {
   explicit Domains(std::size_t how_many) : count(how_many) {}
-  bool looks_on() const override { return false; }
+  bool wants_events() const override { return false; }
   std::size_t wants_domains() const override { return count; }
   bool wants_records() const override { return true; }
   void recorded(std::span<const CollisionRecord> of_step) override {

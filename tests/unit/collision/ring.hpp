@@ -15,7 +15,7 @@ namespace keeler::test {
 
 /// Several threads share the contacts, few as they may be.
 struct InDomains final : DriftObserver {
-  bool looks_on() const override { return false; }
+  bool wants_events() const override { return false; }
   std::size_t wants_domains() const override { return static_cast<std::size_t>(threads()); }
 };
 

@@ -17,7 +17,7 @@ struct Recorder : DriftObserver {
 /// The records of the last step, carried out in domains.
 struct Taker : DriftObserver {
   std::vector<CollisionRecord> records;
-  bool looks_on() const override { return false; }
+  bool wants_events() const override { return false; }
   bool wants_records() const override { return true; }
   std::size_t wants_domains() const override { return static_cast<std::size_t>(threads()); }
   void recorded(std::span<const CollisionRecord> of_step) override { records.assign(of_step.begin(), of_step.end()); }
