@@ -1,7 +1,7 @@
 // The velocity changes of a parallel step: the path that each one ended, so that it can be rolled back.
 //
 // Invariants: changes of a particle follow each other in time; newest() is the particle's last change; changes 2k and
-// 2k + 1 of a domain are those of its contact k.
+// 2k + 1 of a domain belong to its contact k.
 #pragma once
 
 #include "domain_cut.hpp"

@@ -24,41 +24,43 @@
 
 namespace keeler {
 
-/// Stands for the visitors of OrbitStore::visit_partners in the concept.
+/// A visitor for the concept's check of visit_partners().
 struct PartnerVisitor {
   void operator()(std::size_t, const Image&) const {}
 };
 
-/// The present orbits of the particles, by index, and what one loop may do to them:
-///   body(i), event_count(i), last_change(i)   the present orbit, the number of changes that led to it, and its begin
-///   is_due(event)                 true if the event is valid and this loop's to carry out
-///   add(contact), add(record)     note a contact, before its changes; records only if StepContext::recorded()
-///   change(i, elements, time)     gives i a new orbit from `time` on; set_spin(i, spin) follows for a rough particle
-///   commit(event)                 after both changes: false if they were undone, for another loop to carry out
-///   reinstated()                  particles that commit() gave an earlier orbit back
-///   visit_partners(i, from, until, visit)   calls visit(j, image of j) for a superset of the contacts of i in that
-///   time may_repredict(i)              true if i has so many neighbours that a shorter prediction pays
-///   find_all(queries, results)    asks the finder
-///   prefetch_partner(i)           i is about to be asked about
-///   prefetch(i, stage)            a contact of i is about to come: stages 0, 1 and 2, some contacts apart
+/// The present orbits of the particles, by index, and what one loop may do to them.
 template<class Store>
 concept OrbitStore = requires(Store& orbits, std::uint32_t i, double time, const Event& event, const Elements& elements,
                               const Vec3& spin, const Contact& contact, const CollisionRecord& record,
                               std::span<const Query> queries, std::span<FinderResult> results,
                               const PartnerVisitor& visit) {
+  // the present orbit, the number of changes in the step that led to it, and the time of the last
   { orbits.body(i) } -> std::same_as<const Body&>;
   { orbits.event_count(i) } -> std::same_as<std::uint32_t>;
   { orbits.last_change(i) } -> std::same_as<double>;
+
+  // returns true if the event is valid and this loop's to carry out
   { orbits.is_due(event) } -> std::same_as<bool>;
+  // note a contact before its changes; a record only if StepContext::recorded()
   { orbits.add(contact) } -> std::same_as<void>;
   { orbits.add(record) } -> std::same_as<void>;
+  // gives i a new orbit from `time` on; set_spin() follows for a rough particle
   { orbits.change(i, elements, time) } -> std::same_as<void>;
   { orbits.set_spin(i, spin) } -> std::same_as<void>;
+  // after both changes: returns false if they were undone, for another loop to carry out
   { orbits.commit(event) } -> std::same_as<bool>;
+  // returns the particles that commit() gave an earlier orbit back
   { orbits.reinstated() } -> std::convertible_to<std::span<const std::uint32_t>>;
+
+  // calls visit(j, image of j) for all that i may touch between two times, and possibly more
   { orbits.visit_partners(i, time, time, visit) } -> std::same_as<void>;
+  // returns true if i has so many neighbours that a shorter prediction pays
   { orbits.may_repredict(i) } -> std::same_as<bool>;
+  // asks the finder
   { orbits.find_all(queries, results) } -> std::same_as<void>;
+
+  // the finder is about to be asked about i; a contact of i comes soon (stages 0, 1 and 2, some contacts apart)
   { orbits.prefetch_partner(std::size_t{i}) } -> std::same_as<void>;
   { orbits.prefetch(std::size_t{i}, 0) } -> std::same_as<void>;
 };

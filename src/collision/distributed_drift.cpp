@@ -31,7 +31,7 @@
 namespace keeler {
 namespace {
 
-/// What an owner reports of a path: the ghost (its number among those on a rank), when it changed, and to what.
+/// What an owner reports of a path: the ghost (numbered among all ghosts of a rank), when it changed, and to what.
 struct PathReport {
   std::uint64_t ghost;
   double time;

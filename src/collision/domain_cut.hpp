@@ -1,5 +1,5 @@
-// How a parallel step divides the box: each round of domains cuts it into strips across the orbit, the second round
-// through the middles of the strips of the first; the domain of the last round is the whole box.
+// The division of the box in a parallel step: each round of domains cuts it into strips across the orbit, the second
+// round through the middles of the strips of the first; the domain of the last round is the whole box.
 //
 // Invariants: edges are sorted, two for each strip; in each round every position belongs to exactly one domain.
 #pragma once
@@ -16,7 +16,7 @@ namespace keeler {
 class DomainCut {
 public:
   static constexpr std::size_t rounds = 3;
-  /// Largest number of domains in a round: those of all rounds are numbered in one byte.
+  /// Largest number of domains per round: all rounds together are numbered in one byte.
   static constexpr std::size_t max_domains = 127;
 
   struct Strip {

@@ -38,7 +38,8 @@ struct alignas(64) OptimisticDomain { // no two threads write to one cache line
   std::size_t bytes() const;
 };
 
-/// What all domains of a step work on. A domain writes only to its own entries and to those of its own particles.
+/// What all domains of a step work on. A domain writes only to its own entries and to entries of particles that it
+/// owns.
 struct OptimisticState {
   DomainCut cut;
   ChangeLog log;

@@ -1,6 +1,6 @@
 // The velocity changes of each particle in the current step: how many, and when the last one was. The number is the
-// collision counter of event-driven codes (Lubachevsky 1991): an event is valid while both counters are those that it
-// was predicted with.
+// collision counter of event-driven codes (Lubachevsky 1991): an event is valid while both counters are as at its
+// prediction.
 #pragma once
 
 #include <keeler/collision/events.hpp>

@@ -1,4 +1,4 @@
-// What the contacts of one step did: sums, records and lists that the next step begins anew.
+// What the contacts of one step did: sums, records and lists, cleared when the next step begins.
 #pragma once
 
 #include "contact.hpp"

@@ -13,7 +13,7 @@
 namespace keeler {
 
 /// A predicted contact, or, if both particles are one, its re-prediction. Valid while neither particle has changed its
-/// velocity since: while both event counts (velocity changes in the step) are those of the prediction.
+/// velocity since: while both event counts (velocity changes in the step) are as at the prediction.
 struct Event {
   double time = 0.0; ///< relative to the epoch, rad
   std::uint64_t low_id = 0, high_id = 0;

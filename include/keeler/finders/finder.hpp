@@ -127,17 +127,18 @@ concept RejectsPairs = requires(const Query& query, const Body& body, const Drif
   { Motion::surely_apart(query, body, body, step) } -> std::same_as<bool>;
 };
 
-/// The relative path of two particles: made from the pair, the step and, where it keeps them, the memories of both;
-/// then at(time) is one evaluation. It may have at_start(), the separation at pair.start from what it keeps, without an
-/// evaluation, where possible.
+/// A motion that is made from a pair, the step and, if it keeps them, the memories of both particles.
 template<class Motion>
-concept MotionModel = requires(Motion& motion, double time) {
+concept MadeFromPair = std::constructible_from<Motion, const Pair&, const DriftStep&> ||
+    (RemembersParticles<Motion>&& std::constructible_from<
+        Motion, const Pair&, const DriftStep&, const typename Motion::Memory&, const typename Motion::Memory&>);
+
+/// The relative path of two particles; at(time) is one evaluation. It may also have at_start(), an optional separation
+/// at pair.start from what it keeps, without an evaluation.
+template<class Motion>
+concept MotionModel = MadeFromPair<Motion> && requires(Motion& motion, double time) {
   { motion.at(time) } -> std::same_as<Separation>;
-}
-&&(std::constructible_from<Motion, const Pair&, const DriftStep&> ||
-   (RemembersParticles<Motion> &&
-    std::constructible_from<Motion, const Pair&, const DriftStep&, const typename Motion::Memory&,
-                            const typename Motion::Memory&>));
+};
 
 /// The way from guesses to the first contact. A search that never errs and never gives up also has
 /// `static constexpr bool exact = true`.
