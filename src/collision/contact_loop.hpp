@@ -123,6 +123,7 @@ private:
   }
 
   Event event_of(const Query& query, double time, const Partner& p) const {
+    assert(time >= query.start && time < step_.end());
     const std::vector<std::uint64_t>& ids = step_.particles.ids;
     return {time,
             ids[query.low],
@@ -152,6 +153,7 @@ private:
 
   // Carries out a contact: the impulse along the line of centres turns the normal approach speed into the rebound's.
   void carry_out(const Event& event) {
+    assert(step_.particles.ids[event.low] < step_.particles.ids[event.high]);
     const Frequencies& f = step_.frequencies;
     Body a = orbits_.body(event.low), b = orbits_.body(event.high);
     const Rotation rotation(f, event.time);

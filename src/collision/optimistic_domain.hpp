@@ -2,7 +2,7 @@
 #pragma once
 
 #include "change_log.hpp"
-#include "contact_log.hpp"
+#include "domain_contacts.hpp"
 #include "domain_cut.hpp"
 #include "neighbours/neighbour_lists.hpp"
 #include "particle_locks.hpp"
@@ -26,7 +26,7 @@ struct alignas(64) OptimisticDomain { // no two threads write to one cache line
   std::vector<Event> cross_domain;    // it owns the particle with the lower id; another domain owns the other
   std::vector<Event> deferred;        // left to the next round
   LockSchedule lock_schedule;
-  ContactLog contacts;
+  DomainContacts contacts;
   std::vector<NewPath> unresolved;  // paths that meet a path which the domain may not roll back
   std::vector<std::uint32_t> dirty; // particles that changed for the first time here
   EventQueue events;

@@ -130,7 +130,7 @@ bool OptimisticLoop::merge_contacts(const Particles& particles) {
   std::vector<std::size_t> next(domains);
   std::vector<double> times; // of the next contacts
   const auto advance_to = [&](std::size_t d, std::size_t contact) {
-    const ContactLog& log = state_.domains[d].contacts;
+    const DomainContacts& log = state_.domains[d].contacts;
     next[d] = log.next_valid(contact);
     return next[d] < log.size() ? log[next[d]].time : HUGE_VAL;
   };

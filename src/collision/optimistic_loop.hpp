@@ -88,7 +88,7 @@ private:
 
 template<class Visit> void OptimisticLoop::visit_contacts(const Visit& visit) const {
   for (const auto& [domain, contact] : order_) {
-    const ContactLog& log = state_.domains[domain].contacts;
+    const DomainContacts& log = state_.domains[domain].contacts;
     visit(log[contact], log.record(contact));
   }
 }

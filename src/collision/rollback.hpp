@@ -76,7 +76,7 @@ private:
     to_undo_.assign(1, number);
     while (!to_undo_.empty()) {
       const ChangeNumber last = to_undo_.back(), partner = ChangeLog::partner_of(last);
-      ContactLog& contacts = state_.domains[ChangeLog::domain_of(last)].contacts;
+      DomainContacts& contacts = state_.domains[ChangeLog::domain_of(last)].contacts;
       const std::size_t contact = ChangeLog::contact_of(last);
       if (contacts.is_rolled_back(contact)) {
         to_undo_.pop_back();

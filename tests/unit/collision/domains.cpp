@@ -1,6 +1,6 @@
 // The parts of the parallel contact loop by themselves: cuts of the box, locks, and the logs of changes and contacts.
 #include "change_log.hpp"
-#include "contact_log.hpp"
+#include "domain_contacts.hpp"
 #include "domain_cut.hpp"
 #include "particle_locks.hpp"
 
@@ -114,8 +114,8 @@ TEST_CASE("a domain sets scheduled locks once, in the order of time, and release
     CHECK_FALSE(all.is_locked(i));
 }
 
-TEST_CASE("a contact log skips contacts that were rolled back") {
-  ContactLog log;
+TEST_CASE("the contacts of a domain: the ones that were rolled back are skipped") {
+  DomainContacts log;
   for (int k = 0; k < 5; ++k) {
     log.add(Contact{.time = 0.1 * k});
     log.add(CollisionRecord{.time = 0.1 * k, .low_id = 0, .high_id = 1, .image = {}, .normal_speed = 1, .fast = true});

@@ -15,7 +15,7 @@
 
 namespace keeler {
 
-class ContactLog {
+class DomainContacts {
 public:
   void clear() {
     contacts_.clear();
