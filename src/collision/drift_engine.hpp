@@ -15,7 +15,9 @@
 #include <keeler/comm/communicator.hpp>
 #include <keeler/decomposition/borders.hpp>
 
+#include <algorithm>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace keeler {

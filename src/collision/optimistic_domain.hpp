@@ -9,6 +9,7 @@
 
 #include <keeler/collision/events.hpp>
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <vector>

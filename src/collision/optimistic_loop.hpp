@@ -27,6 +27,7 @@
 #include "optimistic_domain.hpp"
 #include "step_context.hpp"
 
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>

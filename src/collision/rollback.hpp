@@ -9,7 +9,6 @@
 #include "step_context.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
