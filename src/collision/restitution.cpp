@@ -78,7 +78,6 @@ void add_own_restitution(const std::string& name, const RestitutionLaw& law) {
 }
 
 RestitutionLaw constant_restitution(double coefficient) {
-  assert(coefficient >= 0.0 && coefficient <= 1.0);
   return [coefficient](const Impact&) { return coefficient; };
 }
 

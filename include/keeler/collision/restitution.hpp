@@ -18,7 +18,7 @@ struct Impact {
 /// Returns the coefficient of normal restitution, in [0, 1], of an impact. Called from several threads at once.
 using RestitutionLaw = std::function<double(const Impact&)>;
 
-/// A constant coefficient, in [0, 1].
+/// A constant coefficient.
 RestitutionLaw constant_restitution(double coefficient);
 
 /// min(1, c (v / 1 cm s⁻¹)^−0.234), c > 0: frosty ice (Bridges et al. 1984; c is 0.34 there and 0.32 in other codes).
