@@ -33,7 +33,7 @@ void time_calls(const DriftBenchSettings& settings, const Scene& scene, const Si
 // Makes the drift pass every candidate pair to the finder.
 struct Everything final : DriftObserver {
   bool wants_every_candidate() const override { return true; }
-  bool looks_on() const override { return false; }
+  bool wants_events() const override { return false; }
 };
 
 } // namespace

@@ -1,5 +1,5 @@
-// Accelerations of the drift that a build with KEELER_ABLATION can do without, so that what each gains can be measured:
-// scripts/ablation. Any other build has all of them, and no trace of the question.
+// Accelerations of the drift that a build with KEELER_ABLATION can switch off, to measure the gain of each:
+// scripts/ablation. In any other build all are compile-time constants.
 #pragma once
 
 #ifdef KEELER_ABLATION
@@ -12,24 +12,24 @@
 namespace keeler {
 
 enum class Acceleration {
-  lists,      ///< neighbour lists live for more than a step
-  mending,    ///< who leaves its slack is listed anew alone
-  windows,    ///< near pairs serve for more than a step
-  simd,       ///< of the straight lines' tests
-  rejection,  ///< by straight lines, before the finder
-  newton,     ///< monotone, before the certified search
-  lanes,      ///< several pairs at a time in Newton's method
-  levels,     ///< of cells
-  groups,     ///< lines look around together when lists are made
-  presorting, ///< of the events known when a step begins
-  prefetching,
-  looks, ///< re-prediction events of large bodies
+  lists,         ///< neighbour lists that last more than a step
+  mending,       ///< rebuild of single lists, of particles that leave their skin
+  windows,       ///< pruned pairs that last more than a step
+  simd,          ///< kernels for straight lines
+  rejection,     ///< straight-line tests before the finder
+  newton,        ///< monotone Newton's method before the certified search
+  lanes,         ///< several pairs at a time in Newton's method
+  levels,        ///< levels of cells
+  groups,        ///< groups of lines in the making of lists
+  presorting,    ///< sorting of the events known when a step begins
+  prefetching,   ///< of the particles of coming events
+  repredictions, ///< re-prediction events of large bodies
   count_
 };
 
 #ifdef KEELER_ABLATION
 
-/// Those that the environment variable KEELER_WITHOUT names, with commas between.
+/// The accelerations that the environment variable KEELER_WITHOUT names, separated by commas.
 class LeftOut {
 public:
   LeftOut() {
@@ -61,7 +61,7 @@ inline bool without(Acceleration which) {
 
 #else
 
-/// Whether to do without it.
+/// True if the acceleration is switched off.
 constexpr bool without(Acceleration) {
   return false;
 }

@@ -1,116 +1,79 @@
-// The heart of a drift: take the earliest contact, give both particles their new orbits, search again around both (the
-// pair itself included), and so on until the step ends. A particle may put off a part of its search: a look, an event
-// too.
+// The event loop of a drift: take the earliest contact, give both particles their new orbits, and predict the contacts
+// of both again (the pair itself included), until the step ends. A particle that is hit often may predict only a part
+// of the step; a re-prediction event then continues.
 //
-// Orbits is where the particles' present orbits are kept; a loop does not know whether it is the only one of a step. It
-// has
-//   const Body& body(place)      std::uint32_t stamp(place)      double last_change(place)      as they are now
-//   bool is_due(event)           whether it still holds, and is for this loop to carry out
-//   std::span<const std::uint32_t> to_search_again()       who has got back an earlier orbit because of that
-//   void change(place, elements, time)                                     a new orbit from that time on
-//   void set_spin(place, spin)                                             of a rough particle, after its change
-//   bool keeps(event)                      after both changes: false has undone it all, for somebody else to carry out
-//   void visit_partners(place, from, until, visit)         visit(place, image) for all that its orbit may bring into
-//                                     contact between these times, and more
-//   bool may_look_again(place)        whether there are so many around it that it is worth while to look less far
-//   void find_all(queries, results)
-//   void prefetch_partner(place)          it will be asked about soon
-//   void prefetch(place, stage)           a contact is to come: stages 0, 1 and 2, some contacts apart
-//   void happened(const Contact&)     right before the changes
-//   void record(const CollisionRecord&)     after it, where the step is recorded
+// The loop does not know whether it is the only one of the step: an OrbitStore holds the present orbits and decides
+// which events are the loop's to carry out.
 #pragma once
 
 #include "ablation.hpp"
+#include "contact.hpp"
+#include "step_context.hpp"
 
-#include <keeler/collision/drift.hpp>
 #include <keeler/collision/events.hpp>
-#include <keeler/collision/settings.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/interrupt.hpp>
-#include <keeler/finders/finder.hpp>
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cmath>
+#include <concepts>
+#include <span>
 #include <vector>
 
 namespace keeler {
 
-/// The step that loops work on; the same for all.
-struct StepAtHand {
-  const Particles* particles = nullptr;
-  const CollisionSettings* settings = nullptr;
-  Frequencies frequencies;
-  double orbital_frequency = 0.0; ///< rad/s
-  ShearingBox box;
-  double offset = 0.0;    ///< at the epoch, m
-  double begin = 0.0;     ///< rad
-  bool recorded = false;  ///< whether somebody wants to have each contact
-  double kick_pull = 0.0; ///< G times the kick interval, m³ kg⁻¹ rad⁻¹
-  double rest_pull = 0.0; ///< the same for contacts that are to be noted: DriftPhase::slow_pairs
+/// A visitor for the concept's check of visit_partners().
+struct PartnerVisitor {
+  void operator()(std::size_t, const Image&) const {}
 };
 
-/// What has happened to the particles in the step so far, by place.
-class StepSoFar {
+/// The present orbits of the particles, by index, and what one loop may do to them.
+template<class Store>
+concept OrbitStore = requires(Store& orbits, std::uint32_t i, double time, const Event& event, const Elements& elements,
+                              const Vec3& spin, const Contact& contact, const CollisionRecord& record,
+                              std::span<const Query> queries, std::span<FinderResult> results,
+                              const PartnerVisitor& visit) {
+  // the present orbit, the number of changes in the step that led to it, and the time of the last
+  { orbits.body(i) } -> std::same_as<const Body&>;
+  { orbits.event_count(i) } -> std::same_as<std::uint32_t>;
+  { orbits.last_change(i) } -> std::same_as<double>;
+
+  // returns true if the event is valid and this loop's to carry out
+  { orbits.is_due(event) } -> std::same_as<bool>;
+  // note a contact before its changes; a record only if StepContext::recorded()
+  { orbits.add(contact) } -> std::same_as<void>;
+  { orbits.add(record) } -> std::same_as<void>;
+  // gives i a new orbit from `time` on; set_spin() follows for a rough particle
+  { orbits.change(i, elements, time) } -> std::same_as<void>;
+  { orbits.set_spin(i, spin) } -> std::same_as<void>;
+  // after both changes: returns false if they were undone, for another loop to carry out
+  { orbits.commit(event) } -> std::same_as<bool>;
+  // returns the particles that commit() gave an earlier orbit back
+  { orbits.reinstated() } -> std::convertible_to<std::span<const std::uint32_t>>;
+
+  // calls visit(j, image of j) for all that i may touch between two times, and possibly more
+  { orbits.visit_partners(i, time, time, visit) } -> std::same_as<void>;
+  // returns true if i has so many neighbours that a shorter prediction pays
+  { orbits.may_repredict(i) } -> std::same_as<bool>;
+  // asks the finder
+  { orbits.find_all(queries, results) } -> std::same_as<void>;
+
+  // the finder is about to be asked about i; a contact of i comes soon (stages 0, 1 and 2, some contacts apart)
+  { orbits.prefetch_partner(std::size_t{i}) } -> std::same_as<void>;
+  { orbits.prefetch(std::size_t{i}, 0) } -> std::same_as<void>;
+};
+
+template<OrbitStore Orbits> class ContactLoop {
 public:
-  void begin_step(std::size_t particles, double begin) {
-    ++step_;
-    begin_ = begin;
-    if (entries_.size() != particles)
-      entries_.assign(particles, {});
-  }
-
-  /// Velocity changes.
-  std::uint32_t stamp(std::size_t i) const { return entries_[i].step == step_ ? entries_[i].stamp : 0; }
-  /// The last of them, or the begin of the step.
-  double last_change(std::size_t i) const { return entries_[i].step == step_ ? entries_[i].time : begin_; }
-  bool holds(const Event& event) const {
-    return event.low_stamp == stamp(event.low) && event.high_stamp == stamp(event.high);
-  }
-
-  void change(std::size_t i, double time) { entries_[i] = {time, step_, stamp(i) + 1}; }
-  /// The particle has an earlier path again, which began at that time.
-  void renew(std::size_t i, double time) { change(i, time); }
-  /// Undoes the last change, of which nobody knows; `time` is that of the one before.
-  void take_back(std::size_t i, double time) { entries_[i] = {time, step_, stamp(i) - 1}; }
-
-  void prefetch(std::size_t i) const { __builtin_prefetch(&entries_[i], 1); }
-  std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
-
-private:
-  struct Entry {
-    double time = 0.0;
-    std::uint32_t step = 0; // that the rest is of
-    std::uint32_t stamp = 0;
-  };
-  std::uint32_t step_ = 0;
-  double begin_ = 0.0;
-  std::vector<Entry> entries_;
-};
-
-/// What one contact did. Energies in kg m² rad⁻².
-struct Contact {
-  double time = 0.0;
-  double normal_speed = 0.0; ///< of the approach, m rad⁻¹
-  double energy_lost = 0.0;
-  double momentum_flux = 0.0;      ///< kg m² rad⁻¹
-  double azimuthal_gain = 0.0;     ///< of Σ m c_y², kg m² rad⁻²
-  bool fast = false;               ///< faster than v_cut
-  bool unresolved = false;         ///< slower than what a kick of the pair's own gravity gives
-  bool again = false;              ///< the last contact of both particles was with each other, in this step
-  float slow = 0.0F;               ///< of one that may come to rest: its speed in kicks of the pair's own gravity
-  std::uint32_t low = 0, high = 0; ///< places of the particles, the lower id first
-};
-
-template<class Orbits> class ContactLoop {
-public:
-  ContactLoop(const StepAtHand& step, Orbits& orbits, EventQueue& events)
+  ContactLoop(const StepContext& step, Orbits& orbits, EventQueue& events)
       : step_(step), orbits_(orbits), events_(events) {}
 
-  /// Until nothing is pending. Throws InvariantError when a search meets numbers that are not finite or a particle
-  /// collides more than 100,000 times; and Interrupted.
+  /// Carries out events until none is pending. Throws InvariantError when a search meets numbers that are not finite or
+  /// a particle collides more than 100,000 times; and Interrupted.
   void run() {
-    for (int stage = 0; stage < stages; ++stage) // of those that come before it is their turn in the loop
+    for (int stage = 0; stage < stages; ++stage) // events too early for the loop below to prefetch
       for (std::size_t soon = 0; soon <= events_ahead(stage); ++soon)
         prefetch(soon, stage);
     while (!events_.empty()) {
@@ -120,8 +83,9 @@ public:
       const Event event = events_.take_first();
       if (!orbits_.is_due(event))
         continue;
-      if (event.is_look()) {
-        look_around(event.low, event.time, nobody);
+      assert(event.time >= step_.begin && event.time < step_.end());
+      if (event.is_reprediction()) {
+        find_partners(event.low, event.time, no_particle);
         search();
       } else {
         carry_out(event);
@@ -129,59 +93,67 @@ public:
     }
   }
 
-  /// Those whose present orbits are earlier ones again.
-  void search_again(std::span<const std::uint32_t> particles) {
+  /// Predicts the contacts of particles that have got an earlier orbit back.
+  void predict_again(std::span<const std::uint32_t> particles) {
     for (const std::uint32_t i : particles)
-      look_around(i, orbits_.last_change(i), nobody);
+      find_partners(i, orbits_.last_change(i), no_particle);
     if (!particles.empty())
       search();
   }
 
-  /// Of one particle in one search so far.
+  /// Returns the largest number of partners that one particle had in one search so far.
   std::uint64_t max_partners() const { return max_partners_; }
 
 private:
-  static constexpr std::size_t nobody = ~std::size_t{0};
+  static constexpr std::size_t no_particle = ~std::size_t{0};
   static constexpr std::uint32_t max_collisions = 100000; // of one particle in one step: an event storm, not physics
 
-  /// Whom particle i may meet, through that image of it.
+  /// Particle i may touch this image of j.
   struct Partner {
     std::uint32_t i, j;
     Image image;
   };
 
-  // The lower id first; `image` is that of particle j.
+  // Returns the question to the finder, the lower id first; `image` is that of particle j.
   Query query_of(std::size_t i, std::size_t j, const Image& image) const {
-    const bool ordered = step_.particles->ids[i] < step_.particles->ids[j];
+    const bool ordered = step_.particles.ids[i] < step_.particles.ids[j];
     const Vec3 shift = step_.box.displacement(ordered ? image : -image, step_.offset);
     return {static_cast<std::uint32_t>(ordered ? i : j), static_cast<std::uint32_t>(ordered ? j : i), shift.x(),
             shift.y(), std::max(orbits_.last_change(i), orbits_.last_change(j))};
   }
 
   Event event_of(const Query& query, double time, const Partner& p) const {
-    const std::vector<std::uint64_t>& ids = step_.particles->ids;
-    return {time,      ids[query.low], ids[query.high],          query.low == p.i ? p.image : -p.image,
-            query.low, query.high,     orbits_.stamp(query.low), orbits_.stamp(query.high)};
+    assert(time >= query.start && time < step_.end());
+    const std::vector<std::uint64_t>& ids = step_.particles.ids;
+    return {time,
+            ids[query.low],
+            ids[query.high],
+            query.low == p.i ? p.image : -p.image,
+            query.low,
+            query.high,
+            orbits_.event_count(query.low),
+            orbits_.event_count(query.high)};
   }
 
-  static constexpr int stages = 3; // of fetching
+  static constexpr int stages = 3; // of prefetching
   static constexpr std::size_t events_ahead(int stage) { return 6 * static_cast<std::size_t>(stages - stage); }
 
   void prefetch(std::size_t ahead, int stage) const {
     const Event* soon = events_.ahead(ahead);
     if (!soon || without(Acceleration::prefetching))
       return;
-    for (const std::uint32_t place : {soon->low, soon->high}) {
+    for (const std::uint32_t i : {soon->low, soon->high}) {
       if (stage == 0) {
-        __builtin_prefetch(&step_.particles->bodies[place]);
-        __builtin_prefetch(&step_.particles->ids[place]);
+        __builtin_prefetch(&step_.particles.bodies[i]);
+        __builtin_prefetch(&step_.particles.ids[i]);
       }
-      orbits_.prefetch(place, stage);
+      orbits_.prefetch(i, stage);
     }
   }
 
-  // The impulse along the line of centres turns the normal approach speed into the rebound's.
+  // Carries out a contact: the impulse along the line of centres turns the normal approach speed into the rebound's.
   void carry_out(const Event& event) {
+    assert(step_.particles.ids[event.low] < step_.particles.ids[event.high]);
     const Frequencies& f = step_.frequencies;
     Body a = orbits_.body(event.low), b = orbits_.body(event.high);
     const Rotation rotation(f, event.time);
@@ -191,16 +163,16 @@ private:
     Contact contact;
     contact.time = event.time;
     const double speed = contact.normal_speed = -relative.velocity.dot(normal);
-    const Rebound after = rebound(*step_.settings, speed, a.radius, b.radius, step_.orbital_frequency);
+    const Rebound after = rebound(step_.settings, speed, a.radius, b.radius, step_.orbital_frequency);
     if (!(speed > -after.speed))
       return; // an inexact finder may call a pair that moves apart
-    const Vec3 place = step_.recorded ? place_of(a, normal, rotation) : Vec3::Zero();
+    const Vec3 point = step_.recorded() ? contact_point(a, normal, rotation) : Vec3::Zero();
     const double reduced_mass = a.mass * b.mass / (a.mass + b.mass);
     const double normal_impulse = reduced_mass * (speed + after.speed);
     Vec3 impulse = normal_impulse * normal; // on b; a gets the opposite
     Spins spins;
-    if (step_.settings->friction) {
-      const Sliding sliding = rub(event, {a, b, normal, relative.velocity, {}, {}}, normal_impulse, spins);
+    if (step_.settings.friction) {
+      const Sliding sliding = apply_friction(event, {a, b, normal, relative.velocity, {}, {}}, normal_impulse, spins);
       impulse += sliding.impulse;
       contact.energy_lost = sliding.energy_lost;
     }
@@ -216,75 +188,75 @@ private:
       contact.slow = static_cast<float>(speed * distance * distance / (step_.kick_pull * (a.mass + b.mass)));
     contact.low = event.low;
     contact.high = event.high;
-    contact.again = orbits_.last_change(event.low) > step_.begin &&
-                    orbits_.last_change(event.low) == orbits_.last_change(event.high);
+    contact.recontact = orbits_.last_change(event.low) > step_.begin &&
+                        orbits_.last_change(event.low) == orbits_.last_change(event.high);
     contact.energy_lost += 0.5 * reduced_mass * (speed * speed - after.speed * after.speed);
     contact.momentum_flux = relative.position.x() * impulse.y();
-    orbits_.happened(contact);
-    if (step_.recorded)
-      orbits_.record({.time = event.time,
-                      .low_id = event.low_id,
-                      .high_id = event.high_id,
-                      .image = event.image,
-                      .normal_speed = speed,
-                      .fast = contact.fast,
-                      .tangential_speed = (relative.velocity + speed * normal).norm(),
-                      .energy_lost = contact.energy_lost,
-                      .radius_sum = distance,
-                      .place = place});
+    orbits_.add(contact);
+    if (step_.recorded())
+      orbits_.add(CollisionRecord{.time = event.time,
+                                  .low_id = event.low_id,
+                                  .high_id = event.high_id,
+                                  .image = event.image,
+                                  .normal_speed = speed,
+                                  .fast = contact.fast,
+                                  .tangential_speed = (relative.velocity + speed * normal).norm(),
+                                  .energy_lost = contact.energy_lost,
+                                  .radius_sum = distance,
+                                  .contact_point = point});
 
     change(event.low, a.elements, event.time);
     change(event.high, b.elements, event.time);
-    if (step_.settings->friction) {
+    if (step_.settings.friction) {
       orbits_.set_spin(event.low, spins.low);
       orbits_.set_spin(event.high, spins.high);
     }
-    if (!orbits_.keeps(event))
+    if (!orbits_.commit(event))
       return;
-    look_around(event.low, event.time, nobody);
-    look_around(event.high, event.time, event.low); // the pair itself, in all its images, has been looked at
+    find_partners(event.low, event.time, no_particle);
+    find_partners(event.high, event.time, event.low); // the first call has found the pair itself, in all its images
     search();
-    search_again(orbits_.to_search_again());
+    predict_again(orbits_.reinstated());
   }
 
-  /// Of the two particles of a contact, at the epoch.
+  /// The spins of the two particles of a contact, at the epoch.
   struct Spins {
     Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   };
 
-  // Fills in the spins before the contact, and gives those after it.
-  Sliding rub(const Event& event, Touch touch, double normal_impulse, Spins& spins) const {
+  // Completes `touch` with the spins before the contact, and sets `spins` to the values after it.
+  Sliding apply_friction(const Event& event, Touch touch, double normal_impulse, Spins& spins) const {
     const SpinTurn turn(event.time);
-    spins = {step_.particles->spins[event.low], step_.particles->spins[event.high]};
+    spins = {step_.particles.spins[event.low], step_.particles.spins[event.high]};
     touch.spin_a = turn.from_epoch(spins.low);
     touch.spin_b = turn.from_epoch(spins.high);
-    const Sliding sliding = slide(*step_.settings->friction, touch, normal_impulse);
+    const Sliding sliding = slide(*step_.settings.friction, touch, normal_impulse);
     spins.low += turn.to_epoch(spin_change(touch.a, touch.normal, sliding.impulse));
     spins.high += turn.to_epoch(spin_change(touch.b, touch.normal, sliding.impulse));
     return sliding;
   }
 
-  // Where a touches b, to which the normal points.
-  Vec3 place_of(const Body& a, const Vec3& normal, const Rotation& rotation) const {
+  // Returns the point where a touches b; the normal points from a to b.
+  Vec3 contact_point(const Body& a, const Vec3& normal, const Rotation& rotation) const {
     return state_at(a.elements, step_.frequencies, rotation).position + a.radius * normal;
   }
 
   void change(std::uint32_t i, const Elements& elements, double time) {
-    if (orbits_.stamp(i) == max_collisions)
+    if (orbits_.event_count(i) == max_collisions)
       throw InvariantError(fmt::format(
           "particle {} collided more than {} times in one step (an event storm); raise collisions.elastic_below",
-          step_.particles->ids[i], max_collisions));
+          step_.particles.ids[i], max_collisions));
     const State then = state_at(elements, step_.frequencies, Rotation());
     if (!(then.position.allFinite() && then.velocity.allFinite()))
       throw InvariantError(
-          fmt::format("a collision left particle {} with elements that are not finite", step_.particles->ids[i]));
+          fmt::format("a collision left particle {} with elements that are not finite", step_.particles.ids[i]));
     orbits_.change(i, elements, time);
   }
 
-  // Whom the particle may meet from then on.
-  void look_around(std::uint32_t i, double from, std::size_t except) {
+  // Collects the partners that i may touch after `from`, without `except`, for the next search().
+  void find_partners(std::uint32_t i, double from, std::size_t except) {
     std::uint64_t partners = 0;
-    const double until = look_until(i, from);
+    const double until = prediction_end(i, from);
     orbits_.visit_partners(i, from, until, [&](std::size_t j, const Image& image) {
       ++partners;
       if (j == except)
@@ -292,29 +264,29 @@ private:
       partners_.push_back({i, static_cast<std::uint32_t>(j), image});
       if (without(Acceleration::prefetching))
         return;
-      __builtin_prefetch(&step_.particles->bodies[j]);
-      __builtin_prefetch(&step_.particles->ids[j]);
+      __builtin_prefetch(&step_.particles.bodies[j]);
+      __builtin_prefetch(&step_.particles.ids[j]);
       orbits_.prefetch_partner(j);
     });
     max_partners_ = std::max(max_partners_, partners);
-    if (until < -step_.begin) {
-      const std::uint64_t id = step_.particles->ids[i];
-      events_.add({until, id, id, {}, i, i, orbits_.stamp(i), orbits_.stamp(i)});
+    if (until < step_.end()) {
+      const std::uint64_t id = step_.particles.ids[i];
+      events_.add({until, id, id, {}, i, i, orbits_.event_count(i), orbits_.event_count(i)});
     }
   }
 
-  // A large body is hit so often that a search to the end of the step would be in vain but for its first part: it looks
-  // as far as it will probably not be hit, and then again.
-  double look_until(std::uint32_t i, double from) const {
-    constexpr double hits_ahead = 2.0, min_share = 1.0 / 256.0; // of the step
-    const double begin = step_.begin, end = -begin;
-    if (orbits_.stamp(i) < 2 || without(Acceleration::looks) || !orbits_.may_look_again(i))
+  // Returns how far ahead to predict. A large body is hit so often that most of a prediction to the end of the step
+  // would be in vain: it predicts about two of its mean intervals between hits, and then again.
+  double prediction_end(std::uint32_t i, double from) const {
+    constexpr double hits_ahead = 2.0, min_fraction = 1.0 / 256.0; // of the step
+    const double begin = step_.begin, end = step_.end();
+    if (orbits_.event_count(i) < 2 || without(Acceleration::repredictions) || !orbits_.may_repredict(i))
       return end;
-    const double ahead = hits_ahead * (from - begin) / orbits_.stamp(i);
-    return std::min(end, from + std::max(ahead, min_share * (end - begin)));
+    const double ahead = hits_ahead * (from - begin) / orbits_.event_count(i);
+    return std::min(end, from + std::max(ahead, min_fraction * (end - begin)));
   }
 
-  // Asks about all of them at once.
+  // Asks the finder about all collected partners at once, and queues the contacts found.
   void search() {
     queries_.clear();
     for (const Partner& p : partners_)
@@ -324,22 +296,21 @@ private:
     for (std::size_t k = 0; k < queries_.size(); ++k) {
       if (results_[k].exit == FinderExit::not_a_number)
         throw InvariantError(fmt::format("the collision search of particles {} and {} met numbers that are not finite",
-                                         step_.particles->ids[queries_[k].low],
-                                         step_.particles->ids[queries_[k].high]));
+                                         step_.particles.ids[queries_[k].low], step_.particles.ids[queries_[k].high]));
       if (results_[k].contact())
         events_.add(event_of(queries_[k], results_[k].time, partners_[k]));
     }
     partners_.clear();
   }
 
-  const StepAtHand& step_;
+  const StepContext& step_;
   Orbits& orbits_;
   EventQueue& events_;
   std::uint64_t max_partners_ = 0;
 
-  // the search at hand
+  // the next search: partners, the query of each, and its answer
   std::vector<Partner> partners_;
-  std::vector<Query> queries_; // one for each
+  std::vector<Query> queries_;
   std::vector<FinderResult> results_;
 };
 

@@ -1,23 +1,23 @@
-// A step that ranks share. Its answer is the one history of all particles that the order of events defines; each rank
-// makes the part of its own ones.
+// A step that ranks share: a distributed step. Its result is the one history of all particles that the order of events
+// defines; each rank computes the part of its own particles.
 //
-// First each rank carries out all contacts of its own particles and of its copies, as if there were nobody else. Copies
-// near the outer border lack partners, so their paths may be wrong, and then those of others that touch these; but
-// contacts are few in a step, and the farther copies are there for this: nearly always the paths of own particles and
-// of near copies are right. Whether they are is told by the owners, who say how the paths of all copies went.
+// Attempt: each rank carries out all contacts of its own particles and of its ghosts, as if there were no others.
+// Ghosts near the outer border lack partners, so their paths may be wrong, and so may paths of particles that touch
+// them. But a particle has few contacts in a step, and the far ghosts are there for this: nearly always the paths of
+// own particles and of near ghosts are right. Each owner reports the paths of all ghosts of its particles, which tells.
 //
-// Where a near copy went another way than its owner says, all is undone, and done again with each copy on the path that
-// its owner has told, until no owner has anything new to tell. (So waveform relaxation solves differential equations in
-// parts that overlap: Lelarasmee, Ruehli & Sangiovanni-Vincentelli 1982; Gander & Stuart 1998.) A copy leaves that path
-// where somebody touches it otherwise than its owner knows.
+// Repetition: where the path of a near ghost differs from its owner's report, the step is undone and repeated with each
+// ghost on the path that its owner reported, until no owner has anything new to report (waveform relaxation with
+// overlap: Lelarasmee, Ruehli & Sangiovanni-Vincentelli 1982; Gander & Stuart 1998). A ghost leaves that path at a
+// contact that its owner has not reported.
 //
-// Why it ends, and ends right: let all paths that owners have told be right before some time, and let the next contact
-// of the true history come then. Its particles know each other, as own ones or as near copies, and both are on their
-// right paths. So every rank that owns one of them finds that contact, with the same numbers, and tells it. Every round
-// makes at least one more contact right. When nothing new is told and no near copy differs, each rank has found every
-// contact of its own particles on paths that their owners confirm: that is the true history. (Within the margins, which
-// are looked at last: the first contact that leads beyond them is right too, so that is seen.)
-#include "in_place.hpp"
+// Termination and correctness: let all reported paths be right before some time, and let the next contact of the true
+// history come then. Its particles are on each other's ranks, as own ones or as near ghosts, and both are on their
+// right paths. So every rank that owns one of them finds that contact, with the same numbers, and reports it: each
+// repetition makes at least one more contact right. When nothing new is reported and no near ghost differs, each rank
+// has found every contact of its own particles on paths that their owners confirm, which is the true history. (Within
+// the margins, which are checked last: the first contact that leads beyond them is right too, so that is seen.)
+#include "drift_engine.hpp"
 
 #include <keeler/core/stopwatch.hpp>
 
@@ -29,18 +29,18 @@
 #include <utility>
 
 namespace keeler {
+namespace {
 
-// What an owner says of a path: a copy's number among those it has lent to that rank, when it changed, and to what.
-struct DriftEngine::Told {
-  std::uint64_t number;
+/// What an owner reports of a path: the ghost (numbered among all ghosts of a rank), when it changed, and to what.
+struct PathReport {
+  std::uint64_t ghost;
   double time;
   Elements elements;
   Vec3 spin;
 };
 
-namespace {
-
 template<class Row> std::vector<Row> rows_of(const std::vector<std::byte>& bytes) {
+  assert(bytes.size() % sizeof(Row) == 0);
   std::vector<Row> rows(bytes.size() / sizeof(Row));
   if (!rows.empty())
     std::memcpy(static_cast<void*>(rows.data()), bytes.data(), bytes.size());
@@ -58,283 +58,371 @@ bool same(const Elements& a, const Elements& b) {
 
 constexpr std::uint64_t after_all_ids = ~std::uint64_t{0}; // contacts at the same instant come first
 
-} // namespace
+/// The end of a particle's path and the begin of the next one. Spins of smooth particles are zero.
+struct PathChange {
+  std::uint32_t particle;
+  double time; ///< of the end
+  Elements before, after;
+  Vec3 spin_before, spin_after;
+};
 
-// Copies are on the paths that their owners have told; the others as in place.
-struct DriftEngine::FollowsOwners : DriftEngine::InPlace {
-  struct Line {
-    std::size_t next = 0, end = 0; // what is still to come of its path
-    bool is_told = true;           // until it touches somebody of whom its owner does not know
+/// What a distributed step notes of its changes: the state before it, to undo it; the paths of particles that two ranks
+/// have; and whether an own particle has gone beyond the margin.
+class PathJournal {
+public:
+  PathJournal(const StepContext& step, const StepHistory& history, const GhostLayer& ghosts)
+      : step_(step), history_(history), ghosts_(ghosts) {}
+
+  /// Precondition: the change has not happened yet.
+  void note_change(std::uint32_t i, double time, const Elements& after) {
+    const Elements& before = step_.particles.bodies[i].elements;
+    const Vec3 spin = step_.particles.rough ? step_.particles.spins[i] : Vec3::Zero();
+    if (history_.event_count(i) == 0)
+      beginnings_.push_back({i, before, spin});
+    if (ghosts_.on_two_ranks(i))
+      changes_.push_back({i, time, before, {}, spin, Vec3::Zero()});
+    note_path(i, after);
+  }
+
+  /// Notes all changes of a step that was carried out in domains.
+  void note_domains(const OptimisticLoop& domains, std::vector<std::uint32_t> dirty) {
+    std::sort(dirty.begin(), dirty.end());
+    dirty.erase(std::unique(dirty.begin(), dirty.end()), dirty.end());
+    for (const std::uint32_t i : dirty) {
+      const bool has_copies = ghosts_.on_two_ranks(i);
+      const auto changes_before = static_cast<std::ptrdiff_t>(changes_.size());
+      Beginning first{i, step_.particles.bodies[i].elements, Vec3::Zero()};
+      domains.visit_changes(history_, i, [&](double time, const Elements& before, const Vec3& spin) { // last one first
+        note_path(i, first.elements);
+        if (has_copies)
+          changes_.push_back({i, time, before, {}, spin, Vec3::Zero()});
+        first.elements = before;
+        first.spin = spin;
+      });
+      beginnings_.push_back(first);
+      std::reverse(changes_.begin() + changes_before, changes_.end());
+    }
+  }
+
+  /// Sorts the changes by particle and time when all contacts are carried out, and fills in what paths changed to.
+  void complete() {
+    std::stable_sort(changes_.begin(), changes_.end(), [](const PathChange& a, const PathChange& b) {
+      return a.particle != b.particle ? a.particle < b.particle : a.time < b.time;
+    });
+    for (std::size_t k = 0; k < changes_.size(); ++k) {
+      PathChange& change = changes_[k];
+      const bool last = k + 1 == changes_.size() || changes_[k + 1].particle != change.particle;
+      change.after = last ? step_.particles.bodies[change.particle].elements : changes_[k + 1].before;
+      if (step_.particles.rough)
+        change.spin_after = last ? step_.particles.spins[change.particle] : changes_[k + 1].spin_before;
+    }
+  }
+
+  /// Restores all particles as at the start of the step. Precondition: `history` has begun the step again.
+  void undo(BroadPhase& broad_phase) {
+    for (const auto& [i, elements, spin] : beginnings_) {
+      assert(history_.event_count(i) == 0);
+      step_.particles.bodies[i].elements = elements;
+      if (step_.particles.rough)
+        step_.particles.spins[i] = spin;
+      broad_phase.changed(i, step_.begin);
+      step_.finder.changed(i);
+    }
+    beginnings_.clear();
+    changes_.clear();
+    has_strayed_ = false;
+  }
+
+  const std::vector<PathChange>& changes() const { return changes_; }
+  /// True if an own particle may have gone farther than the margin within which the ghosts suffice.
+  bool has_strayed() const { return has_strayed_; }
+
+private:
+  struct Beginning {
+    std::uint32_t particle;
+    Elements elements;
+    Vec3 spin;
   };
-  std::size_t own;
-  std::vector<Told> told{};
-  std::vector<Line> lines{}; // each copy
 
-  bool is_told(std::uint32_t i) const { return i >= own && lines[i - own].is_told; }
+  void note_path(std::uint32_t i, const Elements& path) {
+    has_strayed_ = has_strayed_ || (i < ghosts_.own && !ghosts_.keeps(i, path, step_.end() - step_.begin));
+  }
+
+  const StepContext& step_;
+  const StepHistory& history_;
+  const GhostLayer& ghosts_;
+  std::vector<Beginning> beginnings_; // one per particle that was hit
+  std::vector<PathChange> changes_;
+  bool has_strayed_ = false;
+};
+
+class JournaledOrbits : public SequentialOrbits {
+public:
+  JournaledOrbits(const StepContext& step, StepHistory& history, BroadPhase& broad_phase, const ContactCounter& counter,
+                  PathJournal& journal)
+      : SequentialOrbits(step, history, broad_phase, counter), journal_(journal) {}
+
+  void change(std::uint32_t i, const Elements& elements, double time) {
+    journal_.note_change(i, time, elements);
+    SequentialOrbits::change(i, elements, time);
+  }
+
+private:
+  PathJournal& journal_;
+};
+
+/// Keeps ghosts on the paths that their owners have reported; other particles as JournaledOrbits.
+class ReportedOrbits : public JournaledOrbits {
+public:
+  /// Precondition: reports are sorted by ghost and time.
+  ReportedOrbits(JournaledOrbits orbits, std::size_t own, std::size_t ghosts, const std::vector<PathReport>& reports)
+      : JournaledOrbits(std::move(orbits)), own_(own), reports_(reports), paths_(ghosts) {
+    for (std::size_t k = 0; k < reports.size(); ++k) {
+      Path& path = paths_[reports[k].ghost];
+      if (path.end == 0)
+        path.next = k;
+      path.end = k + 1;
+    }
+  }
+
+  /// Returns the event at which a reported change happens: one that follows all contacts of its instant.
+  Event event_of(std::size_t report) const {
+    const auto i = static_cast<std::uint32_t>(own_ + reports_[report].ghost);
+    return {reports_[report].time, after_all_ids, report, {}, i, i, static_cast<std::uint32_t>(report), 0};
+  }
 
   bool is_due(const Event& event) {
     if (event.low_id == after_all_ids)
-      return takes_turn(event);
-    return InPlace::is_due(event) && !(is_told(event.low) && is_told(event.high));
-  }
-
-  // A turn that was told, unless the contact that made it has been carried out here.
-  bool takes_turn(const Event& event) {
-    Line& line = lines[event.low - own];
-    if (!line.is_told || line.next != event.low_stamp)
-      return false;
-    const Told& turn = told[line.next++];
-    InPlace::change(event.low, turn.elements, turn.time);
-    if (drift.particles_->rough)
-      set_spin(event.low, turn.spin);
-    return true;
+      return take_report(event);
+    return SequentialOrbits::is_due(event) && !(is_reported(event.low) && is_reported(event.high));
   }
 
   void change(std::uint32_t i, const Elements& elements, double time) {
-    if (is_told(i)) {
-      Line& line = lines[i - own];
-      const bool known =
-          line.next < line.end && told[line.next].time == time && same(told[line.next].elements, elements);
-      if (known)
-        ++line.next;
+    if (is_reported(i)) {
+      Path& path = paths_[i - own_];
+      const bool confirmed =
+          path.next < path.end && reports_[path.next].time == time && same(reports_[path.next].elements, elements);
+      if (confirmed)
+        ++path.next;
       else
-        line.is_told = false;
+        path.is_reported = false;
     }
-    InPlace::change(i, elements, time);
+    JournaledOrbits::change(i, elements, time);
   }
 
-  bool may_look_again(std::uint32_t) const { return false; }
+  bool may_repredict(std::uint32_t) const { return false; }
+
+private:
+  struct Path {
+    std::size_t next = 0, end = 0; // reports still to come
+    bool is_reported = true;       // until a contact that its owner has not reported
+  };
+
+  bool is_reported(std::uint32_t i) const { return i >= own_ && paths_[i - own_].is_reported; }
+
+  // Makes a reported change, unless the contact that caused it has been carried out here.
+  bool take_report(const Event& event) {
+    Path& path = paths_[event.low - own_];
+    if (!path.is_reported || path.next != event.low_count)
+      return false;
+    const PathReport& report = reports_[path.next++];
+    JournaledOrbits::change(event.low, report.elements, report.time);
+    if (step_.particles.rough)
+      set_spin(event.low, report.spin);
+    return true;
+  }
+
+  std::size_t own_;
+  const std::vector<PathReport>& reports_;
+  std::vector<Path> paths_; // of each ghost
 };
 
-// The step at hand of all ranks.
-struct DriftEngine::Sharing {
-  DriftEngine& drift;
-  const GhostLayer& borders;
-  const Communicator& ranks;
-  std::vector<Event> first{};
-  Parcels told{};               // by own particles, to each rank
-  std::vector<Told> heard{};    // of the copies, by place; the number is that of the copy here
-  CollisionTally tally{};       // of the last round
-  std::exception_ptr failure{}; // in it: of a history that may be wrong
+/// One step on all ranks: attempts, and the reports between them.
+class DistributedStep {
+public:
+  DistributedStep(const StepContext& step, StepHistory& history, BroadPhase& broad_phase, StepOutcome& outcome,
+                  DriftCosts& costs, const GhostLayer& ghosts, const Communicator& ranks)
+      : step_(step), history_(history), broad_phase_(broad_phase), outcome_(outcome), costs_(costs), ghosts_(ghosts),
+        ranks_(ranks), journal_(step, history, ghosts) {}
 
-  template<class Work> void carry_out(const Work& work) {
-    tally = {};
-    failure = nullptr;
+  /// Carries out all contacts by work(counter) and journals them. Keeps the exception of a broken invariant, since the
+  /// history may be wrong.
+  template<class Work> void attempt(const Work& work) {
+    tally_ = {};
+    failure_ = nullptr;
     try {
-      work();
+      work(ContactCounter{outcome_, tally_, costs_, ghosts_.own});
     } catch (const InvariantError&) {
-      failure = std::current_exception();
+      failure_ = std::current_exception();
     }
-    drift.complete_changes();
+    journal_.complete();
   }
 
-  // Returns whether anything is new to one of the ranks.
-  bool tell() {
-    Parcels news(ranks.size());
-    for (std::size_t rank = 0; rank < ranks.size(); ++rank)
-      news[rank] = packed(to_tell(borders.sent[rank]));
-    const bool is_new = ranks.any(news != told);
-    told = news;
-    const Parcels from = ranks.exchange(std::move(news));
-    heard.clear();
-    for (std::size_t rank = 0; rank < ranks.size(); ++rank)
-      for (Told turn : rows_of<Told>(from[rank])) {
-        turn.number += borders.first[rank] - borders.own;
-        heard.push_back(turn);
+  /// Returns the orbits for work(counter).
+  JournaledOrbits orbits(const ContactCounter& counter) {
+    return JournaledOrbits(step_, history_, broad_phase_, counter, journal_);
+  }
+  PathJournal& journal() { return journal_; }
+
+  /// Exchanges reports of all ghosts' paths. Returns true if anything is new to one of the ranks.
+  bool exchange_reports() {
+    Parcels reports(ranks_.size());
+    for (std::size_t rank = 0; rank < ranks_.size(); ++rank)
+      reports[rank] = packed(reports_of(ghosts_.sent[rank]));
+    const bool is_new = ranks_.any(reports != sent_);
+    sent_ = reports;
+    const Parcels from = ranks_.exchange(std::move(reports));
+    received_.clear();
+    for (std::size_t rank = 0; rank < ranks_.size(); ++rank)
+      for (PathReport report : rows_of<PathReport>(from[rank])) {
+        report.ghost += ghosts_.first[rank] - ghosts_.own;
+        assert(report.ghost < ghosts_.near.size());
+        received_.push_back(report);
       }
     return is_new;
   }
 
-  std::vector<Told> to_tell(const std::vector<std::uint32_t>& lent) const {
-    std::vector<Told> rows;
-    auto change = drift.changes_.begin();
+  /// True on each rank if no rank needs a repetition.
+  bool is_right() const { return !ranks_.any(!near_ghosts_agree()); }
+  bool must_repeat() const { return ranks_.any(!near_ghosts_agree() || failure_); }
+  /// True if the own particles of all ranks have stayed within the margins of the ghosts.
+  bool within_margins() const { return !ranks_.any(journal_.has_strayed()); }
+
+  /// Repeats the step with the ghosts on reported paths until nothing new is reported.
+  void repeat(const std::vector<Event>& first, EventQueue& events) {
+    const Stopwatch stopwatch(costs_.events);
+    ++costs_.repeated_steps;
+    do {
+      ++costs_.repeated_rounds;
+      undo();
+      attempt([&](const ContactCounter& counter) { follow_reports(first, events, counter); });
+    } while (exchange_reports());
+  }
+
+  /// Restores everything as at the start of the step.
+  void undo() {
+    history_.begin_step(step_.particles.size(), step_.begin);
+    journal_.undo(broad_phase_);
+    outcome_.clear_contacts();
+  }
+
+  /// Adds what the step did on all ranks. Throws on all ranks if the step failed on one.
+  void finish(CollisionTally& tally) {
+    ranks_.together([&] {
+      if (failure_)
+        std::rethrow_exception(failure_);
+    });
+    if (step_.record_taker)
+      gather_records();
+    ranks_.merge({&outcome_.energy_lost, &outcome_.momentum_flux, &outcome_.azimuthal_gain});
+    outcome_.add_sums_to(tally);
+    std::uint64_t counts[] = {tally_.fast, tally_.slow, tally_.unresolved};
+    ranks_.sum(counts);
+    tally.fast += counts[0];
+    tally.slow += counts[1];
+    tally.unresolved += counts[2];
+  }
+
+private:
+  // Returns the reports of own particles that another rank has as ghosts.
+  std::vector<PathReport> reports_of(const std::vector<std::uint32_t>& lent) const {
+    std::vector<PathReport> rows;
+    const std::vector<PathChange>& changes = journal_.changes();
+    auto change = changes.begin();
     assert(std::is_sorted(lent.begin(), lent.end()));
     for (std::uint64_t number = 0; number < lent.size(); ++number) {
-      change = std::lower_bound(change, drift.changes_.end(), lent[number],
-                                [](const PathChange& c, std::uint32_t place) { return c.place < place; });
-      for (; change != drift.changes_.end() && change->place == lent[number]; ++change)
+      change = std::lower_bound(change, changes.end(), lent[number],
+                                [](const PathChange& c, std::uint32_t particle) { return c.particle < particle; });
+      for (; change != changes.end() && change->particle == lent[number]; ++change)
         rows.push_back({number, change->time, change->after, change->spin_after});
     }
     return rows;
   }
 
-  // Whether a near copy went here as its owner says, each.
-  bool near_copies_agree() const {
-    const auto is_far = [&](const Told& turn) { return !borders.near[turn.number]; };
-    std::vector<Told> theirs = heard, here;
+  // True if each near ghost went here as its owner reports.
+  bool near_ghosts_agree() const {
+    const auto is_far = [&](const PathReport& report) { return !ghosts_.near[report.ghost]; };
+    std::vector<PathReport> theirs = received_, here;
     std::erase_if(theirs, is_far);
-    for (const PathChange& change : drift.changes_)
-      if (change.place >= borders.own)
-        here.push_back({change.place - borders.own, change.time, change.after, change.spin_after});
+    for (const PathChange& change : journal_.changes())
+      if (change.particle >= ghosts_.own)
+        here.push_back({change.particle - ghosts_.own, change.time, change.after, change.spin_after});
     std::erase_if(here, is_far);
     return packed(theirs) == packed(here);
   }
 
-  // The whole step, with the copies on the paths that were heard.
-  void follow_owners() {
-    FollowsOwners orbits{{drift, tally}, borders.own};
-    orbits.told = heard;
-    orbits.lines.resize(borders.near.size());
-    std::vector<Event> events = first;
-    for (std::size_t k = 0; k < heard.size(); ++k) {
-      FollowsOwners::Line& line = orbits.lines[heard[k].number];
-      if (line.end == 0)
-        line.next = k;
-      line.end = k + 1;
-      const auto place = static_cast<std::uint32_t>(borders.own + heard[k].number);
-      events.push_back({heard[k].time, after_all_ids, k, {}, place, place, static_cast<std::uint32_t>(k), 0});
-    }
-    drift.events_.assign(events);
-    ContactLoop loop(drift.step_at_hand_, orbits, drift.events_);
+  void follow_reports(const std::vector<Event>& first, EventQueue& events, const ContactCounter& counter) {
+    ReportedOrbits followed(orbits(counter), ghosts_.own, ghosts_.near.size(), received_);
+    std::vector<Event> all = first;
+    for (std::size_t k = 0; k < received_.size(); ++k)
+      all.push_back(followed.event_of(k));
+    events.assign(all);
+    ContactLoop loop(step_, followed, events);
     loop.run();
   }
 
-  // Whether all own particles of all ranks have stayed where their borders are good.
-  bool within_margins() const { return !ranks.any(drift.strayed_); }
+  // Sends all records to the root, in the order of events.
+  void gather_records() {
+    std::vector<CollisionRecord>& records = outcome_.records;
+    std::vector<std::vector<CollisionRecord>> sent(ranks_.size());
+    sent[0] = std::exchange(records, {});
+    for (const std::vector<CollisionRecord>& some : ranks_.exchange(sent))
+      records.insert(records.end(), some.begin(), some.end());
+    const auto key = [](const CollisionRecord& r) {
+      return std::tuple(r.time, r.low_id, r.high_id, r.image.nx, r.image.ny);
+    };
+    std::sort(records.begin(), records.end(),
+              [&](const CollisionRecord& a, const CollisionRecord& b) { return key(a) < key(b); });
+  }
+
+  const StepContext& step_;
+  StepHistory& history_;
+  BroadPhase& broad_phase_;
+  StepOutcome& outcome_;
+  DriftCosts& costs_;
+  const GhostLayer& ghosts_;
+  const Communicator& ranks_;
+  PathJournal journal_;
+  Parcels sent_;                     // reports, to each rank
+  std::vector<PathReport> received_; // of the ghosts, in their order
+  CollisionTally tally_;             // of the last attempt
+  std::exception_ptr failure_;       // in it
 };
 
-void DriftEngine::forget_changes() {
-  beginnings_.clear();
-  changes_.clear();
-  strayed_ = false;
-}
+} // namespace
 
-// Before it happens.
-void DriftEngine::note_change(std::uint32_t place, double time, const Elements& after) {
-  const Elements& before = particles_->bodies[place].elements;
-  const Vec3 spin = particles_->rough ? particles_->spins[place] : Vec3::Zero();
-  if (so_far_.stamp(place) == 0)
-    beginnings_.push_back({place, before, spin});
-  if (borders_->on_two_ranks(place))
-    changes_.push_back({place, time, before, {}, spin, Vec3::Zero()});
-  note_path(place, after);
-}
-
-void DriftEngine::note_path(std::uint32_t place, const Elements& path) {
-  strayed_ = strayed_ || (place < borders_->own && !borders_->within_margin(place, path, step_));
-}
-
-// The same of a step that was carried out in domains.
-void DriftEngine::note_changes_of_domains() {
-  std::vector<std::uint32_t> places = touched_;
-  std::sort(places.begin(), places.end());
-  places.erase(std::unique(places.begin(), places.end()), places.end());
-  for (const std::uint32_t place : places) {
-    const bool has_copies = borders_->on_two_ranks(place);
-    const auto changes_before = static_cast<std::ptrdiff_t>(changes_.size());
-    Beginning first{place, particles_->bodies[place].elements, Vec3::Zero()};
-    optimistic_.visit_changes(place, [&](double time, const Elements& before, const Vec3& spin) { // from the last one
-      note_path(place, first.elements);
-      if (has_copies)
-        changes_.push_back({place, time, before, {}, spin, Vec3::Zero()});
-      first.elements = before;
-      first.spin = spin;
-    });
-    beginnings_.push_back(first);
-    std::reverse(changes_.begin() + changes_before, changes_.end());
-  }
-}
-
-// Sorts the changes of a step that has been carried out, and fills in what paths changed to.
-void DriftEngine::complete_changes() {
-  std::stable_sort(changes_.begin(), changes_.end(), [](const PathChange& a, const PathChange& b) {
-    return a.place != b.place ? a.place < b.place : a.time < b.time;
-  });
-  for (std::size_t k = 0; k < changes_.size(); ++k) {
-    PathChange& change = changes_[k];
-    const bool last = k + 1 == changes_.size() || changes_[k + 1].place != change.place;
-    change.after = last ? particles_->bodies[change.place].elements : changes_[k + 1].before;
-    if (particles_->rough)
-      change.spin_after = last ? particles_->spins[change.place] : changes_[k + 1].spin_before;
-  }
-}
-
-// Everything as at the start of the step.
-void DriftEngine::undo_changes() {
-  CollisionTally none;
-  InPlace orbits{*this, none};
-  so_far_.begin_step(particles_->size(), step_at_hand_.begin);
-  for (const auto& [place, elements, spin] : beginnings_) {
-    particles_->bodies[place].elements = elements;
-    if (particles_->rough)
-      particles_->spins[place] = spin;
-    if (through_grid_)
-      grid_.changed(place);
-    else if (!lists_.reaches_far() && !lists_.changed(place, step_at_hand_.begin))
-      orbits.rebuild_list(place);
-    finder().changed(place);
-  }
-  forget_changes();
-  slow_pairs_.clear();
-  records_.clear();
-  sums_ = {};
-  gave_up_ = 0;
-}
-
-bool DriftEngine::collide_distributed(Particles& particles, const GhostLayer& borders, const Communicator& ranks,
+bool DriftEngine::collide_distributed(Particles& particles, const GhostLayer& ghosts, const Communicator& ranks,
                                       const ShearingBox& box, double offset, CollisionTally& tally) {
-  assert(finder().exact() && !(observer_ && observer_->looks_on()) && !audit_);
-  counted_ = borders.own;
-  borders_ = &borders;
-  forget_changes();
-  Sharing sharing{*this, borders, ranks};
+  assert(finder().exact() && !(observer_ && observer_->wants_events()) && !audit_);
+  assert(ghosts.own <= particles.size() && ghosts.own + ghosts.near.size() == particles.size());
+  const StepContext step = context_of(particles, box, offset);
+  std::vector<Event> first;
   ranks.together([&] {
-    begin_step(particles, box, offset, false);
-    sharing.first = solve();
+    begin_step(step, false);
+    first = solve(step);
   });
-  sharing.carry_out([&] { carry_out(sharing.first, sharing.tally); });
-  sharing.tell();
-  if (ranks.any(!sharing.near_copies_agree() || sharing.failure))
-    do_again(sharing);
-  // of two contacts at the very same instant the rounds may not find which comes first: then all need copies of all
-  const bool done = !ranks.any(!sharing.near_copies_agree()) && sharing.within_margins();
+  DistributedStep distributed(step, history_, broad_phase_, outcome_, costs_, ghosts, ranks);
+  distributed.attempt([&](const ContactCounter& counter) {
+    const Stopwatch stopwatch(costs_.events);
+    if (carry_out_in_domains(step, first, counter)) {
+      distributed.journal().note_domains(optimistic_, outcome_.dirty);
+    } else {
+      JournaledOrbits orbits = distributed.orbits(counter);
+      carry_out_in_sequence(step, first, orbits);
+    }
+  });
+  distributed.exchange_reports();
+  if (distributed.must_repeat())
+    distributed.repeat(first, events_);
+  // of two contacts at the very same instant the repetitions may not find which comes first: then each rank needs
+  // ghosts of all particles
+  const bool done = distributed.is_right() && distributed.within_margins();
   if (done)
-    end_distributed(sharing, tally);
+    distributed.finish(tally);
   else
-    undo_changes();
-  end_step();
+    distributed.undo();
+  end_step(step);
   return done;
-}
-
-void DriftEngine::do_again(Sharing& sharing) {
-  const Stopwatch stopwatch(costs_.events);
-  ++costs_.repeated_steps;
-  do {
-    ++costs_.rounds_again;
-    undo_changes();
-    sharing.carry_out([&] { sharing.follow_owners(); });
-  } while (sharing.tell());
-}
-
-// To the first rank, in the order of events.
-void DriftEngine::gather_records(const Communicator& ranks) {
-  std::vector<std::vector<CollisionRecord>> sent(ranks.size());
-  sent[0] = std::exchange(records_, {});
-  for (const std::vector<CollisionRecord>& some : ranks.exchange(sent))
-    records_.insert(records_.end(), some.begin(), some.end());
-  const auto key = [](const CollisionRecord& r) {
-    return std::tuple(r.time, r.low_id, r.high_id, r.image.nx, r.image.ny);
-  };
-  std::sort(records_.begin(), records_.end(),
-            [&](const CollisionRecord& a, const CollisionRecord& b) { return key(a) < key(b); });
-}
-
-// The step is done: what it did, on all ranks.
-void DriftEngine::end_distributed(Sharing& sharing, CollisionTally& tally) {
-  const Communicator& ranks = sharing.ranks;
-  ranks.together([&] {
-    if (sharing.failure)
-      std::rethrow_exception(sharing.failure);
-  });
-  if (takes_records_)
-    gather_records(ranks);
-  ranks.merge({&sums_.energy_lost, &sums_.momentum_flux, &sums_.azimuthal_gain});
-  add_sums(tally);
-  std::uint64_t counts[] = {sharing.tally.fast, sharing.tally.slow, sharing.tally.unresolved};
-  ranks.sum(counts);
-  tally.fast += counts[0];
-  tally.slow += counts[1];
-  tally.unresolved += counts[2];
 }
 
 } // namespace keeler

@@ -22,8 +22,8 @@ DriftPhase::~DriftPhase() = default;
 DriftPhase::DriftPhase(DriftPhase&& other) noexcept = default;
 DriftPhase& DriftPhase::operator=(DriftPhase&& other) noexcept = default;
 
-void DriftPhase::set_pace(double step, double kick_pull, double rest_pull) {
-  engine_->set_pace(step, kick_pull, rest_pull);
+void DriftPhase::set_step(double step, double kick_pull, double rest_pull) {
+  engine_->set_step(step, kick_pull, rest_pull);
 }
 
 std::span<const SlowPair> DriftPhase::slow_pairs() const {
@@ -36,9 +36,9 @@ void DriftPhase::collide(Particles& particles, const ShearingBox& box, double of
 }
 
 #ifdef KEELER_MPI
-bool DriftPhase::collide_distributed(Particles& particles, const GhostLayer& borders, const Communicator& ranks,
+bool DriftPhase::collide_distributed(Particles& particles, const GhostLayer& ghosts, const Communicator& ranks,
                                      const ShearingBox& box, double offset, CollisionTally& tally) {
-  return engine_->collide_distributed(particles, borders, ranks, box, offset, tally);
+  return engine_->collide_distributed(particles, ghosts, ranks, box, offset, tally);
 }
 #endif
 

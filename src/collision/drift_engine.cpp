@@ -1,7 +1,7 @@
 #include "drift_engine.hpp"
 
 #include "ablation.hpp"
-#include "in_place.hpp"
+#include "drift_audit.hpp"
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/stopwatch.hpp>
@@ -15,7 +15,8 @@
 
 #include <algorithm>
 #include <array>
-#include <tuple>
+#include <cassert>
+#include <cmath>
 
 namespace keeler {
 namespace {
@@ -28,251 +29,222 @@ std::unique_ptr<Finder> finder_named(const std::string& name) {
   return make_finder(name);
 }
 
+constexpr std::size_t searches_together = 64;
+
+// The first contacts of a block of candidates.
+struct FirstContacts {
+  std::vector<Event> events;
+  std::uint64_t gave_up = 0;
+  bool has_not_a_number = false;
+};
+
+// Asks the finder about some candidates at once.
+void search_some(const StepContext& step, std::span<const Candidate> candidates, FirstContacts& found) {
+  assert(candidates.size() <= searches_together);
+  std::array<Query, searches_together> queries;
+  std::array<FinderResult, searches_together> results;
+  const std::size_t count = candidates.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    const Candidate& c = candidates[k];
+    const Vec3 shift = step.box.displacement(c.image, step.offset);
+    queries[k] = {c.low, c.high, shift.x(), shift.y(), step.begin};
+  }
+  step.finder.find_all(std::span(queries).first(count), std::span(results).first(count));
+  const std::vector<std::uint64_t>& ids = step.particles.ids;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Candidate& c = candidates[k];
+    const FinderResult& result = results[k];
+    if (step.watcher)
+      step.watcher->searched(queries[k], result);
+    if (result.contact())
+      found.events.push_back({result.time, ids[c.low], ids[c.high], c.image, c.low, c.high, 0, 0});
+    found.gave_up += result.exit == FinderExit::gave_up;
+    found.has_not_a_number |= result.exit == FinderExit::not_a_number;
+  }
+}
+
 } // namespace
 
 DriftEngine::DriftEngine(const CollisionSettings& settings, const Frequencies& frequencies, double orbital_frequency,
                          double step)
-    : settings_(settings), frequencies_(frequencies), orbital_frequency_(orbital_frequency), step_(step),
-      finder_(finder_named(settings.finder)), finder_step_(frequencies, -0.5 * step, 0.5 * step, 0.0),
-      lists_(frequencies, step), grid_(frequencies, step) {
+    : settings_(settings), frequencies_(frequencies), orbital_frequency_(orbital_frequency), schedule_{step},
+      finder_(finder_named(settings.finder)), broad_phase_(frequencies, step),
+      finder_step_(frequencies, -0.5 * step, 0.5 * step, 0.0) {
+  assert(step > 0.0);
   if (!finder_)
     throw UsageError(fmt::format("unknown collision finder '{}'", settings.finder));
 }
 
-void DriftEngine::set_pace(double step, double kick_pull, double rest_pull) {
-  kick_pull_ = kick_pull;
-  rest_pull_ = rest_pull;
-  if (step == step_)
-    return;
-  step_ = step;
-  lists_.set_step(step);
-  grid_ = GridPartners(frequencies_, step);
+void DriftEngine::set_step(double step, double kick_pull, double rest_pull) {
+  assert(step > 0.0 && kick_pull >= 0.0 && rest_pull >= 0.0);
+  if (step != schedule_.step)
+    broad_phase_.set_step(step);
+  schedule_ = {step, kick_pull, rest_pull};
 }
 
 void DriftEngine::collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally,
                           bool undisturbed) {
-  begin_step(particles, box, offset, undisturbed);
+  const StepContext step = context_of(particles, box, offset);
+  begin_step(step, undisturbed);
   if (audit_)
-    audit_beginning();
-  carry_out(solve(), tally);
+    audit_begin(*audit_, step, finder_step_.straight_line, candidates_);
+  const std::vector<Event> first = solve(step);
+  {
+    const Stopwatch stopwatch(costs_.events);
+    const ContactCounter counter{outcome_, tally, costs_};
+    if (!carry_out_in_domains(step, first, counter)) {
+      SequentialOrbits orbits(step, history_, broad_phase_, counter);
+      carry_out_in_sequence(step, first, orbits);
+    }
+  }
   if (audit_)
-    audit_end();
-  add_sums(tally);
-  end_step();
+    audit_end(*audit_, step, finder_step_.straight_line, broad_phase_, history_, outcome_.dirty);
+  outcome_.add_sums_to(tally);
+  end_step(step);
 }
 
-void DriftEngine::begin_step(Particles& particles, const ShearingBox& box, double offset, bool undisturbed) {
-  touched_.clear();
-  particles_ = &particles;
-  step_at_hand_ = {&particles, &settings_,   frequencies_, orbital_frequency_, box,
-                   offset,     -0.5 * step_, false,        kick_pull_,         rest_pull_};
-  gave_up_ = 0;
-  sums_ = {};
-  slow_pairs_.clear();
-  prepare(undisturbed);
-  reject();
+StepContext DriftEngine::context_of(Particles& particles, const ShearingBox& box, double offset) const {
+  assert(particles.ids.size() == particles.size() && (!particles.rough || particles.spins.size() == particles.size()));
+  return {.particles = particles,
+          .settings = settings_,
+          .finder = finder(),
+          .frequencies = frequencies_,
+          .orbital_frequency = orbital_frequency_,
+          .box = box,
+          .offset = offset,
+          .begin = -0.5 * schedule_.step,
+          .kick_pull = schedule_.kick_pull,
+          .rest_pull = schedule_.rest_pull,
+          .watcher = observer_ && observer_->wants_events() ? observer_ : nullptr,
+          .record_taker = observer_ && observer_->wants_records() ? observer_ : nullptr};
 }
 
-// All that follows from the first contacts.
-void DriftEngine::carry_out(const std::vector<Event>& first, CollisionTally& tally) {
-  const Stopwatch stopwatch(costs_.events);
-  if (in_domains(first, tally))
-    return;
-  events_.assign(first);
-  InPlace orbits{*this, tally};
-  ContactLoop loop(step_at_hand_, orbits, events_);
-  loop.run();
-  costs_.widest_list = std::max(costs_.widest_list, loop.max_partners());
-}
-
-void DriftEngine::end_step() {
-  if (!through_grid_)
-    lists_.mark_dirty(touched_);
-  if (takes_records_)
-    takes_records_->recorded(records_);
-  if (particles_->size())
-    costs_.bytes_per_particle = bytes() / particles_->size();
-  particles_ = nullptr; // the caller's, who may move it
-}
-
-// Whether it is this rank's.
-bool DriftEngine::count(const Contact& contact, CollisionTally& tally) {
-  if (Communicator::possible && contact.low >= counted_)
-    return false; // a copy: its owner counts
-  ++(contact.fast ? tally.fast : tally.slow);
-  tally.unresolved += contact.unresolved;
-  sums_.energy_lost += contact.energy_lost;
-  sums_.momentum_flux += contact.momentum_flux;
-  sums_.azimuthal_gain += contact.azimuthal_gain;
-  ++costs_.contacts;
-  costs_.recontacts += contact.again;
-  if (contact.slow > 0.0F)
-    slow_pairs_.push_back({contact.low, contact.high, contact.slow});
-  return true;
-}
-
-void DriftEngine::add_sums(CollisionTally& tally) const {
-  tally.gave_up += gave_up_;
-  tally.energy_lost += sums_.energy_lost.value();
-  tally.momentum_flux += sums_.momentum_flux.value();
-  tally.azimuthal_gain += sums_.azimuthal_gain.value();
-}
-
-// On several threads, when the result cannot tell and there are enough contacts for each.
-bool DriftEngine::in_domains(const std::vector<Event>& first, CollisionTally& tally) {
-  constexpr std::size_t fewest_contacts = 50; // of a domain
-  if (through_grid_ || watch_ || !finder().exact())
-    return false;
-  const std::size_t paying = std::min(static_cast<std::size_t>(threads()), first.size() / fewest_contacts);
-  const std::size_t wanted = observer_ ? observer_->wants_domains() : 0;
-  const std::size_t domains = std::min(OptimisticLoop::max_domains, wanted > 0 ? wanted : paying);
-  if (domains < 2 || !optimistic_.carry_out(step_at_hand_, *particles_, so_far_, finder(), lists_, first, domains))
-    return false;
-  optimistic_.visit_contacts([&](const Contact& contact, const CollisionRecord* record) {
-    if (count(contact, tally) && takes_records_)
-      records_.push_back(*record);
-  });
-  optimistic_.list_touched(touched_);
-  if constexpr (Communicator::possible)
-    if (borders_)
-      note_changes_of_domains();
-  costs_.widest_list = std::max(costs_.widest_list, optimistic_.max_partners());
-  return true;
-}
-
-void DriftEngine::prepare(bool undisturbed) {
-  const Stopwatch stopwatch(costs_.build);
-  ++costs_.steps;
-  so_far_.begin_step(particles_->size(), -0.5 * step_);
-  const ShearingBox& box = step_at_hand_.box;
+void DriftEngine::begin_step(const StepContext& step, bool undisturbed) {
   const bool every_candidate = observer_ && observer_->wants_every_candidate();
-  watch_ = observer_ && observer_->looks_on() ? observer_ : nullptr;
-  takes_records_ = observer_ && observer_->wants_records() ? observer_ : nullptr;
-  step_at_hand_.recorded = watch_ || takes_records_;
-  records_.clear();
-  if (every_candidate)
-    lists_.release();
-  through_grid_ = every_candidate || !lists_.begin(*particles_, box, step_at_hand_.offset, undisturbed);
-  lists_.visit_exactly(watch_ || !finder().exact());
-  if (through_grid_)
-    grid_.begin(*particles_, box, step_at_hand_.offset, every_candidate);
-  finder_step_ = DriftStep(frequencies_, -0.5 * step_, 0.5 * step_, box.size_x + box.size_y);
-  finder_step_.bodies = particles_->bodies;
-  finder_step_.tested = !every_candidate && !without(Acceleration::rejection);
-  finder().begin(finder_step_);
-  if (watch_)
-    watch_->begins(finder_step_);
+  {
+    const Stopwatch stopwatch(costs_.build);
+    ++costs_.steps;
+    outcome_.clear();
+    history_.begin_step(step.particles.size(), step.begin);
+    const bool exactly = step.watcher || !step.finder.exact();
+    broad_phase_.begin(step.particles, step.box, step.offset, undisturbed, every_candidate, exactly);
+    finder_step_ = DriftStep(frequencies_, step.begin, step.end(), step.box.size_x + step.box.size_y);
+    finder_step_.bodies = step.particles.bodies;
+    finder_step_.tested = !every_candidate && !without(Acceleration::rejection);
+    step.finder.begin(finder_step_);
+    if (step.watcher)
+      step.watcher->begins(finder_step_);
+  }
+  find_candidates(step);
 }
 
-template<class Body> void DriftEngine::for_each_block(const Body& body) const {
-  parallel_for(candidates_.size(), body, 1);
-}
-
-// The pairs that the finder has to be asked about, block by block.
-void DriftEngine::reject() {
+// Collects the pairs that the finder must be asked about, block by block.
+void DriftEngine::find_candidates(const StepContext& step) {
   const Stopwatch stopwatch(costs_.reject);
-  candidates_.resize(through_grid_ ? grid_.blocks() : lists_.blocks());
-  for_each_block([&](std::size_t b) {
-    candidates_[b].clear();
-    const auto keep = [&](std::size_t i, std::size_t j, const Image& image) {
-      const auto a = static_cast<std::uint32_t>(i), b2 = static_cast<std::uint32_t>(j);
-      const bool ordered = particles_->ids[i] < particles_->ids[j];
-      candidates_[b].push_back(ordered ? Candidate{a, b2, image} : Candidate{b2, a, -image});
-    };
-    if (through_grid_)
-      grid_.visit_block(b, keep);
-    else
-      lists_.visit_block(b, keep);
-  });
+  const std::vector<std::uint64_t>& ids = step.particles.ids;
+  candidates_.resize(broad_phase_.blocks());
+  parallel_for(
+      candidates_.size(),
+      [&](std::size_t b) {
+        candidates_[b].clear();
+        broad_phase_.visit_block(b, [&](std::size_t i, std::size_t j, const Image& image) {
+          const auto a = static_cast<std::uint32_t>(i), b2 = static_cast<std::uint32_t>(j);
+          const bool ordered = ids[i] < ids[j];
+          candidates_[b].push_back(ordered ? Candidate{a, b2, image} : Candidate{b2, a, -image});
+        });
+      },
+      1);
   for (const std::vector<Candidate>& block : candidates_)
     costs_.survivors += block.size();
-  if (watch_ && !watch_->wants_every_candidate()) { // no window and no number of threads shows in what is watched
+  if (step.watcher && !step.watcher->wants_every_candidate()) { // lists and threads must not show in what is watched
     for (std::size_t b = 1; b < candidates_.size(); ++b)
       candidates_[0].insert(candidates_[0].end(), candidates_[b].begin(), candidates_[b].end());
     candidates_.resize(std::min<std::size_t>(candidates_.size(), 1));
     for (std::vector<Candidate>& all : candidates_)
-      put_in_order(all);
+      sort_by_ids(all, ids);
   }
 }
 
-void DriftEngine::put_in_order(std::vector<Candidate>& candidates) const {
-  const auto key = [&](const Candidate& c) {
-    return std::tuple(particles_->ids[c.low], particles_->ids[c.high], c.image.nx, c.image.ny);
-  };
-  std::sort(candidates.begin(), candidates.end(),
-            [&](const Candidate& a, const Candidate& b) { return key(a) < key(b); });
-}
-
-// All contacts as long as nothing has changed. Blocks are joined in order, so threads do not matter.
-std::vector<Event> DriftEngine::solve() {
-  constexpr std::size_t together = 64; // searches
+// Returns the first contact of each candidate pair. Blocks are joined in order, so threads do not matter.
+std::vector<Event> DriftEngine::solve(const StepContext& step) {
   const Stopwatch stopwatch(costs_.solve);
-  struct Found {
-    std::vector<Event> events;
-    std::uint64_t gave_up = 0;
-    bool broken = false;
-  };
-  std::vector<Found> found(candidates_.size());
-  const std::vector<std::uint64_t>& ids = particles_->ids;
-  const auto search_some = [&](std::span<const Candidate> candidates, Found& all) {
-    std::array<Query, together> queries;
-    std::array<FinderResult, together> results;
-    const std::size_t count = candidates.size();
-    for (std::size_t k = 0; k < count; ++k) {
-      const Candidate& c = candidates[k];
-      const Vec3 shift = step_at_hand_.box.displacement(c.image, step_at_hand_.offset);
-      queries[k] = {c.low, c.high, shift.x(), shift.y(), step_at_hand_.begin};
-    }
-    finder().find_all(std::span(queries).first(count), std::span(results).first(count));
-    for (std::size_t k = 0; k < count; ++k) {
-      const Candidate& c = candidates[k];
-      const FinderResult& result = results[k];
-      if (watch_)
-        watch_->searched(queries[k], result);
-      if (result.contact())
-        all.events.push_back({result.time, ids[c.low], ids[c.high], c.image, c.low, c.high, 0, 0});
-      all.gave_up += result.exit == FinderExit::gave_up;
-      all.broken |= result.exit == FinderExit::not_a_number;
-    }
-  };
+  std::vector<FirstContacts> found(candidates_.size());
   const auto search_block = [&](std::size_t b) {
     const std::span<const Candidate> block = candidates_[b];
-    for (std::size_t k = 0; k < block.size() && !interrupted(); k += together)
-      search_some(block.subspan(k, std::min(together, block.size() - k)), found[b]);
+    for (std::size_t k = 0; k < block.size() && !interrupted(); k += searches_together)
+      search_some(step, block.subspan(k, std::min(searches_together, block.size() - k)), found[b]);
   };
-  if (watch_)
+  if (step.watcher)
     for (std::size_t b = 0; b < found.size(); ++b)
       search_block(b);
   else
-    for_each_block(search_block);
+    parallel_for(found.size(), search_block, 1);
   throw_if_interrupted();
   std::vector<Event> all;
-  for (const Found& f : found) {
+  for (const FirstContacts& f : found) {
     all.insert(all.end(), f.events.begin(), f.events.end());
-    gave_up_ += f.gave_up;
-    if (f.broken)
+    outcome_.gave_up += f.gave_up;
+    if (f.has_not_a_number)
       throw InvariantError("a collision search met numbers that are not finite");
   }
   return all;
 }
 
+// Carries out all contacts on several threads, where that cannot show in the result and each has enough contacts.
+// Otherwise returns false, with everything as it was.
+bool DriftEngine::carry_out_in_domains(const StepContext& step, const std::vector<Event>& first,
+                                       const ContactCounter& counter) {
+  constexpr std::size_t min_contacts = 50; // per domain
+  if (broad_phase_.through_grid() || step.watcher || !step.finder.exact())
+    return false;
+  const std::size_t paying = std::min(static_cast<std::size_t>(threads()), first.size() / min_contacts);
+  const std::size_t wanted = observer_ ? observer_->wants_domains() : 0;
+  const std::size_t domains = std::min(OptimisticLoop::max_domains, wanted > 0 ? wanted : paying);
+  if (domains < 2 || !optimistic_.carry_out(step, history_, broad_phase_.lists(), first, domains))
+    return false;
+  optimistic_.visit_contacts([&](const Contact& contact, const CollisionRecord* record) {
+    if (counter.add(contact) && step.record_taker)
+      outcome_.records.push_back(*record);
+  });
+  optimistic_.append_dirty(outcome_.dirty);
+  costs_.widest_list = std::max(costs_.widest_list, optimistic_.max_partners());
+  return true;
+}
+
+void DriftEngine::end_step(const StepContext& step) {
+  broad_phase_.end(outcome_.dirty);
+  if (step.record_taker)
+    step.record_taker->recorded(outcome_.records);
+  if (step.particles.size())
+    costs_.bytes_per_particle = bytes(step) / step.particles.size();
+}
+
+double DriftEngine::reached() const {
+  double latest = -0.5 * schedule_.step;
+  for (const std::uint32_t i : outcome_.dirty)
+    latest = std::max(latest, history_.last_change(i));
+  return latest;
+}
+
 DriftCosts DriftEngine::costs() const {
   DriftCosts costs = costs_;
-  costs.lists_made = lists_.counts().rebuilds;
-  costs.pairs_tested = lists_.counts().tested;
-  costs.listed = lists_.counts().listed;
-  costs.listed_anew = lists_.counts().renewed;
-  costs.deferred = optimistic_.deferred;
-  costs.in_sequence = optimistic_.last_deferred;
-  costs.rolled_back = optimistic_.rolled_back;
+  const NeighbourLists& lists = broad_phase_.lists();
+  costs.lists_made = lists.counts().rebuilds;
+  costs.pairs_tested = lists.counts().tested;
+  costs.listed = lists.counts().listed;
+  costs.lists_rebuilt = lists.counts().renewed;
+  costs.deferred = optimistic_.counts().deferred;
+  costs.in_sequence = optimistic_.counts().last_deferred;
+  costs.rolled_back = optimistic_.counts().rolled_back;
   return costs;
 }
 
-std::size_t DriftEngine::bytes() const {
-  std::size_t total = particles_->bodies.capacity() * sizeof(Body) + particles_->ids.capacity() * sizeof(std::uint64_t);
-  total += lists_.bytes() + optimistic_.bytes() + events_.bytes() + so_far_.bytes();
-  total += touched_.capacity() * sizeof(std::uint32_t);
-  total += particles_->size() * finder().bytes_per_particle();
+std::size_t DriftEngine::bytes(const StepContext& step) const {
+  const Particles& particles = step.particles;
+  std::size_t total = particles.bodies.capacity() * sizeof(Body) + particles.ids.capacity() * sizeof(std::uint64_t);
+  total += broad_phase_.lists().bytes() + optimistic_.bytes() + events_.bytes() + history_.bytes();
+  total += outcome_.dirty.capacity() * sizeof(std::uint32_t);
+  total += particles.size() * step.finder.bytes_per_particle();
   for (const std::vector<Candidate>& block : candidates_)
     total += block.capacity() * sizeof(Candidate) + sizeof(std::vector<Candidate>);
   return total;

@@ -8,6 +8,7 @@
 namespace keeler {
 
 void EventQueue::assign(std::span<const Event> events) {
+  assert(events.size() < ~std::uint32_t{0});
   events_.assign(events.begin(), events.end());
   order_.clear();
   if (!without(Acceleration::presorting))

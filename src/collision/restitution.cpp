@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -28,7 +29,7 @@ void check_table(const NumberRows& table) {
   }
 }
 
-// Laws that the program has brought itself. Scenes are read in any thread.
+// Laws that the calling program has registered. Scenes are read in any thread.
 struct OwnLaws {
   std::mutex guard;
   std::map<std::string, RestitutionLaw> laws;
@@ -53,7 +54,7 @@ RestitutionLaw own_restitution(const std::string& name) {
   const auto found = own.laws.find(name);
   if (found == own.laws.end())
     throw UsageError(fmt::format("the law '{}' is a function of the program that made this, and this program has no "
-                                 "such function; go on in that program, or choose another law",
+                                 "such function; continue in that program, or choose another law",
                                  name));
   return found->second;
 }
@@ -62,7 +63,7 @@ RestitutionLaw own_restitution(const std::string& name) {
 
 void add_own_restitution(const std::string& name, const RestitutionLaw& law) {
   if (name.empty())
-    throw UsageError("a restitution law of one's own needs a name; states and checkpoints know it by that");
+    throw UsageError("a custom restitution law needs a name; states and checkpoints refer to it by name");
   for (double speed = 1e-6; speed < 101.0; speed *= 10.0)
     require_coefficient(law({speed, 1.0, 1.0}), name, {speed, 1.0, 1.0});
   const auto held_to_range = [name, law](const Impact& impact) {
@@ -81,12 +82,14 @@ RestitutionLaw constant_restitution(double coefficient) {
 }
 
 RestitutionLaw bridges_restitution(double scale) {
+  assert(scale > 0.0);
   return [scale](const Impact& impact) {
     return impact.speed > 0.0 ? std::min(1.0, scale * std::pow(impact.speed / centimetre, -0.234)) : 1.0;
   };
 }
 
 RestitutionLaw borderies_restitution(double critical_speed) {
+  assert(critical_speed > 0.0);
   return [critical_speed](const Impact& impact) {
     if (impact.speed <= critical_speed)
       return 1.0;
@@ -103,7 +106,8 @@ RestitutionLaw hatzes_restitution() {
 }
 
 RestitutionLaw viscoelastic_restitution(double speed, double radius) {
-  const auto stiffness = [](double a, double b) { // √R_eff / m_eff, but for a factor of the material
+  assert(speed > 0.0 && radius > 0.0);
+  const auto stiffness = [](double a, double b) { // √R_eff / m_eff, up to a factor of the material
     const double a3 = a * a * a, b3 = b * b * b;
     return std::sqrt(a * b / (a + b)) * (a3 + b3) / (a3 * b3);
   };
@@ -124,8 +128,8 @@ RestitutionLaw tabulated_restitution(NumberRows table) {
     if (after == table.end())
       return table.back()[1];
     const std::vector<double>&low = after[-1], &high = after[0];
-    const double share = std::log(impact.speed / low[0]) / std::log(high[0] / low[0]);
-    return low[1] + share * (high[1] - low[1]);
+    const double fraction = std::log(impact.speed / low[0]) / std::log(high[0] / low[0]);
+    return low[1] + fraction * (high[1] - low[1]);
   };
 }
 
@@ -183,7 +187,7 @@ const std::vector<RestitutionEntry>& restitution_laws() {
        {{.path = "name",
          .type = KeyType::text,
          .example = "\"my-ice\"",
-         .meaning = "the name of a function that the program brings itself, from Python or C++"}},
+         .meaning = "name of a function that the calling program registers, from Python or C++"}},
        [](const Parameters& p) { return own_restitution(p.text("name")); }},
   };
   return laws;
@@ -191,6 +195,7 @@ const std::vector<RestitutionEntry>& restitution_laws() {
 
 Rebound rebound(const CollisionSettings& settings, double approach_speed, double radius_low, double radius_high,
                 double orbital_frequency) {
+  assert(radius_low > 0.0 && radius_high > 0.0 && orbital_frequency > 0.0);
   const double cut = settings.cut_speed(radius_low + radius_high);
   const bool fast = approach_speed >= cut;
   const double kept = fast ? settings.restitution({approach_speed * orbital_frequency, radius_low, radius_high}) : 1.0;

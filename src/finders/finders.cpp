@@ -12,7 +12,7 @@
 namespace keeler {
 namespace {
 
-template<class Motion, class Search> std::unique_ptr<Finder> make() {
+template<MotionModel Motion, SearchMethod<Motion> Search> std::unique_ptr<Finder> make() {
   return std::make_unique<MotionSearch<Motion, Search>>();
 }
 

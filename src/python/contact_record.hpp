@@ -35,7 +35,7 @@ public:
     simulation.drift().observe(this);
   }
 
-  bool looks_on() const override { return false; }
+  bool wants_events() const override { return false; }
   bool wants_records() const override { return true; }
   void recorded(std::span<const CollisionRecord> records) override {
     assert(simulation_ && "watch() was called");
@@ -43,8 +43,9 @@ public:
     const double middle = simulation_->orbits() + 0.5 * state.step_length / two_pi;
     for (const CollisionRecord& c : records)
       if (c.normal_speed * omega_ >= minimum_speed_)
-        rows_.push_back({middle + c.time / two_pi, c.low_id, c.high_id, c.place.x(), c.place.y(), c.place.z(),
-                         c.normal_speed * omega_, c.tangential_speed * omega_, c.energy_lost * omega_ * omega_});
+        rows_.push_back({middle + c.time / two_pi, c.low_id, c.high_id, c.contact_point.x(), c.contact_point.y(),
+                         c.contact_point.z(), c.normal_speed * omega_, c.tangential_speed * omega_,
+                         c.energy_lost * omega_ * omega_});
   }
 
   const std::vector<ContactRecord>& rows() const { return rows_; }

@@ -89,8 +89,8 @@ void ContactLog::recorded(std::span<const CollisionRecord> records) {
     const double time = middle * scene_.time.step + record.time / two_pi;
     if (!is_logged(*scene_.output.collisions, record, time, omega))
       continue;
-    rows_.push_back({step, time, record.place, record.low_id, record.high_id, record.image, record.normal_speed * omega,
-                     record.tangential_speed * omega, record.fast});
+    rows_.push_back({step, time, record.contact_point, record.low_id, record.high_id, record.image,
+                     record.normal_speed * omega, record.tangential_speed * omega, record.fast});
     ++counters_.rows;
   }
 }

@@ -57,7 +57,7 @@ public:
   std::int64_t lost_rows() const { return lost_rows_; }
   Series& speeds() { return speeds_; }
 
-  bool looks_on() const override { return false; }
+  bool wants_events() const override { return false; }
   bool wants_records() const override { return true; }
   void recorded(std::span<const CollisionRecord> records) override;
 

@@ -116,7 +116,7 @@ private:
   std::optional<Series> moonlets_;               // on the root, if the scene has moonlets
   std::optional<ContactLog> contact_log_;        // on the root, which receives the other ranks' contacts
   struct RecordRequester final : DriftObserver { // for the other ranks: their contacts are sent to the root
-    bool looks_on() const override { return false; }
+    bool wants_events() const override { return false; }
     bool wants_records() const override { return true; }
   } record_requester_;
   std::int64_t sound_step_ = -1; // the last step that passed require_sound()

@@ -121,7 +121,7 @@ void Simulation::decide_step_when_due() {
 void Simulation::schedule_drift() {
   const bool pairs = scene_.gravity && scene_.gravity->by_pairs();
   const double pull = pairs ? newton_g(scene_.planet.orbital_frequency) * kick_interval() : 0.0;
-  drift_.set_pace(state_.step_length, pull, carries() ? state_.resting.slow_limit() * pull : 0.0);
+  drift_.set_step(state_.step_length, pull, carries() ? state_.resting.slow_limit() * pull : 0.0);
 }
 
 // Precondition: the order in memory has not changed since the drift.

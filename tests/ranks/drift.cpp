@@ -128,7 +128,7 @@ TEST_CASE("ranks: a step is repeated if ghosts leave their owners' paths, with t
       s.filling = 0.45, s.optical_depth = 1.0;
       const Walk walked = walk(s, 7, 25, {.growth = growth, .rows_beyond = 0.0});
       again += walked.costs.repeated_steps;
-      rounds += walked.costs.rounds_again;
+      rounds += walked.costs.repeated_rounds;
       strayed += walked.costs.steps - 25;
     }
   MESSAGE(again, " steps repeated in ", rounds, " rounds, ", strayed, " with wider ghost layers");

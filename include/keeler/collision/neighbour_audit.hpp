@@ -1,6 +1,6 @@
-// Are all neighbours known? In each step, for some of the particles, the plain search goes through all others and all
-// images, and whoever may touch must be among those that the lists or the grid offer: at the beginning of the step, and
-// at its end for some of the particles that were hit in it. It only looks.
+// An audit of the broad phase: in each step, for a sample of the particles, the plain search tries all other particles
+// in all images, and each partner that it finds must be offered by the lists or the grid: at the begin of the step, and
+// at its end for some of the particles that were hit. It changes no result.
 #pragma once
 
 #include <keeler/hill/shearing_box.hpp>
@@ -11,19 +11,19 @@
 
 namespace keeler {
 
-/// A pair that may touch, by its straight lines in double precision, and that was not offered.
+/// A pair that may touch, by straight lines in double precision, but was not offered.
 struct MissedNeighbour {
-  std::uint64_t id = 0, other_id = 0; ///< the first one was searched for
+  std::uint64_t id = 0, other_id = 0; ///< `id` is of the sample
   Image image;                        ///< of the other
-  double distance = 0.0;              ///< of the centres at the epoch over the radius sum
-  bool after_hit = false;             ///< at the end of the step; else at its beginning
+  double distance = 0.0;              ///< of the centres at the epoch, over the radius sum
+  bool after_hit = false;             ///< missed at the end of the step; otherwise at its begin
 };
 
 struct NeighbourAudit {
-  std::size_t particles = 16; ///< that are searched for at the beginning of a step, and at its end
-  std::uint64_t steps = 0;    ///< audited so far: they draw the particles
-  std::uint64_t pairs = 0;    ///< that the plain search found so far
-  std::optional<MissedNeighbour> missed;
+  std::size_t particles = 16;            ///< size of the sample, at the begin and at the end of a step
+  std::uint64_t steps = 0;               ///< audited so far; the number seeds the sample
+  std::uint64_t pairs = 0;               ///< found by the plain search so far
+  std::optional<MissedNeighbour> missed; ///< the first one
 };
 
 } // namespace keeler

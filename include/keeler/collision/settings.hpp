@@ -1,4 +1,4 @@
-// What a scene says about collisions.
+// The collision settings of a scene.
 #pragma once
 
 #include <keeler/collision/friction.hpp>
@@ -13,20 +13,20 @@ struct CollisionSettings {
   std::string finder = "certified"; ///< a name of finder_table()
   RestitutionLaw restitution = constant_restitution(0.5);
   double elastic_below = 1e-2;      ///< v_cut in units of (r_i + r_j) Omega / 2: slower contacts bounce elastically
-  std::optional<Friction> friction; ///< none: smooth spheres, which have no spins
+  std::optional<Friction> friction; ///< none: smooth spheres, without spins
 
-  /// v_cut for a radius sum (m), m rad^-1.
+  /// Returns v_cut for a radius sum (m), m rad^-1.
   double cut_speed(double radius_sum) const { return 0.5 * elastic_below * radius_sum; }
 };
 
-/// How a pair leaves a contact.
+/// The state of a pair after a contact.
 struct Rebound {
   double speed; ///< normal speed afterwards, m rad^-1
   bool fast;    ///< the approach was faster than v_cut
 };
 
-/// Restitution times the approach speed (m rad^-1) above v_cut, the approach speed below it, and never less than
-/// v_cut/1000: a slower hop would stay within the rounding of the contact, and so never end (ε = 0 is such a case).
+/// Returns restitution times the approach speed (m rad^-1) above v_cut, the approach speed below it, and never less
+/// than v_cut/1000: a slower rebound would stay within the rounding of the contact, and so never end (for ε = 0, say).
 Rebound rebound(const CollisionSettings& settings, double approach_speed, double radius_low, double radius_high,
                 double orbital_frequency);
 

@@ -1,20 +1,6 @@
-// A finder combines a form of motion with a form of search, and the data that the motion stores per particle and step.
-//
-// Motion: represents the relative path of two particles. It has
-//   Motion(const Pair&, const DriftStep&)             or, if it stores data per particle,
-//   struct Memory; static Memory remember(const Elements&, const DriftStep&);
-//   Motion(const Pair&, const DriftStep&, const Memory& lo, const Memory& hi);
-//   Separation at(double time)                        one evaluation
-// and may have
-//   std::optional<Separation> at_start()              the separation at pair.start from stored data, if available:
-//                                                     no evaluation
-//   static bool surely_apart(const Query&, const Body& low, const Body& high, const DriftStep&)
-//                                                     proves a miss before a pair is set up
-// Search: moves guesses to the first contact. It has
-//   template<class Motion> static FinderResult find(Motion&, const Pair&);
-// and, if it never errs and never gives up,
-//   static constexpr bool exact = true;
-// A new finder needs one such file and one line in src/finders/finders.cpp: docs/dev/finders.md shows one.
+// A finder: a form of motion (concept MotionModel) under a form of search (concept SearchMethod), with what the motion
+// keeps for each particle through a step. A new finder is one such file and one line in src/finders/finders.cpp:
+// docs/dev/finders.md shows one.
 #pragma once
 
 #include <keeler/core/threads.hpp>
@@ -24,6 +10,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <concepts>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -130,7 +117,40 @@ public:
   virtual std::size_t bytes_per_particle() const = 0;
 };
 
-template<class Motion, class Search> class MotionSearch final : public Finder {
+/// A motion that keeps something for each particle through a step: a Memory, made from its elements.
+template<class Motion>
+concept RemembersParticles = requires(const Elements& elements, const DriftStep& step) {
+  typename Motion::Memory;
+  { Motion::remember(elements, step) } -> std::same_as<typename Motion::Memory>;
+};
+
+/// A motion that can prove a miss before a pair is set up.
+template<class Motion>
+concept RejectsPairs = requires(const Query& query, const Body& body, const DriftStep& step) {
+  { Motion::surely_apart(query, body, body, step) } -> std::same_as<bool>;
+};
+
+/// A motion that is made from a pair, the step and, if it keeps them, the memories of both particles.
+template<class Motion>
+concept MadeFromPair = std::constructible_from<Motion, const Pair&, const DriftStep&> ||
+    (RemembersParticles<Motion>&& std::constructible_from<
+        Motion, const Pair&, const DriftStep&, const typename Motion::Memory&, const typename Motion::Memory&>);
+
+/// The relative path of two particles; at(time) is one evaluation. It may also have at_start(), an optional separation
+/// at pair.start from what it keeps, without an evaluation.
+template<class Motion>
+concept MotionModel = MadeFromPair<Motion> && requires(Motion& motion, double time) {
+  { motion.at(time) } -> std::same_as<Separation>;
+};
+
+/// The way from guesses to the first contact. A search that never errs and never gives up also has
+/// `static constexpr bool exact = true`.
+template<class Search, class Motion>
+concept SearchMethod = requires(Motion& motion, const Pair& pair) {
+  { Search::find(motion, pair) } -> std::same_as<FinderResult>;
+};
+
+template<MotionModel Motion, SearchMethod<Motion> Search> class MotionSearch final : public Finder {
 public:
   void begin(const DriftStep& step) override {
     step_ = &step;
@@ -159,7 +179,7 @@ public:
   }
 
   FinderResult find_between(const Query& query, const Body& low, const Body& high) const override {
-    if constexpr (requires { Motion::surely_apart(query, low, high, *step_); })
+    if constexpr (RejectsPairs<Motion>)
       if (Motion::surely_apart(query, low, high, *step_))
         return {};
     const Pair pair = pair_of(query, low, high, *step_);
@@ -178,14 +198,10 @@ public:
   }
 
 private:
-  static constexpr bool remembers = requires { typename Motion::Memory; };
+  static constexpr bool remembers = RemembersParticles<Motion>;
   struct Nothing {};
   template<class M> struct MemoryOf { using Type = Nothing; };
-  template<class M>
-  requires requires { typename M::Memory; }
-  struct MemoryOf<M> {
-    using Type = typename M::Memory;
-  };
+  template<RemembersParticles M> struct MemoryOf<M> { using Type = typename M::Memory; };
 
   Motion motion_of(const Pair& pair, [[maybe_unused]] const Query& query) const {
     if constexpr (remembers)

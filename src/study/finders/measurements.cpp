@@ -64,8 +64,8 @@ double run_seconds(Simulation& simulation, double step) {
 struct EveryCandidate final : DriftObserver {
   explicit EveryCandidate(std::unique_ptr<Finder> finder = nullptr) : finder_(std::move(finder)) {}
   bool wants_every_candidate() const override { return true; }
-  Finder* stand_in() override { return finder_.get(); }
-  bool looks_on() const override { return false; }
+  Finder* replacement_finder() override { return finder_.get(); }
+  bool wants_events() const override { return false; }
 
 private:
   std::unique_ptr<Finder> finder_;

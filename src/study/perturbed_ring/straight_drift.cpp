@@ -49,7 +49,7 @@ std::uint64_t StraightDrift::collide(Particles& particles, const ShearingBox& bo
   std::uint64_t collisions = 0;
   while (!events_.empty()) {
     const Event event = events_.take_first();
-    if (event.low_stamp == stamps_[event.low] && event.high_stamp == stamps_[event.high])
+    if (event.low_count == stamps_[event.low] && event.high_count == stamps_[event.high])
       collisions += carry_out(event);
   }
   return collisions;

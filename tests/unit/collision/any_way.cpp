@@ -1,5 +1,5 @@
-// A result depends on the scene and the state alone: the same bits after many steps for any number of threads, for
-// neighbours kept or found anew at every step, and for any order of the particles in memory.
+// A result depends on the scene and the state alone: equal bits after many steps for any number of threads, for
+// neighbour lists kept or rebuilt at every step, and for any order of the particles in memory.
 #include "unit/collision/spheres.hpp"
 #include "unit/collision/twin.hpp"
 
@@ -25,7 +25,7 @@ struct Way {
 
 constexpr Way ways[] = {{1, false, false}, {2, true, false}, {3, true, true}, {8, true, false}, {3, false, true}};
 
-// Number k goes to place (stride · k) mod count: far from its neighbours.
+// Moves particle k to index (stride · k) mod count: far from its neighbours.
 template<class T> void shuffle(std::vector<T>& all) {
   const std::size_t stride = 7919; // a prime that divides no count here
   std::vector<T> moved(all.size());
@@ -113,7 +113,7 @@ TEST_CASE("the same bits any way: dense states, where contacts follow from conta
     s.restitution = constant_restitution(c.restitution);
     const Seen seen = same_any_way(test::make_patch(s, 2), test::settings_of(s), {s.step, c.steps});
     CHECK(seen.collisions > 1000);
-    CHECK(seen.rolled_back > 0); // a contact of another domain came first
+    CHECK(seen.rolled_back > 0); // a contact of another domain preceded
   }
 }
 

@@ -1,4 +1,5 @@
-// The audit of neighbours: nothing is missed by lists, by the grid or after hits; and what is missed is told.
+// The audit of the broad phase: lists and grid miss no neighbour, at the begin of steps and after hits; and a missed
+// neighbour is reported.
 #include "plain_search.hpp"
 #include "unit/collision/ring.hpp"
 #include "unit/collision/same_bits.hpp"
@@ -46,7 +47,8 @@ TEST_CASE("no neighbour is missed: lists or grid, kept or made anew, on one thre
   CHECK(contacts > 500);
 }
 
-// Within a window of several steps lists trust that nobody but who was hit has changed its path.
+// Within a pruning interval of several steps lists rely on it that only particles that were hit have changed their
+// path.
 TEST_CASE("lists that were kept although particles have moved elsewhere: the audit tells who is missed") {
   const Scenario s{.count = 300, .step = two_pi * 1e-4};
   int told = 0;
@@ -59,7 +61,7 @@ TEST_CASE("lists that were kept although particles have moved elsewhere: the aud
     for (int step = 0; step < steps; ++step)
       ring.advance();
     REQUIRE_FALSE(audit.missed.has_value());
-    for (std::size_t k = 0; k + 1 < s.count; k += 2) { // each second one close to the next, and nobody is told
+    for (std::size_t k = 0; k + 1 < s.count; k += 2) { // every second one moves close to the next, without notice
       const Body& other = ring.particles.bodies[k + 1];
       Body& moved = ring.particles.bodies[k];
       moved.elements = other.elements;
@@ -68,7 +70,7 @@ TEST_CASE("lists that were kept although particles have moved elsewhere: the aud
     REQUIRE(ring.undisturbed);
     ring.advance();
     if (!audit.missed)
-      continue; // a window began
+      continue; // a pruning interval began
     ++told;
     CHECK(audit.missed->id != audit.missed->other_id);
     CHECK(audit.missed->distance < 2.0);
@@ -82,7 +84,7 @@ TEST_CASE("the plain search rules nobody out by the guiding centre of whom an im
   const auto draw = [&](double low, double high) { return low + (high - low) * random.uniform(); };
   const auto body = [&] {
     Body b;
-    b.elements.guiding_x = draw(-60.0, 60.0); // hits may carry it out of the cell
+    b.elements.guiding_x = draw(-60.0, 60.0); // outside the cell too, as hits may carry it
     b.elements.e_cos = draw(-4.0, 4.0);
     b.elements.e_sin = draw(-4.0, 4.0);
     b.radius = draw(0.1, 3.0);

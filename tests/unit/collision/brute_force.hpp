@@ -52,7 +52,7 @@ private:
     Real gap, slope; // |d|² − R², 2 d·v
   };
 
-  // Ids equal places in these tests, so the lower place is the lower id.
+  // Ids equal indices in these tests, so the lower index has the lower id.
   void look(std::size_t i, std::size_t j) {
     for (int nx = -2; nx <= 2; ++nx)
       for (int ny = -3; ny <= 3; ++ny)
@@ -107,7 +107,7 @@ private:
     return t < end ? std::optional<double>(static_cast<double>(t)) : std::nullopt;
   }
 
-  // The time where a condition that holds at a ends, between a and b.
+  // Returns the time between a and b at which a condition that holds at a ends.
   template<class Condition> static Real bisect(Real a, Real b, const Condition& holds) {
     for (int k = 0; k < 90; ++k) {
       const Real middle = (a + b) / 2;

@@ -24,7 +24,7 @@ using test::settings_of;
 struct Start {
   Particles particles;
   ShearingBox box;
-  double offset; // at the epoch, the middle of the step
+  double offset; // shear offset at the epoch, the middle of the step
 };
 
 Start make_start(const Scenario& s, std::uint64_t seed) {
@@ -182,7 +182,7 @@ TEST_CASE("collisions keep the sums that mechanics keeps, and lose the energy th
     const auto records = run_drift(s, start, tally);
     CHECK(records.size() > 20);
     const auto after = sums(start.particles);
-    double scale = 0.0; // what the sums are made of
+    double scale = 0.0; // size of the terms of the sums
     for (const Body& b : start.particles.bodies)
       scale += b.mass * (std::fabs(b.elements.guiding_x) + std::fabs(b.elements.guiding_y));
     for (int k = 0; k < 6; ++k)

@@ -1,4 +1,4 @@
-// The queue of pending contacts against its reference implementation: a plain list of which the least key is taken.
+// The queue of pending contacts against its reference implementation: a plain list, searched for the smallest key.
 #include <keeler/collision/events.hpp>
 #include <keeler/core/random.hpp>
 
@@ -24,7 +24,7 @@ struct Draws {
   }
   std::int32_t step() { return static_cast<std::int32_t>(below(3)) - 1; }
 
-  // Few times, ids and images, so that each decides often. The place tells events apart that have the same key.
+  // Draws from few times, ids and images, so that each decides often. The index distinguishes events with equal keys.
   Event event(std::size_t times) {
     Event event;
     event.time = static_cast<double>(below(times)) - 0.5 * static_cast<double>(times);
@@ -43,7 +43,7 @@ struct Draws {
   }
 };
 
-// What the queue must do, slowly.
+// The reference implementation.
 struct Pending {
   std::vector<Event> events;
 
@@ -53,7 +53,7 @@ struct Pending {
         ->key();
   }
 
-  // Whether it was pending, with that key; then it is no more.
+  // Removes an event. Returns false if it was not pending with that key.
   bool take(const Event& event) {
     const auto at = std::find_if(events.begin(), events.end(), [&](const Event& e) { return e.low == event.low; });
     if (at == events.end() || at->key() != event.key())
@@ -72,13 +72,13 @@ TEST_CASE(
     Draws draws(seed);
     const std::size_t times = seed % 3 == 0 ? 1 : seed % 3 == 1 ? 5 : 100000;
     EventQueue queue;
-    for (int again = 0; again < 2; ++again) { // of the second step nothing of the first is left
+    for (int again = 0; again < 2; ++again) { // a second step must not see events of the first
       Pending pending{draws.some(draws.below(120), times)};
       queue.assign(pending.events);
       for (int act = 0; act < 400; ++act) {
         REQUIRE(queue.empty() == pending.events.empty());
         if (queue.empty() || draws.below(5) < 2) {
-          pending.events.push_back(draws.event(times)); // earlier than some that have been taken, too
+          pending.events.push_back(draws.event(times)); // some are earlier than events that have been taken
           queue.add(pending.events.back());
           continue;
         }

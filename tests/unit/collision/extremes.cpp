@@ -1,5 +1,5 @@
-// The drift phase where its numbers are extreme: against its plain twin wherever the state is small, and against what
-// mechanics says.
+// The drift phase with extreme numbers: against its plain twin where the state is small, and against the laws of
+// mechanics.
 #include "unit/collision/spheres.hpp"
 #include "unit/collision/twin.hpp"
 
@@ -22,8 +22,8 @@ CollisionSettings restitution(double value) {
   return settings;
 }
 
-// Collisions in some steps, to the bit those of the twin, and nothing sinks in: a gap is known to 1e-14 of coordinates
-// of up to `size` radii.
+// Counts the collisions of some steps. They must equal the twin's to the bit, and no sphere may overlap another: a gap
+// is exact to 1e-14 of coordinates of up to `size` radii.
 std::size_t walk(Ring& ring, int steps, const CollisionSettings& settings = {}) {
   ring.keeps_neighbours = true;
   const std::size_t collisions = Twin(ring, settings).advance(steps);
@@ -85,7 +85,7 @@ TEST_CASE("a lattice at filling 0.6: no storm, and nothing sinks in") {
     Ring lattice(test::patch_of(spheres, 3.0 * side, 3.0 * side), {}, two_pi * step);
     const std::size_t collisions = walk(lattice, 60);
     CHECK(collisions > 2e4 * (step - 5e-4));
-    CHECK(collisions < 60 * 72 * 100); // a hundred of each sphere in each step, where a few are to be expected
+    CHECK(collisions < 60 * 72 * 100); // a hundred per sphere and step, where a few are expected
   }
 }
 

@@ -1,5 +1,5 @@
-// Where bounds are hardest to keep: orbits so fast that two may meet through another image, long boxes and long steps,
-// hardly any particles, and whatever chance brings. Against the plain twin, bit by bit.
+// Cases in which bounds are hardest to keep: orbits so fast that two particles may touch through another image, long
+// boxes, long steps, very few particles, and random cases. Against the plain twin, bit by bit.
 #include "unit/collision/spheres.hpp"
 #include "unit/collision/twin.hpp"
 
@@ -27,7 +27,7 @@ CollisionSettings restitution(double value) {
   return settings;
 }
 
-// Contacts enough, high above all else, that several threads carry out the step's.
+// Adds so many contacts, high above all other particles, that several threads carry out the step's.
 void add_small_pairs(std::vector<Sphere>& spheres, double step) {
   for (int k = 0; k < 50; ++k)
     for (const double side : {-1.0, 1.0})
@@ -155,7 +155,7 @@ TEST_CASE("no particle, one and two, for many steps, kicked or not") {
 
 namespace {
 
-// A patch of 30 to 120 spheres that do not overlap, everything drawn over decades.
+// A random patch of 30 to 120 spheres that do not overlap; all quantities are drawn over decades.
 struct Chance {
   RandomVectors random;
   Frequencies frequencies;
@@ -194,7 +194,8 @@ struct Chance {
     return radii;
   }
 
-  // Where it is free, not across the edges; not at all when that is hard to find. One in twenty is fast.
+  // Places a sphere where it overlaps no other and no edge, or not at all when such a place is hard to find. One in
+  // twenty is fast.
   void place(double r, double thickness) {
     for (int tries = 0; tries < 300; ++tries) {
       const Vec3 at((size_x - 2.0 * r) * (random.uniform() - 0.5), (size_y - 2.0 * r) * (random.uniform() - 0.5),

@@ -33,7 +33,7 @@ private:
   RandomStream random_;
 };
 
-// Everything about two spheres before and after a contact, in the rotating frame, a at the origin.
+// Two spheres before and after a contact, in the rotating frame, a at the origin.
 struct SpherePair {
   Body a, b;
   Vec3 normal, velocity_a, velocity_b, spin_a, spin_b;
@@ -50,7 +50,7 @@ struct SpherePair {
     return 0.5 * (a.mass * velocity_a.squaredNorm() + b.mass * velocity_b.squaredNorm() +
                   inertia(a) * (spin_a - frame).squaredNorm() + inertia(b) * (spin_b - frame).squaredNorm());
   }
-  // About the point of contact.
+  // Returns the angular momentum about the point of contact.
   Vec3 angular_momentum() const {
     return (-a.radius * normal).cross(a.mass * velocity_a) + (b.radius * normal).cross(b.mass * velocity_b) +
            inertia(a) * spin_a + inertia(b) * spin_b;
@@ -140,7 +140,7 @@ TEST_CASE("spins of a thin rough ring: E_rot/E_kin = 2(1 - eps_t)/(14 - 5(1 - ep
   for (const double restitution : {0.9, 0.5, 0.0}) {
     Draw draw(3);
     const double rough = 1.0 - restitution, ratio = 2.0 * rough / (14.0 - 5.0 * rough);
-    const double spin = std::sqrt(ratio / 0.4); // of each axis, for velocities of 1 and r = 1
+    const double spin = std::sqrt(ratio / 0.4); // per axis, for velocities of 1 and r = 1
     const auto gain = [&](double spins) {
       double sum = 0.0, weights = 0.0, exchanged = 0.0;
       for (int k = 0; k < 400000; ++k) {

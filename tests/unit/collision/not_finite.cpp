@@ -1,4 +1,4 @@
-// Numbers that are not finite end a run in the step that meets them first, whatever is kept from the steps before.
+// Numbers that are not finite end a run in the step that meets them first, whatever is kept from earlier steps.
 #include "unit/collision/spheres.hpp"
 #include "unit/collision/twin.hpp"
 

@@ -1,5 +1,5 @@
-// The optimistic loop against the sequential one, in any number of domains, on one thread and on several: the same
-// bits, and every part of its rule in use.
+// The optimistic loop against the sequential one, in any number of domains, on one thread and on several: equal bits,
+// with every part of the algorithm in use.
 #include "unit/collision/ring.hpp"
 #include "unit/collision/twin.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 
 struct Domains final : DriftObserver {
   explicit Domains(std::size_t how_many) : count(how_many) {}
-  bool looks_on() const override { return false; }
+  bool wants_events() const override { return false; }
   std::size_t wants_domains() const override { return count; }
   bool wants_records() const override { return true; }
   void recorded(std::span<const CollisionRecord> of_step) override {
@@ -33,7 +33,7 @@ struct End {
 End drift(const Patch& patch, const CollisionSettings& settings, double step, int steps, std::size_t domains) {
   test::Ring ring(patch, settings, step);
   ring.keeps_neighbours = true;
-  Domains wanted(domains); // of one domain: in sequence
+  Domains wanted(domains); // one domain: in sequence
   ring.observer = &wanted;
   for (int k = 0; k < steps; ++k) {
     ring.advance();

@@ -1,6 +1,7 @@
-// The drift phase made obvious: all pairs in all images that their orbits can bring into contact, each asked of the
-// certified finder; one contact at a time; all pairs of the two particles again after it. No cells, lists, windows,
-// memory of earlier steps, heap or threads, and the same answers to the last bit.
+// The plain version of the drift phase, which defines its result: the certified finder is asked about all pairs in all
+// images that their orbits can bring into contact; contacts are carried out one at a time, and all pairs of the two
+// particles are asked about again after each. No cells, lists, memory of earlier steps, heap or threads; equal results
+// to the last bit.
 #pragma once
 
 #include <keeler/collision/drift.hpp>
@@ -58,7 +59,7 @@ private:
 
   static bool involves(const Places& places, std::size_t k) { return places.first == k || places.second == k; }
 
-  // These two are all that knows how a finder is asked.
+  // These two functions alone depend on the interface of finders.
   void begin() {
     at_hand_ = DriftStep(f_, -0.5 * step_, 0.5 * step_, box_.size_x + box_.size_y);
     at_hand_.bodies = particles_->bodies;
@@ -76,7 +77,7 @@ private:
     const Body &a = particles_->bodies[low], &b = particles_->bodies[high];
     const Elements el = b.elements - a.elements;
     const double start = std::max(last_[i], last_[j]), reach = a.radius + b.radius, e = el.eccentricity();
-    // from where they stand at the epoch, no farther than the fastest of their epicycle goes in half a step
+    // from the positions at the epoch, no farther than the largest speed on the epicycle leads in half a step
     const double half = 0.5 * step_, x = el.guiding_x - el.e_cos, y = el.guiding_y + 2.0 / f_.kappa * el.e_sin;
     for (const int nx : within(x, box_.size_x, reach + half * f_.kappa * e)) {
       const double fastest = f_.shear() * std::fabs(el.guiding_x + nx * box_.size_x) + 2.0 * e;
@@ -89,7 +90,7 @@ private:
     }
   }
 
-  // All n with |place + n period| <= distance, and a little more.
+  // Returns all n with |place + n period| <= distance, and a little more.
   static std::vector<int> within(double place, double period, double distance) {
     const double wide = distance * (1.0 + 1e-9) + 1e-9 * period;
     std::vector<int> all;
@@ -98,7 +99,7 @@ private:
     return all;
   }
 
-  // The engine's arithmetic: to agree to the bit there is one way to write it.
+  // Uses the arithmetic of ContactLoop, operation by operation: otherwise the bits differ.
   bool bounce(const Key& key, const Places& places, CollisionTally& tally, std::vector<CollisionRecord>& records) {
     const auto& [time, low_id, high_id, nx, ny] = key;
     const Image image{nx, ny};
@@ -150,7 +151,7 @@ private:
   Particles* particles_ = nullptr;
   ShearingBox box_;
   double offset_ = 0.0;
-  std::vector<double> last_; // velocity change in this step
+  std::vector<double> last_; // time of the last velocity change in this step, or its begin
   std::map<Key, Places> pending_;
   ExactSum lost_, flux_, gain_; // over the step
 };

@@ -42,7 +42,7 @@ end = 10.0
 
 constexpr double mass = 3000.0 * 4.0 / 3.0 * pi; // of a sphere of radius 1: denser than the tide can pull apart
 
-// A ball of a face-centred lattice at filling 0.6, turning with the frame.
+// Returns a ball of a face-centred lattice at filling 0.6, at rest in the rotating frame.
 std::vector<Sphere> ball(double radius) {
   const double side = std::cbrt(4.0 * (4.0 / 3.0 * pi) / 0.6);
   std::vector<Sphere> spheres;
@@ -60,7 +60,7 @@ struct Settled {
   double first = 0.0, second = 0.0; // largest overlap in the first and in the second half
   double most = 0.0;                // contacts of a particle in a step, mean of the worst step
   std::uint64_t contacts = 0;
-  double radius = 0.0; // of the farthest particle at the end
+  double radius = 0.0; // distance of the farthest particle at the end
 };
 
 Settled settle(const Scene& scene, const std::vector<Sphere>& spheres, int steps) {
@@ -97,7 +97,7 @@ TEST_CASE("a ball at filling 0.6 settles under its own gravity: no storm, and no
     CAPTURE(c.kick_every);
     const Settled s = settle(scene_with_gravity(c.restitution, c.kick_every, c.step), spheres, c.steps);
     CHECK(s.contacts > 1000);
-    CHECK(s.most < (c.restitution > 0.0 ? 60.0 : 1000.0)); // three times what was seen: 19 and 315
+    CHECK(s.most < (c.restitution > 0.0 ? 60.0 : 1000.0)); // three times the observed values, 19 and 315
     // the rounding of |d|² − R² where coordinates are about ten radii
     CHECK(s.first < 1e-13);
     CHECK(s.second < 1e-13);

@@ -13,9 +13,9 @@
 
 namespace keeler::test {
 
-/// Several threads share the contacts, few as they may be.
+/// Divides the contacts among all threads, even if they are few.
 struct InDomains final : DriftObserver {
-  bool looks_on() const override { return false; }
+  bool wants_events() const override { return false; }
   std::size_t wants_domains() const override { return static_cast<std::size_t>(threads()); }
 };
 
@@ -27,8 +27,8 @@ struct Ring {
   DriftPhase drift;
   CollisionTally tally;
   std::int64_t steps = 0;
-  bool keeps_neighbours = false; ///< over several steps, as a run does
-  bool undisturbed = false;      ///< but for moving on, since the last drift
+  bool keeps_neighbours = false; ///< keeps neighbour lists over several steps, as a run does
+  bool undisturbed = false;      ///< true if particles have only moved on since the last drift
   DriftObserver* observer = nullptr;
   InDomains in_domains;
 
@@ -43,7 +43,7 @@ struct Ring {
     move_on();
   }
 
-  /// One drift, in domains when there are threads for them, unless somebody observes.
+  /// Carries out one drift, in domains if there are several threads, unless there is another observer.
   void collide(CollisionTally& into) {
     drift.observe(observer ? observer : &in_domains);
     drift.collide(particles, box, epoch_offset(), into, undisturbed);
@@ -65,7 +65,7 @@ struct Ring {
     undisturbed = keeps_neighbours;
   }
 
-  /// Random kicks at the boundary between steps, of no more than `largest` (m rad⁻¹) each.
+  /// Kicks each particle at random, by at most `largest` (m rad⁻¹), at the boundary between steps.
   void kick_all(double largest) {
     const Rotation rotation(frequencies, -0.5 * step);
     for (std::size_t k = 0; k < particles.size(); ++k) {
@@ -76,7 +76,7 @@ struct Ring {
     undisturbed = false;
   }
 
-  /// At the present boundary between steps.
+  /// Returns the patch at the present boundary between steps.
   Patch patch() const {
     return make_patch(particles, box, box.offset(2 * steps, 0.5 * step), frequencies, -0.5 * step);
   }
@@ -92,7 +92,7 @@ inline void in_order_of(Particles& particles, const Particles& others) {
   particles.ids = others.ids;
 }
 
-/// Bodies in the order of their ids, whatever that of the memory: to compare states bit by bit.
+/// Returns the bodies in the order of their ids, to compare states bit by bit.
 inline std::vector<Body> by_id(const Particles& particles) {
   std::vector<std::size_t> places(particles.size());
   for (std::size_t k = 0; k < places.size(); ++k)

@@ -1,4 +1,4 @@
-// Whether states, sums and contacts are the same to the bit.
+// Comparison of states, sums and contacts to the last bit.
 #pragma once
 
 #include "unit/collision/ring.hpp"
@@ -28,12 +28,12 @@ inline bool same_bits(const CollisionTally& a, const CollisionTally& b) {
          same_bits(a.momentum_flux, b.momentum_flux) && same_bits(a.azimuthal_gain, b.azimuthal_gain);
 }
 
-/// Everything to the bit.
+/// Compares all fields to the bit.
 inline bool same_bits(const CollisionRecord& a, const CollisionRecord& b) {
   return same_bits(a.time, b.time) && a.low_id == b.low_id && a.high_id == b.high_id && a.image == b.image &&
          same_bits(a.normal_speed, b.normal_speed) && a.fast == b.fast &&
          same_bits(a.tangential_speed, b.tangential_speed) && same_bits(a.energy_lost, b.energy_lost) &&
-         same_bits(a.radius_sum, b.radius_sum) && a.place == b.place;
+         same_bits(a.radius_sum, b.radius_sum) && a.contact_point == b.contact_point;
 }
 
 } // namespace keeler::test

@@ -1,4 +1,4 @@
-// A ring beside its plain twin: every step starts from the same state, and everything must come out with the same bits.
+// A ring beside its plain twin: every step starts from one state, and all results must have equal bits.
 #pragma once
 
 #include "unit/collision/plain_drift.hpp"
@@ -14,16 +14,16 @@ struct Recorder : DriftObserver {
   void collided(const CollisionRecord& record) override { records.push_back(record); }
 };
 
-/// The records of the last step, carried out in domains.
+/// Takes the records of the last step, carried out in domains.
 struct Taker : DriftObserver {
   std::vector<CollisionRecord> records;
-  bool looks_on() const override { return false; }
+  bool wants_events() const override { return false; }
   bool wants_records() const override { return true; }
   std::size_t wants_domains() const override { return static_cast<std::size_t>(threads()); }
   void recorded(std::span<const CollisionRecord> of_step) override { records.assign(of_step.begin(), of_step.end()); }
 };
 
-/// How many of the records, from the first on, are the same.
+/// Returns the number of leading records that are equal.
 inline std::size_t same_records(const std::vector<CollisionRecord>& a, const std::vector<CollisionRecord>& b) {
   std::size_t k = 0;
   while (k < std::min(a.size(), b.size()) && same_bits(a[k], b[k]))
@@ -42,7 +42,7 @@ inline double total_energy(const Ring& ring) {
   return sum;
 }
 
-/// What the energy is made of, kg m² rad⁻²: its rounding is some 1e-16 of this.
+/// Returns the size of the terms of the energy, kg m² rad⁻²: its rounding is some 1e-16 of this.
 inline double energy_scale(const Ring& ring) {
   double sum = 0.0;
   for (const Body& b : ring.particles.bodies) {
@@ -58,8 +58,8 @@ public:
   Twin(Ring& ring, const CollisionSettings& settings)
       : ring_(ring), plain_(settings, ring.frequencies, omega, ring.step) {}
 
-  /// Drifts through one step and moves on; returns its collisions. Every other step nobody watches, so that threads
-  /// may work, and the records of its contacts are taken.
+  /// Drifts through one step and moves on; returns its collisions. Every other step is not observed event by event, so
+  /// that threads may work; then the records are taken at its end.
   std::size_t advance() {
     Particles copy = ring_.particles;
     const bool watched = ring_.steps % 2 == 0;
@@ -84,7 +84,7 @@ public:
     return expected.size();
   }
 
-  /// The same many times.
+  /// Does so many steps.
   std::size_t advance(int steps) {
     std::size_t collisions = 0;
     for (int k = 0; k < steps; ++k)

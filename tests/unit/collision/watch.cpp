@@ -1,4 +1,5 @@
-// Who watches a drift sees the same calls in the same order for any number of threads, whenever the watch begins.
+// An observer of a drift receives equal calls in equal order for any number of threads, in whatever step it is
+// registered.
 #include "unit/collision/ring.hpp"
 #include "unit/collision/twin.hpp"
 
@@ -25,7 +26,7 @@ struct Calls : test::Recorder {
   void changed(std::size_t particle) override { changes.push_back(particle); }
 };
 
-// Of six steps, watched from the given one on.
+// Returns the calls of six steps, observed from step `first` on.
 Calls watch_from(int first, const Patch& patch, double step) {
   test::Ring ring(patch, {}, step);
   ring.keeps_neighbours = true;

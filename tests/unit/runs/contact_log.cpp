@@ -100,7 +100,7 @@ TEST_CASE("the log holds what an observer sees, in SI") {
     CHECK(row.low_id == r.low_id);
     CHECK(row.high_id == r.high_id);
     CHECK(row.image == r.image);
-    CHECK(row.position == r.place);
+    CHECK(row.position == r.contact_point);
     CHECK(row.normal_speed == r.normal_speed * omega);
     CHECK(row.tangential_speed == r.tangential_speed * omega);
     CHECK(row.fast == r.fast);

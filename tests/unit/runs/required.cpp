@@ -64,7 +64,7 @@ Held held_by(const Scene& scene, DriftObserver* observer = nullptr) {
 
 struct TakesRecords final : DriftObserver {
   std::size_t count = 0;
-  bool looks_on() const override { return false; }
+  bool wants_events() const override { return false; }
   bool wants_records() const override { return true; }
   void recorded(std::span<const CollisionRecord> records) override { count += records.size(); }
 };
@@ -101,7 +101,7 @@ TEST_CASE("records of contacts are held for whom asks, and for nobody else") {
   CHECK(observer.count > many / 4);
   CHECK(recorded.all - recorded.drift > 2.0 * tolerance);
   struct Idle final : DriftObserver {
-    bool looks_on() const override { return false; }
+    bool wants_events() const override { return false; }
     void recorded(std::span<const CollisionRecord>) override { FAIL("nobody asked"); }
   } idle;
   const Held unrecorded = held_by(bare_scene(many), &idle);

@@ -17,17 +17,25 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <concepts>
 
 namespace keeler {
 
-/// Precondition: Motion has largest_speed(), largest_acceleration(), gap_error() and closing_error(): see
-/// BoundedMotion.
-struct CertifiedSearch {
-  static constexpr bool exact = true;
-  template<class Motion> static FinderResult find(const Motion& motion, const Pair& pair);
+/// A motion with bounds on its speed and acceleration at all times, and on the rounding of |d|² − R² and of 2 d·v.
+template<class Motion>
+concept BoundedMotionModel = MotionModel<Motion> && requires(const Motion& motion, double x) {
+  { motion.largest_speed() } -> std::same_as<double>;
+  { motion.largest_acceleration() } -> std::same_as<double>;
+  { motion.gap_error(x, x) } -> std::same_as<double>;
+  { motion.closing_error(x, x) } -> std::same_as<double>;
 };
 
-template<class Motion> FinderResult CertifiedSearch::find(const Motion& motion, const Pair& pair) {
+struct CertifiedSearch {
+  static constexpr bool exact = true;
+  template<BoundedMotionModel Motion> static FinderResult find(const Motion& motion, const Pair& pair);
+};
+
+template<BoundedMotionModel Motion> FinderResult CertifiedSearch::find(const Motion& motion, const Pair& pair) {
   constexpr double down = 1.0 - 1e-13;
   constexpr int patience = 8; // consecutive short steps before the window is halved: bounds over it are tighter
   const double speed_bound = motion.largest_speed(), acceleration_bound = motion.largest_acceleration();

@@ -1,0 +1,137 @@
+// The parts of the parallel contact loop by themselves: cuts of the box, locks, and the logs of changes and contacts.
+#include "change_log.hpp"
+#include "domain_contacts.hpp"
+#include "domain_cut.hpp"
+#include "particle_locks.hpp"
+
+#include <keeler/core/random.hpp>
+
+#include <doctest/doctest.h>
+
+namespace domains_test {
+
+using namespace keeler;
+
+TEST_CASE("in each round every position belongs to the one domain whose strip contains it") {
+  RandomStream random(1, RandomPurpose::sample, 0);
+  const auto position = [&] { return static_cast<std::uint32_t>(random.uniform() * 4294967296.0); };
+  for (const std::size_t domains : {2, 3, 8, 127}) {
+    CAPTURE(domains);
+    std::vector<std::uint32_t> samples;
+    for (std::size_t k = 0; k < 64 * domains; ++k)
+      samples.push_back(position() / 2); // half of the box is empty
+    DomainCut cut;
+    cut.cut(samples, domains);
+    CHECK(cut.domains() == 2 * domains + 1);
+    CHECK(cut.end_of(0) == cut.begin_of(1));
+    CHECK(cut.end_of(2) == cut.domains());
+    for (int k = 0; k < 200; ++k) {
+      const std::uint32_t x = position();
+      for (std::size_t round = 0; round < 2; ++round)
+        for (std::size_t d = cut.begin_of(round); d < cut.end_of(round); ++d) {
+          const DomainCut::Strip strip = cut.strip(d);
+          const std::uint32_t inside = x - strip.begin; // round the box
+          CHECK((inside < strip.width) == (cut.owner(round, x) == d - cut.begin_of(round)));
+        }
+      CHECK(cut.owner(2, x) == 0);
+    }
+    // borders of one round lie within the strips of the other
+    for (std::size_t d = 0; d < domains; ++d) {
+      const std::uint32_t border = cut.strip(d).begin;
+      CHECK(border != cut.strip(domains + cut.owner(1, border)).begin);
+    }
+  }
+}
+
+TEST_CASE("a change log restores orbits and spins, the last change first") {
+  Particles particles;
+  particles.rough = true;
+  particles.bodies.resize(2);
+  particles.ids = {0, 1};
+  particles.spins.assign(2, Vec3::Zero());
+  StepHistory history;
+  history.begin_step(2, -1.0);
+  ChangeLog log;
+  log.resize(2, 3);
+  std::vector<ChangeNumber> numbers;
+  for (int k = 0; k < 3; ++k) { // particle 1, by domains 0, 1 and 2
+    const auto domain = static_cast<std::size_t>(k);
+    const ChangeNumber earlier = log.newest(history, 1);
+    CHECK(earlier == (k > 0 ? numbers.back() : 0));
+    log.add(domain, {1, earlier, history.last_change(1), 0.1 * k, particles.bodies[1].elements}, particles);
+    history.change(1, 0.1 * k);
+    particles.bodies[1].elements.guiding_x += 1.0;
+    particles.spins[1].z() += 2.0;
+    numbers.push_back(log.newest(history, 1));
+    CHECK(ChangeLog::domain_of(numbers.back()) == domain);
+    CHECK(ChangeLog::index_of(numbers.back()) == 0);
+  }
+  CHECK(log.newest(history, 0) == 0);
+  CHECK(history.event_count(1) == 3);
+  for (int k = 2; k >= 0; --k) {
+    const ChangeNumber number = log.newest(history, 1);
+    CHECK(number == numbers[static_cast<std::size_t>(k)]);
+    log.restore(number, particles);
+    history.reinstate(1, log[number].begin);
+    CHECK(particles.bodies[1].elements.guiding_x == k);
+    CHECK(particles.spins[1].z() == 2.0 * k);
+  }
+  CHECK(log.newest(history, 1) == 0);
+  CHECK(history.event_count(1) == 6); // no event of a path that was rolled back becomes valid again
+  CHECK(history.last_change(1) == -1.0);
+  CHECK(ChangeLog::partner_of(ChangeLog::number_of(2, 6)) == ChangeLog::number_of(2, 7));
+  CHECK(ChangeLog::partner_of(ChangeLog::number_of(2, 7)) == ChangeLog::number_of(2, 6));
+  CHECK(ChangeLog::contact_of(ChangeLog::number_of(2, 7)) == 3);
+}
+
+TEST_CASE("a domain sets scheduled locks once, in the order of time, and releases its locks") {
+  LockSchedule schedule;
+  schedule.add(0.3, 3, 7);
+  schedule.add(0.1, 1, 0);
+  schedule.add(0.2, 2, 0);
+  schedule.sort();
+  ParticleLocks all;
+  all.resize(4);
+  {
+    DomainLocks locks(all);
+    const auto lock_due = [&](double time) {
+      int count = 0;
+      schedule.visit_due(time, [&](std::uint32_t i, std::uint32_t event_count) {
+        CHECK(event_count == (i == 3 ? 7 : 0));
+        locks.lock(i);
+        ++count;
+      });
+      return count;
+    };
+    CHECK(lock_due(0.05) == 0);
+    CHECK(lock_due(0.2) == 2);
+    CHECK(lock_due(0.2) == 0);
+    CHECK((all.is_locked(1) && all.is_locked(2) && !all.is_locked(3)));
+    CHECK(lock_due(1.0) == 1);
+    CHECK(all.is_locked(3));
+  }
+  for (std::size_t i = 0; i < 4; ++i)
+    CHECK_FALSE(all.is_locked(i));
+}
+
+TEST_CASE("the contacts of a domain: the ones that were rolled back are skipped") {
+  DomainContacts log;
+  for (int k = 0; k < 5; ++k) {
+    log.add(Contact{.time = 0.1 * k});
+    log.add(CollisionRecord{.time = 0.1 * k, .low_id = 0, .high_id = 1, .image = {}, .normal_speed = 1, .fast = true});
+  }
+  log.roll_back(0);
+  log.roll_back(2);
+  CHECK(log.next_valid(0) == 1);
+  CHECK(log.next_valid(2) == 3);
+  CHECK(log.record(3)->time == log[3].time);
+  log.remove_last();
+  CHECK(log.size() == 4);
+  log.roll_back(3);
+  CHECK(log.next_valid(2) == log.size());
+  log.clear();
+  log.add(Contact{});
+  CHECK(log.record(0) == nullptr);
+}
+
+} // namespace domains_test
