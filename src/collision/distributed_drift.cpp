@@ -145,7 +145,7 @@ private:
   };
 
   void note_path(std::uint32_t i, const Elements& path) {
-    has_strayed_ = has_strayed_ || (i < ghosts_.own && !ghosts_.keeps(i, path, step_.end() - step_.begin));
+    has_strayed_ = has_strayed_ || (i < ghosts_.own && !ghosts_.within_margin(i, path, step_.end() - step_.begin));
   }
 
   const StepContext& step_;

@@ -111,10 +111,10 @@ public:
   void collide(Particles& particles, const ShearingBox& box, double offset, CollisionTally& tally,
                bool undisturbed = false);
 
-  /// Carries out a step that ranks share: own particles and ghosts (decomposition/ghost_layer.hpp), which have the bits of
-  /// their owners. The own particles become what they would on one rank, and each contact counts on all ranks. Returns
-  /// false on all, with everything as it was, if an own particle of one went farther than the margin. Preconditions:
-  /// all ranks call it; the finder is exact; no observer wants events, and there is no audit.
+  /// Carries out a step that ranks share: own particles and ghosts (decomposition/ghost_layer.hpp), which have the bits
+  /// of their owners. The own particles become what they would on one rank, and each contact counts on all ranks.
+  /// Returns false on all, with everything as it was, if an own particle of one went farther than the margin.
+  /// Preconditions: all ranks call it; the finder is exact; no observer wants events, and there is no audit.
   bool collide_distributed(Particles& particles, const GhostLayer& ghosts, const Communicator& ranks,
                            const ShearingBox& box, double offset, CollisionTally& tally);
 
