@@ -1,4 +1,4 @@
-// The settings that tune chooses meet the tolerances and are the cheapest to do so; its keys are valid in a scene.
+// What tune chooses meets the tolerances and is the cheapest of what does; its keys are a scene's.
 #include <keeler/scene/scene.hpp>
 #include <keeler/tune/tune.hpp>
 
