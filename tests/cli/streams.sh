@@ -76,7 +76,7 @@ runs 0 info /dev/stdin < <(cat "$snapshot")
 cmp -s "$work/of-file" "$work/out" || fail "info of a snapshot from a pipe: $(cat "$work/out" "$work/err")"
 for command in render "convert --to csv"; do
   # shellcheck disable=SC2086 # a command and its options
-  refuses "$command of a pipe without -o" "name the file to write by -o" $command /dev/stdin < <(cat "$snapshot")
+  refuses "$command of a pipe without -o" "name the file to write with -o" $command /dev/stdin < <(cat "$snapshot")
 done
 
 # A pipe without a reader waits, and an interrupt ends that.
