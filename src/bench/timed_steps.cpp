@@ -105,7 +105,7 @@ struct Counts {
 
 // Replaces the counts that refer to the particles of one rank by their sums over the ranks.
 void add_over_ranks(const Communicator& ranks, TimedSteps& timed) {
-  for (std::uint64_t* const count : {&timed.recontacts, &timed.lists_made, &timed.listed_anew, &timed.deferred,
+  for (std::uint64_t* const count : {&timed.recontacts, &timed.lists_made, &timed.lists_rebuilt, &timed.deferred,
                                      &timed.in_sequence, &timed.rolled_back, &timed.pairs_tested, &timed.survivors})
     *count = ranks.sum(*count);
 }
@@ -133,7 +133,7 @@ void add_counts(const Counts& before, const Counts& after, TimedSteps& timed) {
   timed.contacts += after.tally.fast + after.tally.slow - before.tally.fast - before.tally.slow;
   timed.recontacts += after.costs.recontacts - before.costs.recontacts;
   timed.lists_made += after.costs.lists_made - before.costs.lists_made;
-  timed.listed_anew += after.costs.lists_rebuilt - before.costs.lists_rebuilt;
+  timed.lists_rebuilt += after.costs.lists_rebuilt - before.costs.lists_rebuilt;
   timed.deferred += after.costs.deferred - before.costs.deferred;
   timed.in_sequence += after.costs.in_sequence - before.costs.in_sequence;
   timed.rolled_back += after.costs.rolled_back - before.costs.rolled_back;

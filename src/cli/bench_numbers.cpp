@@ -52,7 +52,7 @@ TimedRows count_rows() {
       {{"lists_made", unit::none, "", "number of times that all neighbour lists were built"},
        [](Timed t) -> Value { return t.lists_made; }},
       {{"listed_anew", unit::none, "", "particles with a list rebuilt within the lifetime of the lists"},
-       [](Timed t) -> Value { return t.listed_anew; }},
+       [](Timed t) -> Value { return t.lists_rebuilt; }},
       {{"deferred", unit::none, "", "contacts that a domain left to later rounds"},
        [](Timed t) -> Value { return t.deferred; }},
       {{"in_sequence", unit::none, "", "contacts resolved one after the other"},

@@ -102,7 +102,7 @@ void remove_overlaps(Patch& patch, const GenerateOptions& options, const Particl
     return;
   const Overlap worst = largest_overlap(patch);
   const std::string found =
-      fmt::format("{} of particles overlap, worst those of {} and {}, by {:.2g} of their radius sum",
+      fmt::format("{} of particles overlap, most of all {} and {}, by {:.2g} of their radius sum",
                   pluralize(overlaps, "pair"), table.location_of(worst.id_i), table.location_of(worst.id_j), worst.depth);
   if (!options.relax)
     throw InvariantError(found + "; correct them, or move them apart with --relax");

@@ -75,17 +75,17 @@ void ProgressLine::print(std::optional<double> fraction, const Parts& parts) {
   open_ = true;
 }
 
-double ProgressLine::patience_s() const {
+double ProgressLine::quiet_s() const {
   return terminal_ ? 0.5 : log_interval_s;
 }
 
 // Shows nothing for short starts.
 void ProgressLine::show(const StartProgress& p) {
   begin_phase("the start", 0.0);
-  if (p.elapsed_s >= patience_s() && due(p.elapsed_s, p.fraction == 1.0))
+  if (p.elapsed_s >= quiet_s() && due(p.elapsed_s, p.fraction == 1.0))
     print(p.fraction, {fmt::format("{:3.0f} % of the start", 100.0 * p.fraction), clock(p.remaining_s) + " left"});
   if (p.fraction == 1.0)
-    next_s_ = 0.0; // what follows has a clock of its own
+    next_s_ = 0.0; // the next phase counts its time from 0
 }
 
 void ProgressLine::show(const RunProgress& p) {
@@ -113,7 +113,7 @@ void ProgressLine::show(const Progress& p) {
 }
 
 void ProgressLine::show_if_long(const Progress& p) {
-  if (p.elapsed_s >= patience_s())
+  if (p.elapsed_s >= quiet_s())
     show(p);
 }
 

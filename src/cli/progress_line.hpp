@@ -25,14 +25,14 @@ public:
   void show(const RunProgress& progress);
   void show(const ClumpingProgress& progress);
   void show(const Progress& progress);
-  /// Shows progress only if the work takes longer than patience_s().
+  /// Shows progress only if the work takes longer than quiet_s().
   void show_if_long(const Progress& progress);
 
   /// Prints a note on a separate line.
   void note(const std::string& text);
 
 private:
-  double patience_s() const; // duration of work that shows no progress
+  double quiet_s() const; // duration of work that shows no progress
   void begin_phase(const std::string& phase, double elapsed_s);
   // Returns true when the next line is due.
   bool due(double elapsed_s, bool last);

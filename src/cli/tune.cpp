@@ -74,7 +74,7 @@ void require_writable_output(const TuneOptions& options) {
     return;
   if (!options.scene.overrides.empty())
     throw UsageError(
-        "--output cannot be combined with --set (the file would not have what was tuned); write the keys into "
+        "--output cannot be combined with --set (the file would lack the overrides); write the keys into "
         "the scene first");
   require_new_file(output_named(*options.output), options.force, "a scene");
   if (options.json && fills_standard_output(options))

@@ -78,7 +78,7 @@ PythonSnapshot from_arrays(const std::string& text, const std::string& name, con
   table.file = "the arrays";
   const auto count = positions.ndim() > 0 ? static_cast<std::size_t>(positions.shape(0)) : 0;
   if (count == 0)
-    throw UsageError("positions has no rows; give one of x, y, z a particle");
+    throw UsageError("positions has no rows; give one row of x, y, z per particle");
   table.positions = vectors_from(positions, count, "positions");
   table.radii = numbers_from(radii, count, "radii");
   if (velocities)

@@ -65,7 +65,7 @@ struct TimedSteps {
   std::uint64_t repeated_steps = 0; ///< steps that ranks repeated
   std::uint64_t collisions = 0;     ///< faster than v_cut
   std::uint64_t contacts = 0;       ///< fast and slow collisions
-  std::uint64_t recontacts = 0, lists_made = 0, listed_anew = 0, deferred = 0, in_sequence = 0, rolled_back = 0;
+  std::uint64_t recontacts = 0, lists_made = 0, lists_rebuilt = 0, deferred = 0, in_sequence = 0, rolled_back = 0;
   std::uint64_t pairs_tested = 0;     ///< when neighbour lists were built
   std::uint64_t survivors = 0;        ///< pairs passed to the finder at the start of steps
   std::uint64_t widest_list = 0;      ///< longest list since the simulation began

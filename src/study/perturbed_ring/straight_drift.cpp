@@ -49,7 +49,7 @@ std::uint64_t StraightDrift::collide(Particles& particles, const ShearingBox& bo
   std::uint64_t collisions = 0;
   while (!events_.empty()) {
     const Event event = events_.take_first();
-    if (event.low_count == stamps_[event.low] && event.high_count == stamps_[event.high])
+    if (event.low_count == event_counts_[event.low] && event.high_count == event_counts_[event.high])
       collisions += carry_out(event);
   }
   return collisions;
@@ -59,7 +59,7 @@ void StraightDrift::prepare() {
   const std::size_t count = particles_->size();
   lines_.resize(count);
   binned_.resize(count);
-  stamps_.assign(count, 0);
+  event_counts_.assign(count, 0);
   events_.assign({});
   largest_radius_ = largest_speed_ = largest_stray_ = 0.0;
   const Rotation start(frequencies_, -0.5 * step_);
@@ -115,7 +115,7 @@ void StraightDrift::predict(std::size_t i, std::size_t j, const Image& image) {
   const double time = start + time_to_contact(relative, radius_sum);
   if (time < 0.5 * step_)
     events_.add({time, particles_->ids[low], particles_->ids[high], of_high, static_cast<std::uint32_t>(low),
-                 static_cast<std::uint32_t>(high), stamps_[low], stamps_[high]});
+                 static_cast<std::uint32_t>(high), event_counts_[low], event_counts_[high]});
 }
 
 // Carries out a contact with positions from the lines and velocities from the epicycles; the new epicycles match both.
@@ -138,7 +138,7 @@ bool StraightDrift::carry_out(const Event& event) {
   b.elements = elements_from(of_b, frequencies_, rotation);
   follow(event.low, of_a, event.time);
   follow(event.high, of_b, event.time);
-  if (++stamps_[event.low] > max_collisions || ++stamps_[event.high] > max_collisions)
+  if (++event_counts_[event.low] > max_collisions || ++event_counts_[event.high] > max_collisions)
     throw InvariantError("a particle collided more than 100000 times in one step on straight lines");
 
   visit_candidates(event.low, [&](std::size_t k, const Image& image) { predict(event.low, k, image); });

@@ -53,7 +53,7 @@ private:
   EventQueue events_;
   std::vector<Line> lines_;
   std::vector<Vec3> binned_; // mid-step positions in the grid
-  std::vector<std::uint32_t> stamps_;
+  std::vector<std::uint32_t> event_counts_;
   double largest_radius_ = 0.0, largest_speed_ = 0.0, largest_stray_ = 0.0; // peculiar speed; distance from binned_
 };
 
