@@ -112,6 +112,20 @@ PaddedPairs pairs_of_lists(const VerletList& list, std::span<const std::uint32_t
   return pairs;
 }
 
+bool ListedPairs::sound(const VerletList& list) const {
+  if (!renewed_.sound(list.size()))
+    return false;
+  std::size_t pairs = 0, entries = 0;
+  for (std::size_t b = 0; b < blocks(); ++b)
+    visit_block(b, list, [&](const PaddedPairs& block) {
+      for (std::size_t k = 0; k < pair_count(block); ++k)
+        pairs += !(from_rebuild(b) && superseded(block[k]));
+    });
+  for (std::size_t i = 0; i < list.size(); ++i)
+    entries += list.length(i);
+  return 2 * pairs == entries;
+}
+
 std::size_t ListedPairs::bytes() const {
   std::size_t total = renewed_.bytes() + found_.capacity() * sizeof(PaddedPairs);
   for (const PaddedPairs& pairs : found_)

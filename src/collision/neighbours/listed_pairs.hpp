@@ -43,7 +43,7 @@ public:
   /// the lists with them.
   Rebuild rebuild(const LineCells& cells, double half, VerletList& list);
 
-  /// The list of particle i has been rebuilt by itself.
+  /// Notes that the list of particle i has been rebuilt by itself.
   void renewed(std::size_t i) { renewed_.insert(i); }
 
   /// Calls visit(pairs) for the pairs of a block. Pairs of a block from_rebuild() may be superseded(), since the list
@@ -62,7 +62,8 @@ public:
 
   void release() { found_ = {}; }
   std::size_t bytes() const;
-  bool sound(std::size_t particles) const { return renewed_.sound(particles); }
+  /// True if each pair of the lists, which must be sound, is there once.
+  bool sound(const VerletList& list) const;
 
 private:
   struct Parts;

@@ -183,7 +183,7 @@ bool NeighbourLists::sound() const {
     return true;
   const StepInterval &lists = references_.lifetime(), &interval = interval_.steps();
   return lists.age - interval.age + interval.length <= lists.length && references_.sound(lists_.size()) &&
-         lists_.sound() && pairs_.sound(lists_.size()) && interval_.sound(lists_.size());
+         lists_.sound() && pairs_.sound(lists_) && interval_.sound(lists_.size());
 }
 
 } // namespace keeler

@@ -8,7 +8,6 @@
 
 namespace keeler {
 
-// Finds the way from this epoch to the middle of the interval.
 void PruningInterval::look_ahead(const SearchContext& step) {
   middle_ = step.instant(-steps_.since_middle(step.step));
   to_middle_ = Rotation(step.frequencies, middle_.after);

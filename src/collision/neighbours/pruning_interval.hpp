@@ -24,6 +24,7 @@ public:
 
   /// Begins the next step; look_ahead() must follow if the interval continues.
   void begin_step() { ++steps_.age; }
+  /// Finds the rotation from this epoch to the middle of the interval.
   void look_ahead(const SearchContext& step);
 
   const StepInterval& steps() const { return steps_; }
@@ -34,6 +35,7 @@ public:
 
   /// Notes that the list of particle i has been rebuilt.
   void renewed(std::size_t i) { dirty_.insert(i); }
+  /// Notes that particle i stays within its new skin.
   void stays(std::size_t i) { escapes_later_[i] = 0; }
   /// Notes that particle i was hit in the step that ends.
   void mark_dirty(std::size_t i) {
@@ -81,6 +83,7 @@ public:
   void prefetch(std::size_t i) const { __builtin_prefetch(&lines_[i], 1); }
   void release();
   std::size_t bytes() const;
+  /// True if the bookkeeping is consistent, for so many particles.
   bool sound(std::size_t particles) const;
 
 private:
@@ -94,8 +97,7 @@ private:
   std::vector<PaddedPairs> pruned_;
   MarkedSet dirty_; // particles that were hit or got a new list in the interval
   std::vector<std::uint32_t> escaped_;
-  std::vector<std::uint8_t>
-      escapes_later_; // by particle: it was hit in this step and may leave its skin in a later one
+  std::vector<std::uint8_t> escapes_later_; // by particle: hit in this step, may leave its skin in a later one
 };
 
 } // namespace keeler
