@@ -142,7 +142,7 @@ TEST_CASE("rows of a field come in the order of the ranks, and never more than f
   }
   FieldTable table;
   own.list_fields(table);
-  for (const std::size_t most : {std::size_t{1}, std::size_t{5000}, FieldRows::largest_piece}) {
+  for (const std::size_t most : {std::size_t{1}, std::size_t{5000}, FieldRows::max_piece}) {
     const FieldRows rows(table.fields()[0], launched(), most);
     CHECK(rows.count() == all.size());
     std::vector<std::byte> found;
