@@ -143,7 +143,7 @@ TEST_CASE("rows of a field come in the order of the ranks, in pieces of limited 
   }
   FieldTable table;
   own.list_fields(table);
-  for (const std::size_t max_bytes : {std::size_t{1}, std::size_t{5000}, FieldRows::largest_piece}) {
+  for (const std::size_t max_bytes : {std::size_t{1}, std::size_t{5000}, FieldRows::max_piece}) {
     const FieldRows rows(table.fields()[0], launched(), max_bytes);
     CHECK(rows.count() == all.size());
     std::vector<std::byte> found;
