@@ -89,7 +89,7 @@ private:
   void rebuild_list(std::uint32_t i) {
     lists_.rebuild_list(i);
     if (lists_.reaches_far())
-      lists_.make_for_step();
+      lists_.rebuild_for_step();
   }
 
   Frequencies frequencies_;
