@@ -153,7 +153,6 @@ const ForceSettings* satellite_of(const Scene& scene) {
 // Returns the first passage in the interval that drags by at least `min_drag`.
 std::optional<SatellitePassage> passage_between(const Scene& scene, const ForceSettings& satellite, double min_drag,
                                                 double from, double until) {
-  assert(from <= until);
   return dragging_passage(satellite.parameters, scene.planet.orbital_frequency, scene.planet.frequencies, min_drag,
                           from, until);
 }

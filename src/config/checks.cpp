@@ -111,10 +111,10 @@ void check_entry(const DocumentEntry& entry, const Schema& schema) {
             fmt::format("{} is {}, but must be a {} ({}); write {} and its keys below", entry.path,
                         kind_words(entry.value), list ? "list of tables" : "table",
                         list ? "there may be several" : "it holds several keys", section->header()));
-  if (const auto* const tables = std::get_if<TomlTableList>(&entry.value); tables && tables->count > section->most)
+  if (const auto* const tables = std::get_if<TomlTableList>(&entry.value); tables && tables->count > section->max_count)
     fail_at(entry.value_location,
             fmt::format("{} tables {} are too many (at most {}: each is checked against all others); remove some",
-                        tables->count, section->header(), section->most));
+                        tables->count, section->header(), section->max_count));
 }
 
 // Returns the path of the key `other` in the table of `path`.

@@ -123,7 +123,7 @@ public:
     const Section* const section = schema_.find_section(path);
     if (const toml::table* inner = node.as_table(); inner && section)
       add_table(*inner, path + ".");
-    if (section && section->repeated && node.is_array_of_tables() && node.as_array()->size() <= section->most)
+    if (section && section->repeated && node.is_array_of_tables() && node.as_array()->size() <= section->max_count)
       add_list(*node.as_array(), path);
   }
 

@@ -110,10 +110,10 @@ void apply_override(TomlDocument& document, const Override& override, std::vecto
 
 void apply_overrides(TomlDocument& document, const std::vector<std::string>& overrides,
                      std::vector<std::string>& notices) {
-  constexpr std::size_t most = 1000; // each is checked against all of the document
-  if (overrides.size() > most)
+  constexpr std::size_t max_overrides = 1000; // each is checked against all of the document
+  if (overrides.size() > max_overrides)
     throw UsageError(fmt::format("{} overrides are too many (at most {}); write their values into the scene",
-                                 overrides.size(), most));
+                                 overrides.size(), max_overrides));
   for (const std::string& text : overrides)
     apply_override(document, from_command_line(text), notices);
 }

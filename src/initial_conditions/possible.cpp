@@ -118,10 +118,11 @@ void require_possible_frame(const Patch& patch, std::size_t count, const std::st
                                      sizes.words()));
   const double longer = std::max(patch.box.size_x, patch.box.size_y),
                shorter = std::min(patch.box.size_x, patch.box.size_y);
-  if (!(longer <= most_oblong * shorter))
+  if (!(longer <= max_aspect_ratio * shorter))
     throw InvariantError(
-        fmt::format("the box of '{}' is {} m x {} m, more than {:g} times as long as wide; take another state", path,
-                    format_number(patch.box.size_x, 4), format_number(patch.box.size_y, 4), most_oblong));
+        fmt::format("the box of '{}' is {} m x {} m, more than {:g} times as long as wide; take another "
+                    "state",
+                    path, format_number(patch.box.size_x, 4), format_number(patch.box.size_y, 4), max_aspect_ratio));
   require_possible_offsets(patch, path);
 }
 

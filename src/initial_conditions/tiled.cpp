@@ -24,10 +24,10 @@ void require_possible(const Patch& patch, std::size_t nx, std::size_t ny) {
   if (!sizes.contains(size_x) || !sizes.contains(size_y))
     throw UsageError(fmt::format("{} x {} copies make a box of {} m x {} m (a patch has sizes {}); use fewer", nx, ny,
                                  format_number(size_x, 4), format_number(size_y, 4), sizes.words()));
-  if (!(std::max(size_x, size_y) <= most_oblong * std::min(size_x, size_y)))
+  if (!(std::max(size_x, size_y) <= max_aspect_ratio * std::min(size_x, size_y)))
     throw UsageError(fmt::format("{} x {} copies make a box of {} m x {} m, more than {:g} times as long as wide; make "
                                  "it less oblong",
-                                 nx, ny, format_number(size_x, 4), format_number(size_y, 4), most_oblong));
+                                 nx, ny, format_number(size_x, 4), format_number(size_y, 4), max_aspect_ratio));
   const double count = copies * static_cast<double>(patch.size());
   if (!(count <= counts.high))
     throw UsageError(fmt::format("{} x {} copies make {} particles (the limit is {}); use fewer", nx, ny,

@@ -213,10 +213,10 @@ void read_box(Scene& scene, Settings& settings, const Amount& amount) {
   }
   for (const double length : size)
     require_possible(location, key, "box.size", length);
-  if (!(std::max(size[0], size[1]) <= most_oblong * std::min(size[0], size[1])))
+  if (!(std::max(size[0], size[1]) <= max_aspect_ratio * std::min(size[0], size[1])))
     fail_at(location, fmt::format("the box of {} m x {} m is more than {:g} times as long as wide (it would need too "
                                   "many images of its short side); make it squarer",
-                                  format_number(size[0], 4), format_number(size[1], 4), most_oblong));
+                                  format_number(size[0], 4), format_number(size[1], 4), max_aspect_ratio));
   scene.size_x = size[0];
   scene.size_y = size[1];
   const double diameter = 2.0 * scene.particles.sizes.largest;

@@ -55,7 +55,7 @@ accepts "a group among the arrays" info "$work/grouped.hdf"
 accepts "a group among the arrays, as a table" convert "$work/grouped.hdf" --to csv -o "$work/grouped.csv"
 cp -r "$work/run" "$work/broken"
 echo 'end = = 3' >>"$work/broken/scene.toml"
-refuses_with 4 "a broken scene" "scene.toml' is damaged: it is no scene of Keeler any more" info "$work/broken"
+refuses_with 4 "a broken scene" "scene.toml' is damaged: it is no longer a scene of Keeler" info "$work/broken"
 
 # Running, killed and stopped runs.
 cp "$work/small.toml" "$work/scene.toml"

@@ -63,7 +63,7 @@ runs 0 check "$work/scene.toml" --set "$(aggregate 200 0.5)"
 prints "check" "aggregate                          id "
 refuses "too full an aggregate" "particles.aggregate[1]: 12 particles cannot be packed at random to a filling of 0.64" \
   generate "$work/scene.toml" --set "$(aggregate 12 0.64)" --set particles.sizes.min=3.9 -o "$work/none.hdf"
-refuses "an aggregate of more than there are" "is more than is left" \
+refuses "an aggregate of more than there are" "is too large (the scene has" \
   generate "$work/scene.toml" --set "$(aggregate 100000000 0.5)" -o "$work/none.hdf"
 refuses "an aggregate wider than the box" "across (more than one side of the box" \
   generate "$work/scene.toml" --set "$(aggregate 200 0.0001)" -o "$work/none.hdf"

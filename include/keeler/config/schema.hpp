@@ -17,7 +17,7 @@ struct Section {
   std::string meaning{};
   std::string replaced_by{};       ///< a key that takes the section's place: with it the section must be absent
   bool repeated = false;           ///< a list of tables, [[path]]: table n is path[n], from 1, with keys path[n].key
-  std::size_t most = 1;            ///< upper limit of the tables in the list
+  std::size_t max_count = 1;       ///< upper limit of the tables in the list
   bool defaults_if_absent = false; ///< the defaults of its keys are in force even where the table is absent
 
   /// Returns the header as a document writes it.

@@ -141,6 +141,6 @@ struct Scene {
 };
 
 /// Upper limit of the box's longest side over its shortest: gravity sums as many images one by one.
-inline constexpr double most_oblong = 1000.0;
+inline constexpr double max_aspect_ratio = 1000.0;
 
 } // namespace keeler

@@ -25,7 +25,7 @@ inline const Schema& schema() {
        {.path = "time.end", .type = KeyType::number, .example = "3.0", .alternatives = {"time.steps"}},
        {.path = "time.steps", .type = KeyType::integer, .example = "3", .alternatives = {"time.end"}}},
       {{.path = "gravity"},
-       {.path = "moonlet", .repeated = true, .most = 3},
+       {.path = "moonlet", .repeated = true, .max_count = 3},
        {.path = "time", .needed = true, .meaning = "it ends"}});
   return all;
 }
