@@ -80,7 +80,7 @@ looked_at "changed books" "$work/books"
 )
 code=$?
 [ "$code" -eq 3 ] || fail "no room for a broken state: exit $code: $(cat "$work/err")"
-one_line "no room for a broken state" "the energy budget leaves"
+one_line "no room for a broken state" "the energy budget does not close"
 one_line "no room for a broken state" "and the state could not be saved: cannot write"
 compgen -G "$work/full/broken_*" && fail "no room for a broken state: a file was left"
 compgen -G "$work/full/*.tmp" && fail "no room for a broken state: a part of a file was left"

@@ -66,7 +66,7 @@ TEST_CASE("each fault of a grid is one line with its position and what to do") {
       {"scene = ", "grid.toml:1:", "not TOML"},
       {"seeds = [1]\n", "grid.toml:1:1: ", "scene is missing"},
       {"scene = 3\n", "grid.toml:1:9: ", "scene must be the path"},
-      {"scene = \"none.toml\"\n", "grid.toml:1:9: ", "is not there"},
+      {"scene = \"none.toml\"\n", "grid.toml:1:9: ", "does not exist"},
       {scene + "seed = [1]\n", "grid.toml:2:1: ", "unknown key seed"},
       {scene + "seeds = []\n", "grid.toml:2:9: ", "seeds is empty"},
       {scene + "seeds = 3\n", "grid.toml:2:9: ", "a list of whole numbers"},
