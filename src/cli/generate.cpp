@@ -101,9 +101,9 @@ void remove_overlaps(Patch& patch, const GenerateOptions& options, const Particl
   if (overlaps == 0)
     return;
   const Overlap worst = largest_overlap(patch);
-  const std::string found =
-      fmt::format("{} of particles overlap, most of all {} and {}, by {:.2g} of their radius sum",
-                  pluralize(overlaps, "pair"), table.location_of(worst.id_i), table.location_of(worst.id_j), worst.depth);
+  const std::string found = fmt::format("{} of particles overlap, most of all {} and {}, by {:.2g} of their radius sum",
+                                        pluralize(overlaps, "pair"), table.location_of(worst.id_i),
+                                        table.location_of(worst.id_j), worst.depth);
   if (!options.relax)
     throw InvariantError(found + "; correct them, or move them apart with --relax");
   const Relaxation moved = unless_stopped(stopped, [&] { return relax(patch); });

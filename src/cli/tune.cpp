@@ -73,9 +73,8 @@ void require_writable_output(const TuneOptions& options) {
   if (!options.output)
     return;
   if (!options.scene.overrides.empty())
-    throw UsageError(
-        "--output cannot be combined with --set (the file would lack the overrides); write the keys into "
-        "the scene first");
+    throw UsageError("--output cannot be combined with --set (the file would lack the overrides); write the keys into "
+                     "the scene first");
   require_new_file(output_named(*options.output), options.force, "a scene");
   if (options.json && fills_standard_output(options))
     throw UsageError("--json and --output are both for standard output; name a file for the scene");

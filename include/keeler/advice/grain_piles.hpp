@@ -10,8 +10,8 @@ namespace keeler {
 
 class GrainPiles {
 public:
-  /// Constructs the piles of a fresh start of this scene. They form on the moonlets of the scene, or on the largest body of a
-  /// list of sizes. There are no piles without self-gravity between particles.
+  /// Constructs the piles of a fresh start of this scene. They form on the moonlets of the scene, or on the largest
+  /// body of a list of sizes. There are no piles without self-gravity between particles.
   explicit GrainPiles(const Scene& scene);
 
   /// Returns the number of grains in piles after `orbits`. Precondition: orbits ≥ 0.

@@ -48,9 +48,9 @@ TEST_CASE("KEELER_SIMD names the instruction set, and a wrong name is a usage er
   }
   {
     const Environment environment("sse9");
-    CHECK_THROWS_WITH_AS(
-        make_gravity_solver({}, std::vector<double>(100, 1.0), 1e4),
-        "KEELER_SIMD=sse9 is not a known instruction set; use portable, avx2 or avx512, or unset it", UsageError);
+    CHECK_THROWS_WITH_AS(make_gravity_solver({}, std::vector<double>(100, 1.0), 1e4),
+                         "KEELER_SIMD=sse9 is not a known instruction set; use portable, avx2 or avx512, or unset it",
+                         UsageError);
   }
   const Environment environment("");
   CHECK(supports(choose_instruction_set()));
