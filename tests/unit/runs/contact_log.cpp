@@ -147,8 +147,8 @@ TEST_CASE("filters keep the contacts that they name, and a share is a share") {
   for (int k = 0; k < 10000; ++k) {
     record.low_id = static_cast<std::uint64_t>(k % 100), record.high_id = static_cast<std::uint64_t>(100 + k / 100);
     const double time = 0.001 * (k % 7);
-    kept += is_logged({.share = 0.3}, record, time, 1e-4);
-    CHECK(is_logged({.share = 0.3}, record, time, 1e-4) <= is_logged({.share = 0.6}, record, time, 1e-4));
+    kept += is_logged({.fraction = 0.3}, record, time, 1e-4);
+    CHECK(is_logged({.fraction = 0.3}, record, time, 1e-4) <= is_logged({.fraction = 0.6}, record, time, 1e-4));
   }
   CHECK(std::abs(kept - 3000) < 5 * 46); // five standard deviations
 }
