@@ -17,7 +17,7 @@ refuses_with 4 "a picture of an empty folder" "no snapshot in '$work/empty' (sna
 refuses_with 4 "a movie of an empty folder" "no snapshot in '$work/empty' (snap_NNNNNN.hdf is missing); name" \
   render "$work/empty" --movie
 refuses "a movie of a file" "name the folder of a run" render "$work/run/snap_000000.hdf" --movie
-refuses "another movie" "give it such an ending" render "$work/run" --movie -o "$work/to/a.gif"
+refuses "another movie" "use one of these extensions" render "$work/run" --movie -o "$work/to/a.gif"
 refuses "another picture" "give it that ending" render "$work/run" -o "$work/to/a.jpg"
 refuses "plots of a file" "name the folder of a run" render "$work/run/snap_000000.hdf" --series
 refuses "plots as a picture" "give it that ending" render "$work/run" --series -o "$work/to/a.png"

@@ -169,7 +169,7 @@ stat -c '%n %Y %s' "$work"/whole/runs/*/* | sort | comm -13 - <(sort "$work/befo
 [ -s "$work/lost" ] && fail "a new seed changed: $(cat "$work/lost")"
 small_grid 1
 runs 0 sweep "$work/grid.toml" -o "$work/whole"
-grep -q "4 runs in .* that this grid does not have" "$work/err" || fail "fewer seeds: $(cat "$work/err")"
+grep -q "4 runs in .* outside this grid" "$work/err" || fail "fewer seeds: $(cat "$work/err")"
 sed -i 's/0\.8$/3.0/' "$work/grid.toml"
 # The name of the folder may begin with a dash.
 cat >"$work/small.toml" <<END
