@@ -119,7 +119,7 @@ TEST_CASE("particles at random see the mean density; crowded ones see their crow
 }
 
 TEST_CASE("one particle has no neighbours; the bits do not depend on the threads") {
-  CHECK(local_motion(test::uniform(box, 0.0, 1, 1), 3.0).share == 0.0);
+  CHECK(local_motion(test::uniform(box, 0.0, 1, 1), 3.0).fraction == 0.0);
   CHECK(local_motion(test::uniform(box, 0.0, 1, 1), 3.0).dispersion == Vec3::Zero());
   const Patch patch = moving(test::uniform(box, 11.0, 3000, 1), 2);
   set_threads(1);
