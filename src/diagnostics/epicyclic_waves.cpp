@@ -74,7 +74,7 @@ struct Binned {
   }
 };
 
-// Units for sums of terms whose absolute values add up to no more than `bound`: they stay below 2⁶² units.
+// Units for sums; the absolute values of the terms add up to at most `bound`, so sums stay below 2⁶² units.
 class FixedPoint {
 public:
   explicit FixedPoint(double bound) : per_one_(std::ldexp(1.0, 61 - std::ilogb(bound))) {}

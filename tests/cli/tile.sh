@@ -31,7 +31,7 @@ refuses "no copies" "'0' is not a number of copies from 1 to 10000" tile "$small
 refuses "half a copy" "'1.5' is not a number of copies from 1 to 10000" tile "$small" 2 1.5 -o "$work/none.hdf"
 refuses "a number missing" "NY is required" tile "$small" 2 -o "$work/none.hdf"
 refuses "too oblong" "more than 1000 times as long as wide" tile "$small" 1 2000 -o "$work/none.hdf"
-refuses "too many" "particles (a run takes at most 1e9)" tile "$small" 5000 5000 -o "$work/none.hdf"
+refuses "too many" "particles (the limit is 1e9)" tile "$small" 5000 5000 -o "$work/none.hdf"
 refuses_with 4 "no file" "absent.hdf" tile "$work/absent.hdf" 2 2 -o "$work/none.hdf"
 refuses_with 4 "a scene" "is no snapshot" tile "$work/scene.toml" 2 2 -o "$work/none.hdf"
 refuses_with 4 "a checkpoint" "cannot read snapshot" tile "$(newest_checkpoint "$work/run")" 2 2 -o "$work/none.hdf"

@@ -145,8 +145,8 @@ TEST_CASE("aggregates stand beside moonlets, patterns and streamlines, or alone"
 TEST_CASE("a filling that cannot be reached is refused in one line") {
   const Scene scene = scene_with(equal, "[[particles.aggregate]]\ncount = 20\nfilling = 0.6\n");
   CHECK_THROWS_WITH_AS(initial_patch(scene),
-                       "particles.aggregate[1]: 20 particles cannot be packed at random to a filling of 0.6 (the fewer "
-                       "they are, the less can be reached); lower its filling",
+                       "particles.aggregate[1]: 20 particles cannot be packed at random to a filling of 0.6 (fewer "
+                       "particles reach only a lower filling); lower its filling",
                        UsageError);
 }
 

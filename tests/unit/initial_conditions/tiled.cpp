@@ -180,7 +180,7 @@ TEST_CASE("a tiled patch must be one that a run takes") {
     return std::string();
   };
   CHECK(fault(1, 1000).find("21 m x 26000 m, more than 1000 times as long as wide") != std::string::npos);
-  CHECK(fault(10000, 10000).find("2.4e9 particles (a run takes at most 1e9)") != std::string::npos);
+  CHECK(fault(10000, 10000).find("2.4e9 particles (the limit is 1e9)") != std::string::npos);
   patch.ids.back() = std::uint64_t{1} << 62;
   CHECK(fault(2, 2).find("leave no ids for the copies") != std::string::npos);
   patch.box.size_x = patch.box.size_y = 2e6;
