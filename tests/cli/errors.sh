@@ -103,7 +103,7 @@ runs 0 run "$work/scene.toml" -o "$work/taken" --set time.end=0.004 --force
 [ "$(text steps "$work/taken/summary.json")" -eq 2 ] || fail "--force did not run"
 
 runs 0 generate "$work/scene.toml" -o "$work/start.hdf"
-refuses "a start from another place" "another place" run "$work/scene.toml" -o "$none" --from "$work/start.hdf" \
+refuses "a start from another orbit" "another orbit" run "$work/scene.toml" -o "$none" --from "$work/start.hdf" \
   --set planet.preset=saturn-c-ring
 refuses "a state over a folder" "is a folder" generate "$work/scene.toml" -o "$work/taken" --force
 nothing_left "bad starts"

@@ -119,7 +119,7 @@ for ((try = 0; try < 10; ++try)); do
   [ $code -eq 75 ] || fail "a step given up after a checkpoint: exit $code: $(cat "$work/err")"
   grep -q "given up" "$work/err" && break
 done
-step=$(sed -nE 's/.*the checkpoint of step ([0-9]+) stands.*keeler resume .*/\1/p' "$work/err")
+step=$(sed -nE 's/.*the checkpoint of step ([0-9]+) is intact.*keeler resume .*/\1/p' "$work/err")
 runs 0 info "$(newest_checkpoint "$work/kept")" --json
 [ "$(text time_orbits "$work/out" | awk -v s="$step" '{ print ($1 - 0.01 * s) ^ 2 < 1e-12 }')" = 1 ] ||
   fail "the checkpoint of step '$step' is of orbit $(text time_orbits "$work/out")"

@@ -131,8 +131,8 @@ TEST_CASE("a wake has the amplitude and the place that are asked for, and trails
 
 TEST_CASE("a pattern that the box does not hold is told") {
   CHECK(fault("step = { between = [-30.0, 130.0], factor = 2.0 }")
-            .find("particles.step.between is [-30, 130] (two rising x within the box, from -120 to 120, and not all of "
-                  "it)") != std::string::npos);
+            .find("particles.step.between is [-30, 130] (it must be two rising x within the box, from -120 to 120, and "
+                  "not all of it)") != std::string::npos);
   CHECK(fault("step = { between = [30.0, -30.0], factor = 2.0 }").find("two rising x") != std::string::npos);
   CHECK(fault("step = { between = [-120.0, 120.0], factor = 2.0 }").find("not all of it") != std::string::npos);
   CHECK(fault("step = { between = [-30.0, 30.0] }").find("particles.step.factor is missing") != std::string::npos);

@@ -68,7 +68,7 @@ TEST_CASE("a start file's particles must be possible; the first that is not is n
   says([](Patch& p) { p.masses[7] = 1e18; }, "a density (kg/m^3, by its mass and radius) of 2.39e17");
   says([](Patch& p) { p.radii[7] = 1e-9; }, "a radius (m) of 1e-9 (possible is from 1e-6 to 1000000)");
   says([](Patch& p) { p.velocities[7].x() = 2000.0 / p.orbital_frequency; }, "a speed (m/s, beyond the shear) of 2000");
-  CHECK(fault([](Patch& p) { p.positions[7].x() = NAN; }).find("particle 7 has a place") != std::string::npos);
+  CHECK(fault([](Patch& p) { p.positions[7].x() = NAN; }).find("particle 7 has a position") != std::string::npos);
   CHECK(fault([](Patch& p) { p.box.size_y = 1e12; }).find("50 m x 1e12 m") != std::string::npos);
   CHECK(fault([](Patch& p) {
           p.offset = NAN;
