@@ -36,7 +36,7 @@ for command in "${commands[@]}" "${refused[@]}"; do
   rm "$work/pipe" "$work/link"
   for name in - /dev/stdout; do
     if [ "$code" -eq 2 ]; then
-      refuses "$command $name" "/dev/stdout' cannot take HDF5 (it is no file on a disk" "${words[@]}" "$name"
+      refuses "$command $name" "/dev/stdout' cannot take HDF5 (it is not a file on a disk" "${words[@]}" "$name"
       continue
     fi
     runs 0 "${words[@]}" "$name"
