@@ -73,7 +73,7 @@ refuses_with 1 "not by then" "did not settle in 9 orbits" "${clump[@]}" -o "$wor
 nothing_left "not settled"
 refuses "a limit too low" "allow at least 9" "${clump[@]}" -o "$work/none.hdf" --most-orbits 8
 refuses "a limit of nothing" "requires --clumped" generate "$work/scene.toml" -o "$work/none.hdf" --most-orbits 9
-refuses "too few" "wakes could not be seen" "${clump[@]}" -o "$work/none.hdf" --set particles.count=5 --set 'box.size=[60,60]'
+refuses "too few" "wakes would not be visible" "${clump[@]}" -o "$work/none.hdf" --set particles.count=5 --set 'box.size=[60,60]'
 sed '/^\[gravity\]/,/^kick/d' "$work/scene.toml" >"$work/light.toml"
 refuses "no gravity" "add [gravity]" generate "$work/light.toml" --clumped -o "$work/none.hdf"
 refuses "a state that exists" "--force" "${clump[@]}" -o "$work/one.hdf"

@@ -49,7 +49,7 @@ refuses "another format" "--to" convert "$work/run" --to xls
 refuses "an existing file" "add --force" convert "$work/again.hdf" --to csv
 refuses "an existing folder" "add --force" convert "$work/run" --to vtp
 runs 0 convert "$work/run" --to vtp --force
-refuses_with 4 "no folder to write into" "make it, or name another" convert "$work/run" --to vtp -o "$work/new/a"
+refuses_with 4 "no folder to write into" "create it, or name another" convert "$work/run" --to vtp -o "$work/new/a"
 nothing_new "no folder to write into"
 refuses_with 4 "no snapshot" "is no snapshot" convert "$work/scene.toml" --to csv -o "$work/new.csv"
 nothing_new "no snapshot"

@@ -46,7 +46,7 @@ refuses "a mode that does not fit the box" "row 1 of particles.modes.outward has
 # Density patterns, and a fraction of a snapshot's particles.
 runs 0 generate "$work/scene.toml" --set 'particles.wake={contrast=0.5, wavelength=30, pitch=25}' -o "$work/wake.hdf"
 one_line "a wake" "the wake has a wavelength of 26.83 m and a pitch of 26.57 degrees (2 x 1 waves fit the box)"
-refuses "a step beyond the box" "particles.step.between is [-10, 50] (two rising x within the box, from -30 to 30" \
+refuses "a step beyond the box" "particles.step.between is [-10, 50] (it must be two rising x within the box, from -30 to 30" \
   generate "$work/scene.toml" --set 'particles.step={between=[-10,50], factor=2.0}' -o "$work/none.hdf"
 
 # Aggregates.
