@@ -112,7 +112,7 @@ far() { # NAME WORDS: said by generate, by check and by run of a start from it
 }
 far still "the velocities lack the shear: dv_y/dx is "
 far mirrored "the shear of the velocities has the wrong sign"
-far cm_s "as much as on circular orbits (-0.0002925): are lengths in m and velocities in m/s"
+far cm_s "that of circular orbits (-0.0002925): are lengths in m and velocities in m/s"
 far hot "mean r Omega), where collisions and self-gravity keep up some 3.6: are velocities in m/s"
 far km "all particles are in the central 0.093 % of the box: are positions and the box in m"
 generated ring

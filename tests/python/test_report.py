@@ -153,7 +153,7 @@ class Report(unittest.TestCase):
         for arguments, code, words in (
             ((empty,), 4, "log.jsonl is missing"),
             ((bare,), 4, "snap_NNNNNN.hdf is missing"),
-            ((empty / "none",), 2, "no folder"),
+            ((empty / "none",), 2, "not a folder"),
             ((self.results, "-o", self.results), 2, "is a folder"),
             ((self.results, "--snapshots", "0"), 2, "snapshots"),
             ((self.results, "-o", empty / "no" / "report.html"), 4, "no"),
@@ -172,7 +172,7 @@ class Report(unittest.TestCase):
             page = self.results.parent / "broken.html"
             self.assertEqual(keeler("report", self.results, "-o", page, "--snapshots", 1).returncode, 0)
             self.assertIn("interrupted", page.read_text())
-            self.assertIn("no account yet", page.read_text())
+            self.assertIn("not known yet", page.read_text())
         finally:
             summary.write_text(kept)
 
