@@ -40,7 +40,7 @@ void require_fitting(const ParticleTable& table, const TableScene& of) {
 } // namespace
 
 Patch patch_from_table(const ParticleTable& table, const TableScene& of) {
-  assert(table.places.size() == table.size() && table.radii.size() == table.size());
+  assert(table.positions.size() == table.size() && table.radii.size() == table.size());
   require_fitting(table, of);
   const Scene& scene = of.scene;
   Patch patch;
