@@ -218,7 +218,7 @@ class Starts(InAFolder):
         no_shear = velocities + np.outer(1.5 * sim.orbital_frequency * places[:, 0], [0.0, 1.0, 0.0])
         for words, arrays in [
             ("lack the shear", (places, 1.0, no_shear)),
-            ("are their lengths in m", (1e-3 * places, 1e-3, 1e-3 * velocities)),
+            ("are positions and the box in m", (1e-3 * places, 1e-3, 1e-3 * velocities)),
         ]:
             for make in (keeler.from_arrays, keeler.start_from_arrays):
                 with self.assertWarnsRegex(UserWarning, words) as caught:
