@@ -113,7 +113,7 @@ far() { # NAME WORDS: said by generate, by check and by run of a start from it
 far still "the velocities lack the shear: dv_y/dx is "
 far mirrored "the shear of the velocities has the wrong sign"
 far cm_s "that of circular orbits (-0.0002925): are lengths in m and velocities in m/s"
-far hot "mean r Omega), where collisions and self-gravity keep up some 3.6: are velocities in m/s"
+far hot "mean r Omega); collisions and self-gravity maintain about 3.6: are velocities in m/s"
 far km "all particles are in the central 0.093 % of the box: are positions and the box in m"
 generated ring
 grep -q "shear\|are lengths\|are velocities" "$work/out" && fail "a ring is doubted: $(cat "$work/out")"
@@ -124,7 +124,7 @@ runs 0 check "$work/scene.toml" --set particles.density=900 --set particles.coun
 prints "a hot fresh start" "the velocity dispersion is 39 mm/s (200 mean r Omega); collisions"
 
 made x,y,z,r,m, 0,0,0,1,4000,
-refused 2 "a trailing comma" "table.csv:1: the last column has no name (the line ends with a ','); remove that ','"
+refused 2 "a trailing comma" "table.csv:1: the last column has no name (the line ends with a ','); remove it here"
 made ,x,y,z,r,m 0,0,0,0,1,4000
 refused 2 "an index of pandas" "table.csv:1: the first column has no name (pandas writes its index so); write the table with index=False"
 

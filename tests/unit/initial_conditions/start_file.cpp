@@ -210,7 +210,7 @@ TEST_CASE("of a start from a file the kick interval is judged by the file's own 
     CHECK(scale.density == doctest::Approx(density).epsilon(1e-12));
     const std::vector<std::string> lines = warnings(from, scale);
     return std::count_if(lines.begin(), lines.end(), [](const std::string& line) {
-      return line.find("kicks are 0.02 orbits apart: aggregates last at r_h 1.3 and cannot rest") == 0;
+      return line.find("kicks are 0.02 orbits apart: aggregates form at r_h 1.3, cannot rest") == 0;
     });
   };
   CHECK(said_of(1500.0) == 1);
