@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Draws the figures of docs/dev: geometry and time of the algorithms, and the folders of the source tree.
 
-  scripts/drawings            writes docs/dev/drawings/*.svg
-  scripts/drawings --check    exit 1 where a file there is not what this script draws
+  scripts/drawings.py            writes docs/dev/drawings/*.svg
+  scripts/drawings.py --check    exit 1 where a file there is not what this script draws
 
 Each drawing has a panel of its own in the colours that the reader's system asks for, so it is readable in a light and in
 a dark page. The folders and their arrows are read from the CMake lists."""
@@ -362,7 +362,7 @@ def main():
         svg = draw().svg()
         if "--check" in sys.argv[1:]:
             if not path.exists() or path.read_text() != svg:
-                wrong.append(f"{path.relative_to(ROOT)} is not what scripts/drawings draws: run it")
+                wrong.append(f"{path.relative_to(ROOT)} is not what scripts/drawings.py draws: run it")
         else:
             path.write_text(svg)
     print(*wrong, sep="\n", end="\n" if wrong else "")

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Counts words that make comments and docs hard to read for those who know the field but not Keeler.
 
-  scripts/plain-language                a table: hits per 1000 words, a row per folder
-  scripts/plain-language --list PATH    each hit in the files at or below PATH
-  scripts/plain-language --check        exit 1 where code, docs or a folder has more than its limit
+  scripts/plain_language.py                a table: hits per 1000 words, a row per folder
+  scripts/plain_language.py --list PATH    each hit in the files at or below PATH
+  scripts/plain_language.py --check        exit 1 where code, docs or a folder has more than its limit
 
 A hit is a place to look at: "a particle whose radius ..." is good English, "who leaves gets a new one" is not. So each
 pattern has a limit per 1000 words, which the comments of well-known N-body codes hold. A folder has one hit more, since
@@ -127,7 +127,7 @@ def main():
         print(f"{name:28}{count.words:8}{count.row()}")
     for kind in ("code", "docs"):
         print(f"{'limit, ' + kind:36}" + "".join(f"{getattr(p, kind):14.2f}" for p in ALL))
-    above = [f"{name} has too many: {', '.join(many)} (scripts/plain-language --list {name} shows them)"
+    above = [f"{name} has too many: {', '.join(many)} (scripts/plain_language.py --list {name} shows them)"
              for name, count in rows.items() if (many := count.too_many(kinds[name], 0 if name in ("code", "docs") else 1))]
     print(*above, sep="\n")
     return int(asked.check and bool(above))
