@@ -18,6 +18,8 @@
 // has found every contact of its own particles on paths that their owners confirm, which is the true history. (Within
 // the margins, which are checked last: the first contact that leads beyond them is right too, so that is seen.)
 #include "drift_engine.hpp"
+#include "path_journal.hpp"
+#include "reported_orbits.hpp"
 
 #include <keeler/core/stopwatch.hpp>
 
@@ -31,14 +33,6 @@
 namespace keeler {
 namespace {
 
-/// What an owner reports of a path: the ghost (numbered among all ghosts of a rank), when it changed, and to what.
-struct PathReport {
-  std::uint64_t ghost;
-  double time;
-  Elements elements;
-  Vec3 spin;
-};
-
 template<class Row> std::vector<Row> rows_of(const std::vector<std::byte>& bytes) {
   assert(bytes.size() % sizeof(Row) == 0);
   std::vector<Row> rows(bytes.size() / sizeof(Row));
@@ -51,191 +45,6 @@ template<class Row> std::vector<std::byte> packed(const std::vector<Row>& rows) 
   const auto bytes = std::as_bytes(std::span(rows));
   return {bytes.begin(), bytes.end()};
 }
-
-bool same(const Elements& a, const Elements& b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
-}
-
-constexpr std::uint64_t after_all_ids = ~std::uint64_t{0}; // contacts at the same instant come first
-
-/// The end of a particle's path and the begin of the next one. Spins of smooth particles are zero.
-struct PathChange {
-  std::uint32_t particle;
-  double time; ///< of the end
-  Elements before, after;
-  Vec3 spin_before, spin_after;
-};
-
-/// What a distributed step notes of its changes: the state before it, to undo it; the paths of particles that two ranks
-/// have; and whether an own particle has gone beyond the margin.
-class PathJournal {
-public:
-  PathJournal(const StepContext& step, const StepHistory& history, const GhostLayer& ghosts)
-      : step_(step), history_(history), ghosts_(ghosts) {}
-
-  /// Precondition: the change has not happened yet.
-  void note_change(std::uint32_t i, double time, const Elements& after) {
-    const Elements& before = step_.particles.bodies[i].elements;
-    const Vec3 spin = step_.particles.rough ? step_.particles.spins[i] : Vec3::Zero();
-    if (history_.event_count(i) == 0)
-      beginnings_.push_back({i, before, spin});
-    if (ghosts_.on_two_ranks(i))
-      changes_.push_back({i, time, before, {}, spin, Vec3::Zero()});
-    note_path(i, after);
-  }
-
-  /// Notes all changes of a step that was carried out in domains.
-  void note_domains(const OptimisticLoop& domains, std::vector<std::uint32_t> dirty) {
-    std::sort(dirty.begin(), dirty.end());
-    dirty.erase(std::unique(dirty.begin(), dirty.end()), dirty.end());
-    for (const std::uint32_t i : dirty) {
-      const bool has_copies = ghosts_.on_two_ranks(i);
-      const auto changes_before = static_cast<std::ptrdiff_t>(changes_.size());
-      Beginning first{i, step_.particles.bodies[i].elements, Vec3::Zero()};
-      domains.visit_changes(history_, i, [&](double time, const Elements& before, const Vec3& spin) { // last one first
-        note_path(i, first.elements);
-        if (has_copies)
-          changes_.push_back({i, time, before, {}, spin, Vec3::Zero()});
-        first.elements = before;
-        first.spin = spin;
-      });
-      beginnings_.push_back(first);
-      std::reverse(changes_.begin() + changes_before, changes_.end());
-    }
-  }
-
-  /// Sorts the changes by particle and time when all contacts are carried out, and fills in what paths changed to.
-  void complete() {
-    std::stable_sort(changes_.begin(), changes_.end(), [](const PathChange& a, const PathChange& b) {
-      return a.particle != b.particle ? a.particle < b.particle : a.time < b.time;
-    });
-    for (std::size_t k = 0; k < changes_.size(); ++k) {
-      PathChange& change = changes_[k];
-      const bool last = k + 1 == changes_.size() || changes_[k + 1].particle != change.particle;
-      change.after = last ? step_.particles.bodies[change.particle].elements : changes_[k + 1].before;
-      if (step_.particles.rough)
-        change.spin_after = last ? step_.particles.spins[change.particle] : changes_[k + 1].spin_before;
-    }
-  }
-
-  /// Restores all particles as at the start of the step. Precondition: `history` has begun the step again.
-  void undo(BroadPhase& broad_phase) {
-    for (const auto& [i, elements, spin] : beginnings_) {
-      assert(history_.event_count(i) == 0);
-      step_.particles.bodies[i].elements = elements;
-      if (step_.particles.rough)
-        step_.particles.spins[i] = spin;
-      broad_phase.changed(i, step_.begin);
-      step_.finder.changed(i);
-    }
-    beginnings_.clear();
-    changes_.clear();
-    has_strayed_ = false;
-  }
-
-  const std::vector<PathChange>& changes() const { return changes_; }
-  /// True if an own particle may have gone farther than the margin within which the ghosts suffice.
-  bool has_strayed() const { return has_strayed_; }
-
-private:
-  struct Beginning {
-    std::uint32_t particle;
-    Elements elements;
-    Vec3 spin;
-  };
-
-  void note_path(std::uint32_t i, const Elements& path) {
-    has_strayed_ = has_strayed_ || (i < ghosts_.own && !ghosts_.within_margin(i, path, step_.end() - step_.begin));
-  }
-
-  const StepContext& step_;
-  const StepHistory& history_;
-  const GhostLayer& ghosts_;
-  std::vector<Beginning> beginnings_; // one per particle that was hit
-  std::vector<PathChange> changes_;
-  bool has_strayed_ = false;
-};
-
-class JournaledOrbits : public SequentialOrbits {
-public:
-  JournaledOrbits(const StepContext& step, StepHistory& history, BroadPhase& broad_phase, const ContactCounter& counter,
-                  PathJournal& journal)
-      : SequentialOrbits(step, history, broad_phase, counter), journal_(journal) {}
-
-  void change(std::uint32_t i, const Elements& elements, double time) {
-    journal_.note_change(i, time, elements);
-    SequentialOrbits::change(i, elements, time);
-  }
-
-private:
-  PathJournal& journal_;
-};
-
-/// Keeps ghosts on the paths that their owners have reported; other particles as JournaledOrbits.
-class ReportedOrbits : public JournaledOrbits {
-public:
-  /// Precondition: reports are sorted by ghost and time.
-  ReportedOrbits(JournaledOrbits orbits, std::size_t own, std::size_t ghosts, const std::vector<PathReport>& reports)
-      : JournaledOrbits(std::move(orbits)), own_(own), reports_(reports), paths_(ghosts) {
-    for (std::size_t k = 0; k < reports.size(); ++k) {
-      Path& path = paths_[reports[k].ghost];
-      if (path.end == 0)
-        path.next = k;
-      path.end = k + 1;
-    }
-  }
-
-  /// Returns the event at which a reported change happens: one that follows all contacts of its instant.
-  Event event_of(std::size_t report) const {
-    const auto i = static_cast<std::uint32_t>(own_ + reports_[report].ghost);
-    return {reports_[report].time, after_all_ids, report, {}, i, i, static_cast<std::uint32_t>(report), 0};
-  }
-
-  bool is_due(const Event& event) {
-    if (event.low_id == after_all_ids)
-      return take_report(event);
-    return SequentialOrbits::is_due(event) && !(is_reported(event.low) && is_reported(event.high));
-  }
-
-  void change(std::uint32_t i, const Elements& elements, double time) {
-    if (is_reported(i)) {
-      Path& path = paths_[i - own_];
-      const bool confirmed =
-          path.next < path.end && reports_[path.next].time == time && same(reports_[path.next].elements, elements);
-      if (confirmed)
-        ++path.next;
-      else
-        path.is_reported = false;
-    }
-    JournaledOrbits::change(i, elements, time);
-  }
-
-  bool may_repredict(std::uint32_t) const { return false; }
-
-private:
-  struct Path {
-    std::size_t next = 0, end = 0; // reports still to come
-    bool is_reported = true;       // until a contact that its owner has not reported
-  };
-
-  bool is_reported(std::uint32_t i) const { return i >= own_ && paths_[i - own_].is_reported; }
-
-  // Makes a reported change, unless the contact that caused it has been carried out here.
-  bool take_report(const Event& event) {
-    Path& path = paths_[event.low - own_];
-    if (!path.is_reported || path.next != event.low_count)
-      return false;
-    const PathReport& report = reports_[path.next++];
-    JournaledOrbits::change(event.low, report.elements, report.time);
-    if (step_.particles.rough)
-      set_spin(event.low, report.spin);
-    return true;
-  }
-
-  std::size_t own_;
-  const std::vector<PathReport>& reports_;
-  std::vector<Path> paths_; // of each ghost
-};
 
 /// One step on all ranks: attempts, and the reports between them.
 class DistributedStep {
