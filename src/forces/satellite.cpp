@@ -168,7 +168,7 @@ Key needed(Key key) {
 std::optional<SatellitePassage> dragging_passage(const Parameters& parameters, double orbital_frequency,
                                                  const Frequencies& frequencies, double min_drag, double from,
                                                  double until) {
-  assert(from <= until && parameters.number("distance") != 0.0);
+  assert(parameters.number("distance") != 0.0);
   const double first = parameters.number("passage"), every = parameters.number("every");
   const double upright = first + parameters.number("upright_after");
   const double h =

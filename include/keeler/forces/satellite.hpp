@@ -24,7 +24,8 @@ struct SatellitePassage {
 inline constexpr double doubtful_drag = 0.6;
 
 /// Returns the first passage from `from` to `until` (orbits, both included) with a drag of at least `min_drag`.
-/// `parameters` has the keys of the table [satellite]. Precondition: a box and a distance that `check` accepts.
+/// None if `until` is before `from`. `parameters` has the keys of the table [satellite]. Precondition: a distance other
+/// than 0.
 std::optional<SatellitePassage> dragging_passage(const Parameters& parameters, double orbital_frequency,
                                                  const Frequencies& frequencies, double min_drag, double from,
                                                  double until);
