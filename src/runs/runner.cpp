@@ -1,5 +1,6 @@
 #include "runner.hpp"
 
+#include <keeler/advice/warnings.hpp>
 #include <keeler/core/interrupt.hpp>
 #include <keeler/runs/state_hash.hpp>
 
