@@ -30,7 +30,8 @@ public:
   /// True if rebuilding all lists is cheaper than a new list for each of `escaped` particles.
   bool better_rebuild_all(std::size_t escaped, std::size_t particles) const;
 
-  // The following calls add to the costs of the present lists.
+  // The following calls count what is done for the present lists. Single lists rebuilt within a step are counted for
+  // better_rebuild_all() alone.
   void rebuilt_all(std::size_t particles, std::uint64_t tests, std::uint64_t entries);
   void renewed_one() { ++renewed_; }
   void updated(std::size_t escaped);
