@@ -1,10 +1,12 @@
-# keeler_folder(NAME [SOURCES file...] [USES folder...] [LIBRARIES public-library...] [PRIVATE_LIBRARIES library...])
+# keeler_folder(NAME [SOURCES file...] [SHOWS header...] [USES folder...] [LIBRARIES public-library...]
+#   [PRIVATE_LIBRARIES library...])
 #
-# One static library a concept folder: target keeler_NAME, alias keeler::NAME. The target shows its users a build-tree
-# directory that holds nothing but a link keeler/NAME to the folder's headers, so a folder that includes another one
-# without naming it under USES does not compile; and USES may name only folders lower in KEELER_FOLDERS.
+# One static library a concept folder: target keeler_NAME, alias keeler::NAME. Its users see build-tree directories that
+# hold nothing but links: to the folder's public headers, include/keeler/NAME, which are installed, and to the headers
+# that it SHOWS other folders. Both are included as <keeler/NAME/file.hpp>. A folder that includes another one without
+# naming it under USES does not compile; and USES may name only folders lower in KEELER_FOLDERS.
 function(keeler_folder name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;USES;LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;SHOWS;USES;LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
   list(FIND KEELER_FOLDERS ${name} own_rank)
   foreach(used IN LISTS ARG_USES)
     list(FIND KEELER_FOLDERS ${used} rank)
@@ -16,16 +18,21 @@ function(keeler_folder name)
     message(FATAL_ERROR "gravity and collision never include each other")
   endif()
 
-  set(view "${PROJECT_BINARY_DIR}/include-rule/${name}")
-  file(MAKE_DIRECTORY "${view}/keeler")
-  file(CREATE_LINK "${PROJECT_SOURCE_DIR}/include/keeler/${name}" "${view}/keeler/${name}" SYMBOLIC)
+  set(public_view "${PROJECT_BINARY_DIR}/include-rule/${name}/public")
+  set(shown_view "${PROJECT_BINARY_DIR}/include-rule/${name}/shown")
+  file(REMOVE_RECURSE "${PROJECT_BINARY_DIR}/include-rule/${name}") # links of headers that are no longer shown
+  file(GLOB_RECURSE public_headers CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}/include/keeler/${name}"
+    "${PROJECT_SOURCE_DIR}/include/keeler/${name}/*.hpp")
+  link_headers("${PROJECT_SOURCE_DIR}/include/keeler/${name}" "${public_view}/keeler/${name}" ${public_headers})
+  link_headers("${CMAKE_CURRENT_SOURCE_DIR}" "${shown_view}/keeler/${name}" ${ARG_SHOWS})
 
   add_library(keeler_${name} STATIC ${ARG_SOURCES})
   add_library(keeler::${name} ALIAS keeler_${name})
   set_target_properties(keeler_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   target_compile_features(keeler_${name} PUBLIC cxx_std_20)
   target_include_directories(keeler_${name} PUBLIC
-    "$<BUILD_INTERFACE:${view}>" "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
+    "$<BUILD_INTERFACE:${public_view}>" "$<BUILD_INTERFACE:${shown_view}>"
+    "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
   target_include_directories(keeler_${name} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}") # its private headers
   target_link_libraries(keeler_${name} PRIVATE "$<BUILD_INTERFACE:keeler_flags>")
   foreach(used IN LISTS ARG_USES)
@@ -38,7 +45,18 @@ function(keeler_folder name)
   if(name IN_LIST KEELER_COLD_FOLDERS)
     keeler_cold(keeler_${name})
   endif()
+  set_property(TARGET keeler_${name} PROPERTY KEELER_HEADERS ${public_headers} ${ARG_SHOWS})
   set_property(GLOBAL APPEND PROPERTY KEELER_TARGETS keeler_${name})
+endfunction()
+
+# link_headers(FROM TO HEADER...): links TO/HEADER to FROM/HEADER.
+function(link_headers from to)
+  file(MAKE_DIRECTORY "${to}")
+  foreach(header IN LISTS ARGN)
+    cmake_path(GET header PARENT_PATH subfolder)
+    file(MAKE_DIRECTORY "${to}/${subfolder}")
+    file(CREATE_LINK "${from}/${header}" "${to}/${header}" SYMBOLIC)
+  endforeach()
 endfunction()
 
 # Compiles a target with fewer optimisations, in less time: nothing in it runs once a particle and step.

@@ -1,11 +1,12 @@
-# Target `headers`: compiles each public header on its own, with no more in sight than its folder may use. A header that
+# Target `headers`: compiles each header that another folder may include on its own, with no more in sight than its folder may use. A header that
 # leans on what its includer happened to include fails here.
 add_custom_target(headers)
 foreach(folder IN LISTS KEELER_FOLDERS)
   if(NOT TARGET keeler_${folder})
     continue()
   endif()
-  file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}/include" "include/keeler/${folder}/*.hpp")
+  get_target_property(headers keeler_${folder} KEELER_HEADERS)
+  list(TRANSFORM headers PREPEND "keeler/${folder}/")
   set(sources)
   foreach(header IN LISTS headers)
     set(source "${PROJECT_BINARY_DIR}/headers/${header}.cpp")

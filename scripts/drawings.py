@@ -302,7 +302,7 @@ def folders():
     names = re.search(r"set\(KEELER_FOLDERS ([^)]*)\)", (ROOT / "CMakeLists.txt").read_text())[1].split()
     uses = {}
     for name in names:
-        text = (ROOT / "src" / name / "CMakeLists.txt").read_text()
+        text = next(path for top in ("src", "lab") if (path := ROOT / top / name / "CMakeLists.txt").exists()).read_text()
         used = re.findall(r"\bUSES\b((?:\s+[a-z_]+\b)+)", text) or [" ".join(re.findall(r"keeler::([a-z_]+)", text))]
         uses[name] = set(used[0].split()) & set(names)
     return names, uses

@@ -66,10 +66,10 @@ def paragraphs(text):
 
 def files():
     """Yields (path, kind, folder) of all sources and pages."""
-    for path in sorted(p for top in ("src", "include", "docs", "examples", ".") for p in pathlib.Path(top).glob("*" if top == "." else "**/*")):
+    for path in sorted(p for top in ("src", "lab", "include", "docs", "examples", ".") for p in pathlib.Path(top).glob("*" if top == "." else "**/*")):
         parts = path.parts
         if path.suffix in (".cpp", ".hpp") and len(parts) > 2:
-            yield path, "code", "src/" + parts[1 if parts[0] == "src" else 2]
+            yield path, "code", "src/" + parts[2 if parts[0] == "include" else 1]
         elif path.suffix == ".md" and path.name != "CHANGELOG.md":
             yield path, "docs", path.name if len(parts) == 1 else parts[0] if parts[0] == "examples" else "/".join(parts[:-1][:2])
 

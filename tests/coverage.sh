@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Which lines of src/ and include/ the tests run: a table by file, and the share of all lines without src/cli, src/render and
+# Which lines of src/, lab/ and include/ the tests run: a table by file, and the share of all lines without src/cli, src/render and
 # src/python, which must be 90 % at least.
 #   scripts/test --coverage [ctest argument...]      for example: scripts/test --coverage -L unit
 # build/coverage/coverage.txt has the sources with how often each line was run. Counted in the source by clang: gcov counts with
