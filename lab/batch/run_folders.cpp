@@ -4,6 +4,7 @@
 #include <keeler/core/error.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/scene/load.hpp>
+#include <keeler/scene/load_parts.hpp>
 
 #include <fmt/format.h>
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <keeler/collision/drift.hpp>
+#include <keeler/finders/finder.hpp>
 
 #include <vector>
 

@@ -1,6 +1,7 @@
 #include <keeler/bench/timed_steps.hpp>
 
 #include <keeler/bench/yardsticks.hpp>
+#include <keeler/collision/costs.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/statistics/median.hpp>
 

@@ -1,5 +1,6 @@
 #include <keeler/bench/yardsticks.hpp>
 
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
 

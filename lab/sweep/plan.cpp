@@ -8,6 +8,7 @@
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/io/hash.hpp>
 #include <keeler/scene/load.hpp>
+#include <keeler/scene/load_parts.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

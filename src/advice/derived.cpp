@@ -1,4 +1,5 @@
 #include <keeler/advice/derived.hpp>
+#include <keeler/scene/layer.hpp>
 
 #include <keeler/core/format.hpp>
 #include <keeler/core/memory.hpp>

@@ -7,6 +7,7 @@
 #include <keeler/gravity/fft.hpp>
 #include <keeler/gravity/near_image_count.hpp>
 #include <keeler/scene/contact_rates.hpp>
+#include <keeler/scene/layer.hpp>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,7 @@
 #include <keeler/advice/grain_piles.hpp>
 
 #include <keeler/core/units.hpp>
+#include <keeler/scene/layer.hpp>
 #include <keeler/scene/patch_scale.hpp>
 #include <keeler/scene/planet.hpp>
 #include <keeler/scene/resting_choice.hpp>

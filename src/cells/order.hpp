@@ -1,7 +1,7 @@
 // The order of particles in memory: spatial, so that neighbours share cache lines and pages. No result depends on it.
 #pragma once
 
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 #include <keeler/hill/shearing_box.hpp>
 #include <keeler/particles/store.hpp>
 

@@ -15,6 +15,7 @@
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/scene/keys.hpp>
 #include <keeler/scene/load.hpp>
+#include <keeler/scene/load_parts.hpp>
 #include <keeler/scene/patch_scale.hpp>
 
 #include <fmt/format.h>

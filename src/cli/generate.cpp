@@ -16,8 +16,10 @@
 #include <keeler/initial_conditions/clumped.hpp>
 #include <keeler/initial_conditions/from_table.hpp>
 #include <keeler/initial_conditions/initial.hpp>
+#include <keeler/io/provenance.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/scene/load.hpp>
+#include <keeler/scene/load_parts.hpp>
 #include <keeler/scene/patch_scale.hpp>
 
 #include <fmt/format.h>

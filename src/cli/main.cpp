@@ -6,7 +6,7 @@
 
 #include <keeler/comm/communicator.hpp>
 #include <keeler/comm/same_request.hpp>
-#include <keeler/core/error_at_hand.hpp>
+#include <keeler/core/error.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/version.hpp>
 

@@ -9,6 +9,7 @@
 #include <keeler/files/new_file.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/initial_conditions/tiled.hpp>
+#include <keeler/io/provenance.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/scene/load.hpp>
 #include <keeler/scene/scene.hpp>

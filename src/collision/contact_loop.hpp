@@ -11,6 +11,7 @@
 #include "step_context.hpp"
 
 #include <keeler/collision/events.hpp>
+#include <keeler/collision/friction.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/interrupt.hpp>
 

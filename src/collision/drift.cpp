@@ -1,4 +1,5 @@
 #include <keeler/collision/drift.hpp>
+#include <keeler/core/field_table.hpp>
 
 #include "drift_engine.hpp"
 
@@ -35,12 +36,10 @@ void DriftPhase::collide(Particles& particles, const ShearingBox& box, double of
   engine_->collide(particles, box, offset, tally, undisturbed);
 }
 
-#ifdef KEELER_MPI
 bool DriftPhase::collide_distributed(Particles& particles, const GhostLayer& ghosts, const Communicator& ranks,
                                      const ShearingBox& box, double offset, CollisionTally& tally) {
   return engine_->collide_distributed(particles, ghosts, ranks, box, offset, tally);
 }
-#endif
 
 const Finder& DriftPhase::finder() const {
   return engine_->finder();

@@ -2,8 +2,8 @@
 
 #include "plain_search.hpp"
 
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/random.hpp>
-#include <keeler/core/threads.hpp>
 
 #include <algorithm>
 #include <vector>

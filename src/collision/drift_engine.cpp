@@ -4,6 +4,7 @@
 #include "drift_audit.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/finders/certified_finder.hpp>

@@ -2,18 +2,10 @@
 // with a moment of inertia of 2/5 m r².
 #pragma once
 
+#include <keeler/collision/settings.hpp>
 #include <keeler/particles/store.hpp>
 
-#include <limits>
-
 namespace keeler {
-
-struct Friction {
-  static constexpr double unlimited = std::numeric_limits<double>::infinity();
-
-  double tangential_restitution = 1.0; ///< ε_t in [−1, 1]: slip velocity of the surfaces after over before
-  double coefficient = unlimited;      ///< Coulomb's: tangential impulse ≤ coefficient × normal impulse
-};
 
 /// Two spheres in contact, at one instant in Hill's frame. Spins are angular velocities in the inertial frame, rad⁻¹.
 struct Touch {

@@ -3,7 +3,7 @@
 #include "reach.hpp"
 
 #include <keeler/core/error.hpp>
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 
 #include "optimistic_orbits.hpp"
 
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 
 #include <algorithm>
 #include <cassert>

@@ -1,7 +1,8 @@
 // The communicator on MPI: the only source file that includes mpi.h.
 #include <keeler/comm/communicator.hpp>
 
-#include <keeler/core/error_at_hand.hpp>
+#include <keeler/core/error.hpp>
+#include <keeler/core/exact_sum.hpp>
 #include <keeler/core/stopwatch.hpp>
 #include <keeler/core/version.hpp>
 

@@ -1,8 +1,10 @@
 // Single-process build (no KEELER_MPI): every collective is a no-op.
 #include <keeler/comm/communicator.hpp>
+#include <keeler/core/exact_sum.hpp>
 
 #include <cassert>
 #include <cstdlib>
+#include <cstring>
 #include <string>
 
 namespace keeler {
@@ -35,6 +37,13 @@ void Communicator::exchange([[maybe_unused]] const std::vector<std::span<const s
 }
 std::vector<std::byte> Communicator::gather(std::vector<std::byte> bytes) const {
   return bytes;
+}
+void Communicator::exchange(std::span<const Blocks> sent, std::span<const Blocks> received) const {
+  assert(sent.size() == 1 && received.size() == 1);
+  const Blocks &from = sent.front(), &to = received.front();
+  assert(from.count == to.count && from.size == to.size);
+  for (std::size_t k = 0; k < from.count; ++k)
+    std::memmove(to.first + k * to.stride, from.first + k * from.stride, from.size);
 }
 void Communicator::sum(std::span<std::uint64_t>) const {}
 void Communicator::merge(std::initializer_list<ExactSum*>) const {}

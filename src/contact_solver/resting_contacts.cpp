@@ -1,4 +1,5 @@
 #include <keeler/contact_solver/resting_contacts.hpp>
+#include <keeler/core/field_table.hpp>
 
 #include "resting_work.hpp"
 

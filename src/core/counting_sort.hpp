@@ -1,6 +1,7 @@
 // Parallel stable counting sort of items by cell.
 #pragma once
 
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/threads.hpp>
 
 #include <algorithm>

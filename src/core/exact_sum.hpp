@@ -2,6 +2,7 @@
 // threads, and of how partial sums are combined.
 #pragma once
 
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/vector.hpp>
 

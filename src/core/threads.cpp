@@ -1,3 +1,4 @@
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/threads.hpp>
 
 #include <keeler/core/error.hpp>

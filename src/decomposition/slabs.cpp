@@ -1,7 +1,7 @@
 #include <keeler/decomposition/slabs.hpp>
 
 #include <keeler/cells/order.hpp>
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 #include <keeler/particles/order.hpp>
 
 #include <algorithm>
@@ -76,7 +76,7 @@ Slabs::Slabs(const Communicator& ranks, const ShearingBox& box, const Frequencie
   ghosts_.kappa = frequencies.kappa;
 }
 
-void Slabs::distribute(Holding holding) {
+void Slabs::distribute(SlabHolding holding) {
   const std::vector<double> x = folded_x(holding.particles, box_.size_x);
   balance(x);
   migrate(holding, x);
@@ -140,7 +140,7 @@ void Slabs::adapt_growth() {
   max_excursion_ = 0.0;
 }
 
-void Slabs::rebuild(Holding holding, double offset, double step) {
+void Slabs::rebuild(SlabHolding holding, double offset, double step) {
   Particles& particles = holding.particles;
   adapt_growth();
   ++rebuilds_;
@@ -191,7 +191,7 @@ void Slabs::balance(const std::vector<double>& x) {
 }
 
 // Sends particles to the owners of their positions x. Collective.
-void Slabs::migrate(Holding& holding, const std::vector<double>& x) const {
+void Slabs::migrate(SlabHolding& holding, const std::vector<double>& x) const {
   assert(x.size() == holding.particles.size());
   std::vector<std::uint32_t> to(x.size());
   std::transform(x.begin(), x.end(), to.begin(),

@@ -15,15 +15,15 @@
 
 namespace keeler {
 
+/// What a rank stores of its own particles: the store, and further rows in its order (empty on all ranks, or one row
+/// per particle).
+struct SlabHolding {
+  Particles& particles;
+  std::vector<std::vector<Vec3>*> rows;
+};
+
 class Slabs {
 public:
-  /// What a rank stores of its own particles: the store, and further rows in its order (empty on all ranks, or one row
-  /// per particle).
-  struct Holding {
-    Particles& particles;
-    std::vector<std::vector<Vec3>*> rows;
-  };
-
   /// The width of the ghost layer. It changes the cost and no result.
   struct Reach {
     double growth = 12.0; ///< margin over the excursion of one step; adapted as the run goes on
@@ -37,13 +37,13 @@ public:
   Slabs(const Communicator& ranks, const ShearingBox& box, const Frequencies& frequencies, const Reach& reach);
 
   /// Sends each particle to its owner, from any distribution of the particles over the ranks. Collective.
-  void distribute(Holding holding);
+  void distribute(SlabHolding holding);
 
   /// True if the ghost layer is valid for a step of this length. Collective.
   bool is_valid(const Particles& particles, double step);
   /// Rebuilds the ghost layer for particles at `offset` and steps of this length: balances the bounds if the load is
   /// uneven, sends particles to their owners, sorts them by cells, and chooses the ghosts. Collective.
-  void rebuild(Holding holding, double offset, double step);
+  void rebuild(SlabHolding holding, double offset, double step);
   /// Marks the ghost layer as invalid.
   void invalidate() { is_built_ = false; }
   /// Marks the ghost layer as invalid and at least doubles the margin of the next one, for a step that failed with this
@@ -69,7 +69,7 @@ private:
   bool is_within(double x, std::size_t rank, double reach) const;
   template<class Visit> void for_each_within(double x, double reach, const Visit& visit) const;
   void balance(const std::vector<double>& x);
-  void migrate(Holding& holding, const std::vector<double>& x) const;
+  void migrate(SlabHolding& holding, const std::vector<double>& x) const;
   void choose_ghosts(const Particles& particles, double step);
   double max_excursion(const Particles& particles, const std::vector<double>& references, double step) const;
 

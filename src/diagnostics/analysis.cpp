@@ -5,9 +5,13 @@
 #include <keeler/diagnostics/energy.hpp>
 #include <keeler/diagnostics/epicyclic_waves.hpp>
 #include <keeler/diagnostics/local.hpp>
+#include <keeler/diagnostics/radial_modes.hpp>
+#include <keeler/diagnostics/size_classes.hpp>
 #include <keeler/diagnostics/spin.hpp>
 #include <keeler/diagnostics/surface.hpp>
+#include <keeler/diagnostics/velocity_ellipsoid.hpp>
 #include <keeler/diagnostics/viscosity.hpp>
+#include <keeler/diagnostics/wake_geometry.hpp>
 #include <keeler/hill/toomre.hpp>
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 #include <keeler/core/random.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/gravity/images.hpp>
 #include <keeler/particles/order.hpp>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // spheres this is the plain mean of the literature.
 #pragma once
 
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 #include <keeler/particles/patch.hpp>
 
 #include <cassert>

@@ -2,6 +2,7 @@
 // They show overstability and axisymmetric density waves.
 #pragma once
 
+#include <keeler/diagnostics/analysis.hpp>
 #include <keeler/particles/patch.hpp>
 
 #include <complex>
@@ -38,26 +39,8 @@ std::vector<RadialMode> guiding_modes(const Patch& patch, int count);
 /// Returns the rms |density| of a mode of random particles: 2 √(Σm²)/Σm.
 double radial_mode_noise(const Patch& patch);
 
-/// Slope of a least-squares line through ln(value) over time.
-struct Growth {
-  double rate = 0.0; ///< per unit of time
-  /// Standard error from the scatter about the line, corrected for correlated neighbours (statistical_inefficiency()
-  /// in time_series.hpp; at equal intervals); empty for fewer than three values.
-  std::optional<double> error;
-};
-
 /// Returns nothing unless there are two values at different times, and all are positive.
 std::optional<Growth> growth(std::span<const double> times, std::span<const double> values);
-
-/// A mode in several snapshots.
-struct RadialModeAnalysis {
-  int n = 0;
-  double wavelength = 0.0;            ///< m
-  double density_amplitude = 0.0;     ///< mean of |density|
-  double density_phase_degrees = 0.0; ///< in the last snapshot: a crest is at x = −phase/k
-  double speed = 0.0;                 ///< mean epicyclic speed, m/s
-  std::optional<Growth> growth;       ///< of the epicyclic speed, in Ω
-};
 
 std::vector<RadialModeAnalysis> analyze_radial_modes(std::span<const Patch> patches, int count);
 

@@ -1,9 +1,10 @@
 #include <keeler/diagnostics/transmission.hpp>
 
+#include <keeler/cells/sheared_cells.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/memory.hpp>
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/random.hpp>
-#include <keeler/core/threads.hpp>
 
 #include <fmt/format.h>
 

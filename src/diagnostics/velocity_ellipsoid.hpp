@@ -2,6 +2,7 @@
 // the angle from the radial direction to the longer one (vertex deviation).
 #pragma once
 
+#include <keeler/diagnostics/analysis.hpp>
 #include <keeler/particles/patch.hpp>
 
 namespace keeler {
@@ -12,12 +13,6 @@ struct VelocityMoments {
 };
 
 VelocityMoments velocity_moments(const Patch& patch);
-
-struct VelocityEllipsoid {
-  double second_ratio = 0.0;             ///< shorter over longer principal axis in the plane; 0 without motion
-  double vertical_ratio = 0.0;           ///< c_z over the longer one
-  double vertex_deviation_degrees = 0.0; ///< from x to the longer axis, in (−90, 90], positive towards +y
-};
 
 /// For isotropic motion in the plane the ratio is 1 and the deviation meaningless.
 VelocityEllipsoid velocity_ellipsoid(const VelocityMoments& moments);

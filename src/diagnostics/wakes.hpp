@@ -10,24 +10,13 @@
 // ends λ_cr/2 from zero lag and its line passes through zero lag; the outer part extends from there to 3/2 λ_cr.
 #pragma once
 
+#include <keeler/diagnostics/analysis.hpp>
 #include <keeler/diagnostics/autocorrelation.hpp>
 
 #include <optional>
 #include <vector>
 
 namespace keeler {
-
-struct Wakes {
-  std::optional<double> pitch_degrees;       ///< in (−90, 90]; empty if no direction is significant
-  std::optional<double> inner_pitch_degrees; ///< of the crest within λ_cr/2; empty if `pitch_degrees` is
-  std::optional<double> outer_pitch_degrees; ///< beyond; empty if the crest falls below the noise before λ_cr
-  std::optional<double> spacing;             ///< m; empty without wakes or a side maximum within half a box
-  double amplitude = 0.0;                    ///< largest mean of ξ over such a line minus the mean over all directions
-
-  double reach = 0.0;           ///< half the length of the lines averaged over, m
-  double profile_spacing = 0.0; ///< m
-  std::vector<double> profile;  ///< ξ averaged along the ridge, at radial lags 0, 1, 2 … × profile_spacing
-};
 
 /// Lines extend 3/4 λ_cr to each side (less in a small box). Finds no wakes if the map does not resolve λ_cr, or if the
 /// amplitude is below 0.02 or below five times the noise of random particles.

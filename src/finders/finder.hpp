@@ -3,7 +3,7 @@
 // docs/dev/finders.md shows one.
 #pragma once
 
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 #include <keeler/finders/pair.hpp>
 #include <keeler/finders/straight_line.hpp>
 #include <keeler/particles/store.hpp>

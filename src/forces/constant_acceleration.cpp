@@ -1,6 +1,6 @@
 #include "constant_acceleration.hpp"
 
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 
 namespace keeler {
 namespace {

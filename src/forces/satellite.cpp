@@ -15,7 +15,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/format.hpp>
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/units.hpp>
 
 #include <fmt/format.h>

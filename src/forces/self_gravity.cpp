@@ -1,7 +1,7 @@
 #include <keeler/forces/self_gravity.hpp>
 
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/random.hpp>
-#include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 
 #include <cassert>

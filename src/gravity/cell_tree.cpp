@@ -2,7 +2,7 @@
 
 #include "single.hpp"
 
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/vector.hpp>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 #include "far_images.hpp"
 #include "single.hpp"
 
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 #include <keeler/gravity/images.hpp>
 #include <keeler/particles/order.hpp>
 

@@ -12,7 +12,7 @@
 #include "far_kernels.hpp"
 #include "lattice.hpp"
 
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/vector.hpp>
 #include <keeler/gravity/solver.hpp>
 #include <keeler/hill/shearing_box.hpp>

@@ -1,6 +1,6 @@
 #include "mesh.hpp"
 
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 
 #include <algorithm>
 #include <cassert>

@@ -17,7 +17,7 @@
 #include "mesh.hpp"
 
 #include <keeler/comm/communicator.hpp>
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 
 #include <fftw3.h>
 

@@ -4,7 +4,7 @@
 #include "local_expansion.hpp"
 #include "single.hpp"
 
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 #include <keeler/gravity/images.hpp>
 
 #include <algorithm>

@@ -2,6 +2,7 @@
 
 #include "spline_waves.hpp"
 
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 

@@ -2,11 +2,14 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/stopwatch.hpp>
+#include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/diagnostics/viscosity.hpp>
 #include <keeler/initial_conditions/broken.hpp>
 #include <keeler/initial_conditions/initial.hpp>
+#include <keeler/initial_conditions/settling.hpp>
 #include <keeler/scene/load.hpp>
+#include <keeler/scene/load_parts.hpp>
 #include <keeler/scene/patch_scale.hpp>
 #include <keeler/simulation/simulation.hpp>
 
@@ -107,6 +110,7 @@ ClumpedState clumped_state(const Scene& scene, const SettleCriterion& criterion,
   const std::int64_t every = steps_between_samples(scene, criterion);
   clumping.sample_every_orbits = static_cast<double>(every) * scene.time.step;
   const auto orbit = static_cast<std::size_t>(std::max(1L, std::lround(1.0 / clumping.sample_every_orbits)));
+  std::vector<SettleSample> history;
   ClumpingProgress p;
   p.criterion = criterion;
   for (;;) {
@@ -114,9 +118,11 @@ ClumpedState clumped_state(const Scene& scene, const SettleCriterion& criterion,
     p.orbits = clumping.orbits = simulation.orbits();
     const bool sample = simulation.state().step % every == 0;
     if (sample) {
-      clumping.history.push_back(sample_of(simulation));
-      p.contrast = wake_waves(clumping.history.back().waves).contrast;
-      p.settling = compare_windows(clumping.history, orbit, criterion);
+      const SettleSample& last = history.emplace_back(sample_of(simulation));
+      const WakeWaves waves = wake_waves(last.waves);
+      clumping.history.push_back({last.orbits, last.work, waves.contrast, waves.wavelength, waves.radial_wavelength});
+      p.contrast = waves.contrast;
+      p.settling = compare_windows(history, orbit, criterion);
       p.settled = p.settling && settled(*p.settling, criterion);
       clumping.settling = p.settling.value_or(Settling{});
     }
@@ -161,13 +167,12 @@ std::map<std::string, std::vector<double>> clumping_numbers(const Clumping& clum
   add("loss_viscosity_m2_s", settling.viscosity, criterion.viscosity, omega);
   add("wake_wavelength_m", settling.wavelength, criterion.wavelengths, 1.0);
   add("wake_radial_wavelength_m", settling.radial_wavelength, criterion.wavelengths, 1.0);
-  for (const SettleSample& sample : clumping.history) {
-    const WakeWaves waves = wake_waves(sample.waves);
+  for (const ClumpingSample& sample : clumping.history) {
     numbers["history_orbits"].push_back(sample.orbits);
     numbers["history_work_m2"].push_back(sample.work);
-    numbers["history_contrast"].push_back(waves.contrast);
-    numbers["history_wake_wavelength_m"].push_back(waves.wavelength.value_or(NAN));
-    numbers["history_wake_radial_wavelength_m"].push_back(waves.radial_wavelength.value_or(NAN));
+    numbers["history_contrast"].push_back(sample.contrast);
+    numbers["history_wake_wavelength_m"].push_back(sample.wavelength.value_or(NAN));
+    numbers["history_wake_radial_wavelength_m"].push_back(sample.radial_wavelength.value_or(NAN));
   }
   return numbers;
 }

@@ -8,8 +8,8 @@
 #include <keeler/core/exact_sum.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/memory.hpp>
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/random.hpp>
-#include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/hill/toomre.hpp>
 #include <keeler/initial_conditions/possible.hpp>

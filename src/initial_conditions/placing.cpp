@@ -2,8 +2,8 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/exact_sum.hpp>
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/random.hpp>
-#include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/initial_conditions/layer.hpp>
 #include <keeler/scene/layer.hpp>

@@ -2,7 +2,7 @@
 
 #include "sphere_neighbours.hpp"
 
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 
 #include <algorithm>
 #include <atomic>

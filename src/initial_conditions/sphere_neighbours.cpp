@@ -2,7 +2,7 @@
 
 #include "size_levels.hpp"
 
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 
 #include <algorithm>
 #include <cassert>

@@ -1,6 +1,7 @@
 // Density and velocities of the particles of a patch, for warnings about a start.
 #include "start_scale.hpp"
 
+#include <keeler/core/exact_sum.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/scene/patch_scale.hpp>

@@ -3,7 +3,7 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/memory.hpp>
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 #include <keeler/scene/keys.hpp>
 #include <keeler/scene/scene.hpp>
 

@@ -3,9 +3,9 @@
 #include "placing.hpp"
 
 #include <keeler/core/exact_sum.hpp>
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/random.hpp>
 #include <keeler/core/stopwatch.hpp>
-#include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 
 #include <cassert>

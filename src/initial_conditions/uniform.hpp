@@ -2,10 +2,10 @@
 #pragma once
 
 #include <keeler/comm/communicator.hpp>
-#include <keeler/initial_conditions/progress.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/initial_conditions/streamlines.hpp>
 #include <keeler/particles/patch.hpp>
-#include <keeler/scene/density_pattern.hpp>
+#include <keeler/scene/scene.hpp>
 
 #include <cstdint>
 #include <functional>

@@ -1,6 +1,6 @@
 #include "child_process.hpp"
 
-#include <keeler/core/error_at_hand.hpp>
+#include <keeler/core/error.hpp>
 
 #include <fmt/format.h>
 

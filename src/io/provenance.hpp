@@ -2,14 +2,12 @@
 // or a state hash: two runs that differ only in provenance are equal.
 #pragma once
 
-#include <map>
+#include <keeler/io/snapshot.hpp>
+
 #include <string>
 #include <vector>
 
 namespace keeler {
-
-/// name → value: version, commit, compiler, flags, libraries, host, threads, arguments, started (UTC).
-using Provenance = std::map<std::string, std::string>;
 
 /// Collects the provenance of this process; `arguments` is its command line. `started` is the time of this call.
 Provenance collect_provenance(const std::vector<std::string>& arguments);

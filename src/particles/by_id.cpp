@@ -1,6 +1,6 @@
 #include <keeler/particles/by_id.hpp>
 
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 #include <keeler/particles/order.hpp>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include <keeler/particles/patch.hpp>
 
 #include <keeler/core/error.hpp>
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 #include <keeler/particles/order.hpp>
 
 #include <fmt/format.h>

@@ -7,14 +7,16 @@
 
 #include <keeler/advice/derived.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/field_table.hpp>
 #include <keeler/core/format.hpp>
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 #include <keeler/initial_conditions/broken.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/initial_conditions/possible.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/runs/state_hash.hpp>
 #include <keeler/scene/load.hpp>
+#include <keeler/scene/load_parts.hpp>
 #include <keeler/scene/patch_scale.hpp>
 
 #include <fmt/format.h>

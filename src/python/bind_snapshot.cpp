@@ -15,6 +15,7 @@
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/initial_conditions/possible.hpp>
 #include <keeler/initial_conditions/tiled.hpp>
+#include <keeler/io/provenance.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/quantities/views.hpp>

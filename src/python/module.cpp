@@ -3,7 +3,7 @@
 #include "bindings.hpp"
 #include "computing.hpp"
 
-#include <keeler/core/error_at_hand.hpp>
+#include <keeler/core/error.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/version.hpp>

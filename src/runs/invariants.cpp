@@ -3,6 +3,7 @@
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/random.hpp>
+#include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/gravity/direct.hpp>
 #include <keeler/particles/order.hpp>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <keeler/collision/neighbour_audit.hpp>
+#include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <cstdint>

@@ -3,6 +3,7 @@
 #include <keeler/cells/overlap.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/surface.hpp>
+#include <keeler/diagnostics/wake_geometry.hpp>
 #include <keeler/runs/patch_units.hpp>
 
 #include <algorithm>

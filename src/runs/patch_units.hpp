@@ -2,7 +2,7 @@
 #pragma once
 
 #include <keeler/particles/patch.hpp>
-#include <keeler/quantities/unit.hpp>
+#include <keeler/quantities/quantity.hpp>
 
 namespace keeler {
 

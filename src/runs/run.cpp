@@ -20,6 +20,7 @@
 #include <keeler/runs/folder_lock.hpp>
 #include <keeler/runs/state_hash.hpp>
 #include <keeler/scene/load.hpp>
+#include <keeler/scene/load_parts.hpp>
 #include <keeler/scene/patch_scale.hpp>
 
 #include <fmt/format.h>

@@ -1,6 +1,7 @@
 #include "summarise.hpp"
 
 #include <keeler/advice/warnings.hpp>
+#include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/json_of_files.hpp>

@@ -4,6 +4,7 @@
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/field_table.hpp>
 #include <keeler/core/json_of_files.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/initial_conditions/possible.hpp>

@@ -1,4 +1,5 @@
 #include <keeler/scene/contact_rates.hpp>
+#include <keeler/scene/layer.hpp>
 
 #include <algorithm>
 #include <cassert>

@@ -15,6 +15,7 @@
 #include <keeler/gravity/axisymmetric.hpp>
 #include <keeler/scene/examples.hpp>
 #include <keeler/scene/keys.hpp>
+#include <keeler/scene/load_parts.hpp>
 #include <keeler/scene/resting_choice.hpp>
 
 #include <fmt/format.h>

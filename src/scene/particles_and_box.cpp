@@ -6,6 +6,7 @@
 #include <keeler/core/format.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/scene/keys.hpp>
+#include <keeler/scene/layer.hpp>
 
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+#include <keeler/scene/layer.hpp>
 #include <keeler/scene/patch_scale.hpp>
 
 #include <keeler/core/units.hpp>

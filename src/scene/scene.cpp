@@ -1,11 +1,17 @@
 #include <keeler/scene/scene.hpp>
 
+#include <keeler/scene/layer.hpp>
+
 #include <keeler/core/units.hpp>
 
 #include <algorithm>
 #include <cassert>
 
 namespace keeler {
+
+LayerSizes ParticleSettings::layer_sizes() const {
+  return keeler::layer_sizes(sizes, count);
+}
 
 double ParticleSettings::bunching() const {
   double sum = streamlines.bunching;

@@ -4,6 +4,7 @@
 #include <keeler/cells/overlap.hpp>
 #include <keeler/collision/settings.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/decomposition/slabs.hpp>
 #include <keeler/finders/finders.hpp>
 
 #include <fmt/format.h>
@@ -44,8 +45,8 @@ void Simulation::divide() {
 }
 
 // Returns the particles, and the accelerations of their last kicks, which the next half kick needs.
-Slabs::Holding Simulation::holding() {
-  Slabs::Holding holding{state_.particles, {}};
+SlabHolding Simulation::holding() {
+  SlabHolding holding{state_.particles, {}};
   for (ForceState& force : state_.forces)
     holding.rows.push_back(&force.accelerations);
   return holding;

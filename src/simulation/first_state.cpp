@@ -3,6 +3,8 @@
 #include <keeler/advice/derived.hpp>
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>
+#include <keeler/core/field_table.hpp>
+#include <keeler/diagnostics/particle_means.hpp>
 
 #include <fmt/format.h>
 

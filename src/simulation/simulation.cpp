@@ -1,15 +1,20 @@
 #include <keeler/simulation/simulation.hpp>
 
 #include "first_state.hpp"
+#include <keeler/cells/overlap.hpp>
+#include <keeler/contact_solver/resting_contacts.hpp>
+#include <keeler/decomposition/slabs.hpp>
+#include <keeler/diagnostics/particle_means.hpp>
 
 #include <keeler/cells/order.hpp>
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/exact_sum.hpp>
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/stopwatch.hpp>
-#include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/particles/by_id.hpp>
+#include <keeler/simulation/step_control.hpp>
 
 #include <cassert>
 #include <cstring>
@@ -49,23 +54,32 @@ std::vector<std::unique_ptr<Force>> make_forces(const Scene& scene, const Simula
 
 Simulation::Simulation(const Scene& scene, const Patch& start, const Communicator& ranks)
     : Simulation(scene, first_state(scene, start, ranks), ranks) {
-  if constexpr (Communicator::possible)
-    if (ranks_.distributed()) {
-      const Overlap largest = largest_overlap_distributed();
-      ranks_.together([&] { require_no_overlap(largest, start_name(scene_)); });
-    }
+  if (ranks_.distributed()) {
+    const Overlap largest = largest_overlap_distributed();
+    ranks_.together([&] { require_no_overlap(largest, start_name(scene_)); });
+  }
   for (std::size_t f = 0; f < forces_.size(); ++f)
     accelerate(f);
 }
 
 Simulation::Simulation(const Scene& scene, SimulationState state, const Communicator& ranks)
     : scene_(scene), ranks_(ranks), state_(std::move(state)), count_(ranks.sum(state_.particles.size())),
-      drift_(scene.collisions, scene.planet.frequencies, scene.planet.orbital_frequency, state_.step_length) {
-  if constexpr (Communicator::possible)
-    divide();
+      drift_(scene.collisions, scene.planet.frequencies, scene.planet.orbital_frequency, state_.step_length),
+      resting_(std::make_unique<RestingContacts>()) {
+  divide();
   forces_ = make_forces(scene_, state_, ranks_);
   find_moonlets();
   schedule_drift();
+}
+
+Simulation::~Simulation() = default;
+
+const RestingCosts& Simulation::resting_costs() const {
+  return resting_->costs();
+}
+
+EnergyBalance Simulation::balance() const {
+  return balance(means());
 }
 
 void Simulation::advance() {
@@ -96,9 +110,8 @@ void Simulation::advance() {
 }
 
 void Simulation::collide() {
-  if constexpr (Communicator::possible)
-    if (ranks_.distributed())
-      return collide_distributed();
+  if (ranks_.distributed())
+    return collide_distributed();
   drift_.collide(state_.particles, state_.box, state_.epoch_offset(), state_.collisions, undisturbed_);
 }
 
@@ -127,7 +140,7 @@ void Simulation::schedule_drift() {
 // Precondition: the order in memory has not changed since the drift.
 void Simulation::note_slow_pairs() {
   for (const SlowPair& pair : drift_.slow_pairs())
-    resting_.note(state_.particles, pair);
+    resting_->note(state_.particles, pair);
 }
 
 // Calls function(step) with this boundary's kicks. `before` is the kick interval that ends here.
@@ -147,10 +160,10 @@ template<class Function> void Simulation::with_kicks(double before, const Functi
 
 void Simulation::persist_contacts(double before) {
   assert(!carries() || before > 0.0);
-  if (!carries() || !kick_due(0) || resting_.idle(state_.resting))
+  if (!carries() || !kick_due(0) || resting_->idle(state_.resting))
     return;
   with_kicks(before, [&](const RestingStep& step) {
-    resting_.persist(state_.resting, step, scene_.collisions.friction, state_.collisions);
+    resting_->persist(state_.resting, step, scene_.collisions.friction, state_.collisions);
   });
   schedule_drift();
 }
@@ -159,7 +172,7 @@ void Simulation::persist_contacts_second_half() {
   if (state_.resting.pairs.empty() || !kick_due(0))
     return;
   with_kicks(kick_interval(),
-             [&](const RestingStep& step) { resting_.persist_second_half(state_.resting, step, state_.collisions); });
+             [&](const RestingStep& step) { resting_->persist_second_half(state_.resting, step, state_.collisions); });
 }
 
 // Sorts particles in memory by position every tenth of an orbit.
@@ -169,9 +182,8 @@ void Simulation::sort_when_due() {
   const std::int64_t interval = longest * static_cast<std::int64_t>(intervals);
   if (state_.step % interval != 0)
     return;
-  if constexpr (Communicator::possible)
-    if (ranks_.distributed())
-      return slabs_->invalidate(); // the ghost layer is rebuilt, which sorts too
+  if (ranks_.distributed())
+    return slabs_->invalidate(); // the ghost layer is rebuilt, which sorts too
   const Stopwatch watch(split_.drift);
   drift_.release();
   undisturbed_ = false;
@@ -182,7 +194,7 @@ void Simulation::sort_when_due() {
     reorder(state_.particles.spins, order);
   for (ForceState& force : state_.forces)
     reorder(force.accelerations, order);
-  resting_.reordered();
+  resting_->reordered();
   find_moonlets();
 }
 
@@ -282,7 +294,7 @@ void Simulation::replace(Particles particles) {
   state_.energy.spin += now.spin.energy - before.spin.energy;
   drift_.release();
   undisturbed_ = false;
-  resting_ = RestingContacts();
+  *resting_ = RestingContacts();
   state_.resting.pairs.clear();
   state_.resting.loads.clear();
   forces_ = make_forces(scene_, state_, ranks_);
@@ -344,9 +356,8 @@ double Simulation::offset_at_break() const {
 
 double Simulation::largest_overlap() {
   drift_.release(); // frees memory for the search
-  if constexpr (Communicator::possible)
-    if (ranks_.distributed())
-      return largest_overlap_distributed().depth;
+  if (ranks_.distributed())
+    return largest_overlap_distributed().depth;
   return keeler::largest_overlap(patch()).depth;
 }
 

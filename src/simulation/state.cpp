@@ -1,3 +1,5 @@
+#include <keeler/core/field_table.hpp>
+#include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/simulation/state.hpp>
 
 #include <fmt/format.h>

@@ -1,5 +1,6 @@
 #include <keeler/simulation/step_control.hpp>
 
+#include <keeler/core/field_table.hpp>
 #include <keeler/scene/scene.hpp>
 
 #include <algorithm>

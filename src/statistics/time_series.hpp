@@ -1,16 +1,12 @@
 // Statistics of time series: the error of the mean of correlated values, and the detection of a steady part.
 #pragma once
 
+#include <keeler/statistics/measured.hpp>
+
 #include <cstddef>
 #include <span>
 
 namespace keeler {
-
-/// A mean and its standard error.
-struct Estimate {
-  double value = 0.0;
-  double error = 0.0; ///< NaN if there are too few values
-};
 
 /// Returns the mean of values at equal intervals, and its error by blocks (Flyvbjerg & Petersen 1989, J. Chem. Phys.
 /// 91, 461): blocks of 1, 2, 4 … values are averaged until they are independent. That length B is the smallest with B³

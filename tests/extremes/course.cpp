@@ -4,6 +4,7 @@
 #include "unit/collision/same_bits.hpp"
 
 #include <keeler/cells/overlap.hpp>
+#include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/scene/load.hpp>
 

@@ -5,6 +5,7 @@
 #include "targets.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/initial_conditions/possible.hpp>
 #include <keeler/io/contacts.hpp>

@@ -3,6 +3,7 @@
 #include "physics/scenes.hpp"
 
 #include <keeler/cells/overlap.hpp>
+#include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>

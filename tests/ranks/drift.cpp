@@ -6,6 +6,7 @@
 #include "unit/collision/same_bits.hpp"
 #include "unit/collision/scenario.hpp"
 
+#include <keeler/collision/costs.hpp>
 #include <keeler/collision/drift.hpp>
 #include <keeler/decomposition/slabs.hpp>
 

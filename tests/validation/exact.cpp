@@ -1,8 +1,8 @@
 // Exact solutions.
 #include "rows.hpp"
 
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/random.hpp>
-#include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/diagnostics/transmission.hpp>

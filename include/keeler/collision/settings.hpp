@@ -1,13 +1,21 @@
 // The collision settings of a scene.
 #pragma once
 
-#include <keeler/collision/friction.hpp>
 #include <keeler/collision/restitution.hpp>
 
+#include <limits>
 #include <optional>
 #include <string>
 
 namespace keeler {
+
+/// Friction between rough spheres (friction.hpp has its law).
+struct Friction {
+  static constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+  double tangential_restitution = 1.0; ///< ε_t in [−1, 1]: slip velocity of the surfaces after over before
+  double coefficient = unlimited;      ///< Coulomb's: tangential impulse ≤ coefficient × normal impulse
+};
 
 struct CollisionSettings {
   std::string finder = "certified"; ///< a name of finder_table()

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <keeler/core/error.hpp>
-#include <keeler/core/exact_sum.hpp>
 
 #include <cassert>
 #include <cstddef>
@@ -20,6 +19,8 @@
 #include <vector>
 
 namespace keeler {
+
+class ExactSum;
 
 /// One byte buffer per rank, to send to it or received from it.
 using Parcels = std::vector<std::vector<std::byte>>;

@@ -47,4 +47,12 @@ struct DiskFullError : IoError {
   explicit DiskFullError(const std::string& message) : IoError(message) {}
 };
 
+/// Message for failed allocations.
+inline constexpr const char* no_memory =
+    "there is not enough memory for this; take fewer particles, or a machine or a limit with more";
+
+/// Returns the exception that is being handled, as an error of Keeler: exceptions of libraries too, whose own messages
+/// are not shown to users. Precondition: called within a catch clause.
+Error error_at_hand();
+
 } // namespace keeler

@@ -3,11 +3,8 @@
 #pragma once
 
 #include <keeler/diagnostics/clusters.hpp>
-#include <keeler/diagnostics/radial_modes.hpp>
-#include <keeler/diagnostics/size_classes.hpp>
-#include <keeler/diagnostics/velocity_ellipsoid.hpp>
-#include <keeler/diagnostics/wake_geometry.hpp>
 #include <keeler/particles/patch.hpp>
+#include <keeler/statistics/measured.hpp>
 
 #include <array>
 #include <optional>
@@ -15,6 +12,64 @@
 #include <vector>
 
 namespace keeler {
+
+/// Self-gravity wakes in the autocorrelation (wakes.hpp).
+struct Wakes {
+  std::optional<double> pitch_degrees;       ///< in (−90, 90]; empty if no direction is significant
+  std::optional<double> inner_pitch_degrees; ///< of the crest within λ_cr/2; empty if `pitch_degrees` is
+  std::optional<double> outer_pitch_degrees; ///< beyond; empty if the crest falls below the noise before λ_cr
+  std::optional<double> spacing;             ///< m; empty without wakes or a side maximum within half a box
+  double amplitude = 0.0;                    ///< largest mean of ξ over such a line minus the mean over all directions
+
+  double reach = 0.0;           ///< half the length of the lines averaged over, m
+  double profile_spacing = 0.0; ///< m
+  std::vector<double> profile;  ///< ξ averaged along the ridge, at radial lags 0, 1, 2 … × profile_spacing
+};
+
+/// Sizes and directions of wakes in several snapshots (wake_geometry.hpp).
+struct WakeGeometry {
+  Wakes mean;                   ///< of the mean autocorrelation
+  double contrast = 0.0;        ///< rms of the smoothed Σ/⟨Σ⟩ − 1
+  Measured wavelength;          ///< λ_⊥, m
+  Measured radial_wavelength;   ///< λ_x, m
+  Measured angle_degrees;       ///< of the spectrum
+  Measured inner_pitch_degrees; ///< of the ridge
+  Measured outer_pitch_degrees;
+};
+
+/// Principal axes of the peculiar velocities (velocity_ellipsoid.hpp).
+struct VelocityEllipsoid {
+  double second_ratio = 0.0;             ///< shorter over longer principal axis in the plane; 0 without motion
+  double vertical_ratio = 0.0;           ///< c_z over the longer one
+  double vertex_deviation_degrees = 0.0; ///< from x to the longer axis, in (−90, 90], positive towards +y
+};
+
+/// Particles with smallest ≤ r < largest (the last class: ≤).
+struct SizeClass {
+  double smallest = 0.0, largest = 0.0; ///< m
+  std::size_t count = 0;
+  double mass_fraction = 0.0;
+  Vec3 dispersion = Vec3::Zero(); ///< about the mean velocity of the whole patch, m rad⁻¹; 0 in an empty class
+  double scale_height = 0.0;      ///< √⟨z²⟩, m; 0 in an empty class
+};
+
+/// Slope of a least-squares line through ln(value) over time.
+struct Growth {
+  double rate = 0.0; ///< per unit of time
+  /// Standard error from the scatter about the line, corrected for correlated neighbours (statistical_inefficiency()
+  /// in time_series.hpp; at equal intervals); empty for fewer than three values.
+  std::optional<double> error;
+};
+
+/// A mode in several snapshots.
+struct RadialModeAnalysis {
+  int n = 0;
+  double wavelength = 0.0;            ///< m
+  double density_amplitude = 0.0;     ///< mean of |density|
+  double density_phase_degrees = 0.0; ///< in the last snapshot: a crest is at x = −phase/k
+  double speed = 0.0;                 ///< mean epicyclic speed, m/s
+  std::optional<Growth> growth;       ///< of the epicyclic speed, in Ω
+};
 
 /// Means over the surroundings of particles (local.hpp).
 struct LocalAnalysis {

@@ -6,7 +6,6 @@
 
 #include <keeler/comm/communicator.hpp>
 #include <keeler/core/vector.hpp>
-#include <keeler/gravity/images.hpp>
 #include <keeler/hill/shearing_box.hpp>
 
 #include <cstdint>
@@ -50,6 +49,12 @@ class EnergyMeter {
 public:
   virtual ~EnergyMeter() = default;
   virtual GravityEnergy energy(const GravityProblem& problem) = 0;
+};
+
+/// The images that attract.
+struct ImageSettings {
+  int rings = 1;   ///< rings of boxes around the cell that are summed one by one (1 is 9 boxes)
+  bool far = true; ///< add all images beyond: the force is truly periodic; else exactly these rings act
 };
 
 /// The settings of self-gravity.

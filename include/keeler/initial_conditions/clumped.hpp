@@ -1,10 +1,13 @@
 // A clumped state: the initial state of a scene, evolved under its own gravity until its wakes have settled.
 #pragma once
 
-#include <keeler/initial_conditions/settling.hpp>
 #include <keeler/particles/patch.hpp>
 #include <keeler/scene/scene.hpp>
+#include <keeler/statistics/measured.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <optional>
@@ -13,13 +16,65 @@
 
 namespace keeler {
 
+/// Bounds on the means of a quantity in two successive windows, relative to the mean over both.
+struct MeanBounds {
+  double error = 0.0;  ///< largest standard error of either mean
+  double change = 0.0; ///< a smaller difference is accepted, however small the errors are
+};
+
+/// When wakes count as settled: the means of two successive windows agree. docs/dev/starts.md has the runs from which
+/// these numbers were chosen.
+struct SettleCriterion {
+  double samples_per_orbit = 20.0;
+  double first_orbit = 5.0; ///< begin of the earliest window: after the overshoot
+  std::size_t min_window_orbits = 2;
+  double max_orbits = 30.0; ///< give up after this
+  MeanBounds viscosity{.error = 0.10, .change = 0.10};
+  MeanBounds wavelengths{.error = 0.05, .change = 0.05}; ///< λ_⊥ and λ_x
+  double standard_errors = 2.0;                          ///< accepted difference, if that exceeds MeanBounds::change
+  double min_standing = 0.5;       ///< fraction of a window's samples with wakes above the noise, each by itself
+  double largest_deviation = 0.15; ///< relative, of the contrast of the last sample from that of the last window
+
+  /// Returns the earliest time at which wakes can have settled.
+  double min_orbits() const { return first_orbit + 2.0 * static_cast<double>(min_window_orbits); }
+};
+
+/// A quantity in two successive windows.
+struct WindowMeans {
+  Estimate before, last;
+  double tolerance = 0.0; ///< of change()
+
+  double mean() const { return 0.5 * (before.value + last.value); }
+  double change() const { return std::fabs(last.value - before.value) / mean(); }
+  double error() const { return std::max(before.error, last.error) / mean(); } ///< the larger of the two
+};
+
+/// The last two windows of a history.
+struct Settling {
+  std::size_t window_orbits = 0;
+  WindowMeans viscosity;                     ///< m² rad⁻¹
+  WindowMeans wavelength, radial_wavelength; ///< λ_⊥, λ_x, m; NaN in a window without wakes
+  double standing = 0.0;  ///< fraction of samples with wakes above the noise, the smaller of the two windows
+  double contrast = 0.0;  ///< rms of the smoothed Σ/⟨Σ⟩ − 1 over the last window
+  double deviation = 0.0; ///< |contrast of the last sample − contrast| / contrast
+};
+
+/// The patch at one instant of the evolution.
+struct ClumpingSample {
+  double orbits = 0.0;
+  double work = 0.0;                       ///< of the shear since the start, per mass and S², m²
+  double contrast = 0.0;                   ///< rms of the smoothed Σ/⟨Σ⟩ − 1
+  std::optional<double> wavelength;        ///< λ_⊥, m; empty if wakes have no direction
+  std::optional<double> radial_wavelength; ///< λ_x, m
+};
+
 /// The record of how a clumped state was made.
 struct Clumping {
   SettleCriterion criterion;
   double sample_every_orbits = 0.0; ///< 1 / samples_per_orbit, rounded to whole kick intervals
   double orbits = 0.0;              ///< number of orbits evolved
   Settling settling;                ///< at the end
-  std::vector<SettleSample> history;
+  std::vector<ClumpingSample> history;
   double orbital_frequency = 0.0; ///< rad/s: converts m² rad⁻¹ to m²/s
 };
 

@@ -2,15 +2,22 @@
 #pragma once
 
 #include <keeler/comm/communicator.hpp>
-#include <keeler/initial_conditions/progress.hpp>
 #include <keeler/particles/patch.hpp>
-#include <keeler/scene/patch_scale.hpp>
 #include <keeler/scene/scene.hpp>
 
 #include <functional>
 #include <string>
 
 namespace keeler {
+
+struct PatchScale;
+
+/// Progress of making a start.
+struct StartProgress {
+  double fraction = 0.0;    ///< of the work done, an estimate; 1 at the end
+  double elapsed_s = 0.0;   ///< wall time
+  double remaining_s = 0.0; ///< an estimate
+};
 
 /// Returns a fresh patch on the scene's streamlines, or the snapshot that the scene names. Throws UsageError (too
 /// dense), Interrupted (interrupt.hpp), or what patch_from_snapshot() throws. Collective: each rank gets a part of the

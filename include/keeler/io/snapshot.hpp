@@ -3,7 +3,6 @@
 #pragma once
 
 #include <keeler/comm/communicator.hpp>
-#include <keeler/io/provenance.hpp>
 #include <keeler/particles/patch.hpp>
 
 #include <filesystem>
@@ -13,6 +12,10 @@
 #include <vector>
 
 namespace keeler {
+
+/// Program, machine and command line of a file, never part of a hash: name → value: version, commit, compiler, flags,
+/// libraries, host, threads, arguments, started (UTC).
+using Provenance = std::map<std::string, std::string>;
 
 /// Content of a snapshot beside the patch.
 struct SnapshotMeta {

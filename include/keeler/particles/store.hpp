@@ -2,7 +2,6 @@
 // affects only speed; results that depend on an order use the ids, which are unique and never change.
 #pragma once
 
-#include <keeler/core/field_table.hpp>
 #include <keeler/hill/elements.hpp>
 
 #include <algorithm>
@@ -10,6 +9,8 @@
 #include <vector>
 
 namespace keeler {
+
+class FieldTable;
 
 /// Elements (m) at the common epoch, radius (m) and mass (kg), aligned to one cache line.
 struct alignas(64) Body {
@@ -49,14 +50,7 @@ struct Particles {
   void prefetch_after(std::size_t k) const { __builtin_prefetch(&bodies[std::min(k + 16, bodies.size() - 1)]); }
 
   /// Adds everything that an exact restart needs.
-  void list_fields(FieldTable& table) {
-    table.particle_rows<double>("bodies", bodies, "m, kg",
-                                "X, Y, e cos, e sin, i sin, i cos at the epoch; radius; mass");
-    table.particle_rows<std::uint64_t>("ids", ids, "1", "unique identity, kept for ever");
-    if (rough)
-      table.particle_rows<double>("spins", spins, "rad^-1",
-                                  "angular velocity against the stars, in Hill's frame at the epoch");
-  }
+  void list_fields(FieldTable& table);
 };
 
 } // namespace keeler

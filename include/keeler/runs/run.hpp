@@ -7,7 +7,7 @@
 #pragma once
 
 #include <keeler/comm/communicator.hpp>
-#include <keeler/initial_conditions/progress.hpp>
+#include <keeler/initial_conditions/initial.hpp>
 #include <keeler/quantities/quantity.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/simulation.hpp>

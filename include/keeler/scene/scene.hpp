@@ -8,8 +8,6 @@
 #include <keeler/gravity/solver.hpp>
 #include <keeler/hill/shearing_box.hpp>
 #include <keeler/particles/sizes.hpp>
-#include <keeler/scene/density_pattern.hpp>
-#include <keeler/scene/layer.hpp>
 #include <keeler/scene/planet.hpp>
 
 #include <cstdint>
@@ -18,6 +16,38 @@
 #include <vector>
 
 namespace keeler {
+
+struct LayerSizes;
+
+/// A non-uniform surface density, with a step in x and a wave that may be inclined to the orbit like self-gravity
+/// wakes. Density of the guiding centres of a fresh patch at zero shear offset: the product of the step and of the
+/// wave.
+struct DensityPattern {
+  double size_x = 1.0, size_y = 1.0; ///< of the box, m
+
+  double low = 0.0, high = 0.0; ///< m: between these x the density is `factor` times that outside
+  double factor = 1.0;
+
+  double contrast = 0.0; ///< A of 1 + A cos(k·r)
+  int waves_x = 0;       ///< number of waves in the box: k = 2π (waves_x / L_x, waves_y / L_y)
+  int waves_y = 0;
+
+  bool uniform() const { return factor == 1.0 && contrast == 0.0; }
+
+  /// Returns Σ/⟨Σ⟩ at a position; its mean over the box is 1.
+  double relative(double x, double y) const;
+
+  /// Returns the maximum of relative().
+  double peak() const;
+
+  /// Returns 2π/|k| of the wave (m), and the angle of its crests to the orbit (degrees, above 0 if they trail).
+  /// Precondition: there is a wave.
+  double wavelength() const;
+  double pitch() const;
+
+private:
+  double mean() const;
+};
 
 /// The mean motion at the start: circular, unless the scene gives the eccentricity vectors a pattern in x.
 struct StreamlineSettings {
@@ -59,7 +89,8 @@ struct ParticleSettings {
   std::size_t free_count() const { return aggregates.empty() ? count : aggregates.front().first; }
   /// Returns the upper limit of 1 − spacing of streamlines over their mean spacing: q, or the sum of the amplitudes.
   double bunching() const;
-  LayerSizes layer_sizes() const { return keeler::layer_sizes(sizes, count); }
+  /// Returns the mean sizes of the particles (layer.hpp).
+  LayerSizes layer_sizes() const;
 };
 
 /// A body among the particles. Moonlet k has the id N + k, where N is the number of particles: the last ids of a run.

@@ -5,10 +5,7 @@
 // other state is global and equal on each rank. All ranks must call a collective function together.
 #pragma once
 
-#include <keeler/cells/overlap.hpp>
 #include <keeler/comm/communicator.hpp>
-#include <keeler/contact_solver/resting_contacts.hpp>
-#include <keeler/decomposition/slabs.hpp>
 #include <keeler/forces/force.hpp>
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/state.hpp>
@@ -22,6 +19,13 @@
 #include <vector>
 
 namespace keeler {
+
+class RestingContacts;
+class Slabs;
+struct Overlap;
+struct ParticleMeans;
+struct RestingCosts;
+struct SlabHolding;
 
 /// Wall time of each part since construction, s.
 struct TimeSplit {
@@ -48,6 +52,7 @@ public:
   /// Continues a run from a state, bit for bit. Collective: each rank gives any part of the particles, with their
   /// accelerations, and all other state.
   Simulation(const Scene& scene, SimulationState state, const Communicator& ranks = {});
+  ~Simulation();
 
   /// Advances by one step; collective. Throws InvariantError, or Interrupted at the request of an Interruptible
   /// (interrupt.hpp). After that the state is that of an unfinished step and must not be stored.
@@ -69,7 +74,7 @@ public:
   const SimulationState& state() const { return state_; }
   /// Moves the state out, its arrays in their order in memory. The simulation must not be used afterwards.
   SimulationState take_state() && { return std::move(state_); }
-  /// Throws UsageError for settings of a scene with `count` particles that cannot be distributed. Only with MPI.
+  /// Throws UsageError for settings of a scene with `count` particles that cannot be distributed.
   static void require_distributable(const Scene& scene, std::size_t count);
 
   const Communicator& ranks() const { return ranks_; }
@@ -111,14 +116,14 @@ public:
   double largest_overlap();
 
   /// Returns the balance of the energy of random motions. Collective.
-  EnergyBalance balance() const { return balance(means()); }
+  EnergyBalance balance() const;
   /// As above, with means that are known already.
   EnergyBalance balance(const ParticleMeans& now) const { return state_.balance(now, scene_.planet.frequencies); }
 
   const TimeSplit& time_split() const { return split_; }
 
   /// Returns the cost of contacts at rest at the last kick.
-  const RestingCosts& resting_costs() const { return resting_.costs(); }
+  const RestingCosts& resting_costs() const;
 
   /// Returns the ticks from kick to kick of state().forces[f], for the current step.
   std::int64_t ticks_between_kicks(std::size_t f) const {
@@ -136,7 +141,7 @@ private:
   void require_ghost_layer();
   void collide_distributed();
   Overlap largest_overlap_distributed();
-  Slabs::Holding holding();
+  SlabHolding holding();
 
   void collide();
   Patch patch_of(const Particles& particles) const;
@@ -169,7 +174,7 @@ private:
   bool drifting_ = false;                      // a drift has begun and not ended
   bool undisturbed_ = false;                   // particles have only moved since the last drift
   std::vector<std::unique_ptr<Force>> forces_; // in the order of state_.forces
-  RestingContacts resting_;
+  std::unique_ptr<RestingContacts> resting_;
   std::unique_ptr<Slabs> slabs_;             // null unless distributed
   std::vector<std::size_t> moonlet_indices_; // in the store; `elsewhere` on another rank
   std::vector<double> moonlet_wraps_;        // shift in x and y of each by this wrap, m

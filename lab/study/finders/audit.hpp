@@ -3,6 +3,7 @@
 
 #include <keeler/collision/drift.hpp>
 #include <keeler/finders/counts.hpp>
+#include <keeler/finders/finder.hpp>
 
 #include <memory>
 #include <vector>

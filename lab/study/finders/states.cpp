@@ -6,6 +6,7 @@
 #include <keeler/files/files.hpp>
 #include <keeler/initial_conditions/clumped.hpp>
 #include <keeler/initial_conditions/initial.hpp>
+#include <keeler/io/provenance.hpp>
 #include <keeler/io/snapshot.hpp>
 #include <keeler/scene/load.hpp>
 #include <keeler/scene/planet.hpp>

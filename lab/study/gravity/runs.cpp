@@ -4,6 +4,7 @@
 #include <keeler/core/threads.hpp>
 #include <keeler/diagnostics/analysis.hpp>
 #include <keeler/diagnostics/mean.hpp>
+#include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/simulation/simulation.hpp>
 
 #include <fmt/format.h>

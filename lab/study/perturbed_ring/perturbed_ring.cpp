@@ -4,6 +4,7 @@
 
 #include <keeler/collision/drift.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/finders/finder.hpp>
 #include <keeler/initial_conditions/uniform.hpp>
 
 #include <fmt/format.h>

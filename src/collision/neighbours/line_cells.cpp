@@ -3,7 +3,7 @@
 #include "ablation.hpp"
 
 #include <keeler/core/counting_sort.hpp>
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 
 #include <array>
 #include <cassert>

@@ -2,6 +2,7 @@
 
 #include "step_interval.hpp"
 
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/threads.hpp>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // When lists and pruning intervals begin, and how lists are updated.
 #include "neighbour_lists.hpp"
 
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 
 #include <cassert>
 #include <cmath>

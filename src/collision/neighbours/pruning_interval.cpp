@@ -1,6 +1,6 @@
 #include "pruning_interval.hpp"
 
-#include <keeler/core/threads.hpp>
+#include <keeler/core/parallel.hpp>
 
 #include <algorithm>
 #include <cassert>

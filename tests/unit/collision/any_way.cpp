@@ -3,6 +3,7 @@
 #include "unit/collision/spheres.hpp"
 #include "unit/collision/twin.hpp"
 
+#include <keeler/collision/costs.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>

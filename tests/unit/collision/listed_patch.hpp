@@ -5,6 +5,7 @@
 #include "neighbours/neighbour_lists.hpp"
 
 #include <keeler/core/random.hpp>
+#include <keeler/gravity/images.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,8 @@
 // The optimistic loop against the sequential one, in any number of domains, on one thread and on several: equal bits,
 // with every part of the algorithm in use.
 #include "unit/collision/ring.hpp"
+#include <keeler/collision/costs.hpp>
+
 #include "unit/collision/twin.hpp"
 
 #include <doctest/doctest.h>

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <keeler/collision/drift.hpp>
+#include <keeler/collision/friction.hpp>
 #include <keeler/core/exact_sum.hpp>
 #include <keeler/finders/finders.hpp>
 

@@ -4,6 +4,7 @@
 #include "unit/collision/twin.hpp"
 
 #include <keeler/core/threads.hpp>
+#include <keeler/finders/finder.hpp>
 
 namespace watch_test {
 

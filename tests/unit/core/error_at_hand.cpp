@@ -1,4 +1,4 @@
-#include <keeler/core/error_at_hand.hpp>
+#include <keeler/core/error.hpp>
 
 #include <doctest/doctest.h>
 

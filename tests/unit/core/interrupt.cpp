@@ -1,5 +1,6 @@
 #include <keeler/core/interrupt.hpp>
 
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/threads.hpp>
 
 #include <doctest/doctest.h>

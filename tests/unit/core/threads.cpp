@@ -1,3 +1,4 @@
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/threads.hpp>
 
 #include <doctest/doctest.h>

@@ -1,6 +1,7 @@
 #include <keeler/diagnostics/force_error.hpp>
 
 #include <keeler/core/random.hpp>
+#include <keeler/gravity/images.hpp>
 
 #include <doctest/doctest.h>
 

@@ -4,8 +4,8 @@
 
 #include "lattice.hpp"
 
+#include <keeler/core/parallel.hpp>
 #include <keeler/core/random.hpp>
-#include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/gravity/images.hpp>
 #include <keeler/gravity/solver.hpp>

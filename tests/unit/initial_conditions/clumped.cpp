@@ -5,6 +5,7 @@
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/initial_conditions/settling.hpp>
 #include <keeler/scene/load.hpp>
 
 #include <doctest/doctest.h>

@@ -1,4 +1,4 @@
-#include <keeler/scene/density_pattern.hpp>
+#include <keeler/scene/scene.hpp>
 
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/error.hpp>

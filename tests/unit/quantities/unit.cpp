@@ -1,4 +1,4 @@
-#include <keeler/quantities/unit.hpp>
+#include <keeler/quantities/quantity.hpp>
 
 #include <doctest/doctest.h>
 

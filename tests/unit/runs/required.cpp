@@ -5,6 +5,7 @@
 
 #include "unit/files/disk.hpp"
 
+#include <keeler/collision/costs.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/initial_conditions/initial.hpp>

@@ -8,6 +8,7 @@
 #include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
+#include <keeler/core/field_table.hpp>
 #include <keeler/scene/keys.hpp>
 
 #include <doctest/doctest.h>

@@ -1,6 +1,7 @@
 #include "scenes.hpp"
 
 #include <keeler/scene/load.hpp>
+#include <keeler/scene/load_parts.hpp>
 #include <keeler/scene/patch_scale.hpp>
 #include <keeler/scene/resting_choice.hpp>
 

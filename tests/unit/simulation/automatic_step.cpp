@@ -4,6 +4,7 @@
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
+#include <keeler/simulation/step_control.hpp>
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>

@@ -1,4 +1,6 @@
+#include <keeler/core/field_table.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/scene/load.hpp>

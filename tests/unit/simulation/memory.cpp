@@ -1,5 +1,6 @@
 // The memory of a run is bounded, by the estimate of `keeler check`.
 #include <keeler/advice/derived.hpp>
+#include <keeler/collision/costs.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/initial_conditions/initial.hpp>

@@ -1,4 +1,5 @@
 // A simulation can be moved, like a value in a container.
+#include <keeler/collision/costs.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>

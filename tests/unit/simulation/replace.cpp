@@ -1,5 +1,6 @@
 // A state changed from outside while it runs.
 #include <keeler/core/error.hpp>
+#include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>

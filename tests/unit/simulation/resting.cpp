@@ -3,6 +3,7 @@
 #include <keeler/cells/overlap.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
+#include <keeler/diagnostics/particle_means.hpp>
 #include <keeler/initial_conditions/initial.hpp>
 #include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>

@@ -1,5 +1,6 @@
 // A satellite that passes the box: against the impulse of the linear theory, Hill's equations integrated to the end of
 // the passage, and a ring's streamlines downstream.
+#include <keeler/core/field_table.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/forces/satellite.hpp>

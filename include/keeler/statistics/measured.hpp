@@ -1,10 +1,16 @@
-// A number measured on several snapshots, and the scatter of the single snapshots.
+// Measured numbers: a mean and its error, or a number of several snapshots and the scatter of single ones.
 #pragma once
 
 #include <optional>
 #include <span>
 
 namespace keeler {
+
+/// A mean and its standard error.
+struct Estimate {
+  double value = 0.0;
+  double error = 0.0; ///< NaN if there are too few values
+};
 
 struct Measured {
   std::optional<double> value;   ///< of all snapshots together; none if it cannot be measured

@@ -6,12 +6,8 @@
 // docs/dev/drift.md.
 #pragma once
 
-#include <keeler/collision/costs.hpp>
 #include <keeler/collision/settings.hpp>
 #include <keeler/comm/communicator.hpp>
-#include <keeler/core/field_table.hpp>
-#include <keeler/decomposition/ghost_layer.hpp>
-#include <keeler/finders/finder.hpp>
 #include <keeler/hill/shearing_box.hpp>
 #include <keeler/particles/store.hpp>
 
@@ -21,7 +17,14 @@
 namespace keeler {
 
 class DriftEngine;
+class FieldTable;
+class Finder;
+struct DriftCosts;
+struct DriftStep;
+struct FinderResult;
+struct GhostLayer;
 struct NeighbourAudit;
+struct Query;
 
 /// Counts and sums over collisions; each step's sums are exact and rounded once. Energies in kg m² rad⁻².
 struct CollisionTally {

@@ -8,7 +8,6 @@
 // of a point against an ellipse, and each sphere is tested only against rays in its shadow and in the shadow's images.
 #pragma once
 
-#include <keeler/cells/sheared_cells.hpp>
 #include <keeler/particles/patch.hpp>
 
 #include <cstdint>

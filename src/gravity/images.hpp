@@ -15,12 +15,6 @@ namespace keeler {
 /// Returns the shear offset folded into [−L_y/2, L_y/2], exactly.
 double folded_offset(const ShearingBox& box, double offset);
 
-/// The images that attract.
-struct ImageSettings {
-  int rings = 1;   ///< rings of boxes around the cell that are summed one by one (1 is 9 boxes)
-  bool far = true; ///< add all images beyond: the force is truly periodic; else exactly these rings act
-};
-
 /// Returns the shifts (m) of the (2 rings_x + 1) (2 rings_y + 1) boxes around the cell, in a fixed order; the shift 0
 /// of the cell is one of them. Precondition: the offset is folded.
 std::vector<Vec3> image_shifts(const ShearingBox& box, double offset, int rings_x, int rings_y);

@@ -3,18 +3,18 @@
 
 #include <keeler/collision/drift.hpp>
 #include <keeler/comm/communicator.hpp>
-#include <keeler/contact_solver/resting_contacts.hpp>
-#include <keeler/diagnostics/particle_means.hpp>
+#include <keeler/contact_solver/resting_state.hpp>
 #include <keeler/hill/shearing_box.hpp>
 #include <keeler/particles/patch.hpp>
 #include <keeler/scene/scene.hpp>
-#include <keeler/simulation/step_control.hpp>
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace keeler {
+
+struct ParticleMeans;
 
 /// Energies at the beginning of a run, kg m² rad⁻².
 struct EnergyStart {
@@ -53,6 +53,26 @@ struct ForceState {
   double work = 0.0;                 ///< of its kicks on the motion beyond the shear, kg m² rad⁻²
   double azimuthal_gain = 0.0;       ///< change of Σ m c_y² by its kicks, kg m² rad⁻²
   std::vector<double> moonlet_gains; ///< momentum along the orbit that they gave each moonlet, kg m rad⁻¹
+};
+
+/// The automatic step (step_control.hpp). Lengths in ticks, powers of two. A step never crosses a multiple of its
+/// length, nor of the kick interval.
+struct StepControl {
+  std::int64_t step = 1;
+  std::int64_t kick = 0;  ///< interval of all forces; 0: set by the scene for each force
+  std::int64_t steps = 0; ///< done since the run began
+
+  // tally at the last decision
+  std::int64_t decided_at = 0; ///< tick
+  std::uint64_t contacts = 0, unresolved = 0;
+
+  /// True if a step may begin at that tick.
+  bool fits(std::int64_t tick) const { return tick % step == 0 && (kick == 0 || kick % step == 0); }
+
+  /// Returns the first lengths of an automatic step.
+  static StepControl automatic(bool with_forces);
+
+  void list_fields(FieldTable& table);
 };
 
 /// Elements refer to the middle of the next step, h/2 after the current tick.
