@@ -46,7 +46,9 @@ function(keeler_folder name)
     keeler_cold(keeler_${name})
   endif()
   set_property(TARGET keeler_${name} PROPERTY KEELER_HEADERS ${public_headers} ${ARG_SHOWS})
-  set_property(GLOBAL APPEND PROPERTY KEELER_TARGETS keeler_${name})
+  if(NOT name IN_LIST KEELER_NOT_INSTALLED)
+    set_property(GLOBAL APPEND PROPERTY KEELER_TARGETS keeler_${name})
+  endif()
 endfunction()
 
 # link_headers(FROM TO HEADER...): links TO/HEADER to FROM/HEADER.

@@ -1,5 +1,5 @@
-# Install the headers, the libraries (src/cli installs the program) and a package that find_package(keeler) finds; the
-# manual and the examples.
+# Install the public headers, the libraries up to `runs` (src/cli installs the program) and a package that find_package(keeler)
+# finds; the manual and the examples.
 include(CMakePackageConfigHelpers)
 get_property(KEELER_TARGETS GLOBAL PROPERTY KEELER_TARGETS)
 set(KEELER_PACKAGE_DIR "${CMAKE_INSTALL_LIBDIR}/cmake/keeler")
@@ -59,7 +59,7 @@ debian_package(library libkeeler-dev libdevel "patches of planetary rings in C++
   "What the program keeler is made of, as a CMake package for programs of"
   "one's own.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS
-  "cmake, libcairo2-dev, libcli11-dev, libeigen3-dev, libfftw3-dev, libfmt-dev, libhdf5-dev, libtomlplusplus-dev, libxxhash-dev, nlohmann-json3-dev, pkg-config")
+  "cmake, libeigen3-dev, libfftw3-dev, libfmt-dev, libhdf5-dev, libtomlplusplus-dev, libxxhash-dev, nlohmann-json3-dev, pkg-config")
 
 if(KEELER_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
