@@ -4,8 +4,8 @@
 #include <keeler/finders/motion/cubic.hpp>
 #include <keeler/finders/motion/full.hpp>
 #include <keeler/finders/motion/relative.hpp>
-#include "search/linear.hpp"
-#include "search/newton.hpp"
+#include <keeler/finders/search/linear.hpp>
+#include <keeler/finders/search/newton.hpp>
 
 #include <cassert>
 
