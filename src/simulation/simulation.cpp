@@ -73,6 +73,8 @@ Simulation::Simulation(const Scene& scene, SimulationState state, const Communic
 }
 
 Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&& other) noexcept = default;
+Simulation& Simulation::operator=(Simulation&& other) noexcept = default;
 
 const RestingCosts& Simulation::resting_costs() const {
   return resting_->costs();
