@@ -53,7 +53,7 @@ debian_package(program keeler science "simulates a self-gravitating patch of a p
   "for any number of threads and after any restart. The package holds the"
   "program, the manual and example scenes.")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS fonts-dejavu-core) # of pictures
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "ffmpeg, gnuplot-nox, python3-keeler") # movies, figures of sweeps and studies
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "ffmpeg, python3-keeler") # movies
 
 debian_package(library libkeeler-dev libdevel "patches of planetary rings in C++: headers and libraries"
   "What the program keeler is made of, as a CMake package for programs of"

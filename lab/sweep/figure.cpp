@@ -1,7 +1,6 @@
-#include "output.hpp"
+#include "figure.hpp"
 
-#include <keeler/files/files.hpp>
-#include <keeler/report/gnuplot.hpp>
+#include <keeler/scene/keys.hpp>
 
 #include <fmt/format.h>
 
@@ -9,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace keeler {
 namespace {
@@ -31,14 +31,14 @@ IndexOfX index_of_x(const Grid& grid) {
 }
 
 // Returns the settings on the other axes: "density = 900, time.step = 0.001".
-std::string title_of(const Grid& grid, const Plan& plan, const GridPoint& point, std::size_t axis_of_x) {
-  std::string title;
+std::string name_of(const Grid& grid, const Plan& plan, const GridPoint& point, std::size_t axis_of_x) {
+  std::string name;
   std::size_t key = 0;
   for (std::size_t axis = 0; axis < grid.axes.size(); ++axis)
     for (std::size_t k = 0; k < grid.axes[axis].keys.size(); ++k, ++key)
       if (axis != axis_of_x)
-        title += fmt::format("{}{} = {}", title.empty() ? "" : ", ", plan.keys[key], point.settings[key]->label);
-  return title;
+        name += fmt::format("{}{} = {}", name.empty() ? "" : ", ", plan.keys[key], point.settings[key]->label);
+  return name;
 }
 
 bool x_is_number(const Grid& grid, const Plan& plan) {
@@ -47,92 +47,71 @@ bool x_is_number(const Grid& grid, const Plan& plan) {
                      [&](const GridPoint& point) { return point.settings[x.key]->number.has_value(); });
 }
 
-// Returns a tic label, with % escaped: gnuplot would take it as the beginning of a format.
-std::string label_string(const std::string& text) {
-  std::string plain;
-  for (const char c : text)
-    plain += c == '%' ? "%%" : std::string(1, c);
-  return gnuplot_string(plain);
+// Returns words that label x instead of numbers.
+std::vector<std::string> words_along_x(const Grid& grid) {
+  const GridAxis& axis = grid.axes[index_of_x(grid).axis];
+  const auto key = std::find(axis.keys.begin(), axis.keys.end(), grid.plot.x) - axis.keys.begin();
+  std::vector<std::string> words;
+  for (const auto& point : axis.points)
+    words.push_back(point[static_cast<std::size_t>(key)].label);
+  return words;
 }
 
-// Returns settings that label x with words instead of numbers.
-std::string words_along_x(const Grid& grid) {
-  const IndexOfX x = index_of_x(grid);
-  const GridAxis& axis = grid.axes[x.axis];
-  const auto key =
-      static_cast<std::size_t>(std::find(axis.keys.begin(), axis.keys.end(), grid.plot.x) - axis.keys.begin());
-  std::string tics;
-  for (std::size_t k = 0; k < axis.points.size(); ++k)
-    tics += fmt::format("{}{} {}", tics.empty() ? "" : ", ", label_string(axis.points[k][key].label), k);
-  return fmt::format("set xtics ({}) noenhanced\nset xrange [-0.5:{}]\n", tics,
-                     static_cast<double>(axis.points.size()) - 0.5);
-}
-
-std::string script_of(const Grid& grid, const Plan& plan, const std::vector<PlotLine>& lines) {
-  const char* const colours[] = {"#1f77b4", "#c0392b", "#2e8b57", "#e67e22", "#444444", "#8e44ad"};
-  const bool numbers = x_is_number(grid, plan);
-  std::string script = fmt::format("set xlabel {} noenhanced\nset ylabel {} noenhanced\nset grid\nset key left top\n"
-                                   "set format y '%g'\n",
-                                   gnuplot_string(grid.plot.x), gnuplot_string(grid.plot.y));
-  if (grid.plot.x_log && numbers)
-    script += "set logscale x\n";
-  if (grid.plot.y_log)
-    script += "set logscale y\n";
-  script += numbers ? "set offsets graph 0.03, graph 0.03, 0, 0\n" : words_along_x(grid);
-  script += "plot ";
-  for (std::size_t k = 0; k < lines.size(); ++k) {
-    const char* const colour = colours[k % std::size(colours)];
-    const std::string title =
-        lines[k].title.empty() ? "notitle" : fmt::format("title {} noenhanced", gnuplot_string(lines[k].title));
-    script += fmt::format("{0}'figure.dat' index {1} using 1:2 with lines lw 1 dt 2 lc rgb '{2}' notitle, '' index "
-                          "{1} using 1:2:3 with yerrorbars lw 2 pt 7 ps 0.7 lc rgb '{2}' {3}",
-                          k ? ", " : "", k, colour, title);
-  }
-  return script + "\n";
+// Returns the key with its unit: "particles.density (kg/m³)".
+std::string label_of_key(const std::string& path) {
+  const Key* const key = find_key(path);
+  if (key == nullptr || key->unit.empty() || key->unit == "1")
+    return path;
+  std::string unit = key->unit;
+  for (const auto& [plain, raised] : {std::pair("^2", "²"), std::pair("^3", "³")})
+    if (const std::size_t at = unit.find(plain); at != std::string::npos)
+      unit.replace(at, 2, raised);
+  return fmt::format("{} ({})", path, unit);
 }
 
 } // namespace
 
-std::vector<PlotLine> plot_lines(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points) {
-  std::vector<PlotLine> lines;
+std::vector<PlotCurve> sweep_curves(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points) {
+  std::vector<PlotCurve> curves;
   if (grid.plot.x.empty())
-    return lines;
+    return curves;
   const IndexOfX x = index_of_x(grid);
   const std::size_t y = grid.quantities.find(grid.plot.y).value();
   const bool numbers = x_is_number(grid, plan);
-  std::map<std::string, std::size_t> line_of; // by title
+  std::map<std::string, std::size_t> curve_of; // by name
   for (const PointRow& row : points) {
     if (!row.values[y])
       continue;
     const GridPoint& point = *row.point;
     assert(x.key < point.settings.size() && x.axis < point.on_axis.size());
-    const std::string title = title_of(grid, plan, point, x.axis);
-    const auto [entry, is_new] = line_of.try_emplace(title, lines.size());
+    const std::string name = name_of(grid, plan, point, x.axis);
+    const auto [entry, is_new] = curve_of.try_emplace(name, curves.size());
     if (is_new)
-      lines.push_back({title, {}});
+      curves.push_back({.name = name, .colour = curves.size(), .dashed = true, .marks = true});
     const Estimate& value = *row.values[y];
-    lines[entry->second].points.push_back(
+    curves[entry->second].points.push_back(
         {numbers ? *point.settings[x.key]->number : static_cast<double>(point.on_axis[x.axis]), value.value,
          std::isfinite(value.error) ? value.error : 0.0});
   }
-  for (PlotLine& line : lines)
-    std::sort(line.points.begin(), line.points.end(),
-              [](const PlotLine::Point& a, const PlotLine::Point& b) { return a.x < b.x; });
-  return lines;
+  for (PlotCurve& curve : curves)
+    std::sort(curve.points.begin(), curve.points.end(),
+              [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
+  return curves;
 }
 
-Figure draw_figure(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points, const RunFolders& folders) {
-  const std::vector<PlotLine> lines = plot_lines(grid, plan, points);
-  if (lines.empty())
-    return Figure::nothing_to_draw;
-  std::string data = fmt::format("# {}, {}, its standard error\n", grid.plot.x, grid.plot.y);
-  for (const PlotLine& line : lines) {
-    for (const PlotLine::Point& point : line.points)
-      data += fmt::format("{} {} {}\n", point.x, point.y, point.error);
-    data += "\n\n";
+bool draw_figure(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points, const RunFolders& folders) {
+  const std::vector<PlotCurve> curves = sweep_curves(grid, plan, points);
+  if (curves.empty())
+    return false;
+  PlotAxis x{.label = label_of_key(grid.plot.x), .log = grid.plot.x_log};
+  const PlotAxis y{.label = grid.plot.y, .log = grid.plot.y_log};
+  if (!x_is_number(grid, plan)) {
+    x.log = false;
+    x.words = words_along_x(grid);
+    x.range = {-0.5, static_cast<double>(x.words.size()) - 0.5};
   }
-  write_text(folders.path() / "figure.dat", data);
-  return plot(folders.path(), "figure", script_of(grid, plan, lines), 720, 480) ? Figure::drawn : Figure::no_gnuplot;
+  save_figures({.panels = {{.x = x, .y = y, .curves = curves}}}, folders.path(), "figure");
+  return true;
 }
 
 } // namespace keeler

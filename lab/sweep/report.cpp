@@ -62,7 +62,7 @@ Table table_of_points(const Grid& grid, const Plan& plan, const std::vector<Poin
 } // namespace
 
 void write_report(const Grid& grid, const Plan& plan, const std::vector<RunRow>& runs,
-                  const std::vector<PointRow>& points, const RunFolders& folders, Figure figure) {
+                  const std::vector<PointRow>& points, const RunFolders& folders, bool with_figure) {
   Document report("Sweep of " + grid.file.filename().string());
   report.paragraph(fmt::format("{} of {}: {} finished, {} failed, {} not finished.", pluralize(runs.size(), "run"),
                                pluralize(plan.points.size(), "point"), count_of(runs, RunStatus::finished),
@@ -75,7 +75,7 @@ void write_report(const Grid& grid, const Plan& plan, const std::vector<RunRow>&
                  : "from the orbit where it becomes steady"));
   report.heading("Points");
   report.table(table_of_points(grid, plan, points));
-  if (figure == Figure::drawn)
+  if (with_figure)
     report.paragraph("![figure](figure.svg)");
   if (count_of(runs, RunStatus::failed) > 0) {
     report.heading("Failed runs");

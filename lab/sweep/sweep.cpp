@@ -1,5 +1,6 @@
 #include <keeler/sweep/sweep.hpp>
 
+#include "figure.hpp"
 #include "output.hpp"
 #include "tables.hpp"
 
@@ -80,18 +81,16 @@ std::string write_tables(const Grid& grid, const Plan& plan, const RunFolders& f
     return {};
   }
   write_text(folders.path() / "points.csv", csv_with_gaps(point_table));
-  Figure figure = Figure::failed;
+  bool drawn = false;
   std::string fault;
   try {
-    figure = draw_figure(grid, plan, points, folders);
+    drawn = draw_figure(grid, plan, points, folders);
+    if (!drawn && !grid.plot.x.empty())
+      notice(fmt::format("no run has {}, so there is no figure; name another y under [plot]", grid.plot.y));
   } catch (const IoError& error) {
     fault = error.what();
   }
-  if (figure == Figure::no_gnuplot)
-    notice("gnuplot is not installed, so only the data of the figure are written (Debian: gnuplot-nox)");
-  if (figure == Figure::nothing_to_draw && !grid.plot.x.empty())
-    notice(fmt::format("no run has {}, so there is no figure; name another y under [plot]", grid.plot.y));
-  write_report(grid, plan, runs, points, folders, figure);
+  write_report(grid, plan, runs, points, folders, drawn);
   return fault;
 }
 

@@ -37,7 +37,11 @@ struct RenderOptions {
   bool oblique = false, autocorrelation = false, movie = false, series = false;
 };
 
-constexpr std::string_view png_signature = "\x89PNG", svg_signature = "<svg ";
+constexpr std::string_view png_signature = "\x89PNG";
+
+std::string_view signature_of(PageFormat format) {
+  return format == PageFormat::png ? png_signature : format == PageFormat::svg ? "<svg " : "%PDF-";
+}
 
 // Returns picture.png in a run's folder, or NAME.png beside a snapshot NAME.hdf.
 fs::path picture_path(const RenderOptions& options) {
@@ -78,13 +82,9 @@ PictureOptions picture_options(const RenderOptions& options) {
 ExitCode draw_movie(const RenderOptions& options) {
   if (!fs::is_directory(options.path))
     throw UsageError(fmt::format("no movie of '{}': it is not a folder; name the folder of a run", options.path));
-  const fs::path movie = options.output ? output_named(*options.output)
-                                        : options.path / fs::path(has_ffmpeg() ? "movie.mp4" : "movie.png");
+  const fs::path movie = options.output ? output_named(*options.output) : fs::path(options.path) / "movie.mp4";
   require_movie_name(movie.string());
-  if (movie.extension() == ".mp4")
-    require_replaceable(movie, "a movie", "ftyp", 4);
-  else
-    require_replaceable(movie, "a picture", png_signature);
+  require_replaceable(movie, "a movie", "ftyp", 4);
   const std::vector<fs::path> snapshots = snapshots_in(options.path);
   PictureOptions picture = picture_options(options);
   if (const std::string title = load_newest_patch(snapshots.front()).title; !title.empty())
@@ -103,11 +103,14 @@ ExitCode draw_series(const RenderOptions& options) {
   if (!fs::is_directory(options.path))
     throw UsageError(fmt::format("no plots of '{}': it is not a folder; name the folder of a run", options.path));
   const fs::path figure = options.output ? output_named(*options.output) : fs::path(options.path) / "series.svg";
-  if (!is_stream(figure) && figure.extension() != ".svg")
+  const std::optional<PageFormat> format = is_stream(figure) ? PageFormat::svg : page_format(figure);
+  if (!format)
     throw UsageError(
-        fmt::format("'{}' cannot be the plots: they are an .svg file; give it that ending", figure.string()));
-  require_replaceable(figure, "the plots", svg_signature);
-  write_text(figure, run_series_svg(options.path, {options.width, options.theme == "light"}));
+        fmt::format("'{}' cannot be the plots: they are an .svg, .png or .pdf file; give it one of these endings",
+                    figure.string()));
+  require_replaceable(figure, "the plots", signature_of(*format));
+  const Figure plots = run_series_figure(options.path, options.theme == "light");
+  write_file(figure, figure_bytes(plots, *format, static_cast<double>(options.width) / plots.width));
   print_written(figure);
   return ExitCode::done;
 }
@@ -163,14 +166,15 @@ void add_render(CLI::App& program, Action& action) {
   CLI::Option* const autocorrelation = command.add_flag(
       "--autocorrelation", options->autocorrelation,
       "also draw the autocorrelation of the surface density, averaged over the snapshots that analyze uses");
-  CLI::Option* const movie =
-      command
-          .add_flag("--movie", options->movie,
-                    "draw all snapshots of a run at one scale: movie.mp4 by ffmpeg, or movie.png without ffmpeg")
-          ->excludes(autocorrelation);
+  CLI::Option* const movie = command
+                                 .add_flag("--movie", options->movie,
+                                           "draw all snapshots of a run at one scale: movie.mp4, by the program ffmpeg")
+                                 ->excludes(autocorrelation);
   command
-      .add_flag("--series", options->series,
-                "draw the series of a run instead of its particles: series.svg, one plot per quantity, with errors")
+      .add_flag(
+          "--series", options->series,
+          "draw the series of a run instead of its particles: series.svg (or .png, .pdf), one plot per quantity, with "
+          "errors")
       ->excludes(autocorrelation)
       ->excludes(movie)
       ->excludes(colour)

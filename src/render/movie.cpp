@@ -1,6 +1,6 @@
 #include <keeler/render/movie.hpp>
 
-#include "movie_file.hpp"
+#include "mp4.hpp"
 #include "patch_page.hpp"
 
 #include <keeler/core/error.hpp>
@@ -38,8 +38,6 @@ PictureScale common_scale(std::size_t count, const std::function<Patch(std::size
   return scale.value_or(PictureScale());
 }
 
-} // namespace
-
 bool has_ffmpeg() {
   const char* const folders = std::getenv("PATH");
   std::istringstream path(folders ? folders : "");
@@ -51,18 +49,15 @@ bool has_ffmpeg() {
   return false;
 }
 
+} // namespace
+
 void require_movie_name(const std::string& path) {
-  const std::string ending = std::filesystem::path(path).extension().string();
-  if (ending == ".mp4")
-    refuse_stream(path, "MP4");
-  else if (is_stream(path))
-    return; // an animated PNG
-  if (ending != ".mp4" && ending != ".png")
-    throw UsageError(fmt::format(
-        "'{}' cannot be a movie: movies are .mp4 files or animated .png files; use one of these extensions", path));
-  if (ending == ".mp4" && !has_ffmpeg())
-    throw UsageError(fmt::format(
-        "'{}' cannot be made: the program ffmpeg is not on PATH; install the package ffmpeg, or name a .png", path));
+  refuse_stream(path, "MP4");
+  if (std::filesystem::path(path).extension() != ".mp4")
+    throw UsageError(fmt::format("'{}' cannot be a movie: movies are .mp4 files; give it that ending", path));
+  if (!has_ffmpeg())
+    throw UsageError(
+        fmt::format("'{}' cannot be made: the program ffmpeg is not on PATH; install the package ffmpeg", path));
 }
 
 void render_movie(std::size_t count, const std::function<Patch(std::size_t)>& patch, const std::string& path,
@@ -72,7 +67,7 @@ void render_movie(std::size_t count, const std::function<Patch(std::size_t)>& pa
   PictureOptions look = options;
   look.scale = common_scale(count, patch, options.colour, progress);
   progress.begin("pictures", static_cast<double>(count));
-  std::unique_ptr<MovieFile> movie;
+  std::unique_ptr<Mp4> movie;
   int width = 0, height = 0;
   for (std::size_t k = 0; k < count; ++k) {
     throw_if_interrupted();
@@ -80,7 +75,7 @@ void render_movie(std::size_t count, const std::function<Patch(std::size_t)>& pa
     if (!movie) {
       width = page->width();
       height = page->height();
-      movie = new_movie(path, width, height, count);
+      movie = std::make_unique<Mp4>(path, width, height);
     }
     if (page->width() != width || page->height() != height)
       throw UsageError(fmt::format("no movie '{}': the box changes at picture {}; draw the parts of the run "

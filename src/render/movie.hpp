@@ -1,4 +1,4 @@
-// A movie of a run: pictures at a common scale, as an MP4 by the program ffmpeg, or as an animated PNG.
+// A movie of a run: pictures at a common scale, as an MP4 by the program ffmpeg.
 #pragma once
 
 #include <keeler/core/progress.hpp>
@@ -12,10 +12,7 @@ namespace keeler {
 
 inline constexpr int movie_frames_per_second = 12;
 
-/// Returns true if the program ffmpeg is on PATH.
-bool has_ffmpeg();
-
-/// Throws UsageError unless `path` ends in .png, or in .mp4 if ffmpeg is installed.
+/// Throws UsageError unless `path` ends in .mp4 and ffmpeg is installed.
 void require_movie_name(const std::string& path);
 
 /// Writes a movie of patch(0) … patch(count − 1). Each patch is requested twice: first for the common scale, so that

@@ -1,8 +1,6 @@
-// MP4 by a child process: ffmpeg receives the pixels of the pages through a pipe.
-#include "movie_file.hpp"
+#include "mp4.hpp"
 
 #include <keeler/core/error.hpp>
-#include <keeler/files/new_file.hpp>
 #include <keeler/render/movie.hpp>
 
 #include <fmt/format.h>
@@ -36,28 +34,7 @@ std::vector<std::string> arguments(int width, int height) {
           "yuv420p", "-f", "mp4", fmt::format("file:/proc/self/fd/{}", movie_descriptor)};
 }
 
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
-class Mp4 : public MovieFile {
-public:
-  Mp4(const std::filesystem::path& file, int width, int height);
-  ~Mp4() override;
-  void add(Page& page) override;
-  void finish() override;
-
-private:
-  bool ended_well();
-  std::string first_message() const;
-  [[noreturn]] void fail() const;
-
-  std::filesystem::path name_;
-  NewFile file_;
-  std::unique_ptr<std::FILE, CloseFile> messages_; // standard error of ffmpeg, an unnamed file
-  int pipe_ = -1;
-  pid_t process_ = -1; // -1: it has ended
-};
+} // namespace
 
 Mp4::Mp4(const std::filesystem::path& file, int width, int height)
     : name_(file), file_(file), messages_(std::tmpfile()) {
@@ -119,7 +96,7 @@ std::string Mp4::first_message() const {
 
 void Mp4::fail() const {
   throw IoError(fmt::format("cannot write the movie '{}'; ffmpeg says: {}; choose a folder that is writable and has "
-                            "room, or name a .png",
+                            "room",
                             name_.string(), first_message()));
 }
 
@@ -141,12 +118,6 @@ void Mp4::finish() {
   if (!ended_well())
     fail();
   file_.keep();
-}
-
-} // namespace
-
-std::unique_ptr<MovieFile> new_mp4(const std::filesystem::path& file, int width, int height) {
-  return std::make_unique<Mp4>(file, width, height);
 }
 
 } // namespace keeler

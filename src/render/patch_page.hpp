@@ -1,7 +1,7 @@
 // The picture of a patch as a page in memory.
 #pragma once
 
-#include "page.hpp"
+#include <keeler/plot/page.hpp>
 
 #include <keeler/render/patch_picture.hpp>
 

@@ -7,6 +7,7 @@
 #include <keeler/core/format.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/surface.hpp>
+#include <keeler/plot/axes.hpp>
 
 #include <fmt/format.h>
 
@@ -18,26 +19,6 @@
 
 namespace keeler {
 namespace {
-
-// Returns the largest of 1, 2 and 5 times powers of ten that is at most `length`.
-double round_length(double length) {
-  assert(length > 0.0);
-  const double power = std::pow(10.0, std::floor(std::log10(length)));
-  for (const double step : {5.0, 2.0})
-    if (step * power <= length)
-      return step * power;
-  return power;
-}
-
-// Returns the smallest of 1, 2 and 5 times powers of ten that is at least `length`.
-double round_step(double length) {
-  assert(length > 0.0);
-  const double power = std::pow(10.0, std::floor(std::log10(length)));
-  for (const double step : {1.0, 2.0, 5.0})
-    if (step * power >= length)
-      return step * power;
-  return 10.0 * power;
-}
 
 void draw_header(Page& page, const Patch& patch, const PictureOptions& options, const Theme& theme, double u) {
   page.text({110 * u, 58 * u}, options.title, {32 * u, theme.ink, Align::left, true});
@@ -56,30 +37,19 @@ std::string fitting(Page& page, std::initializer_list<const char*> names, const 
   return {};
 }
 
-// Draws ticks at round lengths from the middle of a view, below and left of it, labelled in metres ("+ 0.0" avoids
-// "-0"). `rise` is pixels per metre of the upward axis.
+// Draws the frame of a view, with metres from its middle. `rise` is pixels per metre of the upward axis.
 void draw_axes(Page& page, const PixelFrame& f, double pixels_per_metre, double rise, const Theme& theme, double u) {
-  const TextStyle below{17 * u, theme.faint_ink, Align::centre}, beside{17 * u, theme.faint_ink, Align::right};
-  const Colour mark = mix(theme.page, theme.faint_ink, 0.5);
-  const double middle_x = f.left + 0.5 * f.width, middle_y = f.top + 0.5 * f.height, bottom = f.top + f.height;
-  const double step_x = round_step(110 * u / pixels_per_metre), step_y = round_step(60 * u / rise);
-  for (double k = -std::floor(0.5 * f.width / (step_x * pixels_per_metre)), last = -k; k <= last; ++k) {
-    const double x = middle_x + k * step_x * pixels_per_metre;
-    page.line({x, bottom + 1}, {x, bottom + 8 * u}, mark, 1.5 * u);
-    page.text({x, bottom + 26 * u}, fmt::format("{:g}", k * step_x + 0.0), below);
-  }
-  for (double k = -std::floor(0.5 * f.height / (step_y * rise)), last = -k; k <= last; ++k) {
-    const double y = middle_y - k * step_y * rise;
-    page.line({f.left - 8 * u, y}, {f.left - 1.0, y}, mark, 1.5 * u);
-    page.text({f.left - 13 * u, y + 6 * u}, fmt::format("{:g}", k * step_y + 0.0), beside);
-  }
+  const double x = 0.5 * f.width / pixels_per_metre, y = 0.5 * f.height / rise;
+  const PageRectangle place{static_cast<double>(f.left), static_cast<double>(f.top), static_cast<double>(f.width),
+                            static_cast<double>(f.height)};
+  PlotFrame(place, {.range = {-x, x}}, {.range = {-y, y}}, {theme, 17 * u}).draw_axes(page);
 }
 
 // Draws the scale bar and the name of the radial axis, below the top view.
 void draw_scale(Page& page, const Patch& patch, const PictureLayout& layout, const Colour& ink, double u) {
   const PixelFrame& f = layout.top_view;
   const double y = f.top + f.height + 62 * u, right = f.left + f.width;
-  const double bar = round_length(0.25 * patch.box.size_x), pixels = bar * layout.pixels_per_metre;
+  const double bar = round_below(0.25 * patch.box.size_x), pixels = bar * layout.pixels_per_metre;
   page.line({f.left + 0.5, y - 7 * u}, {f.left + pixels, y - 7 * u}, ink, 3 * u);
   for (const double x : {f.left + 1.5 * u, f.left + pixels - 1.5 * u})
     page.line({x, y - 15 * u}, {x, y + 1 * u}, ink, 3 * u);
@@ -111,7 +81,7 @@ void draw_colour_bar(Page& page, const PictureLayout& layout, ColourField field,
   for (int j = 0; j < bar.height(); ++j)
     for (int i = 0; i < bar.width(); ++i)
       bar.pixel(i, j) = field_colour((i + 0.5) / bar.width());
-  page.draw_raster(bar, left, top);
+  page.draw_pixels(bar.pixels(), bar.width(), left, top);
   page.frame(left, top, bar.width(), bar.height(), mix(theme.page, theme.faint_ink, 0.5));
   const double below = top + bar.height() + 22 * u, right = left + bar.width();
   page.text({0.5 * (left + right), below}, format_number(range.middle(), 3), {17 * u, theme.faint_ink, Align::centre});
@@ -191,10 +161,8 @@ std::unique_ptr<Page> patch_page(const Patch& patch, const PictureOptions& asked
   const double u = options.width / 1600.0;
   const PatchViews views = patch_views(patch, layout, options.colour, *options.scale);
   auto page = std::make_unique<Page>(layout.width, layout.height, theme.page);
-  page->draw_raster(views.top, layout.top_view.left, layout.top_view.top);
-  page->draw_raster(views.edge, layout.edge_view.left, layout.edge_view.top);
-  for (const PixelFrame& f : {layout.top_view, layout.edge_view})
-    page->frame(f.left, f.top, f.width, f.height, mix(theme.page, theme.faint_ink, 0.5));
+  page->draw_pixels(views.top.pixels(), views.top.width(), layout.top_view.left, layout.top_view.top);
+  page->draw_pixels(views.edge.pixels(), views.edge.width(), layout.edge_view.left, layout.edge_view.top);
   draw_header(*page, patch, options, theme, u);
   draw_scale(*page, patch, layout, theme.ink, u);
   draw_axes(*page, layout.top_view, layout.pixels_per_metre, layout.pixels_per_metre * std::sin(layout.elevation),
@@ -214,7 +182,7 @@ std::unique_ptr<Page> patch_page(const Patch& patch, const PictureOptions& asked
 }
 
 std::vector<std::byte> patch_png(const Patch& patch, const PictureOptions& options) {
-  return patch_page(patch, options)->png();
+  return patch_page(patch, options)->file_bytes();
 }
 
 void render_patch(const Patch& patch, const std::string& path, const PictureOptions& options) {

@@ -2,8 +2,9 @@
 // soft shadow on the spheres behind it, so that crowded regions show depth.
 #pragma once
 
-#include "colour.hpp"
+#include <keeler/plot/colour.hpp>
 
+#include <span>
 #include <vector>
 
 namespace keeler {
@@ -16,6 +17,8 @@ public:
   int height() const { return height_; }
   const Colour& pixel(int x, int y) const { return pixels_[static_cast<std::size_t>(y * width_ + x)]; }
   Colour& pixel(int x, int y) { return pixels_[static_cast<std::size_t>(y * width_ + x)]; }
+
+  std::span<const Colour> pixels() const { return pixels_; }
 
   /// Draws a lit sphere; centre and radius in pixels, where pixel (0, 0) extends from 0 to 1. Parts outside are
   /// clipped. Precondition: radius > 0.

@@ -136,17 +136,11 @@ for field in size speed cluster density; do
   [ "$(od -An -tu1 -j 16 -N 4 "$work/$field.png" | tr -s ' ')" = " 0 0 2 88" ] || fail "$field: not 600 pixels wide"
 done
 
-# Movies, with ffmpeg and without; both have one frame per snapshot.
+# Movies have one frame per snapshot.
 accepts "a movie" render "$work/run" --movie --width 400
 prints "a movie" "$work/run/movie.mp4"
 frames=$(ffprobe -v error -count_frames -show_entries stream=codec_name,width,nb_read_frames -of csv=p=0 "$work/run/movie.mp4")
 [ "$frames" = "h264,400,3" ] || fail "a movie of $frames"
-accepts "a movie as PNG" render "$work/run" --movie --width 400 --colour speed -o "$work/movie.png"
-is_png "$work/movie.png"
-frames=$(ffprobe -v error -f apng -count_frames -show_entries stream=codec_name,width,nb_read_frames -of csv=p=0 "$work/movie.png")
-[ "$frames" = "apng,400,3" ] || fail "an animated PNG of $frames"
-PATH=$work "$keeler" render "$work/run" --movie --width 400 >"$work/out" 2>"$work/err" || fail "no movie without ffmpeg"
-prints "a movie without ffmpeg" "$work/run/movie.png"
 compgen -G "$work/run/*.tmp" && fail "a part of a movie was left"
 
 # A standard output that cannot be written is a failure.

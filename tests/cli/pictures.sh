@@ -17,10 +17,10 @@ refuses_with 4 "a picture of an empty folder" "no snapshot in '$work/empty' (sna
 refuses_with 4 "a movie of an empty folder" "no snapshot in '$work/empty' (snap_NNNNNN.hdf is missing); name" \
   render "$work/empty" --movie
 refuses "a movie of a file" "name the folder of a run" render "$work/run/snap_000000.hdf" --movie
-refuses "another movie" "use one of these extensions" render "$work/run" --movie -o "$work/to/a.gif"
+refuses "another movie" "movies are .mp4 files; give it that ending" render "$work/run" --movie -o "$work/to/a.png"
 refuses "another picture" "give it that ending" render "$work/run" -o "$work/to/a.jpg"
 refuses "plots of a file" "name the folder of a run" render "$work/run/snap_000000.hdf" --series
-refuses "plots as a picture" "give it that ending" render "$work/run" --series -o "$work/to/a.png"
+refuses "plots as a photograph" "give it one of these endings" render "$work/run" --series -o "$work/to/a.jpg"
 refuses "plots and a movie" "excludes" render "$work/run" --series --movie
 refuses_with 4 "plots of an empty folder" "log.jsonl is missing" render "$work/empty" --series
 cp -r "$work/run" "$work/short"
@@ -44,30 +44,42 @@ cp "$work/run/series.csv" "$work/kept/series.svg"
 keeps series.svg render "$work/run" --series -o
 rm "$work/run/series.svg"
 keeps series.png render "$work/run" -o
-keeps series.png render "$work/run" --movie -o
+keeps series.png render "$work/run" --series -o
 keeps series.mp4 render "$work/run" --movie -o
 keeps snap_000000.hdf report "$work/run" -o
 keeps scene.toml analyze "$work/run/snap_000000.hdf" --profile
 keeps series.csv analyze "$work/run/snap_000000.hdf" --csv
 rm "$work/run/series.png" "$work/run/series.mp4"
 for _ in 1 2; do
-  runs 0 render "$work/run" -o "$work/again.png"
+  runs 0 render "$work/run" -o "$work/picture.png"
   runs 0 render "$work/run" --movie -o "$work/again.mp4"
-  runs 0 render "$work/run" --series -o "$work/again.svg"
+  for ending in svg png pdf; do
+    runs 0 render "$work/run" --series --width 900 -o "$work/again.$ending"
+    prints "plots" "$work/again.$ending"
+  done
   runs 0 report "$work/run" -o "$work/again.html"
   runs 0 analyze "$work/run/snap_000000.hdf" --csv "$work/again.csv"
 done
+python3 - "$work" <<'END' || fail "files of plots"
+import pathlib, struct, sys, xml.etree.ElementTree
+folder = pathlib.Path(sys.argv[1])
+svg = xml.etree.ElementTree.parse(folder / "again.svg").getroot()
+png = (folder / "again.png").read_bytes()
+assert svg.get("width") == "900px" and "time (orbits)" in svg.find("{http://www.w3.org/2000/svg}desc").text.split("\n")
+assert png.startswith(b"\x89PNG") and struct.unpack(">I", png[16:20]) == (900,)
+assert (folder / "again.pdf").read_bytes().startswith(b"%PDF-")
+END
 
 code=0
 PATH=$work "$keeler" render "$work/run" --movie -o "$work/to/a.mp4" >"$work/out" 2>"$work/err" || code=$?
 [ "$code" -eq 2 ] || fail "no ffmpeg: exit $code"
-one_line "no ffmpeg" "install the package ffmpeg, or name a .png"
+one_line "no ffmpeg" "the program ffmpeg is not on PATH; install the package ffmpeg"
 printf '#!/bin/sh\necho this one is broken >&2\nexit 1\n' >"$work/ffmpeg"
 chmod +x "$work/ffmpeg"
 code=0
 PATH=$work:$PATH "$keeler" render "$work/run" --movie -o "$work/to/a.mp4" >"$work/out" 2>"$work/err" || code=$?
 [ "$code" -eq 4 ] || fail "a broken ffmpeg: exit $code"
-one_line "a broken ffmpeg" "ffmpeg says: this one is broken; choose a folder that is writable and has room, or name a .png"
+one_line "a broken ffmpeg" "ffmpeg says: this one is broken; choose a folder that is writable and has room"
 nothing_left "refused"
 
 # limited NAME FILE COMMAND OPTION...: writes the file under a limit on the size of files
@@ -82,9 +94,8 @@ limited() {
   nothing_left "$1"
 }
 limited "no room for a picture" a.png render
-limited "no room for an animated PNG" a.png render --movie
 limited "no room for a movie" a.mp4 render --movie
-limited "no room for plots" a.svg render --series
+for ending in svg png pdf; do limited "no room for plots" a.$ending render --series; done
 limited "no room for a page" a.html report
 
 # A long movie: many copies of one snapshot.
@@ -98,31 +109,27 @@ on_small_disk='mount -t tmpfs -o size=60k none "$2/disk" || exit 99
   ls -A "$2/disk" >"$2/left" && exit $code'
 for options in "-m" "-rm"; do
   unshare "$options" true 2>/dev/null || continue
-  for name in a.mp4 a.png; do
-    code=0
-    unshare "$options" bash -c "$on_small_disk" bash "$keeler" "$work" $name || code=$?
-    [ "$code" -eq 99 ] && echo "SKIPPED: a full disk (mounting is not permitted here)" && break
-    [ "$code" -eq 4 ] || fail "a disk that fills, $name: exit $code: $(cat "$work/err")"
-    one_line "a disk that fills, $name" "No space left on device"
-    [ -s "$work/left" ] && fail "a disk that fills, $name: left $(cat "$work/left")"
-  done
+  code=0
+  unshare "$options" bash -c "$on_small_disk" bash "$keeler" "$work" a.mp4 || code=$?
+  [ "$code" -eq 99 ] && echo "SKIPPED: a full disk (mounting is not permitted here)" && break
+  [ "$code" -eq 4 ] || fail "a disk that fills: exit $code: $(cat "$work/err")"
+  one_line "a disk that fills" "No space left on device"
+  [ -s "$work/left" ] && fail "a disk that fills: left $(cat "$work/left")"
   break
 done
 
 # Ctrl-C reaches all processes of a terminal.
-for name in a.mp4 a.png; do
-  setsid "$keeler" render "$work/run" --movie -o "$work/to/$name" >"$work/out" 2>"$work/err" &
-  process=$!
-  until [ -s "$(compgen -G "$work/to/$name.keeler-*.tmp")" ] || ! kill -0 "$process" 2>/dev/null; do sleep 0.01; done
-  kill -INT -- "-$process"
-  code=0
-  wait "$process" || code=$?
-  [ "$code" -eq 1 ] || fail "an interrupted movie, $name: exit $code: $(cat "$work/err")"
-  one_line "an interrupted movie, $name" "stopped before all was drawn"
-  nothing_left "an interrupted movie, $name"
-done
+setsid "$keeler" render "$work/run" --movie -o "$work/to/a.mp4" >"$work/out" 2>"$work/err" &
+process=$!
+until [ -s "$(compgen -G "$work/to/a.mp4.keeler-*.tmp")" ] || ! kill -0 "$process" 2>/dev/null; do sleep 0.01; done
+kill -INT -- "-$process"
+code=0
+wait "$process" || code=$?
+[ "$code" -eq 1 ] || fail "an interrupted movie: exit $code: $(cat "$work/err")"
+one_line "an interrupted movie" "stopped before all was drawn"
+nothing_left "an interrupted movie"
 
-python3 "$source_dir/tests/cli/terminal.py" 40 "$keeler" render "$work/run" --movie --width 400 -o "$work/to/a.png" >"$work/drawn" 2>"$work/err" ||
+python3 "$source_dir/tests/cli/terminal.py" 40 "$keeler" render "$work/run" --movie --width 400 -o "$work/to/a.mp4" >"$work/drawn" 2>"$work/err" ||
   fail "a movie on a terminal: $(cat "$work/err")"
 grep -q " left  pictures" "$work/drawn" || fail "no progress of a movie: $(cat "$work/drawn")"
 report

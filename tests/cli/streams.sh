@@ -9,7 +9,7 @@ run=$work/run snapshot=$work/run/snap_000000.hdf
 
 # Each command that writes a file: kind of the file, and the command without -o FILE or the like.
 commands=("csv convert $snapshot --to csv -o" "vtp convert $snapshot --to vtp -o" "csv analyze $run --csv"
-  "csv analyze $run --profile" "png render $snapshot --width 400 -o" "png render $run --movie --width 400 -o"
+  "csv analyze $run --profile" "png render $snapshot --width 400 -o"
   "svg render $run --series -o" "html report $run -o" "toml new equilibrium -o")
 refused=("hdf generate $work/scene.toml -o" "hdf tile $snapshot 2 1 -o")
 

@@ -27,8 +27,7 @@ class Commands:
             "vtp": [["convert", first, "--to", "vtp", "--force", "-o"], ["convert", last, "--to", "vtp", "--force", "-o"]],
             "hdf": [[*generate, "-o"], [*generate, "--set", "particles.seed=2", "-o"]],
             "png": [["render", last, "--width", "400", "-o"], ["render", last, "--width", "500", "-o"]],
-            "movie.png": [["render", whole, "--movie", "--width", "400", "-o"],
-                          ["render", whole, "--movie", "--width", "300", "-o"]],
+            "svg": [["render", whole, "--series", "-o"], ["render", whole, "--series", "--theme", "light", "-o"]],
             "table": [["analyze", last, "--csv"], ["analyze", whole, "--csv"]],
             "toml": [["new", "a-ring-wakes", "--force", "-o"], ["new", "equilibrium", "--force", "-o"]],
         }
@@ -96,7 +95,7 @@ def _links(commands, draw, folder, number):
         stop.set()
         attack.join()
     if number % 2 and ended.code == 2:  # pictures replace pictures alone
-        if ending not in ("png", "movie.png"):
+        if ending not in ("png", "svg"):
             raise Broken("wrong", ended.described())
     else:
         ended.must_be(0)

@@ -32,9 +32,8 @@ std::string job_name(const std::string& kind, const std::string& state, double s
 /// Writes finders.csv and finders.json, one row per timed run.
 void write_finder_tables(const FinderStudyData& data);
 
-/// Draws figures/figure1 … figure6 and the figure of the local times, as PNG and SVG. Without gnuplot it writes only
-/// their data and returns false.
-bool draw_finder_figures(const FinderStudyData& data);
+/// Draws figures/figure1 … figure6 and the figure of the local times, and writes figure1.csv. Throws IoError.
+void draw_finder_figures(const FinderStudyData& data);
 
 /// Writes report.md and report.html.
 void write_finder_report(const FinderStudyData& data, bool with_figures);

@@ -30,10 +30,6 @@ std::vector<Json> pareto_front(const Json& rows);
 /// Precondition: at least two rows with different parameters; parameters and errors are positive.
 double convergence_order(const std::vector<Json>& rows);
 
-/// Draws figures/pareto and figures/convergence, as PNG and SVG. Without gnuplot it writes only their data and returns
-/// false.
-bool draw_gravity_figures(const GravityStudyData& data);
-
 /// Writes gravity.csv, gravity_runs.csv and gravity.json.
 void write_gravity_tables(const GravityStudyData& data);
 

@@ -127,13 +127,7 @@ bool study_gravity(const GravityStudySettings& settings, const std::atomic<bool>
   for (auto& [key, value] : data.made)
     value = begun.value(key, value);
   write_gravity_tables(data);
-  const auto draw = [&] {
-    const bool drawn = draw_gravity_figures(data);
-    if (!drawn)
-      settings.notice("gnuplot was not found, so only the data of the graphs are written (Debian: gnuplot-nox)");
-    return drawn;
-  };
-  draw_and_report(draw, [&](bool drawn) { write_gravity_report(data, drawn); });
+  write_gravity_report(data, false);
   return true;
 }
 

@@ -2,33 +2,29 @@
 
 #include "verdict.hpp"
 
-#include <keeler/files/files.hpp>
-#include <keeler/report/gnuplot.hpp>
+#include <keeler/plot/figure.hpp>
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cassert>
 #include <cmath>
 
 namespace keeler {
 namespace {
 
-// Returns a point of the figure: a setting's cost, its error or difference y, and half the width of y's interval.
-std::string line_of(const SettingMeans& setting, double y, double bound) {
+// Adds a setting: its cost, its error or difference y, and half the width of y's interval.
+void add(const SettingMeans& setting, double y, double bound, std::vector<PlotPoint>& points) {
   const double cost = setting.scatter[number_at("cpu_s_per_orbit")].mean;
-  if (std::isnan(cost) || std::isnan(y))
-    return {};
-  return fmt::format("{} {} {} \"{}\"\n", cost, y, std::isnan(bound) ? 0.0 : bound, setting.name);
+  if (!std::isnan(cost) && !std::isnan(y))
+    points.push_back({cost, y, std::isnan(bound) ? 0.0 : bound, setting.name});
 }
 
-std::string force_errors(const StudyMeans& means) {
-  std::string data;
+std::vector<PlotPoint> force_errors(const StudyMeans& means) {
+  std::vector<PlotPoint> points;
   for (const SettingMeans& setting : means.settings) {
     const Scatter& error = setting.scatter[number_at("force_error")];
-    data += line_of(setting, error.mean, mean_bound(error));
+    add(setting, error.mean, mean_bound(error), points);
   }
-  return data;
+  return points;
 }
 
 // Returns the number that the figure shows. Boxes and sizes change the state, and the energy balance of any state
@@ -39,64 +35,54 @@ std::size_t drawn_number(const StudyPlan& plan) {
                                                      : "translational_viscosity_m2_s");
 }
 
-std::string differences(const StudyMeans& means, std::size_t number) {
+std::vector<PlotPoint> differences(const StudyMeans& means, std::size_t number) {
   const Scatter& reference = means.settings[means.reference].scatter[number];
   const double percent = 100.0 / std::fabs(reference.mean);
-  std::string data;
+  std::vector<PlotPoint> points;
   for (std::size_t s = 0; s < means.settings.size(); ++s) {
     const MeanDifference& difference = means.settings[s].from_reference[number];
-    data += s == means.reference
-                ? line_of(means.settings[s], 0.0, percent * mean_bound(reference))
-                : line_of(means.settings[s], percent * difference.difference, percent * difference.bound);
+    if (s == means.reference)
+      add(means.settings[s], 0.0, percent * mean_bound(reference), points);
+    else
+      add(means.settings[s], percent * difference.difference, percent * difference.bound, points);
   }
-  return data;
+  return points;
 }
 
 // Returns the range of the cost axis, wider than the points by the space for their labels.
-std::string range_of_costs(const StudyMeans& means) {
-  constexpr double left = 1.2, right = 1.6;
-  double min_cost = HUGE_VAL, max_cost = 0.0;
-  for (const SettingMeans& setting : means.settings)
-    if (const double cost = setting.scatter[number_at("cpu_s_per_orbit")].mean; !std::isnan(cost)) {
-      min_cost = std::min(min_cost, cost);
-      max_cost = std::max(max_cost, cost);
-    }
-  assert(min_cost <= max_cost && "at least one setting has a cost");
-  return fmt::format("set xrange [{}:{}]\n", min_cost / left, max_cost * right);
-}
-
-constexpr const char* points = "'pareto.dat' using 1:2:3 with yerrorbars lw 2 pt 7 lc rgb '#1f77b4' notitle, '' using "
-                               "1:2:4 with labels left offset 0.7,0.5 rotate by 30 noenhanced notitle\n";
-
-std::string tolerance_lines() {
-  return fmt::format(
-      "{0} with lines lc rgb '#999999' dt 2 title 'within {0:g} %', -{0} with lines lc rgb '#999999' dt 2 "
-      "notitle, ",
-      100.0 * balance_tolerance);
+AxisRange range_of_costs(const std::vector<PlotPoint>& points) {
+  AxisRange range;
+  for (const PlotPoint& point : points)
+    range.include(point.x);
+  return {range.low / 1.3, range.high * 1.6};
 }
 
 } // namespace
 
 bool draw_study_figure(const StudyPlan& plan, const StudyMeans& means, const std::filesystem::path& folder) {
   const bool of_forces = plan.kind == SceneStudyKind::mesh;
-  const StudyNumber& shown = study_numbers()[drawn_number(plan)];
-  const std::string data = of_forces ? force_errors(means) : differences(means, drawn_number(plan));
-  const std::filesystem::path figures = folder / "figures";
-  std::filesystem::create_directories(figures);
-  write_text(figures / "pareto.dat", fmt::format("# processor s per orbit, {}{}, 95 % interval, setting\n{}",
-                                                 shown.title, of_forces ? "" : ": % from reference", data));
-  if (data.empty())
+  const std::vector<PlotPoint> points = of_forces ? force_errors(means) : differences(means, drawn_number(plan));
+  if (points.empty())
     return false;
-  std::string script = fmt::format("set logscale x 2\n{}set xlabel 'processor time per orbit (s)'\nset grid\n"
-                                   "set offsets 0, 0, graph 0.15, graph 0.05\n",
-                                   range_of_costs(means));
-  if (of_forces)
-    script += fmt::format("set logscale y\nset format y '10^{{%L}}'\nset ylabel 'rms force error'\nplot {}", points);
-  else
-    script += fmt::format("set ylabel '{} (% from the reference)'\nplot {}{}", shown.title,
-                          has_common_start(plan.kind) ? tolerance_lines() : "0 with lines lc rgb '#999999' notitle, ",
-                          points);
-  return plot(figures, "pareto", script, 720, 480);
+  Panel panel;
+  panel.x = {.label = "processor time per orbit (s)", .log = true, .range = range_of_costs(points)};
+  panel.y = {.label = of_forces ? "rms force error"
+                                : fmt::format("{} (% from the reference)", study_numbers()[drawn_number(plan)].title),
+             .log = of_forces};
+  const auto reference_line = [&](double y, const std::string& name) {
+    panel.curves.push_back(
+        {name, {{panel.x.range.low, y}, {panel.x.range.high, y}}, std::nullopt, true, !name.empty()});
+  };
+  if (!of_forces && has_common_start(plan.kind)) {
+    reference_line(100.0 * balance_tolerance, fmt::format("within {:g} %", 100.0 * balance_tolerance));
+    reference_line(-100.0 * balance_tolerance, "");
+    panel.curves.back().dashed = true;
+  } else if (!of_forces)
+    reference_line(0.0, "");
+  panel.curves.push_back({.points = points, .line = false, .marks = true});
+  std::filesystem::create_directories(folder / "figures");
+  save_figures({.panels = {panel}}, folder / "figures", "pareto");
+  return true;
 }
 
 } // namespace keeler

@@ -14,7 +14,7 @@ namespace keeler {
 void write_study_tables(const StudyPlan& plan, const std::vector<SettingRun>& runs, const StudyMeans& means,
                         const std::filesystem::path& folder);
 
-/// Draws figures/pareto. Without gnuplot, or without data, it writes only the data file and returns false.
+/// Draws figures/pareto. Returns false if no setting has the number that it shows.
 bool draw_study_figure(const StudyPlan& plan, const StudyMeans& means, const std::filesystem::path& folder);
 
 /// Writes report.md and report.html. `made` is study_provenance().

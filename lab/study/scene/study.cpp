@@ -69,8 +69,7 @@ SceneStudyResult write_results(const StudyPlan& plan, const std::vector<PlannedR
   const auto draw = [&] {
     const bool drawn = draw_study_figure(plan, means, folders.path());
     if (!drawn)
-      settings.notice("only the data of the figure are written: gnuplot was not found (Debian: gnuplot-nox), or no "
-                      "setting has the number that it shows");
+      settings.notice("no figure: no setting has the number that it shows");
     return drawn;
   };
   draw_and_report(draw, [&](bool drawn) { write_study_report(plan, measured, means, made, folders.path(), drawn); });

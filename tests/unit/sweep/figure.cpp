@@ -1,5 +1,5 @@
+#include "figure.hpp"
 #include "grids.hpp"
-#include "output.hpp"
 
 #include <doctest/doctest.h>
 
@@ -28,9 +28,9 @@ TEST_CASE("a plot has a line for each value of the other axes, in the order of x
   const Grid grid = file.grid();
   const Plan plan = plan_runs(grid);
   std::vector<PointRow> points = made_up_points(plan);
-  std::vector<PlotLine> lines = plot_lines(grid, plan, points);
+  std::vector<PlotCurve> lines = sweep_curves(grid, plan, points);
   REQUIRE(lines.size() == 2);
-  CHECK(lines[0].title == "time.step = 0.001");
+  CHECK(lines[0].name == "time.step = 0.001");
   REQUIRE(lines[0].points.size() == 2);
   CHECK(lines[0].points[0].x == 0.2);
   CHECK(lines[0].points[0].y == 20.0);
@@ -40,7 +40,7 @@ TEST_CASE("a plot has a line for each value of the other axes, in the order of x
   CHECK(lines[1].points[1].error == 0.5);
   for (PointRow& row : points)
     row.values.assign(RunQuantities().columns().size(), std::nullopt);
-  CHECK(plot_lines(grid, plan, points).empty());
+  CHECK(sweep_curves(grid, plan, points).empty());
 }
 
 TEST_CASE("words along x stand at their places") {
@@ -48,9 +48,9 @@ TEST_CASE("words along x stand at their places") {
                       "values = [\"certified\", \"linear-full\"]\n");
   const Grid grid = file.grid();
   const Plan plan = plan_runs(grid);
-  const std::vector<PlotLine> lines = plot_lines(grid, plan, made_up_points(plan));
+  const std::vector<PlotCurve> lines = sweep_curves(grid, plan, made_up_points(plan));
   REQUIRE(lines.size() == 1);
-  CHECK(lines[0].title.empty());
+  CHECK(lines[0].name.empty());
   CHECK(lines[0].points[0].x == 0.0);
   CHECK(lines[0].points[1].x == 1.0);
 }
