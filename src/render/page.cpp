@@ -14,8 +14,8 @@
 namespace keeler {
 namespace {
 
-void set_colour(cairo_t* cairo, const Colour& colour, double opacity = 1.0) {
-  cairo_set_source_rgba(cairo, colour.r, colour.g, colour.b, opacity);
+void set_colour(cairo_t* cairo, const Colour& colour) {
+  cairo_set_source_rgb(cairo, colour.r, colour.g, colour.b);
 }
 
 std::uint32_t packed(const Colour& colour) {
@@ -64,19 +64,12 @@ void Page::draw_raster(const Raster& raster, int left, int top) {
   cairo_surface_mark_dirty(surface_);
 }
 
-void Page::line(PagePoint from, PagePoint to, const Colour& colour, double width, bool dashed) {
-  const double dashes[] = {4.0 * width, 3.0 * width};
-  cairo_set_dash(cairo_, dashes, dashed ? 2 : 0, 0.0);
-  curve({from, to}, colour, width);
-  cairo_set_dash(cairo_, nullptr, 0, 0.0);
-}
-
-void Page::curve(const std::vector<PagePoint>& points, const Colour& colour, double width) {
+void Page::line(PagePoint from, PagePoint to, const Colour& colour, double width) {
   set_colour(cairo_, colour);
   cairo_set_line_width(cairo_, width);
   cairo_set_line_join(cairo_, CAIRO_LINE_JOIN_ROUND);
-  for (const PagePoint& point : points)
-    cairo_line_to(cairo_, point.x, point.y);
+  cairo_move_to(cairo_, from.x, from.y);
+  cairo_line_to(cairo_, to.x, to.y);
   cairo_stroke(cairo_);
 }
 
@@ -100,27 +93,11 @@ void Page::frame(double left, double top, double width, double height, const Col
   cairo_stroke(cairo_);
 }
 
-void Page::shade(double left, double top, double width, double height, const Colour& colour, double opacity) {
-  set_colour(cairo_, colour, opacity);
-  cairo_rectangle(cairo_, left, top, width, height);
-  cairo_fill(cairo_);
-}
-
 void Page::dot(PagePoint at, double radius, const Colour& colour) {
   set_colour(cairo_, colour);
   cairo_new_sub_path(cairo_);
   cairo_arc(cairo_, at.x, at.y, radius, 0.0, two_pi);
   cairo_fill(cairo_);
-}
-
-void Page::begin_clip(double left, double top, double width, double height) {
-  cairo_save(cairo_);
-  cairo_rectangle(cairo_, left, top, width, height);
-  cairo_clip(cairo_);
-}
-
-void Page::end_clip() {
-  cairo_restore(cairo_);
 }
 
 double Page::text(PagePoint base, const std::string& text, const TextStyle& style, bool upward) {

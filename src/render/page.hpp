@@ -36,16 +36,10 @@ public:
   /// Copies a raster, with its upper left corner at a pixel. Precondition: it fits into the page.
   void draw_raster(const Raster& raster, int left, int top);
 
-  void line(PagePoint from, PagePoint to, const Colour& colour, double width, bool dashed = false);
-  void curve(const std::vector<PagePoint>& points, const Colour& colour, double width);
+  void line(PagePoint from, PagePoint to, const Colour& colour, double width);
   void arrow(PagePoint from, PagePoint to, const Colour& colour, double width);
   void frame(double left, double top, double width, double height, const Colour& colour);
-  void shade(double left, double top, double width, double height, const Colour& colour, double opacity);
   void dot(PagePoint at, double radius, const Colour& colour);
-
-  /// Clips everything drawn until end_clip() to the rectangle.
-  void begin_clip(double left, double top, double width, double height);
-  void end_clip();
 
   /// Draws text on a baseline, vertical if `upward`; "_{cr}" sets a subscript. Returns its width.
   double text(PagePoint base, const std::string& text, const TextStyle& style, bool upward = false);

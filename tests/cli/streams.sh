@@ -55,7 +55,6 @@ mkfifo "$work/movie.mp4"
 refuses "a movie by ffmpeg" "movie.mp4' cannot take MP4" render "$run" --movie -o "$work/movie.mp4"
 refuses "two results" "only one of --csv, --profile and --json" analyze "$run" --csv - --profile -
 refuses "a table and JSON" "only one of --csv, --profile and --json" analyze "$run" --csv - --json
-refuses "two pictures" "takes one picture" render "$run" --autocorrelation -o -
 for command in "run $work/scene.toml" "sweep $work/scene.toml" "study kicks $work/scene.toml" "convert $run --to csv"; do
   read -ra words <<<"$command"
   refuses "$command -o -" "'-' is standard output, and the results are many files" "${words[@]}" -o -
