@@ -111,11 +111,9 @@ void add_help(CLI::App& program, Action& action) {
   const auto words = std::make_shared<std::vector<std::string>>();
   CLI::App& command = *program.add_subcommand("help", "list the commands, or explain a command or a number");
   command
-      .add_option("COMMAND", *words,
-                  "a command, with a subcommand: bench drift; \"numbers\", or the name of a number")
+      .add_option("COMMAND", *words, "a command, with a subcommand: bench drift; \"numbers\", or the name of a number")
       ->type_name("");
-  examples_of(command,
-              {"keeler help run", "keeler help bench drift", "keeler help numbers", "keeler help toomre_q"});
+  examples_of(command, {"keeler help run", "keeler help bench drift", "keeler help numbers", "keeler help toomre_q"});
   command.callback([words, &program, &action] {
     action = [words, &program] {
       if (words->size() == 1 && words->front() == "numbers")

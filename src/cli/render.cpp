@@ -130,9 +130,8 @@ void add_render(CLI::App& program, Action& action) {
   CLI::Option* const oblique = command.add_flag("--oblique", options->oblique,
                                                 "view the patch from 35 degrees above its plane instead of from above");
   CLI::Option* const movie =
-      command
-          .add_flag("--movie", options->movie,
-                    "draw all snapshots of a run at one scale: movie.mp4 by ffmpeg, or movie.png without ffmpeg");
+      command.add_flag("--movie", options->movie,
+                       "draw all snapshots of a run at one scale: movie.mp4 by ffmpeg, or movie.png without ffmpeg");
   command
       .add_flag("--series", options->series,
                 "draw the series of a run instead of its particles: series.svg, one plot per quantity, with errors")
