@@ -1,6 +1,6 @@
 // HDF5 files with a seal: 64 bytes after the HDF5 content, with its length and checksum. HDF5 readers ignore what
 // follows the content. Keeler verifies the seal before HDF5 reads a byte, because the library may crash on damaged
-// structures. A file without a seal is read in a child process.
+// structures. A file without a seal is first read in a child process.
 #pragma once
 
 #include "child_process.hpp"
@@ -63,19 +63,19 @@ struct FileContent {
 /// Reads a file into memory. Throws IoError naming the file, also when its seal does not match.
 FileContent load_content(const std::filesystem::path& file);
 
-/// Opens content without a seal. The library may crash: call it in a child process only (child_process.hpp). Throws
+/// Opens content without a seal. The library may crash: try it in a child process first (child_process.hpp). Throws
 /// IoError naming the file.
 hdf5::Handle open_unsealed(const std::filesystem::path& file, const std::vector<std::byte>& content);
 
-/// Returns read(root of the file). Runs in this process if the file has a valid seal, else in a child process, which
-/// sends Result as a parcel. Throws IoError naming the file, and what `read` throws.
-template<class Result, class Read> Result read_content(const std::filesystem::path& file, const Read& read) {
+/// Returns read(root of the file). If the file has no valid seal, that is tried in a child process first. Throws
+/// IoError naming the file, and what `read` throws.
+template<class Read> auto read_content(const std::filesystem::path& file, const Read& read) {
   const KeptStreams kept; // it is read more than once
   if (has_seal(file))
     return read(open_sealed(file));
   const FileContent content = load_content(file);
-  return read_in_child<Result>("read '" + file.string() + "' as HDF5", limits_for(content.bytes.size()),
-                               [&] { return read(open_unsealed(file, content.bytes)); });
+  return read_after_trial("read '" + file.string() + "' as HDF5", limits_for(content.bytes.size()),
+                          [&] { return read(open_unsealed(file, content.bytes)); });
 }
 
 } // namespace keeler
