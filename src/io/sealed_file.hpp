@@ -7,7 +7,6 @@
 #include "hdf5_disk.hpp"
 
 #include <keeler/files/files.hpp>
-#include <keeler/files/kept_streams.hpp>
 #include <keeler/files/new_file.hpp>
 
 #include <cstddef>
@@ -46,8 +45,8 @@ private:
 /// Verifies a sealed file and opens it for reading, not copied to memory. Throws IoError naming the file and the fault.
 hdf5::Handle open_sealed(const std::filesystem::path& file);
 
-/// True if the file can be opened and has a seal at its end, valid or not. Throws IoError for a pipe or a device that
-/// cannot be read.
+/// True if the file can be opened and has a seal at its end, valid or not. Throws IoError for a pipe or a device: none
+/// can be read in this format.
 bool has_seal(const std::filesystem::path& file);
 /// Returns the seal at the end of a file, not verified. Throws IoError when there is none.
 std::string seal_in(const std::filesystem::path& file);
@@ -70,7 +69,6 @@ hdf5::Handle open_unsealed(const std::filesystem::path& file, const std::vector<
 /// Returns read(root of the file). If the file has no valid seal, that is tried in a child process first. Throws
 /// IoError naming the file, and what `read` throws.
 template<class Read> auto read_content(const std::filesystem::path& file, const Read& read) {
-  const KeptStreams kept; // it is read more than once
   if (has_seal(file))
     return read(open_sealed(file));
   const FileContent content = load_content(file);

@@ -220,7 +220,6 @@ Snapshot read_part(const std::filesystem::path& file, const Communicator& ranks)
 Snapshot read_snapshot(const std::filesystem::path& file, const Communicator& ranks) {
   if (!ranks.distributed())
     return read_whole(file);
-  const KeptStreams kept; // a pipe is read more than once
   bool sealed = false;
   ranks.on_root([&] { sealed = has_seal(file); });
   if (ranks.broadcast(sealed))
