@@ -47,7 +47,7 @@ function(write_page)
       string(APPEND body ".SH ${part}${more}")
     endforeach()
   else()
-    string(REGEX REPLACE "\n.TP\n.B ([a-z]+)\n" "\n.TP\n.BR keeler\\\\-\\1 (1)\n" body "${body}")
+    string(REGEX REPLACE "\n.TP\n.B ([a-z]+)\n" "\n.TP\n\\\\fBkeeler\\\\-\\1\\\\fR(1)\n" body "${body}")
   endif()
   file(WRITE "${FOLDER}/${page}.1" ".TH ${title} 1 \"\" \"${version}\" \"Keeler\"
 .SH NAME
