@@ -45,7 +45,7 @@ using Clock = std::chrono::steady_clock;
 constexpr char endless[] = "reading it does not come to an end, so it is damaged; use another copy";
 
 // First byte of an answer; a message follows, but for a success.
-enum Outcome : char { success = 's', usage_error = 'u', io_error = 'i', fault = 'f' };
+enum Outcome : char { has_succeeded = 's', has_usage_error = 'u', has_io_error = 'i', has_fault = 'f' };
 
 void lower_limit(decltype(RLIMIT_CPU) resource, rlim_t limit) {
   rlimit now = {};
@@ -89,13 +89,13 @@ void isolate_child(const ChildLimits& limits, pid_t parent) {
 std::string answer_of(const std::function<void()>& work) {
   try {
     work();
-    return {success};
+    return {has_succeeded};
   } catch (const Error& error) {
-    return std::string(1, error.code() == ExitCode::usage ? usage_error : io_error) + error.what();
+    return std::string(1, error.code() == ExitCode::usage ? has_usage_error : has_io_error) + error.what();
   } catch (const std::bad_alloc&) {
-    return std::string(1, fault) + "it takes more memory than there is";
+    return std::string(1, has_fault) + "it takes more memory than there is";
   } catch (...) {
-    return std::string(1, fault) + error_at_hand().what();
+    return std::string(1, has_fault) + error_at_hand().what();
   }
 }
 
@@ -214,11 +214,11 @@ void try_in_child(const std::string& what, const ChildLimits& limits, const std:
   if (answer.empty())
     fail(child.end());
   const std::string message = answer.substr(1);
-  if (answer[0] == usage_error)
+  if (answer[0] == has_usage_error)
     throw UsageError(message);
-  if (answer[0] == io_error)
+  if (answer[0] == has_io_error)
     throw IoError(message);
-  if (answer[0] != success)
+  if (answer[0] != has_succeeded)
     fail(message);
 }
 
