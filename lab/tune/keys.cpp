@@ -1,6 +1,7 @@
 #include <keeler/tune/tune.hpp>
 
 #include <keeler/core/format.hpp>
+#include <keeler/scene/load.hpp>
 
 #include <fmt/format.h>
 
@@ -21,34 +22,28 @@ std::string with_point(double number) {
   return digits.find_first_of(".e") == std::string::npos ? digits + ".0" : digits;
 }
 
-void add_gravity(std::vector<KeyChange>& keys, const Tuning& tuning, const TuneSettings& settings) {
+void add_gravity(std::vector<ChosenKey>& keys, const Tuning& tuning, const TuneSettings& settings) {
   using Solver = GravitySettings::Solver;
   assert(tuning.chosen_gravity < tuning.gravity.size());
   const GravityBenchRow& row = tuning.gravity[tuning.chosen_gravity];
   const GravitySettings& gravity = row.choice.settings;
-  const std::string error = fmt::format(
-      "an rms force error of {} was measured (at most {}{})", per_cent(row.errors.rms), per_cent(settings.force_error),
-      tuning.meets_force_error ? "" : ", which no setting meets with a margin for other seeds");
-  const bool tree = gravity.solver == Solver::tree, fft = gravity.solver == Solver::fft;
-  const std::string comment = "tune: " + error;
-  keys.push_back({"gravity.solver", fmt::format("\"{}\"", row.choice.solver), tree || fft ? "" : comment});
   keys.push_back(
-      {"gravity.force_error", fft ? std::optional(with_point(gravity.force_error)) : std::nullopt, fft ? comment : ""});
-  keys.push_back({"gravity.opening_angle", tree ? std::optional(with_point(gravity.opening_angle)) : std::nullopt,
-                  tree ? comment : ""});
-  keys.push_back({"gravity.mesh_spacing", std::nullopt, ""});
-  if (fft) {
-    keys.push_back({"gravity.images", std::nullopt, ""});
-    keys.push_back({"gravity.image_rings", std::nullopt, ""});
-  }
+      {"gravity.solver", fmt::format("\"{}\"", row.choice.solver),
+       fmt::format("an rms force error of {} was measured (at most {}{})", per_cent(row.errors.rms),
+                   per_cent(settings.force_error),
+                   tuning.meets_force_error ? "" : ", which no setting meets with a margin for other seeds")});
+  if (gravity.solver == Solver::fft)
+    keys.push_back({"gravity.force_error", with_point(gravity.force_error), ""});
+  if (gravity.solver == Solver::tree)
+    keys.push_back({"gravity.opening_angle", with_point(gravity.opening_angle), ""});
 }
 
-void add_kicks(std::vector<KeyChange>& keys, const Tuning& tuning, const TuneSettings& settings) {
+void add_kicks(std::vector<ChosenKey>& keys, const Tuning& tuning, const TuneSettings& settings) {
   assert(tuning.chosen_kicks < tuning.kicks.size());
   const KickProbe& kicks = tuning.kicks[tuning.chosen_kicks];
   keys.push_back(
       {"gravity.kick_every", fmt::format("{}", tuning.steps[tuning.chosen_step].drifts),
-       fmt::format("tune: with a kick every {:g} orbits {} of the contacts are unresolved; the loss exceeds the "
+       fmt::format("with a kick every {:g} orbits {} of the contacts are unresolved; the loss exceeds the "
                    "work of the shear by about {} (at most {}{})",
                    kicks.interval, per_cent(kicks.unresolved), per_cent(kicks.physics_error()),
                    per_cent(settings.physics_error),
@@ -57,8 +52,8 @@ void add_kicks(std::vector<KeyChange>& keys, const Tuning& tuning, const TuneSet
 
 } // namespace
 
-std::vector<KeyChange> chosen_keys(const Tuning& tuning, const TuneSettings& settings, const Scene& scene) {
-  std::vector<KeyChange> keys = {{"quality", std::nullopt, ""}};
+std::vector<ChosenKey> chosen_keys(const Tuning& tuning, const TuneSettings& settings, const Scene& scene) {
+  std::vector<ChosenKey> keys;
   if (scene.gravity) {
     add_gravity(keys, tuning, settings);
     add_kicks(keys, tuning, settings);
@@ -66,10 +61,21 @@ std::vector<KeyChange> chosen_keys(const Tuning& tuning, const TuneSettings& set
   assert(tuning.chosen_step < tuning.steps.size());
   const StepProbe& step = tuning.steps[tuning.chosen_step];
   keys.push_back({"time.step", with_point(step.step),
-                  fmt::format("tune: {} processor seconds per orbit in the state after {:.3g} orbits, {} contacts per "
+                  fmt::format("{} processor seconds per orbit in the state after {:.3g} orbits, {} contacts per "
                               "particle and drift",
                               format_number(step.seconds, 2), tuning.orbits, format_number(step.contacts, 2))});
   return keys;
+}
+
+std::string tuned_scene(const Scene& scene, const std::vector<ChosenKey>& keys) {
+  std::string comments;
+  std::vector<std::string> overrides;
+  for (const ChosenKey& key : keys) {
+    overrides.push_back(key.path + "=" + key.value);
+    if (!key.comment.empty())
+      comments += fmt::format("# tune: {} = {}: {}\n", key.path, key.value, key.comment);
+  }
+  return comments + parse_scene(scene.resolved, "the resolved scene", overrides).resolved;
 }
 
 } // namespace keeler

@@ -4,12 +4,12 @@
 #pragma once
 
 #include <keeler/bench/gravity.hpp>
-#include <keeler/config/edit.hpp>
 #include <keeler/core/progress.hpp>
 #include <keeler/scene/scene.hpp>
 
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace keeler {
@@ -71,8 +71,16 @@ struct Tuning {
 /// Throws UsageError for axisymmetric gravity, what initial_patch() and Simulation throw, and Interrupted.
 Tuning tune(const Scene& scene, const TuneSettings& settings);
 
-/// Returns the chosen settings as scene keys, each with a comment on its cost and error. Precondition: `tuning` is the
-/// result of tune() for `scene`.
-std::vector<KeyChange> chosen_keys(const Tuning& tuning, const TuneSettings& settings, const Scene& scene);
+struct ChosenKey {
+  std::string path;    ///< "gravity.kick_every"
+  std::string value;   ///< TOML
+  std::string comment; ///< its cost or error; may be empty
+};
+
+/// Returns the chosen settings as scene keys. Precondition: `tuning` is the result of tune() for `scene`.
+std::vector<ChosenKey> chosen_keys(const Tuning& tuning, const TuneSettings& settings, const Scene& scene);
+
+/// Returns the resolved text of the scene with these keys, below their comments.
+std::string tuned_scene(const Scene& scene, const std::vector<ChosenKey>& keys);
 
 } // namespace keeler

@@ -5,7 +5,6 @@
 #include "results.hpp"
 #include "signals.hpp"
 
-#include <keeler/files/kept_streams.hpp>
 #include <keeler/io/describe.hpp>
 #include <keeler/io/particle_table.hpp>
 #include <keeler/io/vtp.hpp>
@@ -62,7 +61,6 @@ void convert_one(const ConvertOptions& options) {
   const fs::path file(options.path);
   const fs::path output = options.output ? output_named(*options.output)
                                          : output_beside(file, fs::path(file).replace_extension(options.ending()));
-  const KeptStreams kept; // a pipe is read more than once
   require_new_file(output, options.force, "the result");
   convert_file(file, output, options);
   print_written(output);

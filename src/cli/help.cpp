@@ -2,7 +2,6 @@
 #include "bench_numbers.hpp"
 #include "check_numbers.hpp"
 #include "command.hpp"
-#include "man_page.hpp"
 #include "print.hpp"
 #include "usage.hpp"
 
@@ -109,28 +108,19 @@ ExitCode print_help(const CLI::App& command) {
 }
 
 void add_help(CLI::App& program, Action& action) {
-  struct HelpOptions {
-    std::vector<std::string> words;
-    bool man = false;
-  };
-  const auto options = std::make_shared<HelpOptions>();
+  const auto words = std::make_shared<std::vector<std::string>>();
   CLI::App& command = *program.add_subcommand("help", "list the commands, or explain a command or a number");
   command
-      .add_option("COMMAND", options->words,
-                  "a command, with a subcommand: bench drift; \"numbers\", or the name of a number")
+      .add_option("COMMAND", *words, "a command, with a subcommand: bench drift; \"numbers\", or the name of a number")
       ->type_name("");
-  command.add_flag("--man", options->man, "print the source of a manual page, for man -l");
-  examples_of(command, {"keeler help run", "keeler help bench drift", "keeler help run --man", "keeler help numbers",
-                        "keeler help toomre_q"});
-  command.callback([options, &program, &action] {
-    action = [options, &program] {
-      const std::vector<std::string>& words = options->words;
-      if (words.size() == 1 && words.front() == "numbers")
+  examples_of(command, {"keeler help run", "keeler help bench drift", "keeler help numbers", "keeler help toomre_q"});
+  command.callback([words, &program, &action] {
+    action = [words, &program] {
+      if (words->size() == 1 && words->front() == "numbers")
         return list_numbers();
-      if (words.size() == 1 && !options->man && explain_number(words.front()))
+      if (words->size() == 1 && explain_number(words->front()))
         return ExitCode::done;
-      const CLI::App& about = find_command(program, words);
-      return options->man ? print_man_page(about) : print_help(about);
+      return print_help(find_command(program, *words));
     };
   });
 }

@@ -6,7 +6,6 @@
 #include <keeler/core/error.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/json_of_files.hpp>
-#include <keeler/files/kept_streams.hpp>
 #include <keeler/io/contacts.hpp>
 #include <keeler/io/describe.hpp>
 #include <keeler/io/snapshot.hpp>
@@ -150,7 +149,6 @@ void add_info(CLI::App& program, Action& action) {
   examples_of(command, {"keeler info wakes", "keeler info wakes/snap_000030.hdf --json", "keeler info --verify wakes"});
   command.callback([options, &action] {
     action = [options] {
-      const KeptStreams kept; // a pipe is read more than once
       if (options->verify)
         return verify(options->path, options->json);
       const bool folder = fs::is_directory(options->path);

@@ -5,17 +5,12 @@
 #include "results.hpp"
 #include "signals.hpp"
 
-#include <keeler/diagnostics/autocorrelation.hpp>
-#include <keeler/diagnostics/surface.hpp>
-#include <keeler/diagnostics/wakes.hpp>
 #include <keeler/files/files.hpp>
-#include <keeler/files/kept_streams.hpp>
 #include <keeler/files/new_file.hpp>
-#include <keeler/render/autocorrelation_picture.hpp>
 #include <keeler/render/movie.hpp>
 #include <keeler/render/patch_picture.hpp>
 #include <keeler/run_report/series_figure.hpp>
-#include <keeler/runs/measured_part.hpp>
+#include <keeler/runs/stored_patches.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -34,7 +29,7 @@ struct RenderOptions {
   std::optional<std::string> output;
   std::string path, colour = "height", theme = "dark";
   int width = PictureOptions().width;
-  bool oblique = false, autocorrelation = false, movie = false, series = false;
+  bool oblique = false, movie = false, series = false;
 };
 
 constexpr std::string_view png_signature = "\x89PNG";
@@ -49,25 +44,6 @@ fs::path picture_path(const RenderOptions& options) {
     return output_named(*options.output);
   const fs::path path(options.path);
   return output_beside(path, fs::is_directory(path) ? path / "picture.png" : fs::path(path).replace_extension(".png"));
-}
-
-// Returns the times of the averaged snapshots: "orbits 2 to 3".
-std::string orbits_of(const std::vector<Patch>& patches) {
-  assert(!patches.empty());
-  const double first = patches.front().time_orbits, last = patches.back().time_orbits;
-  return patches.size() == 1 ? fmt::format("orbit {:.3g}", last) : fmt::format("orbits {:.3g} to {:.3g}", first, last);
-}
-
-// Draws the autocorrelation of the snapshots that `keeler analyze` uses, so that pitch and spacing agree with it.
-void draw_autocorrelation(const RenderOptions& options, fs::path file, const std::string& title) {
-  const StoredPatches stored =
-      fs::is_directory(options.path) ? measured_part(options.path, {}).stored : load_newest_patch(options.path);
-  file.replace_filename(file.stem().string() + "-autocorrelation.png");
-  const double wavelength = critical_wavelength(stored.patches.back());
-  const AutocorrelationMap map = mean_autocorrelation(stored.patches);
-  render_autocorrelation(map, find_wakes(map, wavelength), wavelength, file.string(),
-                         fmt::format("{}, {}", title, orbits_of(stored.patches)));
-  print_written(file);
 }
 
 PictureOptions picture_options(const RenderOptions& options) {
@@ -122,12 +98,7 @@ ExitCode render(const RenderOptions& options) {
   if (options.movie)
     return draw_movie(options);
   const fs::path picture = picture_path(options);
-  const KeptStreams kept; // --autocorrelation reads a pipe a second time
   const StoredPatches stored = load_newest_patch(options.path);
-  if (is_stream(picture) && options.autocorrelation)
-    throw UsageError(fmt::format("'{}' takes one picture, and --autocorrelation draws a second one into a file beside "
-                                 "it; name a .png",
-                                 picture.string()));
   if (!is_stream(picture) && picture.extension() != ".png")
     throw UsageError(
         fmt::format("'{}' cannot be a picture: pictures are .png files; give it that ending", picture.string()));
@@ -136,8 +107,6 @@ ExitCode render(const RenderOptions& options) {
     drawing.title = stored.title;
   render_patch(stored.patches.back(), picture.string(), drawing);
   print_written(picture);
-  if (options.autocorrelation)
-    draw_autocorrelation(options, picture, drawing.title);
   return ExitCode::done;
 }
 
@@ -163,19 +132,13 @@ void add_render(CLI::App& program, Action& action) {
           ->type_name(fmt::format("{}", fmt::join(colour_field_names(), "|")));
   CLI::Option* const oblique = command.add_flag("--oblique", options->oblique,
                                                 "view the patch from 35 degrees above its plane instead of from above");
-  CLI::Option* const autocorrelation = command.add_flag(
-      "--autocorrelation", options->autocorrelation,
-      "also draw the autocorrelation of the surface density, averaged over the snapshots that analyze uses");
-  CLI::Option* const movie = command
-                                 .add_flag("--movie", options->movie,
-                                           "draw all snapshots of a run at one scale: movie.mp4, by the program ffmpeg")
-                                 ->excludes(autocorrelation);
+  CLI::Option* const movie = command.add_flag(
+      "--movie", options->movie, "draw all snapshots of a run at one scale: movie.mp4, by the program ffmpeg");
   command
       .add_flag(
           "--series", options->series,
           "draw the series of a run instead of its particles: series.svg (or .png, .pdf), one plot per quantity, with "
           "errors")
-      ->excludes(autocorrelation)
       ->excludes(movie)
       ->excludes(colour)
       ->excludes(oblique);

@@ -4,7 +4,6 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/files/files.hpp>
-#include <keeler/files/kept_streams.hpp>
 #include <keeler/files/new_file.hpp>
 
 #include <fmt/format.h>

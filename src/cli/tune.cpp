@@ -8,14 +8,10 @@
 #include "scene_arguments.hpp"
 #include "signals.hpp"
 
-#include <keeler/config/edit.hpp>
 #include <keeler/core/format.hpp>
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/json_of_files.hpp>
 #include <keeler/files/files.hpp>
-#include <keeler/scene/examples.hpp>
-#include <keeler/scene/keys.hpp>
-#include <keeler/scene/load.hpp>
 #include <keeler/scene/quality.hpp>
 #include <keeler/tune/tune.hpp>
 
@@ -50,20 +46,6 @@ TuneSettings tolerances(const TuneOptions& options) {
   return settings;
 }
 
-// Throws UsageError unless the text, written to `output`, gives this scene: paths of files in it are relative to its
-// folder, and the text is not changed.
-void require_same_files(const std::string& text, const Scene& scene, const std::string& output) {
-  bool same = false;
-  try {
-    same = parse_scene(text, output).resolved == scene.resolved;
-  } catch (const UsageError&) { // a file is missing
-  }
-  if (!same)
-    throw UsageError(fmt::format("'{}' would not find the files that the scene names (their paths are relative to the "
-                                 "scene's folder); write it into that folder",
-                                 output));
-}
-
 // True if the scene goes to standard output; then nothing else may be printed there.
 bool fills_standard_output(const TuneOptions& options) {
   return options.output && is_standard_output(output_named(*options.output));
@@ -72,9 +54,6 @@ bool fills_standard_output(const TuneOptions& options) {
 void require_writable_output(const TuneOptions& options) {
   if (!options.output)
     return;
-  if (!options.scene.overrides.empty())
-    throw UsageError("--output cannot be combined with --set (the file would lack the overrides); write the keys into "
-                     "the scene first");
   require_new_file(output_named(*options.output), options.force, "a scene");
   if (options.json && fills_standard_output(options))
     throw UsageError("--json and --output are both for standard output; name a file for the scene");
@@ -87,11 +66,10 @@ Tuning measure(const Scene& scene, TuneSettings settings, const TalkOption& talk
                         [&] { return tune(scene, settings); });
 }
 
-nlohmann::ordered_json as_json(const Tuning& t, const std::vector<KeyChange>& keys) {
+nlohmann::ordered_json as_json(const Tuning& t, const std::vector<ChosenKey>& keys) {
   nlohmann::ordered_json json;
-  for (const KeyChange& key : keys)
-    if (key.value)
-      json["keys"][key.path] = *key.value;
+  for (const ChosenKey& key : keys)
+    json["keys"][key.path] = key.value;
   assert(t.gravity.empty() || t.chosen_gravity < t.gravity.size());
   assert(t.kicks.empty() || t.chosen_kicks < t.kicks.size());
   json["particles"] = t.particles;
@@ -161,12 +139,11 @@ void print_text(const Tuning& t) {
         format_number(t.wall_seconds, 2), pluralize(t.chosen_threads, "thread"));
 }
 
-void print_keys(const std::vector<KeyChange>& keys) {
-  for (const KeyChange& key : keys) {
+void print_keys(const std::vector<ChosenKey>& keys) {
+  for (const ChosenKey& key : keys) {
     if (!key.comment.empty())
-      print("# {}\n", key.comment);
-    if (key.value)
-      print("{} = {}\n", key.path, *key.value);
+      print("# tune: {}\n", key.comment);
+    print("{} = {}\n", key.path, key.value);
   }
 }
 
@@ -185,11 +162,8 @@ ExitCode tune_scene(const TuneOptions& options) {
   settings.max_threads = threads();
   const Scene scene = options.scene.load();
   require_writable_output(options);
-  const std::string text = read_scene_text(options.scene.path);
-  if (options.output)
-    require_same_files(text, scene, fills_standard_output(options) ? "standard output" : *options.output);
   const Tuning tuning = measure(scene, settings, options.talk);
-  const std::vector<KeyChange> keys = chosen_keys(tuning, settings, scene);
+  const std::vector<ChosenKey> keys = chosen_keys(tuning, settings, scene);
   if (options.json)
     print("{}\n", json_text(as_json(tuning, keys), 2));
   else if (!fills_standard_output(options))
@@ -197,7 +171,7 @@ ExitCode tune_scene(const TuneOptions& options) {
   if (!options.talk.quiet)
     warn(tuning);
   if (options.output) {
-    write_text(output_named(*options.output), edit_document(scene_schema(), text, options.scene.path, keys));
+    write_text(output_named(*options.output), tuned_scene(scene, keys));
     if (!options.json)
       print_written(output_named(*options.output));
   } else if (!options.json) {

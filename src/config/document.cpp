@@ -155,19 +155,6 @@ private:
   std::vector<Positioned> entries_;
 };
 
-// Returns the byte at a position. The TOML library counts lines, and UTF-8 characters in a line, from 1.
-std::size_t offset_of(const std::string& text, const toml::source_position& position) {
-  assert(position.line >= 1 && position.column >= 1);
-  std::size_t at = 0;
-  for (toml::source_index line = 1; line < position.line; ++line)
-    at = text.find('\n', at) + 1;
-  for (toml::source_index column = 1; column < position.column && at < text.size(); ++column)
-    do
-      ++at;
-    while (at < text.size() && (static_cast<unsigned char>(text[at]) & 0xc0) == 0x80);
-  return at;
-}
-
 toml::table parsed(const std::string& text, const std::string& name) {
   require_bounded_toml(text, name);
   try {
@@ -212,14 +199,6 @@ TomlDocument parse_document(const std::string& text, const std::string& name, co
   Flattening flattening(name, schema);
   flattening.add_table(table, "");
   return std::move(flattening).document();
-}
-
-std::optional<TextRange> range_in(const std::string& text, const std::string& name, const std::string& path) {
-  const toml::table document = parsed(text, name);
-  const toml::node* const node = document.at_path(path).node();
-  if (!node)
-    return std::nullopt;
-  return TextRange{offset_of(text, node->source().begin), offset_of(text, node->source().end)};
 }
 
 namespace {

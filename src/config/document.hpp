@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <unordered_map>
 #include <variant>
@@ -78,15 +77,6 @@ inline const DocumentEntry* find_entry(const TomlDocument& document, const std::
 
 /// Parses a text; messages call it `name`. Throws UsageError if the text is not TOML.
 TomlDocument parse_document(const std::string& text, const std::string& name, const Schema& schema);
-
-/// Bytes [begin, end) of a text.
-struct TextRange {
-  std::size_t begin = 0, end = 0;
-};
-
-/// Returns the bytes of a key's value in a TOML text; for a table of its braces or header. None if the key is
-/// absent. Throws as parse_document().
-std::optional<TextRange> range_in(const std::string& text, const std::string& name, const std::string& path);
 
 /// Parses the value of an override: TOML, or else the text as a string (as a number, if the key takes one and the text
 /// spells one). All entries are marked as overridden and have the given locations; there is at least one. Throws

@@ -4,7 +4,7 @@
 
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/memory.hpp>
-#include <keeler/files/kept_streams.hpp>
+#include <keeler/files/files.hpp>
 #include <keeler/files/new_file.hpp>
 
 #include <cassert>

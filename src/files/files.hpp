@@ -23,6 +23,9 @@ void write_text(const std::filesystem::path& file, std::string_view text);
 /// Throws IoError, naming `output`, unless `folder` is a writable folder. Call it before long work for `output`.
 void require_writable_folder(const std::filesystem::path& folder, const std::filesystem::path& output);
 
+/// True for a pipe or a device, which can be read only once.
+bool reads_once(const std::filesystem::path& file);
+
 /// Returns all bytes of a file. Throws IoError, also when they do not fit into memory; Interrupted while it waits for a
 /// pipe or a device.
 std::vector<std::byte> read_file(const std::filesystem::path& file);

@@ -297,7 +297,6 @@ Checkpoint::Checkpoint(const std::filesystem::path& file, const Communicator& ra
   parts_->ranks = ranks;
   std::string seal;
   ranks.on_root([&] {
-    const KeptStreams kept; // a pipe is read twice
     parts_->open(std::nullopt);
     seal = seal_in(file);
   });

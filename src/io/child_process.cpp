@@ -1,6 +1,7 @@
 #include "child_process.hpp"
 
 #include <keeler/core/error.hpp>
+#include <keeler/core/interrupt.hpp>
 
 #include <fmt/format.h>
 
@@ -10,12 +11,14 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <new>
 #include <utility>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -36,10 +39,12 @@ constexpr bool sanitized = false;
 constexpr bool sanitized = false;
 #endif
 
-using Work = std::function<std::function<void(Sender&)>()>;
+using Clock = std::chrono::steady_clock;
 
-// First byte of a parcel: the result follows, or a message.
-enum Kind : std::uint8_t { has_result, has_usage_error, has_io_error, has_fault };
+constexpr char endless[] = "reading it does not come to an end, so it is damaged; use another copy";
+
+// First byte of an answer; a message follows, but for a success.
+enum Outcome : char { has_succeeded = 's', has_usage_error = 'u', has_io_error = 'i', has_fault = 'f' };
 
 void lower_limit(decltype(RLIMIT_CPU) resource, rlim_t limit) {
   rlimit now = {};
@@ -79,21 +84,24 @@ void isolate_child(const ChildLimits& limits, pid_t parent) {
     lower_limit(RLIMIT_AS, used + limits.memory);
 }
 
-[[noreturn]] void run_child(int descriptor, const Work& work) {
-  Sender sender(descriptor);
+// Returns the outcome of the work, and the message of what it throws.
+std::string answer_of(const std::function<void()>& work) {
   try {
-    const std::function<void(Sender&)> send = work();
-    sender(std::uint8_t{has_result});
-    send(sender);
+    work();
+    return {has_succeeded};
   } catch (const Error& error) {
-    sender(std::uint8_t{error.code() == ExitCode::usage ? has_usage_error : has_io_error}, std::string(error.what()));
+    return std::string(1, error.code() == ExitCode::usage ? has_usage_error : has_io_error) + error.what();
   } catch (const std::bad_alloc&) {
-    sender(std::uint8_t{has_fault}, std::string("it takes more memory than there is"));
+    return std::string(1, has_fault) + "it takes more memory than there is";
   } catch (...) {
-    sender(std::uint8_t{has_fault}, std::string(error_at_hand().what()));
+    return std::string(1, has_fault) + error_at_hand().what();
   }
-  sender.flush();
-  _exit(0);
+}
+
+[[noreturn]] void run_child(int descriptor, const std::function<void()>& work) {
+  const std::string answer = answer_of(work);
+  const ssize_t written = write(descriptor, answer.data(), answer.size()); // signals are ignored, so it is complete
+  _exit(written == static_cast<ssize_t>(answer.size()) ? 0 : 1);
 }
 
 /// Owns a child process; the destructor kills it.
@@ -147,19 +155,28 @@ private:
   int descriptor_;
 };
 
-// The outcome: the result has been taken, or there is a message.
-struct Answer {
-  std::uint8_t kind = has_result;
-  std::string message;
-};
-
-Answer receive(Receiver& receiver, const std::function<void(Receiver&)>& take) {
-  Answer answer;
-  receiver(answer.kind);
-  if (answer.kind == has_result)
-    take(receiver);
-  else
-    receiver(answer.message);
+// Reads a pipe to its end; empty if nothing was written. Throws IoError at the deadline, Interrupted.
+std::string read_answer(int descriptor, Clock::time_point deadline) {
+  using std::chrono::milliseconds;
+  constexpr std::size_t longest = std::size_t{1} << 20;
+  std::string answer;
+  std::array<char, 4096> piece{};
+  while (answer.size() < longest) {
+    throw_if_interrupted();
+    const auto left = std::chrono::duration_cast<milliseconds>(deadline - Clock::now()).count();
+    if (left <= 0)
+      throw IoError(endless);
+    pollfd ready = {.fd = descriptor, .events = POLLIN, .revents = 0};
+    if (poll(&ready, 1, static_cast<int>(std::min<milliseconds::rep>(left, 1000))) <= 0)
+      continue;
+    const ssize_t got = read(descriptor, piece.data(), piece.size());
+    if (got == 0)
+      break;
+    if (got > 0)
+      answer.append(piece.data(), static_cast<std::size_t>(got));
+    else if (errno != EINTR)
+      throw IoError(fmt::format("a pipe failed: {}", std::strerror(errno)));
+  }
   return answer;
 }
 
@@ -170,15 +187,12 @@ ChildLimits limits_for(std::size_t file_bytes) {
   return {.memory = (std::size_t{1} << 30) + 16 * file_bytes, .cpu_s = 20 + megabytes, .wall_s = 60 + 3 * megabytes};
 }
 
-void run_in_child(const std::string& what, const ChildLimits& limits,
-                  const std::function<std::function<void(Sender&)>()>& work,
-                  const std::function<void(Receiver&)>& take) {
+void try_in_child(const std::string& what, const ChildLimits& limits, const std::function<void()>& work) {
   assert(limits.memory > 0 && limits.cpu_s > 0 && limits.wall_s > 0);
   const auto fail = [&](const std::string& reason) { throw IoError(fmt::format("cannot {}: {}", what, reason)); };
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0)
     fail(fmt::format("no pipe ({})", std::strerror(errno)));
-  fcntl(ends[1], F_SETPIPE_SZ, 1 << 20); // fewer context switches; failure is harmless
   const PipeEnd out(ends[0]);
   PipeEnd in(ends[1]);
   const pid_t parent = getpid(), id = fork();
@@ -190,22 +204,21 @@ void run_in_child(const std::string& what, const ChildLimits& limits,
   }
   in.close();
   ChildProcess child(id);
-  Receiver receiver(out.descriptor(), limits.memory,
-                    std::chrono::steady_clock::now() + std::chrono::seconds(limits.wall_s));
-  Answer answer;
+  std::string answer;
   try {
-    answer = receive(receiver, take);
-  } catch (const ParcelEnds&) {
-    fail(child.end());
-  } catch (const IoError& fault) {
-    fail(fault.what());
+    answer = read_answer(out.descriptor(), Clock::now() + std::chrono::seconds(limits.wall_s));
+  } catch (const IoError& reason) {
+    fail(reason.what());
   }
-  if (answer.kind == has_usage_error)
-    throw UsageError(answer.message);
-  if (answer.kind == has_io_error)
-    throw IoError(answer.message);
-  if (answer.kind != has_result)
-    fail(answer.message);
+  if (answer.empty())
+    fail(child.end());
+  const std::string message = answer.substr(1);
+  if (answer[0] == has_usage_error)
+    throw UsageError(message);
+  if (answer[0] == has_io_error)
+    throw IoError(message);
+  if (answer[0] != has_succeeded)
+    fail(message);
 }
 
 } // namespace keeler

@@ -1,9 +1,7 @@
-// Isolates work that may crash, never end or exhaust memory in a child process: HDF5 reading a file without a seal. The
-// result returns as plain bytes through a pipe (parcel.hpp), so a failure of the child cannot harm this process.
-// The child is a fork: it uses no threads and exits without clean-up.
+// Tries out work that may crash, never end or exhaust memory in a child process: HDF5 reading a file without a seal.
+// What succeeds there is done again in this process, on the same bytes. The child is a fork: it uses no threads and
+// exits without clean-up.
 #pragma once
-
-#include "parcel.hpp"
 
 #include <cstddef>
 #include <functional>
@@ -13,7 +11,7 @@ namespace keeler {
 
 /// Resource limits of a child.
 struct ChildLimits {
-  std::size_t memory = 0; ///< bytes beyond the parent's; also the most that it may send
+  std::size_t memory = 0; ///< bytes beyond the parent's
   unsigned cpu_s = 0;     ///< processor time, s
   unsigned wall_s = 0;    ///< wall time, s
 };
@@ -21,21 +19,15 @@ struct ChildLimits {
 /// Returns generous limits for reading a file of `file_bytes`: far more than an undamaged file needs.
 ChildLimits limits_for(std::size_t file_bytes);
 
-/// Runs `work` in a child process: it computes the result and returns a function that sends it; `take` receives it in
-/// this process. An Error that `work` throws is rethrown here, as UsageError or IoError. Throws IoError "cannot WHAT:
-/// reason" when the child crashes or exceeds its limits; Interrupted. Precondition: all limits are > 0.
-void run_in_child(const std::string& what, const ChildLimits& limits,
-                  const std::function<std::function<void(Sender&)>()>& work,
-                  const std::function<void(Receiver&)>& take);
+/// Runs `work` in a child process, and returns when it has succeeded there. An Error that it throws is rethrown here,
+/// as UsageError or IoError. Throws IoError "cannot WHAT: reason" when the child crashes or exceeds its limits;
+/// Interrupted. Precondition: all limits are > 0.
+void try_in_child(const std::string& what, const ChildLimits& limits, const std::function<void()>& work);
 
-/// Returns read(), called in a child process.
-template<class Result>
-Result read_in_child(const std::string& what, const ChildLimits& limits, const std::function<Result()>& read) {
-  Result result;
-  run_in_child(
-      what, limits, [&]() -> std::function<void(Sender&)> { return [made = read()](Sender& sender) { sender(made); }; },
-      [&](Receiver& receiver) { receiver(result); });
-  return result;
+/// Returns read(), after it has succeeded in a child process.
+template<class Read> auto read_after_trial(const std::string& what, const ChildLimits& limits, const Read& read) {
+  try_in_child(what, limits, [&] { read(); });
+  return read();
 }
 
 } // namespace keeler

@@ -8,24 +8,8 @@
 #include <fmt/format.h>
 
 #include <cassert>
-#include <concepts>
 
 namespace keeler {
-
-template<class Parcel, class T>
-requires std::same_as<std::remove_const_t<T>, FieldDescription>
-void pass(Parcel& parcel, T& field) {
-  parcel(field.name, field.type, field.shape, field.unit, field.about, field.value);
-}
-
-template<class Parcel, class T>
-requires std::same_as<std::remove_const_t<T>, FileDescription>
-void pass(Parcel& parcel, T& description) {
-  auto kind = static_cast<std::uint8_t>(description.kind);
-  parcel(kind, description.format_version, description.fields, description.attributes, description.scene);
-  if constexpr (!std::is_const_v<T>)
-    description.kind = kind == 0 ? FileKind::checkpoint : kind == 1 ? FileKind::snapshot : FileKind::contacts;
-}
 
 namespace {
 
@@ -140,7 +124,7 @@ FileDescription description_in(const hdf5::Handle& image, const std::filesystem:
 
 FileDescription describe_file(const std::filesystem::path& file) {
   const auto read = [&](const hdf5::Handle& image) { return description_in(image, file); };
-  return read_content<FileDescription>(file, read);
+  return read_content(file, read);
 }
 
 bool is_sealed(const std::filesystem::path& file) {

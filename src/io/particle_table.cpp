@@ -16,16 +16,9 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <concepts>
 #include <iterator>
 
 namespace keeler {
-
-template<class Parcel, class T>
-requires std::same_as<std::remove_const_t<T>, ParticleTable>
-void pass(Parcel& parcel, T& table) {
-  parcel(table.file, table.positions, table.velocities, table.radii, table.masses, table.lines, table.spins);
-}
 
 namespace {
 
@@ -170,15 +163,6 @@ ParticleTable read_hdf5_table(std::span<const std::byte> bytes, const std::strin
   return table_of(file, assign_columns(names, std::move(values), file), {});
 }
 
-// Checks what a child process sent.
-void require_consistent(const ParticleTable& table) {
-  const std::size_t count = table.size();
-  const auto fits = [&](std::size_t size, bool may_miss) { return size == count || (may_miss && size == 0); };
-  if (!fits(table.positions.size(), false) || !fits(table.velocities.size(), true) ||
-      !fits(table.masses.size(), true) || !fits(table.lines.size(), true) || !fits(table.spins.size(), true))
-    throw IoError(fmt::format("cannot read '{}': its columns have different lengths", table.file));
-}
-
 void append_vector(fmt::memory_buffer& row, const Vec3& v) {
   fmt::format_to(std::back_inserter(row), ",{},{},{}", v.x(), v.y(), v.z());
 }
@@ -199,15 +183,13 @@ ParticleTable read_particle_table(const std::filesystem::path& file) {
   const std::string what = fmt::format("read '{}' as HDF5", file.string());
   if (is_being_written(file))
     throw IoError(fmt::format("cannot {}: {}", what, being_written));
-  ParticleTable table = read_in_child<ParticleTable>(what, limits_for(bytes.size()), [&] {
+  return read_after_trial(what, limits_for(bytes.size()), [&] {
     try {
       return read_hdf5_table(bytes, file.string());
     } catch (const IoError& error) {
       throw IoError(fmt::format("cannot {}: {}", what, error.what()));
     }
   });
-  require_consistent(table);
-  return table;
 }
 
 void write_particle_table(const std::filesystem::path& file, const Patch& patch) {

@@ -10,6 +10,8 @@
 #include <cassert>
 #include <string>
 
+#include <fcntl.h>
+
 namespace keeler {
 namespace {
 
@@ -71,14 +73,13 @@ Hash hash_of(const std::filesystem::path& name, const Descriptor& file, std::uin
   return hash;
 }
 
-// Reads all bytes. A pipe or a device may have been read already; then its kept content is returned.
-std::vector<std::byte> bytes_of(const std::filesystem::path& file) {
-  if (!reads_once(file))
-    return read_file(file);
-  const std::shared_ptr<Descriptor> opened = open_anywhere(file);
-  std::vector<std::byte> bytes(opened->size());
-  bytes.resize(opened->read_at(0, bytes));
-  return bytes;
+// Opens a file for reading at any position, which a pipe or a device does not allow.
+std::shared_ptr<Descriptor> open_to_read(const std::filesystem::path& file) {
+  if (reads_once(file))
+    throw IoError(fmt::format("cannot read '{}': it is a pipe or a device, and HDF5 needs random access; name a file "
+                              "on a disk",
+                              file.string()));
+  return std::make_shared<Descriptor>(file, O_RDONLY);
 }
 
 // Refuses a stream before it is opened: a pipe would wait for its reader.
@@ -124,7 +125,7 @@ void SealedFile::finish() {
 }
 
 hdf5::Handle open_sealed(const std::filesystem::path& file) {
-  const std::shared_ptr<Descriptor> opened = open_anywhere(file);
+  const std::shared_ptr<Descriptor> opened = open_to_read(file);
   const std::string seal = seal_at_end(file, *opened);
   const std::size_t content = opened->size() - seal_size;
   require_match(file, seal, seal_of(content, hash_of(file, *opened, content)));
@@ -133,7 +134,7 @@ hdf5::Handle open_sealed(const std::filesystem::path& file) {
 
 bool has_seal(const std::filesystem::path& file) {
   try {
-    return end_of(*open_anywhere(file)).starts_with(mark);
+    return end_of(*open_to_read(file)).starts_with(mark);
   } catch (const IoError&) {
     if (reads_once(file))
       throw;
@@ -142,17 +143,17 @@ bool has_seal(const std::filesystem::path& file) {
 }
 
 std::string seal_in(const std::filesystem::path& file) {
-  return seal_at_end(file, *open_anywhere(file));
+  return seal_at_end(file, *open_to_read(file));
 }
 
 hdf5::Handle open_sealed(const std::filesystem::path& file, const std::string& seal) {
-  const std::shared_ptr<Descriptor> opened = open_anywhere(file);
+  const std::shared_ptr<Descriptor> opened = open_to_read(file);
   require_match(file, seal_at_end(file, *opened), seal);
   return hdf5::open_on(std::make_shared<hdf5::Disk>(opened, opened->size() - seal_size));
 }
 
 FileContent load_content(const std::filesystem::path& file) {
-  FileContent content{bytes_of(file), false};
+  FileContent content{read_file(file), false};
   const std::size_t size = content.bytes.size();
   if (size < seal_size || !as_text(std::span(content.bytes).last(seal_size)).starts_with(mark)) {
     require_not_written(file); // it may be incomplete

@@ -1,13 +1,12 @@
 // HDF5 files with a seal: 64 bytes after the HDF5 content, with its length and checksum. HDF5 readers ignore what
 // follows the content. Keeler verifies the seal before HDF5 reads a byte, because the library may crash on damaged
-// structures. A file without a seal is read in a child process.
+// structures. A file without a seal is first read in a child process.
 #pragma once
 
 #include "child_process.hpp"
 #include "hdf5_disk.hpp"
 
 #include <keeler/files/files.hpp>
-#include <keeler/files/kept_streams.hpp>
 #include <keeler/files/new_file.hpp>
 
 #include <cstddef>
@@ -46,8 +45,8 @@ private:
 /// Verifies a sealed file and opens it for reading, not copied to memory. Throws IoError naming the file and the fault.
 hdf5::Handle open_sealed(const std::filesystem::path& file);
 
-/// True if the file can be opened and has a seal at its end, valid or not. Throws IoError for a pipe or a device that
-/// cannot be read.
+/// True if the file can be opened and has a seal at its end, valid or not. Throws IoError for a pipe or a device: none
+/// can be read in this format.
 bool has_seal(const std::filesystem::path& file);
 /// Returns the seal at the end of a file, not verified. Throws IoError when there is none.
 std::string seal_in(const std::filesystem::path& file);
@@ -63,19 +62,18 @@ struct FileContent {
 /// Reads a file into memory. Throws IoError naming the file, also when its seal does not match.
 FileContent load_content(const std::filesystem::path& file);
 
-/// Opens content without a seal. The library may crash: call it in a child process only (child_process.hpp). Throws
+/// Opens content without a seal. The library may crash: try it in a child process first (child_process.hpp). Throws
 /// IoError naming the file.
 hdf5::Handle open_unsealed(const std::filesystem::path& file, const std::vector<std::byte>& content);
 
-/// Returns read(root of the file). Runs in this process if the file has a valid seal, else in a child process, which
-/// sends Result as a parcel. Throws IoError naming the file, and what `read` throws.
-template<class Result, class Read> Result read_content(const std::filesystem::path& file, const Read& read) {
-  const KeptStreams kept; // it is read more than once
+/// Returns read(root of the file). If the file has no valid seal, that is tried in a child process first. Throws
+/// IoError naming the file, and what `read` throws.
+template<class Read> auto read_content(const std::filesystem::path& file, const Read& read) {
   if (has_seal(file))
     return read(open_sealed(file));
   const FileContent content = load_content(file);
-  return read_in_child<Result>("read '" + file.string() + "' as HDF5", limits_for(content.bytes.size()),
-                               [&] { return read(open_unsealed(file, content.bytes)); });
+  return read_after_trial("read '" + file.string() + "' as HDF5", limits_for(content.bytes.size()),
+                          [&] { return read(open_unsealed(file, content.bytes)); });
 }
 
 } // namespace keeler

@@ -14,20 +14,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <concepts>
 #include <optional>
 
 namespace keeler {
-
-template<class Parcel, class T>
-requires std::same_as<std::remove_const_t<T>, Snapshot>
-void pass(Parcel& parcel, T& snapshot) {
-  auto& patch = snapshot.patch;
-  parcel(patch.positions, patch.velocities, patch.radii, patch.masses, patch.ids, patch.spins);
-  parcel(patch.box.size_x, patch.box.size_y, patch.box.shear, patch.box.first_offset, patch.offset);
-  parcel(patch.frequencies.kappa, patch.frequencies.nu, patch.orbital_frequency, patch.time_orbits);
-  parcel(snapshot.meta.scene, snapshot.meta.provenance, snapshot.meta.clumping);
-}
 
 namespace {
 
@@ -154,12 +143,7 @@ Snapshot snapshot_in(const hdf5::Handle& image, const Part& part = {}) {
   return snapshot;
 }
 
-// Checks what was read, also by a child process.
 void require_consistent(const Patch& patch) {
-  for (const std::size_t size : {patch.velocities.size(), patch.masses.size(), patch.ids.size(), patch.radii.size(),
-                                 patch.spins.empty() ? patch.size() : patch.spins.size()})
-    if (size != patch.size())
-      throw IoError("its arrays have different lengths");
   const auto not_increasing = [](std::uint64_t a, std::uint64_t b) { return a >= b; };
   if (std::adjacent_find(patch.ids.begin(), patch.ids.end(), not_increasing) != patch.ids.end())
     throw IoError(not_sorted);
@@ -177,8 +161,8 @@ template<class Make> auto naming(const std::filesystem::path& file, const Make& 
 }
 
 Snapshot read_whole(const std::filesystem::path& file) {
-  Snapshot snapshot = read_content<Snapshot>(
-      file, [&](const hdf5::Handle& image) { return naming(file, [&] { return snapshot_in(image); }); });
+  Snapshot snapshot =
+      read_content(file, [&](const hdf5::Handle& image) { return naming(file, [&] { return snapshot_in(image); }); });
   naming(file, [&] { require_consistent(snapshot.patch); });
   return snapshot;
 }
@@ -236,7 +220,6 @@ Snapshot read_part(const std::filesystem::path& file, const Communicator& ranks)
 Snapshot read_snapshot(const std::filesystem::path& file, const Communicator& ranks) {
   if (!ranks.distributed())
     return read_whole(file);
-  const KeptStreams kept; // a pipe is read more than once
   bool sealed = false;
   ranks.on_root([&] { sealed = has_seal(file); });
   if (ranks.broadcast(sealed))

@@ -27,7 +27,6 @@ inline constexpr Colour page_colour{0.047, 0.051, 0.066};
 inline constexpr Colour space_colour{0.012, 0.014, 0.024};
 inline constexpr Colour ink{0.93, 0.91, 0.86};
 inline constexpr Colour faint_ink{0.62, 0.61, 0.60};
-inline constexpr Colour accent{0.45, 0.80, 0.95};
 
 /// The colours of a page around its views.
 struct Theme {

@@ -82,11 +82,12 @@ refuses_with 3 "10,000 equal rows" "lie on each other in heaps" generate "$work/
 refuses_with 3 "2,000 equal rows" "are a heap" generate "$work/scene.toml" --from-table "$work/few_rows.csv" --relax \
   -o "$work/none.hdf"
 refuses "a file that does not end" "File too large" check /dev/zero
-for command in info analyze "convert --to csv -o $work/none" "render -o $work/none.png" \
-  "generate $work/scene.toml -o $work/none.hdf --from-table"; do
+for command in info analyze "convert --to csv -o $work/none" "render -o $work/none.png"; do
   # shellcheck disable=SC2086 # a command and its options
-  refuses_with 4 "a file that does not end, $command" "'/dev/zero': it is too large" $command /dev/zero
+  refuses_with 4 "a file that does not end, $command" "'/dev/zero': it is a pipe or a device" $command /dev/zero
 done
+refuses_with 4 "a table that does not end" "'/dev/zero': it is too large" generate "$work/scene.toml" -o "$work/none.hdf" \
+  --from-table /dev/zero
 truncate -s 3T "$work/large.hdf"
 refuses_with 4 "a file larger than memory" "large.hdf': it is too large" info "$work/large.hdf"
 

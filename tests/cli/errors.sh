@@ -171,7 +171,6 @@ refuses "a theme that is not there" "--theme" render "$work/taken" -o "$work/non
 refuses "a picture of no width" "'0' is not a number of pixels" render "$work/taken" -o "$work/none.png" --width 0
 refuses "a movie of a file" "not a folder" render "$work/taken/snap_000000.hdf" --movie -o "$work/none.mp4"
 refuses "a movie of another kind" "movies are .mp4 files; give it that ending" render "$work/taken" --movie -o "$work/none.png"
-refuses "a movie and more" "--autocorrelation" render "$work/taken" --movie --autocorrelation -o "$work/none.mp4"
 mkdir "$work/nothing"
 refuses_with 4 "a movie of nothing" "no snapshot" render "$work/nothing" --movie -o "$work/none.mp4"
 refuses_with 4 "a movie in no folder" "absent" render "$work/taken" --movie -o "$work/absent/none.mp4"

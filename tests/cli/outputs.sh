@@ -122,10 +122,6 @@ is_png() {
 accepts "render a folder" render "$work/run"
 prints "render a folder" "$work/run/picture.png"
 is_png "$work/run/picture.png"
-[ -e "$work/run/picture-autocorrelation.png" ] && fail "an autocorrelation that nobody asked for"
-accepts "render the autocorrelation" render "$work/run" --autocorrelation
-prints "render the autocorrelation" "$work/run/picture-autocorrelation.png"
-is_png "$work/run/picture-autocorrelation.png"
 accepts "render a file" render "$work/run/snap_000000.hdf"
 is_png "$work/run/snap_000000.png"
 accepts "render to a name" render "$work/run/snap_000000.hdf" -o "$work/mine.png"

@@ -51,8 +51,7 @@ fixed() { # NAME: a copy of the run with a pipe in the place of this file
   rm "$work/with-$1/$1"
   mkfifo "$work/with-$1/$1"
 }
-newest=$(basename "$(newest_checkpoint "$work/done")")
-for name in log.jsonl series.csv "$newest" snap_000000.hdf; do fixed "$name"; done
+for name in log.jsonl series.csv; do fixed "$name"; done
 waiting=()
 : >"$work/deaf"
 while read -r command; do
@@ -65,19 +64,12 @@ while read -r command; do
   waiting+=($!)
 done <<END
 run $work/pipe -o $work/none
-run $work/scene.toml --from $work/pipe -o $work/none
 check $work/pipe
 sweep $work/pipe -o $work/none
 study step $work/pipe -o $work/none
-convert $work/pipe --to csv -o $work/none
-render $work/pipe -o $work/none.png
-info $work/pipe
 generate $work/scene.toml --from-table $work/pipe -o $work/none.hdf
 resume $work/with-log.jsonl --until 1
 resume $work/with-series.csv --until 1
-resume $work/with-$newest --until 1
-convert $work/with-snap_000000.hdf --to csv
-render $work/with-snap_000000.hdf --movie
 render $work/with-series.csv --series
 END
 wait "${waiting[@]}"

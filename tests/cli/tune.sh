@@ -1,5 +1,5 @@
 #!/bin/bash
-# tune.sh KEELER SOURCE_DIR: `keeler tune` finds settings within the tolerances and writes them into the scene's text.
+# tune.sh KEELER SOURCE_DIR: `keeler tune` finds settings within the tolerances and writes the resolved scene with them.
 # shellcheck source=tests/cli/helpers.sh
 source "$(dirname "$0")/helpers.sh"
 small_scene
@@ -24,7 +24,7 @@ runs 0 tune "$scene" --orbits 0.3 --threads 1 --quality fast -o "$work/tuned.tom
 prints "the file" "$work/tuned.toml"
 accepts "the tuned scene" check "$work/tuned.toml"
 grep -q '^# tune: ' "$work/tuned.toml" || fail "no comments: $(cat "$work/tuned.toml")"
-grep -q '^title = "Small patch"' "$work/tuned.toml" || fail "the scene's own text is gone"
+grep -q '^title = "Small patch"' "$work/tuned.toml" || fail "another scene"
 runs 0 run "$work/tuned.toml" -o "$work/run" --set time.end=0.1
 runs 0 tune "$work/tuned.toml" --orbits 0.2 --threads 1 -o "$work/tuned.toml" --force # again, over itself
 accepts "the scene tuned twice" check "$work/tuned.toml"
@@ -37,7 +37,8 @@ grep -q "gravity" "$work/out" && fail "gravity in a scene that has none: $(cat "
 
 refuses "a file that exists" "exists already" tune "$scene" -o "$work/tuned.toml"
 refuses "a folder" "is a folder" tune "$scene" -o "$work"
-refuses "a file beside --set" "--output cannot be combined with --set" tune "$scene" -o "$work/new.toml" --set time.end=1
+runs 0 tune "$scene" --orbits 0.2 --threads 1 -o "$work/new.toml" --set time.end=1.25
+grep -q '^end = 1.25' "$work/new.toml" || fail "the file lacks an override: $(cat "$work/new.toml")"
 refuses "no such quality" "best" tune "$scene" --quality best
 refuses "a force error out of range" "is not a force error" tune "$scene" --force-error 2
 refuses "no scene" "cannot be read" tune "$work/absent.toml"

@@ -105,7 +105,7 @@ def _other_outputs(scenes, draw, folder, number):
     snapshot = whole / "snap_000001.hdf"
     words = [["render", snapshot, "-o", f"{result}.png"],
              ["render", whole, "--movie", "-o", f"{result}.mp4"],
-             ["render", snapshot, "--autocorrelation", "-o", f"{result}.png"],
+             ["render", snapshot, "-o", f"{result}.png"],
              ["convert", snapshot, "--to", "csv", "-o", f"{result}.csv"],
              ["convert", whole, "--to", "vtp", "-o", folder / "vtp"],
              ["report", whole, "-o", f"{result}.html"],

@@ -3,7 +3,6 @@
 #include "disk.hpp"
 
 #include <keeler/core/interrupt.hpp>
-#include <keeler/files/kept_streams.hpp>
 #include <keeler/files/naming_guard.hpp>
 
 #include <doctest/doctest.h>
@@ -83,7 +82,6 @@ TEST_CASE("a file that is larger than the memory, or has no end, is an error tha
   std::filesystem::resize_file(folder / "large", std::uintmax_t{1} << 42);
   CHECK_THROWS_WITH_AS(read_text(folder / "large"), doctest::Contains("large': it is too large"), IoError);
   CHECK_THROWS_WITH_AS(read_file("/dev/zero"), doctest::Contains("/dev/zero': it is too large"), IoError);
-  CHECK_THROWS_WITH_AS(open_anywhere("/dev/zero"), doctest::Contains("/dev/zero': it is too large"), IoError);
 }
 
 TEST_CASE("byte order marks and carriage returns of Windows tools are removed") {
@@ -104,25 +102,12 @@ TEST_CASE("waiting for a pipe can be interrupted") {
     CHECK_THROWS_WITH_AS(write_text(pipe, "x"), doctest::Contains("waited for '"), Interrupted);
   }
   Interruptible::waits_end_by(over);
-  CHECK_THROWS_AS(open_anywhere(pipe), Interrupted);
+  CHECK_THROWS_AS(read_text(pipe), Interrupted);
   CHECK_THROWS_AS(write_text(pipe, "x"), Interrupted);
   write_text(folder / "file", "x");
   CHECK(read_text(folder / "file") == "x"); // without a wait for a writer
   over = false;
   CHECK_THROWS_AS(Descriptor(pipe, O_WRONLY | O_APPEND), IoError);
-}
-
-TEST_CASE("a pipe has random access, and can be read again while it is kept") {
-  const TemporaryFolder folder;
-  const std::string pipe = folder / "pipe", text(100000, 'x'); // more than a pipe holds
-  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
-  std::thread writer([&] { std::ofstream(pipe) << text << "end"; });
-  const KeptStreams kept;
-  CHECK(open_anywhere(pipe)->size() == text.size() + 3);
-  writer.join();
-  std::array<std::byte, 3> end{};
-  CHECK(open_anywhere(pipe)->read_at(text.size(), end) == 3);
-  CHECK(end[2] == std::byte{'d'});
 }
 
 } // namespace files_test

@@ -22,8 +22,7 @@ void write_number(const std::filesystem::path& file, double number) {
 }
 
 double number_in(const std::filesystem::path& file, const std::string& name) {
-  return read_content<double>(file,
-                              [&](const hdf5::Handle& image) { return hdf5::read_attribute<double>(image, name); });
+  return read_content(file, [&](const hdf5::Handle& image) { return hdf5::read_attribute<double>(image, name); });
 }
 
 } // namespace
