@@ -109,13 +109,13 @@ void read_start(Scene& scene, Settings& settings, const std::string& name) {
 
 enum class Purpose { start, table, resume }; // table: the scene's particles are placeholders
 
-// If the particles come from a file or a table, decided_by() makes the choice later. Stored scenes without a choice are
-// of versions that bounced all contacts.
+// If the particles come from a file, a table or the calling program, decided_by() makes the choice later. Stored scenes
+// without a choice are of versions that bounced all contacts.
 void read_resting_contacts(Scene& scene, Settings& settings, Purpose purpose) {
   const char* const key = "gravity.resting_contacts";
   if (!scene.gravity || !settings.has(key) || settings.text(key) != "auto")
     return;
-  const bool known = purpose == Purpose::start && !scene.start_from;
+  const bool known = purpose == Purpose::start && !scene.start_from && !scene.particles.start;
   scene.gravity->resting_contacts = known && choose_resting_contacts(scale_of(scene), scene).carried;
   if (known || purpose == Purpose::resume)
     settings.resolve(key, std::string(scene.gravity->resting_contacts ? "carried" : "bounced"));
