@@ -9,6 +9,7 @@
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/simulation.hpp>
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -40,12 +41,13 @@ struct SeriesColumn {
   const char* plot; ///< "TITLE: CURVE" in plots; columns of one title are curves of one plot
   ColumnKind kind;
   const char* meaning;
-  double (*value)(const SeriesSample&);
+  std::function<double(const SeriesSample&)> value;
   bool (*in)(const Scene&) = nullptr; ///< true for scenes that have the column; null: all scenes
 };
 
-/// Returns all columns, in their order, without the step with which every row begins.
-std::span<const SeriesColumn> series_columns();
+/// Returns all columns, in their order, without the step with which every row begins. From the first call on, none can
+/// be added (own_numbers.hpp).
+const std::vector<SeriesColumn>& series_columns();
 
 /// Returns the names, units and meanings of all columns.
 std::vector<Quantity> series_quantities();

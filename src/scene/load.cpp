@@ -10,6 +10,7 @@
 
 #include <keeler/config/checks.hpp>
 #include <keeler/config/settings.hpp>
+#include <keeler/core/error.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/gravity/axisymmetric.hpp>
@@ -189,8 +190,30 @@ Scene load_varied_scene(const std::string& path, const std::vector<Override>& ov
   return read_scene(std::move(document), path, Purpose::start, std::move(notices));
 }
 
+namespace {
+
+// The stored scene has a table, a key or a law that this program lacks: another program has added it.
+struct ForeignScene : UsageError {
+  using UsageError::UsageError;
+};
+
+void require_known(const TomlDocument& document, const std::string& name) {
+  for (const DocumentEntry& entry : document) {
+    const Key* const key = find_key(entry.path);
+    const auto* const word = std::get_if<std::string>(&entry.value);
+    const bool is_law = key && key->type == KeyType::choice && key->name() == "law" && word;
+    if (is_law ? std::ranges::count(key->choices, *word) == 0 : !key && !find_section(entry.path))
+      throw ForeignScene(fmt::format("the scene of '{}' has {}, which this program does not know; continue in the "
+                                     "program that made it",
+                                     name, is_law ? entry.path + " = " + to_toml(entry.value) : entry.path));
+  }
+}
+
+} // namespace
+
 Scene parse_stored_scene(const std::string& text, const std::string& name) {
   TomlDocument document = parse_document(text, name, scene_schema());
+  require_known(document, name);
   name_quality_of_stored(document, name);
   return read_scene(std::move(document), name, Purpose::resume, {});
 }
@@ -199,6 +222,8 @@ Scene load_stored_scene(const std::filesystem::path& file) {
   const std::string text = read_lines(file);
   try {
     return parse_stored_scene(text, file.string());
+  } catch (const ForeignScene& foreign) {
+    throw IoError(foreign.what());
   } catch (const UsageError&) {
     throw IoError(fmt::format("'{}' is damaged: it is no longer a scene of Keeler; restore it, or use the scene in a "
                               "snapshot (\"keeler info FILE --json\" prints it)",
