@@ -9,7 +9,6 @@
 #include <keeler/scene/scene.hpp>
 #include <keeler/simulation/simulation.hpp>
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -41,8 +40,9 @@ struct SeriesColumn {
   const char* plot; ///< "TITLE: CURVE" in plots; columns of one title are curves of one plot
   ColumnKind kind;
   const char* meaning;
-  std::function<double(const SeriesSample&)> value;
-  bool (*in)(const Scene&) = nullptr; ///< true for scenes that have the column; null: all scenes
+  double (*value)(const SeriesSample&);
+  bool (*in)(const Scene&) = nullptr;                       ///< true for scenes that have the column; null: all scenes
+  double (*own)(const Simulation&, const Scene&) = nullptr; ///< in place of `value`, of the calling program
 };
 
 /// Returns all columns, in their order, without the step with which every row begins. From the first call on, none can
