@@ -58,7 +58,9 @@ int main() {
   const keeler::Scene scene = keeler::parse_scene(R"(
     planet.preset = "saturn-b-ring"
     box.size = [500.0, 500.0]
-    particles = { count = 1, density = 600.0, sizes = { law = "equal", radius = 1.0 } }
+    particles.count = 1
+    particles.density = 600.0
+    particles.sizes = { law = "equal", radius = 1.0 }
     particles.start = { law = "epicycle", eccentricity = 20.0 }
     gas_drag.rate = 0.5
     time = { step = 1e-3, end = 2.0 }

@@ -2,8 +2,11 @@
 
 #include "constant_acceleration.hpp"
 
+#include <keeler/core/error.hpp>
 #include <keeler/core/registry.hpp>
 #include <keeler/forces/satellite.hpp>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <string_view>
@@ -26,7 +29,8 @@ Registry<ForceEntry>& registered_forces() {
 
 void add_force(ForceEntry entry) {
   if (entry.table && std::ranges::count(other_names, std::string_view(entry.table)) > 0)
-    fail_taken("table or time", entry.table);
+    throw UsageError(
+        fmt::format("a force cannot be called '{}' (scenes and runs use that name); rename it", entry.table));
   registered_forces().add(std::move(entry));
 }
 
