@@ -39,18 +39,19 @@ gas_drag.rate = 0.5
 time = { step = 1e-3, end = 1.0 }
 )";
 
-RunResult run(const std::filesystem::path& folder, const Scene& scene, double until) {
+Scene dragged(const std::vector<std::string>& more = {}) {
+  return small_scene(joined({"gas_drag.rate=0.3", "output.series_every=0.1"}, more));
+}
+
+// Starts the run of a folder, or continues it, until an orbit.
+RunResult run(const std::filesystem::path& folder, const std::vector<std::string>& more, double until) {
   RunRequests requests;
   RunOptions options;
   options.folder = folder;
   options.until_orbits = until;
-  return std::filesystem::exists(folder) ? resume_run(options, requests) : start_run(scene, options, requests);
-}
-
-Scene dragged(const std::vector<std::string>& more = {}) {
-  std::vector<std::string> overrides = {"gas_drag.rate=0.3", "output.series_every=0.1"};
-  overrides.insert(overrides.end(), more.begin(), more.end());
-  return small_scene(overrides);
+  const bool begun = std::filesystem::exists(folder);
+  return begun ? resume_run(options, requests)
+               : start_run(dragged(joined(more, {"time.end=" + std::to_string(until)})), options, requests);
 }
 
 template<class Call> std::string fault_of(const Call& call) {
@@ -90,10 +91,9 @@ TEST_CASE("a run with an own force goes on from its checkpoint bit for bit, besi
   const TemporaryFolder work;
   for (const char* every : {"gravity.kick_every=1", "gravity.kick_every=4"}) {
     CAPTURE(every);
-    const Scene scene = dragged({every});
     const std::filesystem::path half = work / (std::string("half") + every), whole = work / (std::string("w") + every);
-    run(half, scene, 0.2);
-    CHECK(run(half, scene, 0.4).state_hash == run(whole, scene, 0.4).state_hash);
+    run(half, {every}, 0.2);
+    CHECK(run(half, {every}, 0.4).state_hash == run(whole, {every}, 0.4).state_hash);
     CHECK(read_text(half / "series.csv") == read_text(whole / "series.csv"));
     const SimulationState resumed = load_newest_checkpoint(half, {}).state,
                           straight = load_newest_checkpoint(whole, {}).state;
@@ -197,12 +197,12 @@ time.end = 1.0
 TEST_CASE("an own column is in series.csv, and an own quantity in what analyze prints") {
   add_own_physics();
   const TemporaryFolder work;
-  run(work / "run", dragged(), 0.2);
+  run(work / "run", {}, 0.2);
   const SeriesTable series = read_series(work / "run" / "series.csv");
   CHECK(series.names.back() == "gas_work_j");
   CHECK(series.of("gas_work_j").front() == 0.0);
   CHECK(series.of("gas_work_j").back() < 0.0);
-  run(work / "plain", small_scene({"gas_drag.rate=0"}), 0.1); // the column is only in scenes with gas
+  run(work / "plain", {"gas_drag.rate=0"}, 0.1); // the column is only in scenes with gas
   CHECK(read_series(work / "plain" / "series.csv").find("gas_work_j") == nullptr);
 
   const auto json = nlohmann::json::parse(analyze_json(work / "run"));
