@@ -24,8 +24,10 @@
 #include <keeler/io/snapshot.hpp>
 #include <keeler/particles/patch.hpp>
 #include <keeler/particles/sizes.hpp>
+#include <keeler/particles/start.hpp>
 #include <keeler/particles/store.hpp>
 #include <keeler/quantities/quantity.hpp>
+#include <keeler/runs/own_numbers.hpp>
 #include <keeler/runs/run.hpp>
 #include <keeler/scene/load.hpp>
 #include <keeler/scene/planet.hpp>

@@ -39,7 +39,7 @@ using Lines = std::vector<std::string>;
 
 // Returns size and density of the patch, from the start file if the scene has one.
 PatchScale scale_of_start(const Scene& scene) {
-  return scene.start_from ? scale_of(initial_patch(scene)) : scale_of(scene);
+  return scene.start_from || scene.particles.start ? scale_of(initial_patch(scene)) : scale_of(scene);
 }
 
 // Returns the estimated cost of the run; none if the particles come from a start file.

@@ -29,7 +29,7 @@ struct Line {
 
   /// True for columns that accumulate since the start of the run; their rate per orbit is shown.
   bool counts() const {
-    const auto columns = series_columns();
+    const auto& columns = series_columns();
     const auto same = [&](const SeriesColumn& known) { return std::string_view(known.name) == column; };
     return std::find_if(columns.begin(), columns.end(), same)->kind != ColumnKind::value;
   }

@@ -9,8 +9,6 @@ class ConstantAcceleration : public Force {
 public:
   explicit ConstantAcceleration(const Vec3& acceleration) : acceleration_(acceleration) {}
 
-  std::string name() const override { return "constant_acceleration"; }
-
   void accelerate(const Boundary&, std::span<Vec3> accelerations) override {
     parallel_for(accelerations.size(), [&](std::size_t k) { accelerations[k] = acceleration_; });
   }

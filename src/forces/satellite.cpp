@@ -40,8 +40,6 @@ class Satellite : public Force {
 public:
   explicit Satellite(const SatelliteOrbit& orbit) : orbit_(orbit) {}
 
-  std::string name() const override { return "satellite"; }
-
   void accelerate(const Boundary& boundary, std::span<Vec3> accelerations) override {
     assert(accelerations.size() == boundary.particles.size());
     const Frequencies& f = boundary.frequencies;

@@ -16,7 +16,6 @@ public:
       : settings_(settings), orbital_frequency_(context.orbital_frequency), seed_(context.seed),
         solver_(make_gravity_solver(settings, context.masses, context.box.area(), context.ranks)) {}
 
-  std::string name() const override { return "gravity"; }
   std::int64_t kick_every() const override { return settings_.kick_every; }
 
   void accelerate(const Boundary& boundary, std::span<Vec3> accelerations) override {

@@ -1,6 +1,7 @@
 #include <keeler/initial_conditions/initial.hpp>
 
 #include "aggregate.hpp"
+#include "own_start.hpp"
 #include "placing.hpp"
 #include "start_scale.hpp"
 
@@ -114,11 +115,13 @@ void hold_aggregates(const Scene& scene, const DrawnSizes& sizes, UniformRequest
   }
 }
 
-void hold_moonlets(const Scene& scene, UniformRequest& request) {
+std::vector<HeldBody> moonlets_of(const Scene& scene) {
+  std::vector<HeldBody> moonlets;
   for (const MoonletSettings& m : scene.moonlets) {
     const Vec3 circular(0.0, -scene.planet.frequencies.shear() * m.position.x(), 0.0);
-    request.held.push_back({m.position, circular + m.velocity / scene.planet.orbital_frequency, m.radius, m.mass});
+    moonlets.push_back({m.position, circular + m.velocity / scene.planet.orbital_frequency, m.radius, m.mass});
   }
+  return moonlets;
 }
 
 std::vector<ClosedBall> closed_balls(const Scene& scene) {
@@ -155,7 +158,8 @@ UniformRequest request_of(const Scene& scene, const Communicator& ranks) {
   request.closed = closed_balls(scene);
   ranks.on_root([&] {
     hold_aggregates(scene, sizes, request);
-    hold_moonlets(scene, request);
+    for (const HeldBody& moonlet : moonlets_of(scene))
+      request.held.push_back(moonlet);
   });
   request.own_room = own_room(request, ranks);
   return request;
@@ -264,7 +268,7 @@ Patch initial_patch(const Scene& scene, const std::function<void(const StartProg
                    fmt::format("a start of {} particles", format_number(count)),
                    "use fewer particles or a machine with more");
   });
-  return fresh_patch(scene, progress, ranks);
+  return scene.particles.start ? placed_patch(scene, moonlets_of(scene), ranks) : fresh_patch(scene, progress, ranks);
 }
 
 } // namespace keeler

@@ -50,14 +50,6 @@ void follow_streamlines(const UniformRequest& request, Patch& patch) {
   });
 }
 
-void add(const HeldBody& body, std::uint64_t id, Patch& patch) {
-  patch.positions.push_back(body.position);
-  patch.velocities.push_back(body.velocity);
-  patch.radii.push_back(body.radius);
-  patch.masses.push_back(body.mass);
-  patch.ids.push_back(id);
-}
-
 Patch patch_of(const UniformRequest& request, const std::vector<Sphere>& particles, const Communicator& ranks) {
   Patch patch;
   patch.box = request.box;
@@ -85,11 +77,19 @@ Patch patch_of(const UniformRequest& request, const std::vector<Sphere>& particl
   }
   follow_streamlines(request, patch);
   for (const HeldBody& body : request.held)
-    add(body, next_id++, patch);
+    body.add_to(patch, next_id++);
   return patch;
 }
 
 } // namespace
+
+void HeldBody::add_to(Patch& patch, std::uint64_t id) const {
+  patch.positions.push_back(position);
+  patch.velocities.push_back(velocity);
+  patch.radii.push_back(radius);
+  patch.masses.push_back(mass);
+  patch.ids.push_back(id);
+}
 
 Patch uniform_patch(const UniformRequest& request, const std::function<void(const StartProgress&)>& progress,
                     const Communicator& ranks) {

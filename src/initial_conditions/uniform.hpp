@@ -17,6 +17,8 @@ namespace keeler {
 struct HeldBody {
   Vec3 position, velocity;
   double radius, mass;
+
+  void add_to(Patch& patch, std::uint64_t id) const;
 };
 
 /// A region in which no particle is placed.

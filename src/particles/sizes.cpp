@@ -2,6 +2,7 @@
 
 #include <keeler/core/error.hpp>
 #include <keeler/core/random.hpp>
+#include <keeler/core/registry.hpp>
 
 #include <fmt/format.h>
 
@@ -79,8 +80,7 @@ Key length_key(const char* name, const char* example, const char* meaning) {
           .example = example,
           .unit = "m",
           .meaning = meaning,
-          .range = radius_range,
-          .effect = KeyEffect::start};
+          .range = radius_range};
 }
 
 } // namespace
@@ -202,8 +202,10 @@ std::vector<double> draw_radii(const SizeLaw& law, std::size_t count, std::uint6
   return radii;
 }
 
-const std::vector<SizeEntry>& size_laws() {
-  static const std::vector<SizeEntry> laws = {
+namespace {
+
+std::vector<SizeEntry> keeler_size_laws() {
+  return {
       {"equal",
        {length_key("radius", "1.0", "radius of every particle")},
        [](const Parameters& p) { return equal_sizes(p.number("radius")); }},
@@ -213,8 +215,7 @@ const std::vector<SizeEntry>& size_laws() {
          .example = "2.9",
          .unit = "1",
          .meaning = "q of the power law n(r) dr ~ r^-q dr",
-         .range = {.low = -10, .high = 10},
-         .effect = KeyEffect::start},
+         .range = {.low = -10, .high = 10}},
         length_key("min", "0.5", "smallest radius of the power law"),
         length_key("max", "5.0", "largest radius of the power law")},
        make_power},
@@ -224,8 +225,7 @@ const std::vector<SizeEntry>& size_laws() {
          .example = "\"radii.txt\"",
          .meaning = "the radii, drawn in turn",
          .range = radius_range,
-         .columns = {"radius in m"},
-         .effect = KeyEffect::start}},
+         .columns = {"radius in m"}}},
        make_listed},
       {"table",
        {{.path = "table",
@@ -233,8 +233,7 @@ const std::vector<SizeEntry>& size_laws() {
          .example = "[[30.0, 1], [1.0, 19999]]",
          .meaning = "radii, and how many particles have each, in proportion",
          .range = {.low = 1e-6, .high = 1e9},
-         .columns = {"radius in m", "number of particles"},
-         .effect = KeyEffect::start}},
+         .columns = {"radius in m", "number of particles"}}},
        make_table},
       {"populations",
        {{.path = "populations",
@@ -243,11 +242,39 @@ const std::vector<SizeEntry>& size_laws() {
          .meaning = "radii, how many particles have each, in proportion, and of which density",
          .range = {.low = 1e-6, .high = 1e9},
          .alternatives = {"particles.density"},
-         .columns = {"radius in m", "number of particles", "density in kg/m^3"},
-         .effect = KeyEffect::start}},
+         .columns = {"radius in m", "number of particles", "density in kg/m^3"}}},
        make_populations},
   };
+}
+
+Registry<SizeEntry>& registered_size_laws() {
+  static Registry<SizeEntry> laws("size law", &SizeEntry::name, keeler_size_laws(), KeyTable::shared);
   return laws;
+}
+
+} // namespace
+
+void require_consistent(const SizeLaw& law) {
+  const auto require = [&](double radius, const std::string& what) {
+    if (!(radius >= law.smallest * (1.0 - 1e-9) && radius <= law.largest * (1.0 + 1e-9)))
+      throw UsageError(fmt::format("{} is {:g} m, outside the limits of the law, {:g} m to {:g} m; correct the law",
+                                   what, radius, law.smallest, law.largest));
+  };
+  if (!(law.smallest > 0.0 && law.smallest <= law.largest && std::isfinite(law.largest)))
+    throw UsageError(
+        fmt::format("radii from {:g} m to {:g} m are no sizes; correct the law", law.smallest, law.largest));
+  for (const double u : {1e-9, 0.1, 0.5, 0.9, 1.0 - 1e-9})
+    require(law.radius(u, 0), fmt::format("the radius at the quantile {:g}", u));
+  for (const int k : {1, 2, 3, 6})
+    require(std::pow(law.mean_power(k), 1.0 / k), fmt::format("the root of the mean power {}", k));
+}
+
+void add_size_law(SizeEntry entry) {
+  registered_size_laws().add(std::move(entry));
+}
+
+const std::vector<SizeEntry>& size_laws() {
+  return registered_size_laws().entries();
 }
 
 } // namespace keeler

@@ -1,9 +1,13 @@
 #include <keeler/runs/measurement.hpp>
 
 #include <keeler/cells/overlap.hpp>
+#include <keeler/core/json_of_files.hpp>
+#include <keeler/core/registry.hpp>
 #include <keeler/diagnostics/dispersion.hpp>
 #include <keeler/diagnostics/surface.hpp>
 #include <keeler/diagnostics/wake_geometry.hpp>
+#include <keeler/quantities/views.hpp>
+#include <keeler/runs/own_numbers.hpp>
 #include <keeler/runs/patch_units.hpp>
 
 #include <algorithm>
@@ -281,7 +285,41 @@ const Rows& all_rows() {
   return all;
 }
 
+Registry<OwnQuantity>& registered_quantities() {
+  static Registry<OwnQuantity> quantities("quantity", &OwnQuantity::name, {});
+  return quantities;
+}
+
+Quantity quantity_of(const OwnQuantity& own) {
+  return {own.name, unit::unnamed(own.unit), own.label, own.meaning};
+}
+
+std::vector<Entry> own_entries(Source m) {
+  std::vector<Entry> entries;
+  for (const OwnQuantity& own : registered_quantities().entries())
+    entries.push_back({quantity_of(own), value_of(std::optional(m.mean_over_snapshots(own.value)))});
+  return entries;
+}
+
+std::vector<Quantity> own_quantities() {
+  std::vector<Quantity> all;
+  for (const OwnQuantity& own : registered_quantities().entries())
+    all.push_back(quantity_of(own));
+  return all;
+}
+
 } // namespace
+
+void add_quantity(const OwnQuantity& own) {
+  if (own.name && find_quantity(joined(quantities_of(all_rows()), transport_quantities()), own.name))
+    fail_taken("quantity", own.name);
+  registered_quantities().add(own);
+}
+
+std::string analyze_json(const std::filesystem::path& path) {
+  const MeasuredPart part = measured_part(path, {});
+  return json_text(json_of(record_of(measure(part.stored.patches, part.transport))), 2);
+}
 
 double Measurement::mean_over_snapshots(double (*value)(const Patch&)) const {
   assert(!patches.empty());
@@ -314,12 +352,13 @@ Record wakes_of(std::span<const Patch> patches) {
 }
 
 Record record_of(const Measurement& measurement) {
-  return {joined(entries_of(all_rows(), measurement), record_of(measurement.transport, measurement.units).entries),
+  const Record transport = record_of(measurement.transport, measurement.units);
+  return {joined(joined(entries_of(all_rows(), measurement), transport.entries), own_entries(measurement)),
           measurement.units};
 }
 
 std::vector<Quantity> measured_quantities() {
-  return joined(quantities_of(all_rows()), transport_quantities());
+  return joined(joined(quantities_of(all_rows()), transport_quantities()), own_quantities());
 }
 
 } // namespace keeler

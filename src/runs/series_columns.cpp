@@ -1,12 +1,15 @@
 #include <keeler/runs/series_columns.hpp>
 
 #include <keeler/cells/overlap.hpp>
+#include <keeler/core/registry.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/finders/finders.hpp>
+#include <keeler/runs/own_numbers.hpp>
 
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <string_view>
 
 namespace keeler {
 namespace {
@@ -144,6 +147,12 @@ const SeriesColumn all_columns[] = {
      [](Sample s) { return s.waves ? speed(s, s.waves->residual_dispersion(s.means.dispersion).x()) : not_measured; }},
 };
 
+Registry<SeriesColumn>& registered_columns() {
+  static Registry<SeriesColumn> columns("column", &SeriesColumn::name,
+                                        {std::begin(all_columns), std::end(all_columns)});
+  return columns;
+}
+
 } // namespace
 
 SeriesSample::SeriesSample(const Scene& of_scene, const Simulation& of_simulation,
@@ -151,21 +160,27 @@ SeriesSample::SeriesSample(const Scene& of_scene, const Simulation& of_simulatio
     : scene(of_scene), simulation(of_simulation), means(of_simulation.means()), balance(of_simulation.balance(means)),
       waves(waves_in(of_simulation, means, of_scene.planet.frequencies)), gravity(of_gravity) {}
 
-std::span<const SeriesColumn> series_columns() {
-  return all_columns;
+void add_series_column(const OwnColumn& own) {
+  if (own.name == std::string_view("step")) // each row begins with it
+    fail_taken("column", own.name);
+  registered_columns().add({own.name, own.unit, own.plot, ColumnKind::value, own.meaning, nullptr, own.in, own.value});
+}
+
+const std::vector<SeriesColumn>& series_columns() {
+  return registered_columns().entries();
 }
 
 std::vector<Quantity> series_quantities() {
   std::vector<Quantity> all;
-  for (const SeriesColumn& column : all_columns)
+  for (const SeriesColumn& column : series_columns())
     all.push_back({column.name, unit::unnamed(column.unit), column.name, column.meaning});
   return all;
 }
 
 std::vector<SeriesColumn> series_columns_of(const Scene& scene) {
   std::vector<SeriesColumn> present;
-  std::copy_if(std::begin(all_columns), std::end(all_columns), std::back_inserter(present),
-               [&](const SeriesColumn& column) { return !column.in || column.in(scene); });
+  std::ranges::copy_if(series_columns(), std::back_inserter(present),
+                       [&](const SeriesColumn& column) { return !column.in || column.in(scene); });
   return present;
 }
 
@@ -183,7 +198,7 @@ bool measures_gravity(const Scene& scene) {
 std::vector<double> values_of(std::span<const SeriesColumn> columns, const SeriesSample& sample) {
   std::vector<double> values;
   for (const SeriesColumn& column : columns)
-    values.push_back(column.value(sample));
+    values.push_back(column.own ? column.own(sample.simulation, sample.scene) : column.value(sample));
   return values;
 }
 

@@ -41,11 +41,13 @@ struct SeriesColumn {
   ColumnKind kind;
   const char* meaning;
   double (*value)(const SeriesSample&);
-  bool (*in)(const Scene&) = nullptr; ///< true for scenes that have the column; null: all scenes
+  bool (*in)(const Scene&) = nullptr;                       ///< true for scenes that have the column; null: all scenes
+  double (*own)(const Simulation&, const Scene&) = nullptr; ///< in place of `value`, of the calling program
 };
 
-/// Returns all columns, in their order, without the step with which every row begins.
-std::span<const SeriesColumn> series_columns();
+/// Returns all columns, in their order, without the step with which every row begins. From the first call on, none can
+/// be added (own_numbers.hpp).
+const std::vector<SeriesColumn>& series_columns();
 
 /// Returns the names, units and meanings of all columns.
 std::vector<Quantity> series_quantities();

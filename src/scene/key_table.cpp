@@ -10,6 +10,7 @@
 #include <keeler/finders/finders.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/particles/sizes.hpp>
+#include <keeler/particles/start.hpp>
 #include <keeler/scene/quality.hpp>
 
 #include <fmt/format.h>
@@ -51,7 +52,7 @@ std::vector<std::string> quality_names() {
   return names;
 }
 
-// Adds the keys of all laws of a registry, and the key by which a scene chooses one of them.
+// Adds the keys of all laws of a registry, and the key by which a scene chooses one of them, which has their effect.
 template<class Entry>
 void add_laws(std::vector<Key>& keys, Key law, const std::string& section, const std::vector<Entry>& entries) {
   law.path = section + ".law";
@@ -62,6 +63,7 @@ void add_laws(std::vector<Key>& keys, Key law, const std::string& section, const
     for (Key key : entry.keys) {
       key.path = section + "." + key.path;
       key.only_with = {law.path, {entry.name}};
+      key.effect = law.effect;
       keys.push_back(key);
     }
 }
@@ -70,6 +72,7 @@ void add_laws(std::vector<Key>& keys, Key law, const std::string& section, const
 void add_table(std::vector<Key>& keys, const std::string& table, const std::vector<Key>& own) {
   for (Key key : own) {
     key.path = table + "." + key.path;
+    key.effect = KeyEffect::motion;
     if (!key.only_with.key.empty())
       key.only_with.key = table + "." + key.only_with.key;
     keys.push_back(key);
@@ -347,6 +350,13 @@ std::vector<Key> make_keys() {
       {.type = KeyType::choice, .example = "\"equal\"", .meaning = "size distribution", .effect = KeyEffect::start},
       "particles.sizes", size_laws());
   add(start_pattern_keys());
+  if (!start_laws().empty())
+    add_laws(keys,
+             {.type = KeyType::choice,
+              .example = fmt::format("\"{}\"", start_laws().front().name),
+              .meaning = "start of the calling program that places the particles",
+              .effect = KeyEffect::start},
+             "particles.start", start_laws());
   add(aggregate_keys());
   add(moonlet_keys());
   add(collision_keys());
@@ -390,6 +400,8 @@ std::vector<Section> make_sections() {
       {.path = "output", .defaults_if_absent = true},
       {.path = "output.collisions"},
   };
+  if (!start_laws().empty())
+    sections.push_back({.path = "particles.start", .replaced_by = "start.from"});
   for (const ForceEntry& force : external_forces())
     sections.push_back({.path = force.table});
   return sections;

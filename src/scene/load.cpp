@@ -10,6 +10,7 @@
 
 #include <keeler/config/checks.hpp>
 #include <keeler/config/settings.hpp>
+#include <keeler/core/error.hpp>
 #include <keeler/files/files.hpp>
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/gravity/axisymmetric.hpp>
@@ -110,13 +111,13 @@ void read_start(Scene& scene, Settings& settings, const std::string& name) {
 
 enum class Purpose { start, table, resume }; // table: the scene's particles are placeholders
 
-// If the particles come from a file or a table, decided_by() makes the choice later. Stored scenes without a choice are
-// of versions that bounced all contacts.
+// If the particles come from a file, a table or the calling program, decided_by() makes the choice later. Stored scenes
+// without a choice are of versions that bounced all contacts.
 void read_resting_contacts(Scene& scene, Settings& settings, Purpose purpose) {
   const char* const key = "gravity.resting_contacts";
   if (!scene.gravity || !settings.has(key) || settings.text(key) != "auto")
     return;
-  const bool known = purpose == Purpose::start && !scene.start_from;
+  const bool known = purpose == Purpose::start && !scene.start_from && !scene.particles.start;
   scene.gravity->resting_contacts = known && choose_resting_contacts(scale_of(scene), scene).carried;
   if (known || purpose == Purpose::resume)
     settings.resolve(key, std::string(scene.gravity->resting_contacts ? "carried" : "bounced"));
@@ -190,8 +191,30 @@ Scene load_varied_scene(const std::string& path, const std::vector<Override>& ov
   return read_scene(std::move(document), path, Purpose::start, std::move(notices));
 }
 
+namespace {
+
+// The stored scene has a table, a key or a law that this program lacks: another program has added it.
+struct ForeignScene : UsageError {
+  using UsageError::UsageError;
+};
+
+void require_known(const TomlDocument& document, const std::string& name) {
+  for (const DocumentEntry& entry : document) {
+    const Key* const key = find_key(entry.path);
+    const auto* const word = std::get_if<std::string>(&entry.value);
+    const bool is_law = key && key->type == KeyType::choice && key->name() == "law" && word;
+    if (is_law ? std::ranges::count(key->choices, *word) == 0 : !key && !find_section(entry.path))
+      throw ForeignScene(fmt::format("the scene of '{}' has {}, which this program does not know; continue in the "
+                                     "program that made it",
+                                     name, is_law ? entry.path + " = " + to_toml(entry.value) : entry.path));
+  }
+}
+
+} // namespace
+
 Scene parse_stored_scene(const std::string& text, const std::string& name) {
   TomlDocument document = parse_document(text, name, scene_schema());
+  require_known(document, name);
   name_quality_of_stored(document, name);
   return read_scene(std::move(document), name, Purpose::resume, {});
 }
@@ -200,6 +223,8 @@ Scene load_stored_scene(const std::filesystem::path& file) {
   const std::string text = read_lines(file);
   try {
     return parse_stored_scene(text, file.string());
+  } catch (const ForeignScene& foreign) {
+    throw IoError(foreign.what());
   } catch (const UsageError&) {
     throw IoError(fmt::format("'{}' is damaged: it is no longer a scene of Keeler; restore it, or use the scene in a "
                               "snapshot (\"keeler info FILE --json\" prints it)",

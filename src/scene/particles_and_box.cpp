@@ -178,6 +178,21 @@ void read_pattern(Scene& scene, Settings& settings) {
   scene.particles.pattern = pattern;
 }
 
+std::optional<StartSettings> read_start(Settings& settings, const std::string& name) {
+  if (!settings.has("particles.start"))
+    return {};
+  for (const char* const other : {"streamlines", "modes", "step", "wake", "aggregate"})
+    if (const std::string path = std::string("particles.") + other; settings.has(path))
+      fail_at(settings.location(path),
+              fmt::format("{} cannot be combined with particles.start (each says where particles are at the start); "
+                          "remove one of the two",
+                          path));
+  const std::string law = settings.text("particles.start.law");
+  const auto entry = std::ranges::find(start_laws(), law, &StartEntry::name);
+  assert(entry != start_laws().end());
+  return StartSettings{&*entry, settings.parameters("particles.start", name)};
+}
+
 // The key that sets the amount of material, and the optical depth that it asks for (0 if it is a count).
 struct Amount {
   std::string key;
@@ -282,9 +297,15 @@ void read_particles_and_box(Scene& scene, Settings& settings, const std::string&
   assert(scene.planet.orbital_frequency > 0.0);
   ParticleSettings& particles = scene.particles;
   particles.sizes = make_law(size_laws(), "particles.sizes", settings, name);
+  try {
+    require_consistent(particles.sizes);
+  } catch (const UsageError& fault) {
+    fail_at(settings.location("particles.sizes.law"), fmt::format("particles.sizes: {}", fault.what()));
+  }
   particles.density = particles.sizes.density ? particles.sizes.mean_density : settings.number("particles.density");
   particles.velocity_dispersion = settings.number("particles.velocity_dispersion");
   particles.seed = static_cast<std::uint64_t>(settings.integer("particles.seed"));
+  particles.start = read_start(settings, name);
   particles.streamlines = read_streamlines(settings);
   particles.modes = read_modes(settings, name);
   const Amount amount = read_amount(settings, particles);
@@ -294,7 +315,8 @@ void read_particles_and_box(Scene& scene, Settings& settings, const std::string&
   const std::string location = settings.location(amount.key); // before read_count() resolves it
   read_count(scene, settings, amount);
   particles.aggregates = read_aggregates(settings, name, particles);
-  check_filling(scene, location);
+  if (!particles.start)
+    check_filling(scene, location);
 }
 
 } // namespace keeler

@@ -8,6 +8,7 @@
 
 #include <keeler/cells/order.hpp>
 #include <keeler/cells/overlap.hpp>
+#include <keeler/core/error.hpp>
 #include <keeler/core/exact_sum.hpp>
 #include <keeler/core/parallel.hpp>
 #include <keeler/core/stopwatch.hpp>
@@ -15,6 +16,8 @@
 #include <keeler/forces/self_gravity.hpp>
 #include <keeler/particles/by_id.hpp>
 #include <keeler/simulation/step_control.hpp>
+
+#include <fmt/format.h>
 
 #include <cassert>
 #include <cstring>
@@ -35,6 +38,15 @@ struct KickSums {
   }
 };
 
+// A run stops and writes where self-gravity kicks: all forces must have received both halves of their kicks there.
+void require_coinciding_kicks(const Force& force, const std::string& name, const Scene& scene) {
+  const std::int64_t every = force.kick_every(), interval = scene.gravity ? scene.gravity->kick_every : 1;
+  if (every < 1 || interval % every != 0)
+    throw UsageError(fmt::format("the force '{}' kicks every {} steps (it must be a divisor of gravity.kick_every, "
+                                 "which is {}); correct the force, or change gravity.kick_every",
+                                 name, every, interval));
+}
+
 std::vector<std::unique_ptr<Force>> make_forces(const Scene& scene, const SimulationState& state,
                                                 const Communicator& ranks) {
   std::vector<double> masses;
@@ -45,8 +57,10 @@ std::vector<std::unique_ptr<Force>> make_forces(const Scene& scene, const Simula
   std::vector<std::unique_ptr<Force>> forces;
   if (scene.gravity)
     forces.push_back(make_self_gravity(*scene.gravity, context));
-  for (const ForceSettings& force : scene.external_forces)
+  for (const ForceSettings& force : scene.external_forces) {
     forces.push_back(force.entry->make(force.parameters, context));
+    require_coinciding_kicks(*forces.back(), force.entry->table, scene);
+  }
   return forces;
 }
 
@@ -247,7 +261,7 @@ std::optional<GravityEnergy> Simulation::gravity_energy() const {
 }
 
 void Simulation::accelerate(std::size_t f) {
-  const Stopwatch watch(split_.forces[forces_[f]->name()]);
+  const Stopwatch watch(split_.forces[state_.forces[f].name]);
   std::vector<Vec3>& accelerations = state_.forces[f].accelerations;
   accelerations.resize(state_.particles.size());
   forces_[f]->accelerate(boundary(), accelerations);
@@ -255,7 +269,7 @@ void Simulation::accelerate(std::size_t f) {
 
 // Applies half a kick interval's velocity change, at the boundary between steps. Two half kicks stay two additions.
 void Simulation::half_kick(std::size_t f) {
-  const Stopwatch watch(split_.forces[forces_[f]->name()]), kick_watch(split_.kick);
+  const Stopwatch watch(split_.forces[state_.forces[f].name]), kick_watch(split_.kick);
   ForceState& force = state_.forces[f];
   const Frequencies& frequencies = scene_.planet.frequencies;
   const Rotation rotation = boundary().rotation();

@@ -37,15 +37,14 @@ class Force {
 public:
   virtual ~Force() = default;
 
-  /// Returns its table in the scene: also its name in checkpoints, in the time split and in the energy budget.
-  virtual std::string name() const = 0;
-
   /// Returns the number of steps from kick to kick. Runs stop and write at the kicks of self-gravity, so an external
   /// force must kick as often, or at a divisor of that interval. The default is 1.
   virtual std::int64_t kick_every() const { return 1; }
 
-  /// Writes each particle's acceleration (m rad⁻²), in the order of the particles. Collective. The result must depend
-  /// on the particles and the step only, not on threads or memory order, so that a restart is bit-identical.
+  /// Writes each particle's acceleration (m rad⁻²; one in m s⁻² is divided by Ω²), in the order of the particles.
+  /// Collective. The result must depend on the particles, the step and the force's parameters only: not on threads, the
+  /// order in memory, the number of ranks or earlier calls. A restart is bit-identical then. A force that depends on
+  /// velocities sees those before the second half kick, so its step is of first order in its own rate times the step.
   /// Precondition: one acceleration per particle.
   virtual void accelerate(const Boundary& boundary, std::span<Vec3> accelerations) = 0;
 
@@ -54,7 +53,8 @@ public:
   virtual std::optional<GravityEnergy> energy(const Boundary&) { return std::nullopt; }
 };
 
-/// The data from which a force may be made when a run starts or continues. Valid only while the force is made.
+/// The data from which a force may be made when a run starts or continues. Valid only while the force is made. A force
+/// is also made, and dropped, when a scene is read: then there are no masses.
 struct ForceContext {
   std::span<const double> masses; ///< kg, in the order of the particles
   ShearingBox box;
@@ -63,18 +63,24 @@ struct ForceContext {
   Communicator ranks = {}; ///< each rank has its own particles; all ranks make each force together
 };
 
-/// A force that a scene selects by a table: the table's name, its keys, and the function that makes the force.
+/// A force that a scene selects by a table. What the force does follows from its keys: they are in the state hash.
 struct ForceEntry {
-  const char* table;
-  std::vector<Key> keys;
+  const char* table;     ///< its name in scenes, checkpoints, the time split and the energy budget; a literal
+  std::vector<Key> keys; ///< by their names in the table; all affect the motion
+  /// Makes the force from the checked values; throws UsageError if they do not fit together.
   std::unique_ptr<Force> (*make)(const Parameters& parameters, const ForceContext& context);
   /// Throws UsageError if the values do not fit a box of this radial size; null: no check. `make` repeats the check,
   /// for boxes that the scene does not define.
   void (*check)(const Parameters& parameters, double size_x) = nullptr;
 };
 
+/// Adds a force of the calling program. Scenes have its table from then on; a program without it refuses such a scene
+/// or checkpoint. Call it before the first scene is read, in any thread. Added forces kick after Keeler's, in the order
+/// of their names. Throws UsageError for an invalid entry, a name that is taken, or a call that comes too late.
+void add_force(ForceEntry entry);
+
 /// Returns all forces but self-gravity, which has settings of a separate type (self_gravity.hpp) because solvers are
-/// selected, measured and tuned by them. A new force needs one more entry here.
+/// selected, measured and tuned by them. From the first call on, none can be added.
 const std::vector<ForceEntry>& external_forces();
 
 } // namespace keeler

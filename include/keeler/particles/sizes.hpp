@@ -9,12 +9,12 @@
 
 namespace keeler {
 
-/// A size distribution, radii in m.
+/// A size distribution, radii in m. Its functions are called from several threads at once.
 struct SizeLaw {
   double smallest = 0.0, largest = 0.0;
   std::size_t listed = 0;                  ///< number of radii in a list or a table; 0 for a continuous law
-  std::function<double(int k)> mean_power; ///< ⟨r^k⟩
-  /// Returns the k-th radius, at the quantile u in (0, 1).
+  std::function<double(int k)> mean_power; ///< ⟨r^k⟩, k from 0 to 6
+  /// Returns the k-th radius, at the quantile u in (0, 1). It must depend on u and k only.
   std::function<double(double u, std::size_t k)> radius;
   /// Returns its density, kg/m³; empty if the law does not define densities.
   std::function<double(double u, std::size_t k)> density{};
@@ -59,15 +59,23 @@ private:
 /// Returns the radii of all particles, m.
 std::vector<double> draw_radii(const SizeLaw& law, std::size_t count, std::uint64_t seed);
 
-/// A size law that a scene can choose: its name, its keys, and its factory. `make` throws UsageError if the values are
-/// inconsistent.
+/// Throws UsageError unless the radii lie between `smallest` and `largest`, which are positive, and the mean powers fit
+/// these limits.
+void require_consistent(const SizeLaw& law);
+
+/// A size law that a scene can choose: particles.sizes = { law = NAME, … }.
 struct SizeEntry {
-  const char* name;
-  std::vector<Key> keys;
+  const char* name;      ///< a literal
+  std::vector<Key> keys; ///< by their names in the table, which all laws share; they only affect the start
+  /// Makes the law from the checked values; throws UsageError if they do not fit together.
   SizeLaw (*make)(const Parameters& parameters);
 };
 
-/// Returns all size laws. A new law needs one more entry here.
+/// Adds a law of the calling program, which scenes can choose from then on. Call it before the first scene is read, in
+/// any thread. Throws UsageError for an invalid entry, a name or a key that is taken, or a call that comes too late.
+void add_size_law(SizeEntry entry);
+
+/// Returns all size laws. From the first call on, none can be added.
 const std::vector<SizeEntry>& size_laws();
 
 } // namespace keeler

@@ -8,6 +8,7 @@
 #include <keeler/gravity/solver.hpp>
 #include <keeler/hill/shearing_box.hpp>
 #include <keeler/particles/sizes.hpp>
+#include <keeler/particles/start.hpp>
 #include <keeler/scene/planet.hpp>
 
 #include <cstdint>
@@ -74,6 +75,12 @@ struct AggregateSettings {
   double radius = 0.0, mass = 0.0;  ///< of the ball, m; kg
 };
 
+/// A start that the calling program has added.
+struct StartSettings {
+  const StartEntry* entry = nullptr;
+  Parameters parameters;
+};
+
 struct ParticleSettings {
   std::size_t count = 0; ///< N, derived if the file gives τ or Σ
   double density = 0.0;  ///< kg/m³; for populations the mean by volume
@@ -84,6 +91,7 @@ struct ParticleSettings {
   std::vector<ModeSettings> modes; ///< empty if streamlines are patterned
   DensityPattern pattern;
   std::vector<AggregateSettings> aggregates;
+  std::optional<StartSettings> start; ///< none: a uniform layer, with these streamlines, modes, pattern and aggregates
 
   /// Returns the number of particles outside aggregates.
   std::size_t free_count() const { return aggregates.empty() ? count : aggregates.front().first; }

@@ -318,4 +318,21 @@ TEST_CASE("damaged scenes are refused or read, with no other outcome") {
   }
 }
 
+TEST_CASE("a stored scene with a force or a law of another program is refused by its name") {
+  const auto stored = [](const std::string& text) -> std::string {
+    try {
+      parse_stored_scene(text, "run/checkpoint_000003.h5");
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  CHECK(stored(least) == "");
+  CHECK(stored(std::string(least) + "[gas_drag]\nrate = 0.5\n") ==
+        "the scene of 'run/checkpoint_000003.h5' has gas_drag, which this program does not know; continue in the "
+        "program that made it");
+  CHECK(stored(changed(least, "\"equal\"", "\"lognormal\""))
+            .find("has particles.sizes.law = \"lognormal\", which this program does not know") != std::string::npos);
+}
+
 } // namespace errors_test

@@ -1,0 +1,23 @@
+#include <keeler/particles/start.hpp>
+
+#include <keeler/core/registry.hpp>
+
+namespace keeler {
+namespace {
+
+Registry<StartEntry>& registered_starts() {
+  static Registry<StartEntry> starts("start", &StartEntry::name, {}, KeyTable::shared);
+  return starts;
+}
+
+} // namespace
+
+void add_start(StartEntry entry) {
+  registered_starts().add(std::move(entry));
+}
+
+const std::vector<StartEntry>& start_laws() {
+  return registered_starts().entries();
+}
+
+} // namespace keeler

@@ -1,0 +1,77 @@
+#include <keeler/core/registry.hpp>
+
+#include <keeler/core/error.hpp>
+
+#include <doctest/doctest.h>
+
+namespace registry_test {
+
+using namespace keeler;
+
+namespace {
+
+struct Law {
+  const char* name;
+  std::vector<Key> keys{};
+};
+
+template<class Call> std::string fault_of(const Call& call) {
+  try {
+    call();
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "no fault";
+}
+
+Key key(const char* name) {
+  return {.path = name, .type = KeyType::number, .fallback = "1.0"};
+}
+
+} // namespace
+
+TEST_CASE("added entries come after Keeler's in the order of their names, until the registry is read") {
+  Registry<Law> laws("law", &Law::name, {{"z"}, {"b"}});
+  laws.add({"d"});
+  laws.add({"c2"});
+  laws.add({"c"});
+  std::string names;
+  for (const Law& law : laws.entries())
+    names += std::string(law.name) + " ";
+  CHECK(names == "z b c c2 d ");
+  const Law* const first = laws.entries().data();
+  CHECK(fault_of([&] { laws.add({"e"}); }) ==
+        "it is too late to add the law 'e' (a scene or a run has used the others); "
+        "add it before the first scene is read");
+  CHECK(laws.entries().data() == first);
+  CHECK(laws.entries().size() == 5);
+}
+
+TEST_CASE("a name must be plain and its own") {
+  Registry<Law> laws("law", &Law::name, {{"a"}});
+  for (const char* name : {"", "A", "1a", "a b", "a.b", "ä", "_a", static_cast<const char*>(nullptr)})
+    CHECK(fault_of([&] { laws.add({name}); }).starts_with("a law cannot be called '"));
+  CHECK(fault_of([&] { laws.add({"a"}); }) == "there is a law 'a' already; give this law another name");
+  laws.add({"b_2"});
+  CHECK(fault_of([&] { laws.add({"b_2"}); }).starts_with("there is a law 'b_2' already"));
+}
+
+TEST_CASE("keys must be complete, and differ where laws share a table") {
+  Registry<Law> laws("law", &Law::name, {{"a", {key("scale")}}}, KeyTable::shared),
+      forces("force", &Law::name, {{"a", {key("scale")}}});
+  forces.add({"b", {key("scale")}});
+  CHECK(fault_of([&] {
+          laws.add({"b", {key("scale")}});
+        }) == "the key 'scale' of the law 'b' is in its table already; give it another name");
+  CHECK(fault_of([&] { laws.add({"b", {key("law")}}); }).starts_with("the key 'law' of the law 'b' is in its table"));
+  CHECK(fault_of([&] { laws.add({"b", {key("c"), key("c")}}); }).starts_with("the law 'b' has a key 'c'"));
+  CHECK(fault_of([&] { laws.add({"b", {key("c.d")}}); }).starts_with("the law 'b' has a key 'c.d'"));
+  Key bare = key("c"), choice = key("c"), rows = key("c");
+  bare.fallback.clear();
+  choice.type = KeyType::choice;
+  rows.type = KeyType::rows;
+  for (const Key& incomplete : {bare, choice, rows})
+    CHECK(fault_of([&] { laws.add({"b", {incomplete}}); }).starts_with("the key 'c' of the law 'b' is incomplete"));
+}
+
+} // namespace registry_test
