@@ -104,7 +104,7 @@ std::vector<PlotLine> plot_lines(const Grid& grid, const Plan& plan, const std::
   for (const PointRow& row : points) {
     if (!row.values[y])
       continue;
-    const GridPoint& point = *row.point;
+    const GridPoint& point = plan.points[row.point];
     assert(x.key < point.settings.size() && x.axis < point.on_axis.size());
     const std::string title = title_of(grid, plan, point, x.axis);
     const auto [entry, is_new] = line_of.try_emplace(title, lines.size());

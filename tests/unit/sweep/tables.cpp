@@ -1,6 +1,5 @@
-#include "tables.hpp"
-
 #include "grids.hpp"
+#include "output.hpp"
 
 #include <keeler/report/csv.hpp>
 
@@ -84,7 +83,7 @@ TEST_CASE("a point has the mean of its finished runs, as sums over all pairs of 
   const Grid grid = file.grid();
   const Plan plan = plan_runs(grid);
   const std::vector<RunRow> runs = made_up_rows(plan);
-  const std::vector<PointRow> points = point_rows(grid, plan, runs);
+  const std::vector<PointRow> points = point_rows(runs, plan.points.size(), RunQuantities().columns().size());
   REQUIRE(points.size() == 4);
   for (std::size_t p = 0; p < points.size(); ++p)
     for (std::size_t q = 0; q < RunQuantities().columns().size(); ++q) {
@@ -113,7 +112,8 @@ TEST_CASE("tables have finished and failed runs, with gaps where nothing is know
   CHECK(csv.starts_with("run,particles.optical_depth,time.step,seed,status,reason,particle_count,since_orbit,"));
   CHECK(csv.find("\noptical_depth-0.1_step-0.002_seed-2,0.1,0.002,2,failed,\"no room, \"\"none\"\"\",,") != csv.npos);
   CHECK(csv.find("null") == csv.npos);
-  const Json points = points_as_json(grid, plan, point_rows(grid, plan, runs));
+  const Json points =
+      points_as_json(grid, plan, point_rows(runs, plan.points.size(), RunQuantities().columns().size()));
   CHECK(points[3].at("particles.optical_depth") == 0.2);
   CHECK(points[1].at("failed_runs") == 1);
 }
