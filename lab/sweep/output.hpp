@@ -1,19 +1,13 @@
-// The output of a sweep: its tables, figure.svg (with its data, gnuplot script and PNG) and report.md.
+// The readable output of a sweep: figure.svg (with its data, gnuplot script and PNG) and report.md.
 #pragma once
 
-#include "plan.hpp"
-
-#include <keeler/batch/rows.hpp>
+#include "grid.hpp"
+#include "tables.hpp"
 
 #include <string>
 #include <vector>
 
 namespace keeler {
-
-/// Return a list of objects with one member per column, null for unknown values: of the finished and failed runs, and
-/// of the points with a finished run.
-Json runs_as_json(const Grid& grid, const Plan& plan, const std::vector<RunRow>& runs);
-Json points_as_json(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points);
 
 /// A line of the plot, for one combination of values on the axes other than the axis of x.
 struct PlotLine {

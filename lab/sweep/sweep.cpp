@@ -1,6 +1,7 @@
 #include <keeler/sweep/sweep.hpp>
 
 #include "output.hpp"
+#include "tables.hpp"
 
 #include <keeler/advice/warnings.hpp>
 #include <keeler/batch/claims.hpp>
@@ -134,7 +135,7 @@ SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
   const std::vector<PointRow> points = point_rows(runs, plan.points.size(), grid.quantities.columns().size());
   static_cast<BatchResult&>(result) = result_of(runs);
   result.figure_fault = write_tables(grid, plan, folders, runs, points, settings.notice);
-  result.points = std::make_shared<const Json>(points_as_json(grid, plan, points));
+  result.points = points_as_json(grid, plan, points);
   return result;
 }
 

@@ -9,7 +9,6 @@
 #include <keeler/batch/workers.hpp>
 
 #include <filesystem>
-#include <memory>
 #include <string>
 
 namespace keeler {
@@ -21,9 +20,9 @@ struct SweepSettings : BatchSettings {
 
 /// The state of the folder after a call.
 struct SweepResult : BatchResult {
-  bool began = false;                 ///< starting runs was requested
-  std::shared_ptr<const Json> points; ///< the rows of points.csv, a list; null if there are none
-  std::string figure_fault;           ///< reason why drawing the figure failed; empty if it did not
+  bool began = false;       ///< starting runs was requested
+  Json points;              ///< the rows of points.csv, a list
+  std::string figure_fault; ///< reason why drawing the figure failed; empty if it did not
 };
 
 /// Executes the runs that are neither finished nor held by another program, and writes the tables. All input is checked

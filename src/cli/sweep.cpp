@@ -28,7 +28,7 @@ struct SweepOptions {
 
 void print_json(const SweepResult& result) {
   const Json json = {
-      {"runs", result.runs}, {"finished", result.finished}, {"failed", result.failed}, {"points", *result.points}};
+      {"runs", result.runs}, {"finished", result.finished}, {"failed", result.failed}, {"points", result.points}};
   print("{}\n", json_text(json, 2));
 }
 

@@ -1,7 +1,10 @@
 #include "measurements.hpp"
 #include "numbers.hpp"
+#include "study_folder.hpp"
 
+#include <keeler/core/json_of_files.hpp>
 #include <keeler/files/files.hpp>
+#include <keeler/report/csv.hpp>
 #include <keeler/report/document.hpp>
 
 #include <fmt/format.h>
@@ -13,10 +16,21 @@
 namespace keeler {
 namespace {
 
+Json row_of(const FinderStudyData& data, const StudyState& state, double step, const std::string& finder, int repeat) {
+  const Json& run = data.result(job_name("run", state.name, step, finder, repeat));
+  const Json& audit = data.audit(state.name, step, finder);
+  Json row = {
+      {"state", state.name}, {"step_orbits", step}, {"finder", finder}, {"repeat", repeat}, {"cpu_s", run.at("cpu_s")}};
+  for (const char* key : {"calls", "hits", "missed", "false_hits", "late", "misordered", "evaluations"})
+    row[key] = audit.at(key);
+  row["ns_per_call"] = run.at("ns_per_call");
+  return row;
+}
+
 class Report {
 public:
   Report(const FinderStudyData& data, bool with_figures)
-      : data_(data), n_(data), document_("The finders' study: the paper's experiment"), with_figures_(with_figures) {}
+      : data_(data), document_("The finders' study: the paper's experiment"), with_figures_(with_figures) {}
 
   void write() {
     introduction();
@@ -58,7 +72,6 @@ private:
   }
 
   void introduction() {
-    const auto made = [&](const char* key) { return data_.made.at(key); };
     document_.paragraph(fmt::format(
         "M. C. Lewis, \"Collision Finding for Particles on Non-linear Paths\" (draft), compares five ways to find the "
         "time at which two ring particles touch: {}. This is its experiment, with {} finders: {} states × {} time "
@@ -71,11 +84,10 @@ private:
         "is off: it made the clumped states, and its cost is given with them. Sines and cosines are polynomials in the "
         "time since mid-step; the paper's code evaluates full phases with the C library, so trigonometry is cheaper "
         "here.");
-    document_.paragraph(
-        fmt::format("Made by `{}` on {} ({}), {}, flags `{}`, commit {}. Half the range of the repeats is {} "
-                    "of their median (median over all timed runs): smaller differences are not significant.",
-                    made("command"), made("processor"), made("host"), made("compiler"), made("flags"), made("commit"),
-                    percent(n_.scatter())));
+    document_.paragraph(made_by(data_.made) +
+                        fmt::format(" Half the range of the repeats is {} of their median (median over "
+                                    "all timed runs): smaller differences are not significant.",
+                                    percent(data_.scatter())));
     if (data_.states.front().patch.size() < 5000)
       document_.paragraph(
           "**This is a small study**: it shows that the measurements work, and is too small for verdicts.");
@@ -88,14 +100,14 @@ private:
 
   void claims() {
     document_.heading("The paper's claims");
-    document_.table(paper_claims(n_));
+    document_.table(paper_claims(data_));
     double full = HUGE_VAL, cubic = HUGE_VAL, missed = 0.0, others_missed = 0.0;
     for (const StudyState& state : data_.states) {
-      const double certified = n_.per_call(state.name, "certified");
-      full = std::min(full, n_.per_call(state.name, "linear-full") / certified);
-      cubic = std::min(cubic, n_.per_call(state.name, "linear-cubic") / certified);
+      const double certified = data_.per_call(state.name, "certified");
+      full = std::min(full, data_.per_call(state.name, "linear-full") / certified);
+      cubic = std::min(cubic, data_.per_call(state.name, "linear-cubic") / certified);
     }
-    n_.each_panel([&](const std::string& state, double step) {
+    data_.each_panel([&](const std::string& state, double step) {
       missed += of(data_.audit(state, step, "certified"), "missed");
       others_missed += of(data_.audit(state, step, "linear-full"), "missed");
     });
@@ -134,7 +146,7 @@ private:
                                 }));
     }
     double pairs = 0.0, contacts = 0.0, only_scan = 0.0, only_certified = 0.0, other_time = 0.0;
-    n_.each_panel([&](const std::string& state, double step) {
+    data_.each_panel([&](const std::string& state, double step) {
       const Json& scan = data_.result(job_name("scan", state, step));
       pairs += of(scan, "pairs"), contacts += of(scan, "contacts"), only_scan += of(scan, "only_scan");
       only_certified += of(scan, "only_certified"), other_time += of(scan, "other_time");
@@ -157,7 +169,7 @@ private:
       for (const double step : data_.steps)
         head.push_back(fmt::format("step {:.3g}", step));
       document_.table(by_finder(head, data_.steps, [&](const std::string& finder, double step) {
-        return number(n_.cpu(state.name, step, finder)) + " s";
+        return number(data_.cpu(state.name, step, finder)) + " s";
       }));
     }
   }
@@ -171,12 +183,13 @@ private:
         "the start of a step is not in these times; the table of the memory below has it.");
     Rows rows =
         by_finder(head_of_states("ns per call"), data_.states, [&](const std::string& finder, const StudyState& state) {
-          const double time = n_.per_call(state.name, finder);
-          return fmt::format("{:.1f} ({:.1f})", time, time / n_.per_call(state.name, "certified"));
+          const double time = data_.per_call(state.name, finder);
+          return fmt::format("{:.1f} ({:.1f})", time, time / data_.per_call(state.name, "certified"));
         });
     Row alone = {"certified, its search alone"};
     for (const StudyState& state : data_.states)
-      alone.push_back(fmt::format("{:.1f}", of(n_.details(state.name), "certified_search_alone_ns_per_call")));
+      alone.push_back(
+          fmt::format("{:.1f}", of(data_.shown("details", state.name), "certified_search_alone_ns_per_call")));
     rows.push_back(alone);
     document_.table(rows);
   }
@@ -194,7 +207,7 @@ private:
     Rows rows = {{"finder", "calls", "receding or overlapping", "hit", "root outside the step", "missed", "gave up",
                   "iterations per hit", "evaluations per hit", "evaluations per call"}};
     for (const std::string& finder : all_finders()) {
-      const Json& audit = n_.early(finder);
+      const Json& audit = data_.early(finder);
       const double calls = of(audit, "calls");
       Row row = {finder, fmt::format("{:.0f}", calls)};
       for (const Row& exits :
@@ -213,7 +226,7 @@ private:
     Rows rows = {{"state", "step", "newton-cubic: run, cached / fitted", "call, cached / fitted",
                   "linear-cubic: run, cached / fitted", "call, cached / fitted",
                   "linear-cubic-cached / linear-full, run"}};
-    n_.each_panel([&](const std::string& state, double step) {
+    data_.each_panel([&](const std::string& state, double step) {
       const auto ratio = [&](const char* a, const char* b, const char* field) {
         return fmt::format("{:.2f}", data_.timed(state, step, a, field) / data_.timed(state, step, b, field));
       };
@@ -225,9 +238,9 @@ private:
     });
     document_.table(rows);
     Rows memory = {{"finder", "bytes stored per particle", "rebuilt every step, ns per particle"}};
-    const Json& begin = n_.details(data_.states.front().name).at("begin_ns_per_particle");
+    const Json& begin = data_.shown("details", data_.states.front().name).at("begin_ns_per_particle");
     for (const auto& [finder, time] : begin.items())
-      memory.push_back({finder, fmt::format("{:.0f}", of(n_.early(finder), "bytes_per_particle")),
+      memory.push_back({finder, fmt::format("{:.0f}", of(data_.early(finder), "bytes_per_particle")),
                         fmt::format("{:.1f}", time.get<double>())});
     document_.table(memory);
   }
@@ -245,8 +258,8 @@ private:
     Rows rows = {{"state", "finder", "best measured step", "d", "best step of the law", "largest error"}};
     for (const StudyState& state : data_.states)
       for (const std::string& finder : shown_finders()) {
-        const std::size_t best = n_.best_step(state.name, finder);
-        const StepLaw law = n_.law_of(state.name, finder);
+        const std::size_t best = data_.best_step(state.name, finder);
+        const StepLaw law = data_.law_of(state.name, finder);
         const bool rises = law.b > 0.0;
         rows.push_back({state.name, finder,
                         fmt::format("{}{:.3g}", best + 1 == data_.steps.size() ? "≥ " : "", data_.steps[best]),
@@ -271,10 +284,10 @@ private:
       Row head = {fmt::format("step {}: ns per call; wrong", step)}, contacts = {"true contacts"};
       for (const double fraction : data_.moved_fractions) {
         head.push_back(fmt::format("{:.0f} % moved", 100.0 * fraction));
-        contacts.push_back(fmt::format("{:.0f}", of(n_.local(step, fraction), "true_hits")));
+        contacts.push_back(fmt::format("{:.0f}", of(data_.local(step, fraction), "true_hits")));
       }
       Rows rows = by_finder(head, data_.moved_fractions, [&](const std::string& finder, double fraction) {
-        const auto value = [&](const char* key) { return of(n_.local(step, fraction).at(key), finder); };
+        const auto value = [&](const char* key) { return of(data_.local(step, fraction).at(key), finder); };
         return fmt::format("{:.1f}; {:.0f}/{:.0f}/{:.0f}", value("ns_per_call"), value("missed"), value("false_hits"),
                            value("late"));
       });
@@ -294,7 +307,7 @@ private:
         "rejection first: processor time, and in brackets the rank, where differences below 2 % count as none.");
     Rows left = {{"state", "grid candidates, first step", "left", "fraction", "with a contact"}};
     for (const StudyState& state : data_.states) {
-      const Json& r = n_.rejection(state.name);
+      const Json& r = data_.shown("rejection", state.name);
       left.push_back({state.name, fmt::format("{:.0f}", of(r, "candidates")), fmt::format("{:.0f}", of(r, "left")),
                       percent(of(r, "left") / of(r, "candidates")), fmt::format("{:.0f}", of(r, "contacts"))});
     }
@@ -307,7 +320,7 @@ private:
     };
     document_.table(by_finder(head_of_states("finder", ", before → after"), data_.states,
                               [&](const std::string& finder, const StudyState& state) {
-                                const Json& r = n_.rejection(state.name);
+                                const Json& r = data_.shown("rejection", state.name);
                                 const Json &before = r.at("cpu_s_every_candidate"),
                                            &after = r.at("cpu_s_after_rejection");
                                 return fmt::format("{:.3g} s ({}.) → {:.3g} s ({}.)", of(before, finder),
@@ -336,12 +349,28 @@ private:
   }
 
   const FinderStudyData& data_;
-  FinderNumbers n_;
   Document document_;
   bool with_figures_;
 };
 
 } // namespace
+
+void write_finder_tables(const FinderStudyData& data) {
+  Json rows = Json::array();
+  for (int repeat = 0; repeat < data.repeats; ++repeat)
+    for (const StudyState& state : data.states)
+      for (const double step : data.steps)
+        for (const std::string& finder : all_finders())
+          rows.push_back(row_of(data, state, step, finder, repeat));
+  write_text(data.folder / "finders.csv", csv_of(rows));
+
+  Json other = Json::object(); // all other measurements, by job name
+  for (const auto& [name, result] : data.results)
+    if (!name.starts_with("run/"))
+      other[name] = result;
+  write_text(data.folder / "finders.json",
+             json_text(Json{{"made", data.made}, {"rows", rows}, {"measurements", other}}, 1) + "\n");
+}
 
 void write_finder_report(const FinderStudyData& data, bool with_figures) {
   Report(data, with_figures).write();

@@ -1,5 +1,6 @@
 #include "report.hpp"
 
+#include "study_folder.hpp"
 #include "verdict.hpp"
 
 #include <keeler/core/format.hpp>
@@ -67,9 +68,7 @@ void introduce(const StudyPlan& plan, const std::map<std::string, std::string>& 
   document.paragraph(
       "Numbers are means over the seeds, ± half the width of their 95 % confidence interval (Student's t). "
       "Processor time and memory are those of a run on one thread.");
-  document.paragraph(fmt::format("Made by `{}` on {} ({}), {}, flags `{}`, commit {}.", made.at("command"),
-                                 made.at("processor"), made.at("host"), made.at("compiler"), made.at("flags"),
-                                 made.at("commit")));
+  document.paragraph(made_by(made));
 }
 
 std::string with_bound(const Scatter& scatter) {

@@ -1,12 +1,12 @@
+#include "tables.hpp"
+
 #include "grids.hpp"
-#include "output.hpp"
 
 #include <keeler/report/csv.hpp>
 
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <limits>
 #include <map>
 
 namespace tables_test {
@@ -15,8 +15,6 @@ using namespace keeler;
 using namespace keeler::test;
 
 namespace {
-
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 const char* const text = R"(
 scene = "scene.toml"
@@ -69,14 +67,6 @@ Estimate plain_mean(const std::vector<Estimate>& seeds) {
 }
 
 } // namespace
-
-TEST_CASE("the mean over seeds has the error of their spread, and one seed its own") {
-  const std::vector<Estimate> three = {{1.0, 0.5}, {2.0, unknown}, {6.0, 0.1}};
-  CHECK(seed_mean(three).value == doctest::Approx(3.0));
-  CHECK(seed_mean(three).error == doctest::Approx(std::sqrt(7.0 / 3.0)));
-  CHECK(seed_mean(std::vector<Estimate>{{2.0, 0.25}}).error == 0.25);
-  CHECK(std::isnan(seed_mean(std::vector<Estimate>{{2.0, unknown}}).error));
-}
 
 TEST_CASE("a point has the mean of its finished runs, as sums over all pairs of runs give it") {
   const GridFile file(text);

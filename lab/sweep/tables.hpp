@@ -1,0 +1,17 @@
+// The tables of a sweep: one row per run, and one row per point of the grid with means over the seeds.
+#pragma once
+
+#include "plan.hpp"
+
+#include <keeler/batch/rows.hpp>
+
+#include <vector>
+
+namespace keeler {
+
+/// Returns a list of objects with one member per column, null for unknown values: of the finished and failed runs, and
+/// of the points with a finished run.
+Json runs_as_json(const Grid& grid, const Plan& plan, const std::vector<RunRow>& runs);
+Json points_as_json(const Grid& grid, const Plan& plan, const std::vector<PointRow>& points);
+
+} // namespace keeler
