@@ -84,18 +84,6 @@ Maybe largest_cluster(const Source& run) {
   return Estimate{clusters.largest_mass_fraction, no_error};
 }
 
-const Record& transport_in(const Source& run) {
-  return run.transport;
-}
-
-const Record& wakes_in(const Source& run) {
-  return run.wakes;
-}
-
-const Record& analysis_in(const Source& run) {
-  return run.analysis;
-}
-
 std::vector<std::size_t> rows_between(const std::vector<double>& orbits, double since, double until) {
   constexpr double rounding = 1e-9;
   std::vector<std::size_t> rows;
@@ -112,7 +100,7 @@ RunQuantities::RunQuantities(const std::vector<std::string>& extra) {
   const auto known = [&](const char* name) { return *find_quantity(measured, name); };
   for (const char* const name : {"translational_viscosity", "collisional_viscosity", "gravitational_viscosity",
                                  "total_viscosity", "loss_viscosity", "energy_balance"})
-    add_measured(known(name), transport_in);
+    add_measured(known(name), &Source::transport);
   for (const char* const axis : {"dispersion_x", "dispersion_y", "dispersion_z"})
     add_series_mean(fmt::format("{}_m_s", axis),
                     {axis, unit::metres_per_second, {}, {}, Spread::error, Forms::si_and_radius});
@@ -123,13 +111,13 @@ RunQuantities::RunQuantities(const std::vector<std::string>& extra) {
   add_series_mean("spin_energy_ratio", {"spin_energy_ratio"});
   add({"collisions_per_particle_orbit", unit::none, {}, "collisions faster than v_cut"}, collision_rate);
   for (const char* const name : {"wake_amplitude", "wake_wavelength", "wake_angle"})
-    add_measured(known(name), wakes_in);
+    add_measured(known(name), &Source::wakes);
   add({"largest_cluster_mass_share",
        unit::none,
        {},
        "mass fraction of the largest cluster of touching spheres, in the last snapshot; with self-gravity"},
       largest_cluster);
-  add_measured(known("wake_contrast"), wakes_in);
+  add_measured(known("wake_contrast"), &Source::wakes);
   require_names(measured, extra);
   for (const std::string& name : extra) {
     bool has_column = false;
@@ -140,7 +128,7 @@ RunQuantities::RunQuantities(const std::vector<std::string>& extra) {
       if (find(quantity.full_name()))
         continue;
       analyzes_ = true;
-      add_measured(quantity, analysis_in);
+      add_measured(quantity, &Source::analysis);
     }
     if (!has_column)
       throw UsageError(
@@ -165,13 +153,13 @@ void RunQuantities::add(const Quantity& quantity, const Reading& number) {
   }
 }
 
-void RunQuantities::add_measured(const Quantity& quantity, const std::function<const Record&(const Source&)>& record) {
+void RunQuantities::add_measured(const Quantity& quantity, Record Source::*record) {
   if (quantity.shape == Shape::number)
-    add(quantity, [record, quantity](const Source& run) { return estimate_in(record(run), quantity); });
+    add(quantity, [record, quantity](const Source& run) { return estimate_in(run.*record, quantity); });
   else if (quantity.shape == Shape::vector)
     for (const std::size_t axis : {0U, 1U, 2U})
       if (const Quantity one = quantity.along(axis); !find(one.full_name()))
-        add(one, [record, axis, name = quantity.name](const Source& run) { return axis_in(record(run), name, axis); });
+        add(one, [record, axis, name = quantity.name](const Source& run) { return axis_in(run.*record, name, axis); });
 }
 
 void RunQuantities::add_series_mean(const std::string& column, Quantity quantity) {

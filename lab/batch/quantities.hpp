@@ -47,7 +47,7 @@ private:
   using Reading = std::function<std::optional<Estimate>(const Source&)>;
 
   void add(const Quantity& quantity, const Reading& number);
-  void add_measured(const Quantity& quantity, const std::function<const Record&(const Source&)>& record);
+  void add_measured(const Quantity& quantity, Record Source::*record);
   void add_series_mean(const std::string& column, Quantity quantity);
 
   std::vector<RunColumn> columns_;

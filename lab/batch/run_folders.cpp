@@ -66,14 +66,14 @@ void refuse_changed_run(const PlannedRun& run, const fs::path& folder, const std
                                  location, run.name, change, folder.string()));
 }
 
+} // namespace
+
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error)
     throw IoError(fmt::format("cannot make the folder '{}': {}; name another", folder.string(), error.message()));
 }
-
-} // namespace
 
 void RunFolders::refuse_changed(std::span<const PlannedRun> runs, const std::string& location) const {
   for (const PlannedRun& planned : runs)

@@ -11,6 +11,9 @@
 
 namespace keeler {
 
+/// Makes a folder and those above it. Throws IoError.
+void make_folder(const std::filesystem::path& folder);
+
 class RunFolders {
 public:
   explicit RunFolders(std::filesystem::path path) : path_(std::move(path)) {}

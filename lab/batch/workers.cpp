@@ -57,11 +57,11 @@ std::vector<std::size_t> seed_by_seed(std::span<const PlannedRun> runs) {
 
 class Workers {
 public:
-  Workers(std::span<const PlannedRun> runs, const RunFolders& folders, Claims& claims, const WorkOptions& options,
+  Workers(std::span<const PlannedRun> runs, const RunFolders& folders, Claims& claims, const BatchSettings& settings,
           const RunRequests& requests)
-      : runs_(runs), order_(seed_by_seed(runs)), folders_(folders), claims_(claims), options_(options),
+      : runs_(runs), order_(seed_by_seed(runs)), folders_(folders), claims_(claims), settings_(settings),
         requests_(requests), states_(runs.size()) {
-    assert(options.jobs > 0 && options.threads > 0 && options.progress && options.notice);
+    assert(settings.jobs > 0 && settings.threads_per_run > 0 && settings.progress && settings.notice);
     for (std::size_t k = 0; k < states_.size(); ++k)
       states_[k].previous_failure = failure_time(k);
     refresh();
@@ -105,7 +105,7 @@ private:
     return static_cast<std::size_t>(
         std::count_if(states_.begin(), states_.end(), [](const State& s) { return s.child != nullptr; }));
   }
-  bool free_slots() const { return running() < options_.jobs; }
+  bool free_slots() const { return running() < settings_.jobs; }
 
   // Returns true if a time has come, and then moves it to one interval from now.
   bool due(double& time) {
@@ -159,7 +159,7 @@ private:
       if (stage == RunStage::begun)
         words.emplace_back("--force");
     }
-    words.insert(words.end(), {"--threads", fmt::format("{}", options_.threads)});
+    words.insert(words.end(), {"--threads", fmt::format("{}", settings_.threads_per_run)});
     states_[k].child = std::make_unique<Child>(words);
   }
 
@@ -186,7 +186,7 @@ private:
     const std::string reason =
         end.message.empty() ? fmt::format("the run ended with exit code {}", end.code) : end.message;
     write_text(folders_.failure(run(k).name), reason + "\n");
-    options_.notice(fmt::format("the run {} failed: {}", run(k).name, reason));
+    settings_.notice(fmt::format("the run {} failed: {}", run(k).name, reason));
   }
 
   // Asks the children to stop: once, and repeatedly after a request to give up.
@@ -232,14 +232,14 @@ private:
     progress.elapsed_s = elapsed;
     progress.remaining_s = gained > 0.0 ? elapsed * (all - now) / gained : 0.0;
     progress.what = fmt::format("{} of {} done, {} running", finished, pluralize(states_.size(), "run"), running());
-    options_.progress(progress);
+    settings_.progress(progress);
   }
 
   std::span<const PlannedRun> runs_;
   std::vector<std::size_t> order_;
   const RunFolders& folders_;
   Claims& claims_;
-  const WorkOptions& options_;
+  const BatchSettings& settings_;
   const RunRequests& requests_;
   std::vector<State> states_; // one per run
   double elapsed_ = 0.0;
@@ -251,9 +251,9 @@ private:
 
 } // namespace
 
-void work_on(std::span<const PlannedRun> runs, const RunFolders& folders, Claims& claims, const WorkOptions& options,
+void work_on(std::span<const PlannedRun> runs, const RunFolders& folders, Claims& claims, const BatchSettings& settings,
              const RunRequests& requests) {
-  Workers(runs, folders, claims, options, requests).work();
+  Workers(runs, folders, claims, settings, requests).work();
 }
 
 } // namespace keeler

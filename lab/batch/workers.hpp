@@ -8,24 +8,29 @@
 #include <keeler/core/progress.hpp>
 #include <keeler/runs/run.hpp>
 
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace keeler {
 
-struct WorkOptions {
-  std::size_t jobs = 1; ///< runs at once
-  int threads = 1;      ///< per run
+/// The settings of every batch.
+struct BatchSettings {
+  std::filesystem::path folder; ///< for runs and results
+  std::size_t jobs = 1;         ///< runs at once, each in a process
+  int threads_per_run = 1;
+  std::vector<std::string> quantities{}; ///< of keeler analyze, as additional columns
   std::function<void(const Progress&)> progress;
   std::function<void(const std::string&)> notice;
 };
 
 /// Executes runs until every run is finished, has failed or is held by another program. A failure is recorded in the
 /// folder, and the run is not tried again before the next call, neither here nor by concurrent programs. On a stop
-/// request the runs are stopped, each with a checkpoint. Precondition: options.jobs > 0, and `progress` and `notice`
+/// request the runs are stopped, each with a checkpoint. Precondition: settings.jobs > 0, and `progress` and `notice`
 /// are set. Throws IoError, Error.
-void work_on(std::span<const PlannedRun> runs, const RunFolders& folders, Claims& claims, const WorkOptions& options,
+void work_on(std::span<const PlannedRun> runs, const RunFolders& folders, Claims& claims, const BatchSettings& settings,
              const RunRequests& requests);
 
 } // namespace keeler

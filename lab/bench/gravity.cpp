@@ -78,7 +78,7 @@ std::vector<double> solve_times(GravitySolver& solver, const GravityProblem& pro
 
 std::vector<GravityChoice> chosen(const GravityBenchSettings& settings, std::size_t count) {
   std::vector<GravityChoice> choices;
-  for (const GravityChoice& choice : gravity_choices(settings.dense))
+  for (const GravityChoice& choice : gravity_choices())
     if (settings.solver.empty() ? choice.solver != "direct" || count <= max_direct : choice.solver == settings.solver)
       choices.push_back(choice);
   return choices;

@@ -18,7 +18,6 @@ struct GravityBenchSettings {
   std::size_t count = 100000; ///< rounded to whole tiles, at least a patch of 2 × 2 λ_cr
   bool clumped = true;        ///< with wakes; otherwise a uniform initial state
   std::string solver;         ///< empty: all, `direct` only up to 10000 particles
-  bool dense = false;         ///< more settings of each solver
   int repeats = 5;
   std::function<void(const Progress&)> progress; ///< may be empty
 };

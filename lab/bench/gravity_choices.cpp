@@ -15,47 +15,44 @@ GravityChoice tree(double opening_angle) {
   GravitySettings settings;
   settings.solver = GravitySettings::Solver::tree;
   settings.opening_angle = opening_angle;
-  return {"tree", fmt::format("opening_angle {:.3g}", opening_angle), "opening angle", opening_angle, settings};
+  return {"tree", fmt::format("opening_angle {:.3g}", opening_angle), settings};
 }
 
 GravityChoice direct() {
   GravitySettings settings;
   settings.solver = GravitySettings::Solver::direct;
-  return {"direct", "all pairs", "", 0.0, settings};
+  return {"direct", "all pairs", settings};
 }
 
 GravityChoice fft(double cut) {
   GravitySettings settings;
   settings.solver = GravitySettings::Solver::fft;
   settings.mesh_cut = cut;
-  return {"fft", fmt::format("cut {:.3g}", cut), "cut / mesh spacing", cut, settings};
+  return {"fft", fmt::format("cut {:.3g}", cut), settings};
 }
 
 GravityChoice mesh(double spacing) {
   GravitySettings settings;
   settings.solver = GravitySettings::Solver::mesh;
   settings.mesh_spacing = spacing;
-  return {"mesh", fmt::format("mesh_spacing {:.3g}", spacing), "mesh spacing / mean distance", spacing, settings};
+  return {"mesh", fmt::format("mesh_spacing {:.3g}", spacing), settings};
 }
 
 } // namespace
 
-std::vector<GravityChoice> gravity_choices(bool dense) {
+std::vector<GravityChoice> gravity_choices() {
   std::vector<GravityChoice> choices = {direct()};
-  for (const int twentieths :
-       dense ? std::vector{4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 18, 20} : std::vector{6, 8, 10, 12, 14, 16})
+  for (const int twentieths : {6, 8, 10, 12, 14, 16})
     choices.push_back(tree(0.05 * twentieths));
-  for (const int quarters :
-       dense ? std::vector{8, 9, 10, 11, 12, 14, 16, 18, 20, 24, 28, 32} : std::vector{8, 10, 12, 16, 20})
-    choices.push_back(fft(0.25 * quarters));
-  for (const int fifths : dense ? std::vector{4, 5, 6, 8, 10, 12, 16} : std::vector{8})
-    choices.push_back(mesh(0.2 * fifths));
+  for (const double cut : {2.0, 2.5, 3.0, 4.0, 5.0})
+    choices.push_back(fft(cut));
+  choices.push_back(mesh(0.2 * 8));
   return choices;
 }
 
 std::vector<std::string> gravity_solver_names() {
   std::vector<std::string> names;
-  for (const GravityChoice& choice : gravity_choices(false))
+  for (const GravityChoice& choice : gravity_choices())
     if (std::find(names.begin(), names.end(), choice.solver) == names.end())
       names.push_back(choice.solver);
   return names;
@@ -76,7 +73,7 @@ GravityChoice default_gravity_choice(const std::string& solver) {
 GravityChoice choice_of(const GravitySettings& settings, std::size_t count) {
   using Solver = GravitySettings::Solver;
   const GravitySettings chosen = chosen_for(count, settings);
-  GravityChoice choice = {"fft", fmt::format("force_error {:.3g}", chosen.force_error), "", 0.0, {}};
+  GravityChoice choice = {"fft", fmt::format("force_error {:.3g}", chosen.force_error), {}};
   if (chosen.solver == Solver::tree)
     choice = tree(chosen.opening_angle);
   if (chosen.solver == Solver::direct)
@@ -84,7 +81,7 @@ GravityChoice choice_of(const GravitySettings& settings, std::size_t count) {
   if (chosen.solver == Solver::mesh)
     choice = mesh(chosen.mesh_spacing);
   if (chosen.solver == Solver::axisymmetric)
-    choice = {"axisymmetric", fmt::format("waves from {:g} m up", chosen.shortest_wavelength), "", 0.0, {}};
+    choice = {"axisymmetric", fmt::format("waves from {:g} m up", chosen.shortest_wavelength), {}};
   if ((chosen.solver == Solver::tree || chosen.solver == Solver::direct) && !chosen.images.far)
     choice.text += fmt::format(", {} of images alone", pluralize(chosen.images.rings, "ring"));
   choice.settings = chosen;

@@ -1,4 +1,4 @@
-// The only list of the gravity solvers and settings that benches and studies compare.
+// The only list of the gravity solvers and settings that benches compare.
 #pragma once
 
 #include <keeler/gravity/solver.hpp>
@@ -11,15 +11,13 @@ namespace keeler {
 
 /// A solver with settings, and their names in tables.
 struct GravityChoice {
-  std::string solver;    ///< name as in GravitySolver::name() and scenes
-  std::string text;      ///< the settings, "opening_angle 0.6"
-  std::string parameter; ///< convergence parameter of the error, "opening angle"; empty: none
-  double value = 0.0;    ///< of that parameter
+  std::string solver; ///< name as in GravitySolver::name() and scenes
+  std::string text;   ///< the settings, "opening_angle 0.6"
   GravitySettings settings;
 };
 
-/// Returns the choices by solver, the most accurate settings first; more settings per solver with `dense`, for curves.
-std::vector<GravityChoice> gravity_choices(bool dense);
+/// Returns the choices by solver, the most accurate settings first.
+std::vector<GravityChoice> gravity_choices();
 
 /// Returns the names of the solvers in that list.
 std::vector<std::string> gravity_solver_names();

@@ -48,13 +48,7 @@ end = 1.0
                      "bench");
 }
 
-} // namespace
-
-Scene a_ring_scene(std::size_t count, std::uint64_t seed) {
-  const auto min_count = static_cast<double>(scene_of(min_wavelengths, seed).particles.count);
-  return scene_of(min_wavelengths * std::max(1.0, std::sqrt(static_cast<double>(count) / min_count)), seed);
-}
-
+// Evolves a scene's initial state for some orbits, with a larger step and a less accurate tree than the scene's.
 Patch evolved_with_gravity(const Scene& scene, double orbits, PhaseProgress& progress) {
   assert(orbits >= 0.0);
   Scene coarse = scene;
@@ -69,6 +63,13 @@ Patch evolved_with_gravity(const Scene& scene, double orbits, PhaseProgress& pro
     progress.add(1.0);
   }
   return simulation.patch();
+}
+
+} // namespace
+
+Scene a_ring_scene(std::size_t count, std::uint64_t seed) {
+  const auto min_count = static_cast<double>(scene_of(min_wavelengths, seed).particles.count);
+  return scene_of(min_wavelengths * std::max(1.0, std::sqrt(static_cast<double>(count) / min_count)), seed);
 }
 
 BenchState gravity_state(std::size_t count, GravityState kind, PhaseProgress& progress) {

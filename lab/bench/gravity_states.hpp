@@ -19,9 +19,6 @@ enum class GravityState {
 /// 2 λ_cr.
 Scene a_ring_scene(std::size_t count, std::uint64_t seed);
 
-/// Evolves a scene's initial state for some orbits, with a larger step and a less accurate tree than the scene's.
-Patch evolved_with_gravity(const Scene& scene, double orbits, PhaseProgress& progress);
-
 /// Makes a state of `count` particles, rounded to whole tiles and at least a patch of 2 × 2 λ_cr, and the scene that
 /// continues from it. Precondition: `count` > 0.
 BenchState gravity_state(std::size_t count, GravityState kind, PhaseProgress& progress);

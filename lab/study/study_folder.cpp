@@ -1,5 +1,6 @@
 #include "study_folder.hpp"
 
+#include <keeler/batch/run_folders.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/core/json_of_files.hpp>
 #include <keeler/files/files.hpp>
@@ -32,6 +33,11 @@ std::map<std::string, std::string> study_provenance(const std::vector<std::strin
           {"compiler", p.at("compiler")}, {"flags", p.at("flags")}, {"commit", p.at("commit")}};
 }
 
+std::string made_by(const std::map<std::string, std::string>& made) {
+  return fmt::format("Made by `{}` on {} ({}), {}, flags `{}`, commit {}.", made.at("command"), made.at("processor"),
+                     made.at("host"), made.at("compiler"), made.at("flags"), made.at("commit"));
+}
+
 Json open_study_folder(const fs::path& folder, const Json& options,
                        const std::map<std::string, std::string>& provenance) {
   const fs::path file = folder / "study.json";
@@ -39,10 +45,7 @@ Json open_study_folder(const fs::path& folder, const Json& options,
     if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
       throw UsageError(
           fmt::format("'{}' is not empty and is not the folder of a study; name another folder", folder.string()));
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error)
-      throw IoError(fmt::format("cannot make the folder '{}': {}; name another", folder.string(), error.message()));
+    make_folder(folder);
     Json begun = options;
     for (const auto& [key, value] : provenance)
       begun[key] = value;

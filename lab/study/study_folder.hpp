@@ -14,6 +14,9 @@ namespace keeler {
 /// Returns the provenance of the measurements: command, host, processor, compiler, flags, commit.
 std::map<std::string, std::string> study_provenance(const std::vector<std::string>& arguments);
 
+/// Returns the sentence of a report on the provenance.
+std::string made_by(const std::map<std::string, std::string>& provenance);
+
 /// Makes the folder with its study.json, or checks that the existing one has these options. Returns the content of
 /// study.json, provenance included. Throws UsageError when the folder holds another study or other files, and IoError.
 Json open_study_folder(const std::filesystem::path& folder, const Json& options,

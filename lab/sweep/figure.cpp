@@ -82,7 +82,7 @@ std::vector<PlotCurve> sweep_curves(const Grid& grid, const Plan& plan, const st
   for (const PointRow& row : points) {
     if (!row.values[y])
       continue;
-    const GridPoint& point = *row.point;
+    const GridPoint& point = plan.points[row.point];
     assert(x.key < point.settings.size() && x.axis < point.on_axis.size());
     const std::string name = name_of(grid, plan, point, x.axis);
     const auto [entry, is_new] = curve_of.try_emplace(name, curves.size());

@@ -1,5 +1,6 @@
 #include "grid.hpp"
 
+#include <keeler/config/document.hpp>
 #include <keeler/core/error.hpp>
 #include <keeler/files/input.hpp>
 #include <keeler/files/toml_bounds.hpp>
@@ -22,19 +23,6 @@ namespace fs = std::filesystem;
 using Names = std::vector<std::string>;
 
 constexpr const char* seed_key = "particles.seed";
-
-[[noreturn]] void fail_at(const std::string& position, const std::string& message) {
-  throw UsageError(position + ": " + message);
-}
-
-std::string in_double_quotes(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text)
-    out += c == '"' || c == '\\'                  ? fmt::format("\\{}", c)
-           : static_cast<unsigned char>(c) < 0x20 ? fmt::format("\\u{:04x}", static_cast<unsigned>(c))
-                                                  : std::string(1, c);
-  return out + '"';
-}
 
 // Returns true if a text value of the key names a file.
 bool names_file(const std::string& path) {
@@ -99,15 +87,13 @@ private:
   // Returns a value as TOML on one line. File names, which are relative to the grid, are made absolute.
   std::string toml_of(const toml::node& node, const std::string& path) const {
     if (const auto* const text = node.as_string())
-      return in_double_quotes(names_file(path) && !text->get().empty() ? absolute(text->get()) : text->get());
+      return to_toml(names_file(path) && !text->get().empty() ? absolute(text->get()) : text->get());
     if (const auto* const flag = node.as_boolean())
-      return flag->get() ? "true" : "false";
+      return to_toml(flag->get());
     if (const auto* const integer = node.as_integer())
-      return fmt::format("{}", integer->get());
-    if (const auto* const number = node.as_floating_point()) {
-      const std::string digits = fmt::format("{}", number->get());
-      return digits.find_first_of(".en") == std::string::npos ? digits + ".0" : digits;
-    }
+      return to_toml(integer->get());
+    if (const auto* const number = node.as_floating_point())
+      return to_toml(number->get());
     Names parts;
     if (const auto* const list = node.as_array()) {
       for (const toml::node& element : *list)
@@ -152,7 +138,7 @@ private:
       fail_at(position(*scene),
               fmt::format("the scene {} does not exist (searched as {}); correct the path, which is relative to "
                           "this file",
-                          in_double_quotes(scene->get()), grid_.scene.string()));
+                          to_toml(scene->get()), grid_.scene.string()));
   }
 
   void read_since(const toml::table& table) {
@@ -174,15 +160,23 @@ private:
       grid_.seeds.push_back(value_of(seed, seed_key, position(*seeds)));
     if (grid_.seeds.empty())
       fail_at(position(*seeds), "seeds is empty (no run would be made); list at least one, or remove the key");
-    refuse_twice(grid_.seeds, "seed");
+    std::vector<std::vector<GridValue>> points;
+    for (const GridValue& seed : grid_.seeds)
+      points.push_back({seed});
+    refuse_twice(points, "the seed ");
   }
 
-  void refuse_twice(const std::vector<GridValue>& values, const char* what) const {
-    std::set<std::string> seen;
-    for (const GridValue& value : values)
-      if (!seen.insert(value.label).second)
-        fail_at(value.override.value_location,
-                fmt::format("the {} {} is listed twice (both would be one run); remove one", what, value.label));
+  // Fails if two points have the same values; `what` begins the message.
+  static void refuse_twice(const std::vector<std::vector<GridValue>>& points, const char* what) {
+    std::set<Names> seen;
+    for (const std::vector<GridValue>& point : points) {
+      Names labels;
+      for (const GridValue& value : point)
+        labels.push_back(value.label);
+      if (!seen.insert(labels).second)
+        fail_at(point.front().override.value_location,
+                fmt::format("{}{} is listed twice (both would be one run); remove one", what, fmt::join(labels, ", ")));
+    }
   }
 
   void read_set(const toml::table& table) {
@@ -246,7 +240,7 @@ private:
     const bool several = table.contains("keys");
     for (const toml::node& node : *values)
       axis.points.push_back(read_point(node, axis.keys, key_positions, several));
-    refuse_same_points(axis);
+    refuse_twice(axis.points, "");
     return axis;
   }
 
@@ -287,18 +281,6 @@ private:
     return point;
   }
 
-  void refuse_same_points(const GridAxis& axis) const {
-    std::set<Names> seen;
-    for (const std::vector<GridValue>& point : axis.points) {
-      Names labels;
-      for (const GridValue& value : point)
-        labels.push_back(value.label);
-      if (!seen.insert(labels).second)
-        fail_at(point.front().override.value_location,
-                fmt::format("{} is listed twice (both would be one run); remove one", fmt::join(labels, ", ")));
-    }
-  }
-
   void read_plot(const toml::table& table) {
     if (!grid_.axes.empty())
       grid_.plot.x = grid_.axes.front().keys.front();
@@ -312,8 +294,8 @@ private:
         return std::find(axis.keys.begin(), axis.keys.end(), x->get()) != axis.keys.end();
       });
       if (!on_axis)
-        fail_at(position(*x), fmt::format("x = {} is not a key of an axis (only these change); name one of them",
-                                          in_double_quotes(x->get())));
+        fail_at(position(*x),
+                fmt::format("x = {} is not a key of an axis (only these change); name one of them", to_toml(x->get())));
     }
     if (const auto* const y = find<std::string>(*plot, "y", "a column of sweep.csv, in quotes")) {
       grid_.plot.y = y->get();

@@ -49,7 +49,7 @@ Table table_of_points(const Grid& grid, const Plan& plan, const std::vector<Poin
     if (point.finished == 0)
       continue;
     std::vector<std::string> row;
-    for (const GridValue* const value : point.point->settings)
+    for (const GridValue* const value : plan.points[point.point].settings)
       row.push_back(value->label);
     row.insert(row.end(), {fmt::format("{}", point.finished), fmt::format("{}", point.steady)});
     for (const std::size_t column : columns)
@@ -63,10 +63,11 @@ Table table_of_points(const Grid& grid, const Plan& plan, const std::vector<Poin
 
 void write_report(const Grid& grid, const Plan& plan, const std::vector<RunRow>& runs,
                   const std::vector<PointRow>& points, const RunFolders& folders, bool with_figure) {
+  const BatchResult result = result_of(runs);
   Document report("Sweep of " + grid.file.filename().string());
-  report.paragraph(fmt::format("{} of {}: {} finished, {} failed, {} not finished.", pluralize(runs.size(), "run"),
-                               pluralize(plan.points.size(), "point"), count_of(runs, RunStatus::finished),
-                               count_of(runs, RunStatus::failed), count_of(runs, RunStatus::unfinished)));
+  report.paragraph(fmt::format("{} of {}: {} finished, {} failed, {} not finished.", pluralize(result.runs, "run"),
+                               pluralize(plan.points.size(), "point"), result.finished, result.failed,
+                               result.runs - result.finished - result.failed));
   report.paragraph(fmt::format(
       "Each run is measured {}. Values are means over the seeds, errors the standard errors from the scatter of the "
       "seeds, or for a single seed the error by blocks, if known. `steady` counts the runs that are steady in the "
@@ -77,7 +78,7 @@ void write_report(const Grid& grid, const Plan& plan, const std::vector<RunRow>&
   report.table(table_of_points(grid, plan, points));
   if (with_figure)
     report.paragraph("![figure](figure.svg)");
-  if (count_of(runs, RunStatus::failed) > 0) {
+  if (result.failed > 0) {
     report.heading("Failed runs");
     Table table = {{"run", "reason"}};
     for (const RunRow& run : runs)

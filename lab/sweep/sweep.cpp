@@ -16,7 +16,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cassert>
 #include <set>
 
@@ -123,22 +122,19 @@ SweepResult sweep(const SweepSettings& settings, const RunRequests& requests) {
   if (!settings.tables_only) {
     result.began = true;
     report_warnings(plan, settings.notice);
-    work_on(plan.runs, folders, claims, {settings.jobs, settings.threads_per_run, settings.progress, settings.notice},
-            requests);
+    work_on(plan.runs, folders, claims, settings, requests);
   }
-  result.runs = plan.runs.size();
   result.stopped = requests.stop;
   if (result.stopped)
     return result;
   const FolderFilesLock lock(claims);
-  const std::vector<RunRow> runs = run_rows(grid, plan, folders);
-  const std::vector<PointRow> points = point_rows(grid, plan, runs);
+  const std::vector<RunRow> runs = run_rows(plan.runs, folders, [&](const PlannedRun& run, const fs::path& folder) {
+    return grid.quantities.measure(folder, run.scene, grid.since);
+  });
+  const std::vector<PointRow> points = point_rows(runs, plan.points.size(), grid.quantities.columns().size());
+  static_cast<BatchResult&>(result) = result_of(runs);
   result.figure_fault = write_tables(grid, plan, folders, runs, points, settings.notice);
-  result.finished = count_of(runs, RunStatus::finished);
-  result.failed = count_of(runs, RunStatus::failed);
-  result.unmeasurable = static_cast<std::size_t>(
-      std::count_if(runs.begin(), runs.end(), [](const RunRow& run) { return !run.measurable; }));
-  result.points = std::make_shared<const Json>(points_as_json(grid, plan, points));
+  result.points = points_as_json(grid, plan, points);
   return result;
 }
 

@@ -5,38 +5,24 @@
 // docs/manual/commands.md describes the grid file, docs/formats.md the folder.
 #pragma once
 
-#include <keeler/core/progress.hpp>
-#include <keeler/runs/run.hpp>
-
-#include <nlohmann/json_fwd.hpp>
+#include <keeler/batch/rows.hpp>
+#include <keeler/batch/workers.hpp>
 
 #include <filesystem>
-#include <functional>
-#include <memory>
 #include <string>
-#include <vector>
 
 namespace keeler {
 
-struct SweepSettings {
+struct SweepSettings : BatchSettings {
   std::filesystem::path grid;
-  std::filesystem::path folder;
-  std::size_t jobs = 1; ///< runs at once, each in a process
-  int threads_per_run = 1;
-  bool tables_only = false;              ///< start no run, only write the tables of finished runs
-  std::vector<std::string> quantities{}; ///< of keeler analyze, as additional columns
-  std::function<void(const Progress&)> progress;
-  std::function<void(const std::string&)> notice;
+  bool tables_only = false; ///< start no run, only write the tables of finished runs
 };
 
 /// The state of the folder after a call.
-struct SweepResult {
-  std::size_t runs = 0, finished = 0, failed = 0;       ///< number of runs of the grid
-  std::size_t unmeasurable = 0;                         ///< failed runs that ended normally but have unreadable files
-  bool began = false;                                   ///< starting runs was requested
-  bool stopped = false;                                 ///< on request; the tables were not written
-  std::shared_ptr<const nlohmann::ordered_json> points; ///< the rows of points.csv, a list; null if there are none
-  std::string figure_fault;                             ///< reason why drawing the figure failed; empty if it did not
+struct SweepResult : BatchResult {
+  bool began = false;       ///< starting runs was requested
+  Json points;              ///< the rows of points.csv, a list
+  std::string figure_fault; ///< reason why drawing the figure failed; empty if it did not
 };
 
 /// Executes the runs that are neither finished nor held by another program, and writes the tables. All input is checked

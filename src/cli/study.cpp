@@ -5,130 +5,168 @@
 #include "print.hpp"
 #include "progress_line.hpp"
 #include "results.hpp"
+#include "scene_arguments.hpp"
 #include "signals.hpp"
-#include "study_scene.hpp"
 
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/json_of_files.hpp>
 #include <keeler/study/finders/study.hpp>
-#include <keeler/study/gravity/study.hpp>
+#include <keeler/study/scene/study.hpp>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <memory>
 
 namespace keeler {
 namespace {
 
-// Carries out a study and prints the names of its results.
-template<class Settings, class Study>
-ExitCode carry_out(Settings& settings, const TalkOption& talk, const Study& study,
-                   const std::vector<const char*>& results) {
-  talk.say_program();
-  require_folder_name(settings.folder);
-  bool finished = false;
-  {
+using Words = std::vector<std::string>;
+
+template<class Settings> struct StudyOptions {
+  Settings settings;
+  TalkOption talk;
+  SceneArguments scene; // unused by a study without a scene
+
+  void add_to(CLI::App& command) {
+    command.add_option("-o,--output", settings.folder, "the folder for the results; a study in it is continued")
+        ->required()
+        ->type_name("DIR");
+    talk.add_to(command);
+  }
+
+  // Returns what `study` returns, and shows its progress.
+  template<class Study> auto carry_out(const Study& study) {
+    talk.say_program();
+    require_folder_name(settings.folder);
     ProgressLine line(talk);
     settings.notice = [&](const std::string& text) { line.note(text); };
     settings.progress = [&](const Progress& progress) { line.show(progress); };
-    try {
-      const Interruptible measurement(requests_from_signals().give_up); // a second signal interrupts a measurement
-      finished =
-          using_json_of<nlohmann::json>(settings.folder, [&] { return study(settings, requests_from_signals().stop); });
-    } catch (const Interrupted&) { // the finished measurements are in the folder
-    }
+    return using_json_of<nlohmann::json>(settings.folder, study);
   }
-  if (!finished) {
-    say("stopped; the same command continues from here");
-    return ExitCode::stopped;
-  }
-  for (const char* name : results)
-    print("{}/{}\n", settings.folder.string(), name);
-  return ExitCode::done;
+};
+
+ExitCode stopped() {
+  say("stopped; the same command continues from here");
+  return ExitCode::stopped;
 }
 
-template<class Settings> void add_folder(CLI::App& command, Settings& settings) {
-  command.add_option("-o,--output", settings.folder, "the folder for the results; a study in it is continued")
-      ->required()
-      ->type_name("DIR");
+void print_results(const std::filesystem::path& folder, const std::vector<const char*>& names) {
+  for (const char* const name : names)
+    print("{}/{}\n", folder.string(), name);
 }
 
-void add_finders(CLI::App& command, Action& action, const std::vector<std::string>& arguments) {
-  const auto settings = std::make_shared<FinderStudySettings>();
-  CLI::App& finders = *command.add_subcommand(
-      "finders", "the collision finders: times, errors and the paper's claims, on four states; after a stop (exit 75) "
-                 "the same command continues");
-  add_folder(finders, *settings);
-  const auto talk = std::make_shared<TalkOption>();
-  talk->add_to(finders);
-  finders.add_option("--count", settings->count, "particles of equal size (default: 10000, about 95 minutes)")
-      ->transform(particle_number());
-  finders.add_flag("--quick", settings->quick, "3000 particles, three steps, two repeats: a few minutes");
-  examples_of(finders, {"keeler study finders -o finders"});
-  finders.callback([settings, talk, arguments, &action] {
+// Makes the command the program's action, with the command line for the provenance of its results.
+template<class Options>
+void act(CLI::App& command, Action& action, const Words& arguments, const std::shared_ptr<Options>& options,
+         ExitCode (*study)(Options&)) {
+  command.callback([options, arguments, study, &action] {
     requests_from_signals(); // before signals are released
-    settings->arguments = arguments;
-    action = [settings, talk] {
-      return carry_out(*settings, *talk, study_finders,
-                       {"report.md", "report.html", "finders.csv", "finders.json", "figures"});
-    };
+    options->settings.arguments = arguments;
+    action = [options, study] { return study(*options); };
   });
 }
 
-// Sets the options that the command line does not give to small values.
-void make_quick(GravityStudySettings& settings, const CLI::App& command) {
-  const auto is_default = [&](const char* option) { return command.count(option) == 0; };
-  if (is_default("--count"))
-    settings.count = 5000;
-  if (is_default("--repeats"))
-    settings.repeats = 2;
-  if (is_default("--orbits"))
-    settings.orbits = 0.5;
-  if (is_default("--seeds"))
-    settings.seeds = 2;
+ExitCode of_finders(StudyOptions<FinderStudySettings>& options) {
+  bool finished = false;
+  try {
+    const Interruptible measurement(requests_from_signals().give_up); // a second signal interrupts a measurement
+    finished = options.carry_out([&] { return study_finders(options.settings, requests_from_signals().stop); });
+  } catch (const Interrupted&) { // the finished measurements are in the folder
+  }
+  if (!finished)
+    return stopped();
+  print_results(options.settings.folder, {"report.md", "report.html", "finders.csv", "finders.json", "figures"});
+  return ExitCode::done;
 }
 
-void add_gravity(CLI::App& command, Action& action, const std::vector<std::string>& arguments) {
-  const auto settings = std::make_shared<GravityStudySettings>();
-  CLI::App& gravity = *command.add_subcommand(
-      "gravity", "the gravity solvers: error against cost, and whether the physics of wakes depends on them or on the "
-                 "kick interval; after a stop (exit 75) the same command continues");
-  add_folder(gravity, *settings);
-  const auto talk = std::make_shared<TalkOption>();
-  talk->add_to(gravity);
-  gravity.add_option("--count", settings->count, "particles of the state (default: 100000)")
+void add_finders(CLI::App& study, Action& action, const Words& arguments) {
+  const auto options = std::make_shared<StudyOptions<FinderStudySettings>>();
+  CLI::App& command = *study.add_subcommand(
+      "finders", "the collision finders: times, errors and the paper's claims, on four states; after a stop (exit 75) "
+                 "the same command continues");
+  options->add_to(command);
+  command.add_option("--count", options->settings.count, "particles of equal size (default: 10000, about 95 minutes)")
       ->transform(particle_number());
-  gravity.add_option("--repeats", settings->repeats, "number of measurements; their medians are printed (default: 5)")
-      ->transform(repeat_number());
-  gravity.add_option("--orbits", settings->orbits, "measured orbits of each run (default: 4)")
-      ->check(positive_number(max_orbits));
-  gravity.add_option("--seeds", settings->seeds, "runs per solver and kick interval (default: 3)")
+  command.add_flag("--quick", options->settings.quick, "3000 particles, three steps, two repeats: a few minutes");
+  examples_of(command, {"keeler study finders -o finders"});
+  act(command, action, arguments, options, of_finders);
+}
+
+ExitCode of_scene(StudyOptions<SceneStudySettings>& options) {
+  SceneStudySettings& settings = options.settings;
+  settings.scene = options.scene.path;
+  settings.overrides = options.scene.overrides;
+  if (settings.jobs == 0)
+    settings.jobs = static_cast<std::size_t>(std::max(1, threads()));
+  const BatchResult result = options.carry_out([&] { return study_scene(settings, requests_from_signals()); });
+  if (result.stopped)
+    return stopped();
+  print_results(settings.folder, {"report.md", "report.html", "study.csv", "settings.csv", "figures"});
+  const auto say_missing = [](std::size_t count, const std::string& advice) {
+    if (count > 0)
+      say(fmt::format("{} missing, the report has the reasons; {}",
+                      count == 1 ? "a run is" : fmt::format("{} runs are", count), advice));
+  };
+  say_missing(result.failed - result.unmeasurable, "the same command tries again");
+  say_missing(result.unmeasurable,
+              fmt::format("remove the damaged files from '{}', and the same command makes them again",
+                          (settings.folder / "runs").string()));
+  return result.failed > 0 ? ExitCode::run_time : ExitCode::done;
+}
+
+void add_of_scene(CLI::App& study, Action& action, const Words& arguments, SceneStudyKind kind, const std::string& name,
+                  const std::string& about) {
+  const auto options = std::make_shared<StudyOptions<SceneStudySettings>>();
+  SceneStudySettings& settings = options->settings;
+  settings.kind = kind;
+  settings.jobs = 0; // one per thread of the machine
+  CLI::App& command =
+      *study.add_subcommand(name, about + "; after a stop (exit 75) or kill the same command continues");
+  options->scene.add_to(command)->required();
+  options->add_to(command);
+  command.add_option("--seeds", settings.seeds, "runs per setting (default: 3)")
       ->transform(whole_number_between(1, max_seeds, "a number of seeds"));
-  const auto quick = std::make_shared<bool>(false);
-  gravity.add_flag("--quick", *quick,
-                   "by default 5000 particles, two repeats, two seeds and half an orbit: two or three minutes");
-  examples_of(gravity, {"keeler study gravity -o gravity"});
-  gravity.callback([settings, talk, quick, arguments, &gravity, &action] {
-    requests_from_signals(); // before signals are released
-    settings->arguments = arguments;
-    if (*quick)
-      make_quick(*settings, gravity);
-    action = [settings, talk] {
-      return carry_out(*settings, *talk, study_gravity,
-                       {"report.md", "report.html", "gravity.csv", "gravity_runs.csv", "gravity.json", "figures"});
-    };
+  command
+      .add_option("--grow", settings.grow_orbits,
+                  "orbits before the comparison begins (default: 6 with self-gravity, 10 without)")
+      ->check(positive_number(max_orbits));
+  command.add_option("--orbits", settings.orbits, "orbits of each run after that (default: 6)")
+      ->check(positive_number(max_orbits));
+  command.add_option("--jobs", settings.jobs, "concurrent runs, each on one thread (default: threads of the machine)")
+      ->transform(whole_number_between(1, max_threads, "a number of runs"));
+  add_quantities(command, settings.quantities);
+  command.add_flag("--quick", settings.quick,
+                   "few settings, and by default two seeds, one orbit before the comparison and two after it");
+  examples_of(command, {"keeler study " + name + " scene.toml -o " + name});
+  act(command, action, arguments, options, of_scene);
+}
+
+// Names what has replaced a study of earlier versions.
+void refuse_gravity(CLI::App& study) {
+  CLI::App& command = *study.add_subcommand("gravity", "")->group("")->prefix_command();
+  command.set_help_flag();
+  command.callback([] {
+    throw UsageError("there is no 'keeler study gravity' any more; \"keeler study mesh a-ring-wakes -o DIR\" compares "
+                     "the solvers, \"keeler bench gravity\" has the errors and costs of more settings");
   });
 }
 
 } // namespace
 
-void add_study(CLI::App& program, Action& action, const std::vector<std::string>& arguments) {
+void add_study(CLI::App& program, Action& action, const Words& arguments) {
   CLI::App& command = *program.add_subcommand("study", "carry out an experiment and write a report on it");
   command.require_subcommand(1);
   add_finders(command, action, arguments);
-  add_gravity(command, action, arguments);
-  add_scene_studies(command, action, arguments);
+  const auto add = [&](SceneStudyKind kind, const std::string& name, const std::string& about) {
+    add_of_scene(command, action, arguments, kind, name, about);
+  };
+  add(SceneStudyKind::step, "step", "your scene with several step lengths: cost and effect");
+  add(SceneStudyKind::kicks, "kicks", "your scene with several kick intervals of self-gravity");
+  add(SceneStudyKind::mesh, "mesh", "your scene with several solvers and accuracies of self-gravity");
+  add(SceneStudyKind::box, "box", "your scene in boxes of several sizes");
+  add(SceneStudyKind::sizes, "sizes", "your scene without the smallest particles of its distribution");
+  refuse_gravity(command);
 }
 
 } // namespace keeler

@@ -22,17 +22,13 @@ namespace {
 
 struct SweepOptions {
   SweepSettings settings;
-  std::size_t jobs = 0; // 0: as the threads of the machine allow
   bool json = false;
   TalkOption talk;
 };
 
 void print_json(const SweepResult& result) {
-  nlohmann::ordered_json json;
-  json["runs"] = result.runs;
-  json["finished"] = result.finished;
-  json["failed"] = result.failed;
-  json["points"] = *result.points;
+  const Json json = {
+      {"runs", result.runs}, {"finished", result.finished}, {"failed", result.failed}, {"points", result.points}};
   print("{}\n", json_text(json, 2));
 }
 
@@ -60,9 +56,8 @@ ExitCode carry_out(SweepOptions& options) {
   options.talk.say_program();
   SweepSettings& settings = options.settings;
   require_folder_name(settings.folder);
-  const auto processors = static_cast<std::size_t>(threads());
-  const auto per_run = static_cast<std::size_t>(settings.threads_per_run);
-  settings.jobs = options.jobs > 0 ? options.jobs : std::max<std::size_t>(1, processors / per_run);
+  if (settings.jobs == 0)
+    settings.jobs = static_cast<std::size_t>(std::max(1, threads() / settings.threads_per_run));
   SweepResult result;
   {
     ProgressLine line(options.talk);
@@ -94,6 +89,7 @@ ExitCode carry_out(SweepOptions& options) {
 void add_sweep(CLI::App& program, Action& action) {
   const auto options = std::make_shared<SweepOptions>();
   SweepSettings& settings = options->settings;
+  settings.jobs = 0; // as the threads of the machine allow
   CLI::App& command = *program.add_subcommand(
       "sweep", "run a scene over a grid of keys and seeds, with tables and a figure; after a stop or kill the same "
                "command continues");
@@ -103,7 +99,7 @@ void add_sweep(CLI::App& program, Action& action) {
   command.add_option("-o,--output", settings.folder, "the folder for the results; several programs may share it")
       ->required()
       ->type_name("DIR");
-  command.add_option("--jobs", options->jobs, "concurrent runs (default: threads of the machine / threads of a run)")
+  command.add_option("--jobs", settings.jobs, "concurrent runs (default: threads of the machine / threads of a run)")
       ->transform(whole_number_between(1, max_threads, "a number of runs"));
   command.add_option("--threads", settings.threads_per_run, "threads of each run (default: 1)")
       ->transform(thread_number());

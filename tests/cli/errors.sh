@@ -58,11 +58,10 @@ done <<'END'
 --count particles bench gravity
 --count particles bench step
 --count particles study finders
---count particles study gravity
 --repeats repeats bench drift
---repeats repeats study gravity
+--repeats repeats bench gravity
 --kick-every steps bench step
---seeds seeds study gravity
+--seeds seeds study mesh
 --seeds seeds study step
 --jobs runs study step
 --jobs runs sweep grid.toml

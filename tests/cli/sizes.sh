@@ -55,7 +55,7 @@ for bench in gravity step drift; do
 done
 too_large "bench step, kicks" "is not a number of steps" bench step --count 500 --kick-every 2000000000
 too_large "repeats" "is not a number of repeats" bench drift --count 500 --repeats 2000000000
-too_large "study gravity" "is not a number above 0, up to" study gravity -o "$work/none" --orbits 1e300
+too_large "study mesh" "is not a number above 0, up to" study mesh "$work/scene.toml" -o "$work/none" --orbits 1e300
 too_large "study finders" "is not a number of particles" study finders -o "$work/none" --count 1e12
 
 # Rays, footprints, gaps, pictures.

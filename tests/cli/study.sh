@@ -49,30 +49,6 @@ done
 grep -qx "certified" "$folder/figures/figure4.svg" || fail "figure4.svg does not name the finders"
 grep -q 'src="[^d]' "$folder/report.html" && fail "the page needs other files"
 
-# The smallest gravity study.
-folder=$work/gravity
-small=(study gravity --count 100 --repeats 1 --orbits 0.01 --seeds 2 -o "$folder")
-runs 0 "${small[@]}"
-for name in report.md report.html gravity.csv gravity_runs.csv gravity.json; do
-  prints "study gravity" "$folder/$name"
-  [ -e "$folder/$name" ] || fail "study gravity: no $name"
-done
-expected=solver,settings,parameter,value,error_rms,error_p999,error_x,error_y,error_z,error_edge,edge_pull,net_force,ns_per_particle
-[ "$(head -n 1 "$folder/gravity.csv")" = "$expected" ] || fail "gravity.csv begins: $(head -n 1 "$folder/gravity.csv")"
-awk -F, 'NR > 1 && !($5 >= 0 && $5 < ($1 == "mesh" ? 1 : 0.1) && $13 > 0) { wrong = 1 } END { exit wrong || NR < 10 }' "$folder/gravity.csv" ||
-  fail "gravity.csv: $(cat "$folder/gravity.csv")"
-expected=solver,settings,kick_every,seed,dispersion_r_omega,collisions_per_particle_orbit,dissipation_r2_omega2
-expected+=,wake_amplitude,wake_spacing,wake_pitch_degrees,energy_residual
-[ "$(head -n 1 "$folder/gravity_runs.csv")" = "$expected" ] ||
-  fail "gravity_runs.csv begins: $(head -n 1 "$folder/gravity_runs.csv")"
-[ "$(wc -l <"$folder/gravity_runs.csv")" -eq $((1 + 7 * 2)) ] || fail "runs: $(cat "$folder/gravity_runs.csv")"
-for words in "Error against cost" "The same physics" "Verdict" "Convergence" "Every setting" "opening_angle 0.6"; do
-  grep -qF "$words" "$folder/report.md" || fail "the gravity report has no '$words'"
-done
-cp "$folder/measurements.jsonl" "$work/kept"
-runs 0 "${small[@]}"
-cmp "$work/kept" "$folder/measurements.jsonl" || fail "a finished gravity study does measurements again"
-refuses "other repeats" "another repeats" study gravity --count 100 --repeats 2 --orbits 0.01 --seeds 2 -o "$folder"
-refuses "one seed" "--seeds takes 2" study gravity --seeds 1 -o "$work/one"
+refuses "a study of earlier versions" 'keeler study mesh' study gravity --count 100 -o "$work/gravity"
 
 report

@@ -90,7 +90,11 @@ refuses "a wrong key" "unknown key" study step "$work/scene.toml" -o "$none" --s
 # The smallest studies of the other kinds.
 short=(--quick --grow 0.1 --orbits 1.5)
 runs 0 study mesh "$work/scene.toml" -o "$work/mesh" "${short[@]}"
-[ "$(column force_error 2 "$work/mesh/settings.csv")" != "" ] || fail "no force error"
+for number in force_error kick_ns_per_particle; do
+  [ "$(column $number 2 "$work/mesh/settings.csv")" != "" ] || fail "no $number"
+done
+grep -qF "a kick (ns per particle)" "$work/mesh/report.md" || fail "the report does not tell what a kick costs"
+grep -q kick_ns "$work/whole/study.csv" && fail "a study of kicks has the columns of a study of solvers"
 runs 0 study step "$work/plain.toml" -o "$work/step" "${short[@]}"
 damaged=("$work"/step/runs/step-*_seed-1)
 sed -i 's/.*/x/' "${damaged[0]}/series.csv"

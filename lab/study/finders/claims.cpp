@@ -29,9 +29,9 @@ template<class Counts> std::string list_counts(const Counts& counts, const char*
   return text;
 }
 
-void time_in_finder(const FinderNumbers& n, Rows& rows) {
+void time_in_finder(const FinderStudyData& n, Rows& rows) {
   double smallest = 1.0, largest = 0.0;
-  for (const StudyState& state : n.data.states)
+  for (const StudyState& state : n.states)
     for (const std::string& finder : paper_finders) {
       smallest = std::min(smallest, n.finder_fraction(state.name, finder));
       largest = std::max(largest, n.finder_fraction(state.name, finder));
@@ -40,7 +40,7 @@ void time_in_finder(const FinderNumbers& n, Rows& rows) {
       {"Over 90 % of the run time is often spent in the finder.",
        fmt::format("{} to {} at step {}, over the states and the paper's five (a run against the same run on "
                    "recorded answers)",
-                   percent(smallest), percent(largest), n.data.shown_step),
+                   percent(smallest), percent(largest), n.shown_step),
        smallest > 0.9  ? "confirmed"
        : largest > 0.9 ? "confirmed for the slowest finders"
                        : "refuted for this code"});
@@ -48,7 +48,7 @@ void time_in_finder(const FinderNumbers& n, Rows& rows) {
 
 // Adds the claims on the fastest and the slowest of five finders.
 // Precondition: five[3] is the linear search on the full motion.
-void ranking(const FinderNumbers& n, Rows& rows, const std::string& forms, const std::vector<std::string>& five) {
+void ranking(const FinderStudyData& n, Rows& rows, const std::string& forms, const std::vector<std::string>& five) {
   assert(five.size() == 5 && five[3].starts_with("linear-full"));
   int first = 0, last = 0;
   double worst_ratio = 0.0;
@@ -77,7 +77,7 @@ void ranking(const FinderNumbers& n, Rows& rows, const std::string& forms, const
        verdict(last, n.panels())});
 }
 
-void slower(const FinderNumbers& n, Rows& rows, const std::string& claim, const char* slow, const char* fast) {
+void slower(const FinderStudyData& n, Rows& rows, const std::string& claim, const char* slow, const char* fast) {
   int count = 0;
   n.each_panel([&](const std::string& state, double step) {
     count += n.cpu(state, step, slow) > tie * n.cpu(state, step, fast);
@@ -86,7 +86,7 @@ void slower(const FinderNumbers& n, Rows& rows, const std::string& claim, const 
                   verdict(count, n.panels())});
 }
 
-void cubics(const FinderNumbers& n, Rows& rows) {
+void cubics(const FinderStudyData& n, Rows& rows) {
   slower(n, rows, "Newton on cubics is slower than on the full motion.", "newton-cubic", "newton-full");
   slower(n, rows, "newton-cubic is slower than newton-full as the paper's code has it.", "newton-cubic",
          "newton-full-as-coded");
@@ -96,7 +96,7 @@ void cubics(const FinderNumbers& n, Rows& rows) {
   slower(n, rows, "With cubics stored per particle, linear-cubic is faster.", "linear-cubic", "linear-cubic-cached");
 }
 
-void early_exits(const FinderNumbers& n, Rows& rows) {
+void early_exits(const FinderStudyData& n, Rows& rows) {
   std::string ended;
   int in_favour = 0;
   for (const std::string& finder : paper_finders) {
@@ -104,13 +104,12 @@ void early_exits(const FinderNumbers& n, Rows& rows) {
     in_favour += fraction > 0.5;
     ended += fmt::format("{}{} {}", ended.empty() ? "" : ", ", finder, percent(fraction));
   }
-  rows.push_back(
-      {"Most calls end at once, because the particles recede.",
-       fmt::format("calls that end before the loop, equal sizes, early, step {}: {}", n.data.shown_step, ended),
-       verdict(in_favour, static_cast<int>(paper_finders.size()))});
+  rows.push_back({"Most calls end at once, because the particles recede.",
+                  fmt::format("calls that end before the loop, equal sizes, early, step {}: {}", n.shown_step, ended),
+                  verdict(in_favour, static_cast<int>(paper_finders.size()))});
 }
 
-void iterations(const FinderNumbers& n, Rows& rows) {
+void iterations(const FinderStudyData& n, Rows& rows) {
   const double original = fraction_from(n.early("original"), {"hit"}, 20);
   double others = 1.0;
   for (const std::string& finder : paper_finders)
@@ -142,15 +141,15 @@ void iterations(const FinderNumbers& n, Rows& rows) {
                       : "refuted"});
 }
 
-void steps(const FinderNumbers& n, Rows& rows) {
+void steps(const FinderStudyData& n, Rows& rows) {
   std::map<std::string, int> best;
   int inside = 0, curves = 0;
   double worst = 0.0;
-  for (const StudyState& state : n.data.states)
+  for (const StudyState& state : n.states)
     for (const std::string& finder : paper_finders) {
       const std::size_t k = n.best_step(state.name, finder);
-      ++best[fmt::format("{:.2g}", n.data.steps[k])];
-      inside += k > 0 && k + 1 < n.data.steps.size();
+      ++best[fmt::format("{:.2g}", n.steps[k])];
+      inside += k > 0 && k + 1 < n.steps.size();
       ++curves;
       worst = std::max(worst, n.law_of(state.name, finder).largest_error);
     }
@@ -161,7 +160,7 @@ void steps(const FinderNumbers& n, Rows& rows) {
   rows.push_back({"Time against step has a minimum within the range.",
                   fmt::format("{} of {} curves have their minimum inside the range", inside, curves),
                   verdict(inside, curves)});
-  if (n.data.steps.size() >= 4)
+  if (n.steps.size() >= 4)
     rows.push_back({"Time scales roughly as A/h + B h^d.",
                     fmt::format("the fit to each of the {} curves differs by {} at most from a measured time", curves,
                                 percent(worst)),
@@ -170,15 +169,15 @@ void steps(const FinderNumbers& n, Rows& rows) {
                                   : "refuted"});
 }
 
-void straight_paths(const FinderNumbers& n, Rows& rows) {
+void straight_paths(const FinderStudyData& n, Rows& rows) {
   const auto drift = [&](const std::string& path, double step) {
-    const Json& last = n.data.result(fmt::format("drift/{}/{:.6g}", path, step)).at("rows").back();
+    const Json& last = n.result(fmt::format("drift/{}/{:.6g}", path, step)).at("rows").back();
     return std::fabs(of(last, "mean_guiding_x_r"));
   };
   double finders = 0.0;
   for (const std::string& finder : all_finders())
     finders = std::max(finders, drift(finder, 1e-2));
-  const double orbits = of(n.data.result("drift/straight/0.01").at("rows").back(), "orbits");
+  const double orbits = of(n.result("drift/straight/0.01").at("rows").back(), "orbits");
   rows.push_back(
       {"Straight paths within a step make a perturbed ring drift (Figure 1).",
        fmt::format(
@@ -193,7 +192,7 @@ void straight_paths(const FinderNumbers& n, Rows& rows) {
 
 } // namespace
 
-Rows paper_claims(const FinderNumbers& n) {
+Rows paper_claims(const FinderStudyData& n) {
   Rows rows = {{"claim", "measured", "verdict"}};
   time_in_finder(n, rows);
   ranking(n, rows, "", paper_finders);

@@ -21,6 +21,13 @@ namespace {
 
 constexpr double min_seconds = 0.02; // of calls that one measurement of the time per call averages over
 
+template<class Measure> double median_of(int repeats, const Measure& measure) {
+  std::vector<double> values;
+  for (int repeat = 0; repeat < repeats; ++repeat)
+    values.push_back(measure());
+  return median(values);
+}
+
 PairSet first_pairs(const StudyState& state, const Scene& scene, bool every_candidate) {
   const Simulation simulation(scene, state.patch);
   const SimulationState& s = simulation.state();
@@ -248,20 +255,16 @@ Json call_details(const StudyState& state, double step, int repeats) {
     if (finder->bytes_per_particle() == 0)
       continue;
     constexpr int rounds = 20;
-    std::vector<double> times;
-    for (int repeat = 0; repeat < repeats; ++repeat) {
+    begin[entry.name] = median_of(repeats, [&] {
       const double start = cpu_seconds();
       for (int round = 0; round < rounds; ++round)
         finder->begin(view);
-      times.push_back(1e9 * (cpu_seconds() - start) / (rounds * static_cast<double>(pairs.bodies.size())));
-    }
-    begin[entry.name] = median(times);
+      return 1e9 * (cpu_seconds() - start) / (rounds * static_cast<double>(pairs.bodies.size()));
+    });
   }
-  std::vector<double> alone;
   MotionSearch<UnrejectedMotion, CertifiedSearch> search;
-  for (int repeat = 0; repeat < repeats; ++repeat)
-    alone.push_back(ns_per_call(pairs, search, min_seconds));
-  return {{"begin_ns_per_particle", begin}, {"certified_search_alone_ns_per_call", median(alone)}};
+  const double alone = median_of(repeats, [&] { return ns_per_call(pairs, search, min_seconds); });
+  return {{"begin_ns_per_particle", begin}, {"certified_search_alone_ns_per_call", alone}};
 }
 
 Json scan_check(const StudyState& state, double step) {
@@ -337,7 +340,7 @@ Json local_times(const StudyState& state, double step, double moved_fraction, in
 
 Json drift_of_means(const PerturbedRing& ring, const std::string& path) {
   Json rows = Json::array();
-  for (const DriftRow& row : perturbed_ring_drift(ring, path).rows)
+  for (const DriftRow& row : perturbed_ring_drift(ring, path))
     rows.push_back({{"orbits", row.orbits},
                     {"mean_guiding_x_r", row.mean_guiding_x_r},
                     {"mean_vertical_r", row.mean_vertical_r},

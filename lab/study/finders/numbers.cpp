@@ -50,40 +50,61 @@ double mean_over(const Json& audit, const std::string& exit, const char* field) 
   return sum / of(calls, "calls");
 }
 
-double FinderNumbers::finder_fraction(const std::string& state, const std::string& finder) const {
-  const Json& times = data.result(job_name("share", state, data.shown_step, finder));
+const Json& FinderStudyData::audit(const std::string& state, double step, const std::string& finder) const {
+  return result(job_name("audit", state, step, finder));
+}
+
+std::vector<double> FinderStudyData::repeated(const std::string& state, double step, const std::string& finder,
+                                              const char* field) const {
+  std::vector<double> values;
+  for (int repeat = 0; repeat < repeats; ++repeat)
+    values.push_back(result(job_name("run", state, step, finder, repeat)).at(field).get<double>());
+  return values;
+}
+
+double FinderStudyData::timed(const std::string& state, double step, const std::string& finder,
+                              const char* field) const {
+  return median(repeated(state, step, finder, field));
+}
+
+double FinderStudyData::finder_fraction(const std::string& state, const std::string& finder) const {
+  const Json& times = result(job_name("share", state, shown_step, finder));
   return 1.0 - of(times, "cpu_s_without_finder") / of(times, "cpu_s");
 }
 
-double FinderNumbers::scatter() const {
+double FinderStudyData::scatter() const {
   std::vector<double> all;
   each_panel([&](const std::string& state, double step) {
     for (const std::string& finder : all_finders()) {
-      const std::vector<double> t = data.repeated(state, step, finder, "cpu_s");
+      const std::vector<double> t = repeated(state, step, finder, "cpu_s");
       all.push_back(0.5 * (*std::max_element(t.begin(), t.end()) - *std::min_element(t.begin(), t.end())) / median(t));
     }
   });
   return median(all);
 }
 
-const Json& FinderNumbers::local(double step, double moved_fraction) const {
-  return data.result(fmt::format("local/{}/{:.6g}/{}", data.states.front().name, step, moved_fraction));
+const Json& FinderStudyData::shown(const std::string& kind, const std::string& state) const {
+  return result(job_name(kind, state, shown_step));
 }
 
-std::size_t FinderNumbers::best_step(const std::string& state, const std::string& finder) const {
-  assert(!data.steps.empty());
+const Json& FinderStudyData::local(double step, double moved_fraction) const {
+  return result(fmt::format("local/{}/{:.6g}/{}", states.front().name, step, moved_fraction));
+}
+
+std::size_t FinderStudyData::best_step(const std::string& state, const std::string& finder) const {
+  assert(!steps.empty());
   std::size_t best = 0;
-  for (std::size_t k = 1; k < data.steps.size(); ++k)
-    if (cpu(state, data.steps[k], finder) < cpu(state, data.steps[best], finder))
+  for (std::size_t k = 1; k < steps.size(); ++k)
+    if (cpu(state, steps[k], finder) < cpu(state, steps[best], finder))
       best = k;
   return best;
 }
 
-StepLaw FinderNumbers::law_of(const std::string& state, const std::string& finder) const {
+StepLaw FinderStudyData::law_of(const std::string& state, const std::string& finder) const {
   std::vector<double> times;
-  for (const double step : data.steps)
+  for (const double step : steps)
     times.push_back(cpu(state, step, finder));
-  return fit_step_law(data.steps, times);
+  return fit_step_law(steps, times);
 }
 
 } // namespace keeler

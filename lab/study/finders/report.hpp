@@ -3,6 +3,7 @@
 
 #include "job_list.hpp"
 #include "states.hpp"
+#include "step_law.hpp"
 
 namespace keeler {
 
@@ -23,6 +24,32 @@ struct FinderStudyData {
   std::vector<double> repeated(const std::string& state, double step, const std::string& finder,
                                const char* field) const;
   double timed(const std::string& state, double step, const std::string& finder, const char* field) const;
+  double cpu(const std::string& state, double step, const std::string& finder) const {
+    return timed(state, step, finder, "cpu_s");
+  }
+  /// Returns the time per call at the shown step, ns.
+  double per_call(const std::string& state, const std::string& finder) const {
+    return timed(state, shown_step, finder, "ns_per_call");
+  }
+  /// Returns the fraction of a run's time that a replay of recorded answers saves.
+  double finder_fraction(const std::string& state, const std::string& finder) const;
+  /// Returns the scatter of the times: half the range of the repeats over their median, as median over all timed runs.
+  double scatter() const;
+  /// Returns the audited run of the first state (equal sizes, early) at the shown step.
+  const Json& early(const std::string& finder) const { return audit(states.front().name, shown_step, finder); }
+  /// Returns a measurement at the shown step: "details", "rejection".
+  const Json& shown(const std::string& kind, const std::string& state) const;
+  const Json& local(double step, double moved_fraction) const;
+  std::size_t best_step(const std::string& state, const std::string& finder) const; ///< index of the fastest step
+  StepLaw law_of(const std::string& state, const std::string& finder) const;
+
+  int panels() const { return static_cast<int>(states.size() * steps.size()); }
+  /// Calls visit(state, step) for each panel: state × step.
+  template<class Visit> void each_panel(const Visit& visit) const {
+    for (const StudyState& state : states)
+      for (const double step : steps)
+        visit(state.name, step);
+  }
 };
 
 /// Returns the name of a job: "kind/state/step[/finder][/repeat]". It is a key of measurements.jsonl.

@@ -9,7 +9,6 @@
 #include <keeler/core/interrupt.hpp>
 #include <keeler/core/threads.hpp>
 #include <keeler/runs/folder_lock.hpp>
-#include <keeler/statistics/median.hpp>
 
 #include <fmt/format.h>
 
@@ -206,23 +205,6 @@ std::string job_name(const std::string& kind, const std::string& state, double s
   if (repeat >= 0)
     name += fmt::format("/{}", repeat);
   return name;
-}
-
-const Json& FinderStudyData::audit(const std::string& state, double step, const std::string& finder) const {
-  return result(job_name("audit", state, step, finder));
-}
-
-std::vector<double> FinderStudyData::repeated(const std::string& state, double step, const std::string& finder,
-                                              const char* field) const {
-  std::vector<double> values;
-  for (int repeat = 0; repeat < repeats; ++repeat)
-    values.push_back(result(job_name("run", state, step, finder, repeat)).at(field).get<double>());
-  return values;
-}
-
-double FinderStudyData::timed(const std::string& state, double step, const std::string& finder,
-                              const char* field) const {
-  return median(repeated(state, step, finder, field));
 }
 
 bool study_finders(const FinderStudySettings& settings, const std::atomic<bool>& stop) {

@@ -62,46 +62,10 @@ void drive(Ring& ring, double epoch, double step) {
   }
 }
 
-// Predicts, from a run with exact collisions, the drift that straight paths would cause: at each collision it adds the
-// displacement from the orbit of a straight line that began at the start of the step or at the particle's previous
-// collision. A displacement δx changes X by 4 δx, and δz the height by δz.
-class StraightForecast final : public DriftObserver {
-public:
-  double epoch = 0.0; // of the current step, rad since the start of the run
-  double guiding_x = 0.0, vertical = 0.0;
-
-  void begins(const DriftStep& step) override {
-    bodies_ = step.bodies;
-    orbits_.resize(bodies_.size());
-    since_.assign(bodies_.size(), step.begin);
-    for (std::size_t k = 0; k < bodies_.size(); ++k)
-      orbits_[k] = bodies_[k].elements;
-  }
-
-  void collided(const CollisionRecord& record) override { time_ = record.time; }
-
-  void changed(std::size_t k) override {
-    assert(k < orbits_.size() && time_ >= since_[k]);
-    const State first = state_at(orbits_[k], unit_frequencies, Rotation(unit_frequencies, since_[k]));
-    const State now = state_at(orbits_[k], unit_frequencies, Rotation(unit_frequencies, time_));
-    const Vec3 beside = first.position + (time_ - since_[k]) * first.velocity - now.position;
-    guiding_x += 4.0 * beside.x();
-    vertical += beside.z() * std::sin(epoch + time_);
-    orbits_[k] = bodies_[k].elements;
-    since_[k] = time_;
-  }
-
-private:
-  std::span<const Body> bodies_;
-  std::vector<Elements> orbits_;
-  std::vector<double> since_;
-  double time_ = 0.0;
-};
-
 // Moves the particles on straight or curved paths; exactly one of `straight_` and `curved_` is set.
 class Mover {
 public:
-  Mover(const PerturbedRing& ring, const std::string& path, double step) {
+  Mover(const PerturbedRing& ring, const std::string& path, double step, DriftObserver* observer) {
     CollisionSettings settings;
     settings.restitution = constant_restitution(ring.restitution);
     if (path == straight_path || path == control_path) {
@@ -110,21 +74,18 @@ public:
     }
     settings.finder = path;
     curved_.emplace(settings, unit_frequencies, ring_frequency, step);
-    curved_->observe(&forecast);
+    curved_->observe(observer);
   }
 
-  void collide(Ring& ring, double offset, double epoch) {
+  void collide(Ring& ring, double offset) {
     if (straight_) {
       collisions_ += straight_->collide(ring.particles, ring.box, offset);
       return;
     }
-    forecast.epoch = epoch;
     curved_->collide(ring.particles, ring.box, offset, tally_);
   }
 
   std::uint64_t collisions() const { return collisions_ + tally_.fast + tally_.slow; }
-
-  StraightForecast forecast;
 
 private:
   std::optional<StraightDrift> straight_;
@@ -164,7 +125,8 @@ Means means_of(const Ring& ring, double epoch) {
 
 } // namespace
 
-Drift perturbed_ring_drift(const PerturbedRing& request, const std::string& path) {
+std::vector<DriftRow> perturbed_ring_drift(const PerturbedRing& request, const std::string& path,
+                                           DriftObserver* observer) {
   assert(request.step_orbits > 0.0 && request.samples > 0);
   PerturbedRing settings = request;
   if (path == control_path)
@@ -172,26 +134,24 @@ Drift perturbed_ring_drift(const PerturbedRing& request, const std::string& path
   const double step = two_pi * settings.step_orbits, count = static_cast<double>(settings.count);
   const auto steps = std::llround(settings.orbits / settings.step_orbits);
   Ring ring = make_ring(settings, step);
-  Mover mover(settings, path, step);
+  Mover mover(settings, path, step, observer);
   const Rebase rebase(unit_frequencies, step);
   const Means first = means_of(ring, 0.5 * step);
-  Drift drift;
+  std::vector<DriftRow> rows;
   std::int64_t wraps = 0;
   for (std::int64_t k = 1; k <= steps; ++k) {
     const double epoch = (static_cast<double>(k) - 0.5) * step;
     drive(ring, epoch, step);
-    mover.collide(ring, ring.box.offset(2 * k - 1, 0.5 * step), epoch);
+    mover.collide(ring, ring.box.offset(2 * k - 1, 0.5 * step));
     wraps += move_on(ring, rebase, ring.box.offset(2 * k + 1, 0.5 * step));
     if (k * settings.samples / steps == (k - 1) * settings.samples / steps)
       continue;
     const Means now = means_of(ring, epoch + step);
-    drift.rows.push_back({static_cast<double>(k) * settings.step_orbits, path, settings.step_orbits,
-                          now.guiding_x - first.guiding_x + static_cast<double>(wraps) * ring.box.size_x / count,
-                          now.vertical - first.vertical, 2.0 * static_cast<double>(mover.collisions()) / count});
+    rows.push_back({static_cast<double>(k) * settings.step_orbits, path, settings.step_orbits,
+                    now.guiding_x - first.guiding_x + static_cast<double>(wraps) * ring.box.size_x / count,
+                    now.vertical - first.vertical, 2.0 * static_cast<double>(mover.collisions()) / count});
   }
-  drift.forecast_guiding_x_r = mover.forecast.guiding_x / count;
-  drift.forecast_vertical_r = mover.forecast.vertical / count;
-  return drift;
+  return rows;
 }
 
 std::string drift_csv(const std::vector<DriftRow>& rows) {

@@ -8,6 +8,8 @@
 // of a satellite would. The impulse changes neither X nor positions nor the vertical motion.
 #pragma once
 
+#include <keeler/collision/drift.hpp>
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -46,16 +48,10 @@ struct DriftRow {
   double collisions_per_particle = 0.0;
 };
 
-/// A path's drift, and the drift that straight lines would have added at its collisions (0 for the straight paths
-/// themselves): the figure's prediction from exact collisions.
-struct Drift {
-  std::vector<DriftRow> rows;
-  double forecast_guiding_x_r = 0.0;
-  double forecast_vertical_r = 0.0;
-};
-
-/// Runs the ring on one of the two straight paths or with the named finder. Throws UsageError for an unknown name.
-Drift perturbed_ring_drift(const PerturbedRing& ring, const std::string& path);
+/// Runs the ring on one of the two straight paths or with the named finder, and returns the drift of the means. An
+/// observer may watch the drift phase of a finder. Throws UsageError for an unknown name.
+std::vector<DriftRow> perturbed_ring_drift(const PerturbedRing& ring, const std::string& path,
+                                           DriftObserver* observer = nullptr);
 
 /// Returns the rows as CSV with a header.
 std::string drift_csv(const std::vector<DriftRow>& rows);

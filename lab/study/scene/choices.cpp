@@ -15,9 +15,10 @@ namespace {
 
 using Solver = GravitySettings::Solver;
 
-constexpr double thousandth = 1e-3;     // of an orbit
-constexpr int max_kick_every = 1000;    // upper limit of gravity.kick_every
-constexpr double automatic_kick = 4e-3; // orbits, typical of an automatic step in wakes
+constexpr double thousandth = 1e-3;      // of an orbit
+constexpr int max_kick_every = 1000;     // upper limit of gravity.kick_every
+constexpr std::size_t max_direct = 5000; // particles: with more, the sum over all pairs takes hours
+constexpr double automatic_kick = 4e-3;  // orbits, typical of an automatic step in wakes
 
 std::vector<std::string> step_overrides(const Scene& scene, const Kicks& kicks) {
   std::vector<std::string> overrides = {fmt::format("time.step={}", kicks.step)};
@@ -84,6 +85,10 @@ StudyChoices mesh_choices(const Scene& scene, bool quick) {
   for (const double angle : quick ? std::vector{0.6} : std::vector{0.3, 0.45, 0.6, 0.75, 0.9})
     all.choices.push_back(
         {fmt::format("tree-{:g}", angle), {"gravity.solver=\"tree\"", fmt::format("gravity.opening_angle={}", angle)}});
+  if (!quick && scene.gravity->images.far)
+    all.choices.push_back({"mesh", {"gravity.solver=\"mesh\""}});
+  if (!quick && scene.particles.count <= max_direct)
+    all.choices.push_back({"direct", {"gravity.solver=\"direct\""}});
   return all;
 }
 
@@ -156,12 +161,20 @@ StudyChoices size_choices(const Scene& scene, bool quick) {
   return all;
 }
 
+// In the order of SceneStudyKind.
+constexpr struct {
+  const char* name;
+  StudyChoices (*choices)(const Scene& scene, bool quick);
+} kinds[] = {{"step", step_choices},
+             {"kicks", kick_choices},
+             {"mesh", mesh_choices},
+             {"box", box_choices},
+             {"sizes", size_choices}};
+
 } // namespace
 
 std::string name_of(SceneStudyKind kind) {
-  constexpr const char* names[] = {"step", "kicks", "mesh", "box", "sizes"};
-  assert(static_cast<std::size_t>(kind) < std::size(names));
-  return names[static_cast<std::size_t>(kind)];
+  return kinds[static_cast<std::size_t>(kind)].name;
 }
 
 bool has_common_start(SceneStudyKind kind) {
@@ -180,19 +193,7 @@ Kicks kicks_of(double step, double interval) {
 }
 
 StudyChoices study_choices(SceneStudyKind kind, const Scene& scene, bool quick) {
-  switch (kind) {
-  case SceneStudyKind::step:
-    return step_choices(scene, quick);
-  case SceneStudyKind::kicks:
-    return kick_choices(scene, quick);
-  case SceneStudyKind::mesh:
-    return mesh_choices(scene, quick);
-  case SceneStudyKind::box:
-    return box_choices(scene, quick);
-  case SceneStudyKind::sizes:
-    return size_choices(scene, quick);
-  }
-  return {};
+  return kinds[static_cast<std::size_t>(kind)].choices(scene, quick);
 }
 
 } // namespace keeler

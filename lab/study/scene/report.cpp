@@ -1,5 +1,6 @@
 #include "report.hpp"
 
+#include "study_folder.hpp"
 #include "verdict.hpp"
 
 #include <keeler/core/format.hpp>
@@ -30,7 +31,7 @@ std::string what_changes(const StudyPlan& plan) {
            "not divide the interval. `kick-auto` has `time.step = \"auto\"`.";
   case SceneStudyKind::mesh:
     return "Solver and accuracy of self-gravity vary: `fft` with `gravity.force_error`, `tree` with "
-           "`gravity.opening_angle`.";
+           "`gravity.opening_angle`, `mesh` leaves near neighbours out, `direct` sums over all pairs.";
   case SceneStudyKind::box:
     return "Both sides of the box are multiplied by a factor, and the number of particles by its square. Streamlines "
            "and modes of the scene keep their number of waves.";
@@ -67,9 +68,7 @@ void introduce(const StudyPlan& plan, const std::map<std::string, std::string>& 
   document.paragraph(
       "Numbers are means over the seeds, ± half the width of their 95 % confidence interval (Student's t). "
       "Processor time and memory are those of a run on one thread.");
-  document.paragraph(fmt::format("Made by `{}` on {} ({}), {}, flags `{}`, commit {}.", made.at("command"),
-                                 made.at("processor"), made.at("host"), made.at("compiler"), made.at("flags"),
-                                 made.at("commit")));
+  document.paragraph(made_by(made));
 }
 
 std::string with_bound(const Scatter& scatter) {
@@ -143,9 +142,9 @@ void show_lost_contacts(const StudyPlan& plan, Document& document) {
                                    plan.scene.collisions.finder));
 }
 
-void show_failed(const std::vector<SettingRun>& runs, Document& document) {
+void show_failed(const std::vector<RunRow>& runs, Document& document) {
   Table table = {{"run", "reason"}};
-  for (const SettingRun& run : runs)
+  for (const RunRow& run : runs)
     if (!run.reason.empty())
       table.push_back({run.run->name, run.reason});
   if (table.size() == 1)
@@ -156,13 +155,13 @@ void show_failed(const std::vector<SettingRun>& runs, Document& document) {
 
 } // namespace
 
-void write_study_tables(const StudyPlan& plan, const std::vector<SettingRun>& runs, const StudyMeans& means,
+void write_study_tables(const StudyPlan& plan, const std::vector<RunRow>& runs, const StudyMeans& means,
                         const std::filesystem::path& folder) {
   write_text(folder / "study.csv", csv_with_gaps(runs_as_json(plan, runs)));
   write_text(folder / "settings.csv", csv_with_gaps(means_as_json(means)));
 }
 
-void write_study_report(const StudyPlan& plan, const std::vector<SettingRun>& runs, const StudyMeans& means,
+void write_study_report(const StudyPlan& plan, const std::vector<RunRow>& runs, const StudyMeans& means,
                         const std::map<std::string, std::string>& made, const std::filesystem::path& folder,
                         bool with_figure) {
   Document document(fmt::format("Study of the {} of {}", name_of(plan.kind), plan.scene_name));

@@ -1,12 +1,9 @@
 #include "results.hpp"
 
-#include <keeler/batch/quantities.hpp>
-#include <keeler/core/error.hpp>
 #include <keeler/core/units.hpp>
 #include <keeler/diagnostics/occultation.hpp>
 #include <keeler/io/series.hpp>
 #include <keeler/quantities/views.hpp>
-#include <keeler/runs/run_stage.hpp>
 #include <keeler/runs/stored_patches.hpp>
 #include <keeler/runs/summary.hpp>
 
@@ -17,11 +14,22 @@
 #include <map>
 
 namespace keeler {
+
+struct FinishedRun {
+  const StudyPlan& plan;
+  const Scene& scene;
+  std::filesystem::path folder;
+  Record summary;
+  SeriesTable series;
+
+  std::optional<double> told(const std::string& name) const { return number_in(summary, name); }
+};
+
 namespace {
 
-namespace fs = std::filesystem;
 using Maybe = std::optional<double>;
 
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t rays = 200000; // per snapshot
 constexpr double footprint = 10.0;   // m; does not change the mean
 constexpr double last_orbits = 1.0;  // interval of the snapshots that the rays cross
@@ -38,75 +46,87 @@ const std::map<std::string, std::string> compared_quantities = {
     {"wake_wavelength_m", "wake wavelength (m)"},
     {"wake_contrast", "wake contrast"}};
 
-std::vector<StudyNumber> make_numbers(const RunQuantities& quantities) {
-  std::vector<StudyNumber> all = {
-      {"cpu_s_per_orbit", "processor time per orbit, s", "processor s per orbit", false},
-      {"peak_memory_mb", "the most memory in use, 10⁶ bytes", "memory (MB)", false},
-      {"step_orbits", "length of a step, orbits; of an automatic one the mean", "step (orbits)", false},
-      {"kick_interval_orbits", "from kick to kick, orbits; of an automatic step the mean; only with self-gravity",
-       "kick interval (orbits)", false},
-      {"force_error", "rms error of self-gravity at the end, over the rms acceleration", "force error", false},
-      {"unresolved_contacts_share", "as in `summary.json`", "unresolved contacts", false},
-      {"finder_gave_up", "as in `summary.json`", "", false},
-      {"largest_overlap", "as in `summary.json`", "", false},
-      {"transmission", "vertical, of the snapshots of the last orbit", "vertical transmission", true}};
-  for (const RunColumn& column : quantities.columns()) {
-    const auto title = compared_quantities.find(column.name);
-    const bool compared = title != compared_quantities.end();
-    all.push_back({column.name, column.meaning, compared ? title->second : std::string(), compared});
-  }
-  return all;
-}
-
 // Returns a column's mean over the measured rows of series.csv, nothing without the column or without such rows.
-Maybe series_mean(const SeriesTable& series, const std::string& column, double since) {
-  const std::vector<double>* const values = series.find(column);
+Maybe series_mean(const FinishedRun& run, const std::string& column) {
+  const std::vector<double>* const values = run.series.find(column);
   if (!values)
     return std::nullopt;
-  const std::vector<double>& orbits = series.of("time_orbits");
+  const std::vector<double>& orbits = run.series.of("time_orbits");
   assert(orbits.size() == values->size());
   double sum = 0.0, count = 0.0;
   for (std::size_t k = 0; k < values->size(); ++k)
-    if (orbits[k] >= since)
+    if (orbits[k] >= run.plan.since())
       sum += (*values)[k], count += 1.0;
   return count > 0.0 ? Maybe(sum / count) : std::nullopt;
 }
 
-Maybe transmission_of(const fs::path& folder) {
-  const std::vector<Patch> patches = load_patches(folder, last_orbits).patches;
+Maybe cpu_per_orbit(const FinishedRun& run) {
+  const Maybe cpu = run.told("cpu_s"), orbits = run.told("orbits_done");
+  return cpu && orbits && *orbits > 0.0 ? Maybe(*cpu / *orbits) : std::nullopt;
+}
+
+Maybe step_of(const FinishedRun& run) {
+  return run.scene.time.automatic ? series_mean(run, "step_orbits") : Maybe(run.scene.time.step);
+}
+
+Maybe kick_interval(const FinishedRun& run) {
+  if (!run.scene.gravity)
+    return std::nullopt;
+  return run.scene.time.automatic ? series_mean(run, "kick_interval_orbits")
+                                  : Maybe(run.scene.time.step * run.scene.gravity->kick_every);
+}
+
+// Returns the wall time of a kick: a run on one thread spends `gravity` per step on average.
+Maybe kick_cost(const FinishedRun& run) {
+  const Maybe gravity = run.told("ns_per_particle_step.gravity"), interval = kick_interval(run), step = step_of(run);
+  return gravity && interval && step ? Maybe(*gravity * *interval / *step) : std::nullopt;
+}
+
+Maybe transmission(const FinishedRun& run) {
+  const std::vector<Patch> patches = load_patches(run.folder, last_orbits).patches;
   assert(!patches.empty());
   return occultation(patches, RayLattice(patches.front().box, rays, footprint), {pi / 2.0, 0.0}).transmission.value;
 }
 
-std::vector<Maybe> values_of(const StudyPlan& plan, const PlannedRun& run, const fs::path& folder) {
-  const Record summary = read_summary(folder);
-  const SeriesTable series = read_series(folder / "series.csv");
-  std::map<std::string, Maybe> known;
-  const Maybe cpu = number_in(summary, "cpu_s"), orbits = number_in(summary, "orbits_done"),
-              memory = number_in(summary, "peak_memory_mb");
-  if (cpu && orbits && *orbits > 0.0)
-    known["cpu_s_per_orbit"] = *cpu / *orbits;
-  if (memory)
-    known["peak_memory_mb"] = *memory;
-  const Scene& scene = run.scene;
-  const auto chosen = [&](const char* column, double fixed) {
-    return scene.time.automatic ? series_mean(series, column, plan.since()) : Maybe(fixed);
-  };
-  known["step_orbits"] = chosen("step_orbits", scene.time.step);
-  if (scene.gravity)
-    known["kick_interval_orbits"] = chosen("kick_interval_orbits", scene.time.step * scene.gravity->kick_every);
-  known["force_error"] = number_in(summary, "force_error.rms");
-  for (const char* const key : {"unresolved_contacts_share", "finder_gave_up", "largest_overlap"})
-    known[key] = number_in(summary, key);
-  known["transmission"] = transmission_of(folder);
-  const RunNumbers numbers = plan.quantities.measure(folder, scene, plan.since());
-  for (std::size_t k = 0; k < numbers.values.size(); ++k)
-    if (const std::optional<Estimate>& value = numbers.values[k]; value && std::isfinite(value->value))
-      known[plan.quantities.columns()[k].name] = value->value;
-  std::vector<Maybe> values;
-  for (const StudyNumber& number : study_numbers(plan.quantities))
-    values.push_back(known[number.column]);
-  return values;
+StudyNumber told(const std::string& column, const std::string& title, const std::string& name) {
+  return {column, title, false, [name](const FinishedRun& run) { return run.told(name); }};
+}
+
+std::vector<StudyNumber> make_numbers(const RunQuantities& quantities) {
+  std::vector<StudyNumber> all = {{"cpu_s_per_orbit", "processor s per orbit", false, cpu_per_orbit},
+                                  told("peak_memory_mb", "memory (MB)", "peak_memory_mb"),
+                                  {"step_orbits", "step (orbits)", false, step_of},
+                                  {"kick_interval_orbits", "kick interval (orbits)", false, kick_interval},
+                                  told("force_error", "force error", "force_error.rms"),
+                                  told("unresolved_contacts_share", "unresolved contacts", "unresolved_contacts_share"),
+                                  told("finder_gave_up", "", "finder_gave_up"),
+                                  told("largest_overlap", "", "largest_overlap"),
+                                  {"transmission", "vertical transmission", true, transmission}};
+  for (const RunColumn& column : quantities.columns()) {
+    const auto title = compared_quantities.find(column.name);
+    const bool compared = title != compared_quantities.end();
+    all.push_back({column.name, compared ? title->second : std::string(), compared, {}});
+  }
+  return all;
+}
+
+RunNumbers measured(const StudyPlan& plan, const std::vector<StudyNumber>& numbers, const PlannedRun& run,
+                    const std::filesystem::path& folder) {
+  const FinishedRun finished{plan, run.scene, folder, read_summary(folder), read_series(folder / "series.csv")};
+  RunNumbers all = plan.quantities.measure(folder, run.scene, plan.since());
+  std::vector<std::optional<Estimate>> values;
+  std::size_t quantity = 0;
+  for (const StudyNumber& number : numbers) {
+    if (!number.read)
+      values.push_back(all.values[quantity++]);
+    else if (const Maybe value = number.read(finished))
+      values.push_back(Estimate{*value, unknown});
+    else
+      values.emplace_back();
+  }
+  assert(quantity == all.values.size());
+  all.values = std::move(values);
+  return all;
 }
 
 std::size_t smallest_force_error(const std::vector<SettingMeans>& settings) {
@@ -127,8 +147,11 @@ const std::vector<StudyNumber>& study_numbers() {
   return numbers;
 }
 
-std::vector<StudyNumber> study_numbers(const RunQuantities& quantities) {
-  return make_numbers(quantities);
+std::vector<StudyNumber> study_numbers(const StudyPlan& plan) {
+  std::vector<StudyNumber> numbers = make_numbers(plan.quantities);
+  if (plan.kind == SceneStudyKind::mesh)
+    numbers.push_back({"kick_ns_per_particle", "a kick (ns per particle)", false, kick_cost});
+  return numbers;
 }
 
 std::size_t number_at(const std::string& column) {
@@ -138,72 +161,47 @@ std::size_t number_at(const std::string& column) {
   return static_cast<std::size_t>(found - all.begin());
 }
 
-std::vector<SettingRun> measure_runs(const StudyPlan& plan, const std::vector<PlannedRun>& runs,
-                                     const RunFolders& folders) {
-  std::vector<SettingRun> measured;
-  for (const PlannedRun& run : runs) {
-    SettingRun row;
-    row.run = &run;
-    try {
-      if (run_stage(folders.run(run.name)) == RunStage::finished) {
-        row.values = values_of(plan, run, folders.run(run.name));
-        row.finished = true;
-      } else {
-        row.reason = folders.failure_of(run.name).value_or("not finished");
-      }
-    } catch (const Error& error) { // a damaged file affects only its run
-      row.reason = error.what();
-      row.measurable = false;
+std::vector<RunRow> measure_runs(const StudyPlan& plan, const std::vector<PlannedRun>& runs,
+                                 const RunFolders& folders) {
+  const std::vector<StudyNumber> numbers = study_numbers(plan);
+  std::vector<RunRow> rows = run_rows(runs, folders, [&](const PlannedRun& run, const std::filesystem::path& folder) {
+    return measured(plan, numbers, run, folder);
+  });
+  for (RunRow& row : rows)
+    if (row.status == RunStatus::unfinished) {
+      row.status = RunStatus::failed;
+      row.reason = "not finished";
     }
-    measured.push_back(std::move(row));
-  }
-  return measured;
+  return rows;
 }
 
-StudyMeans means_of(const StudyChoices& choices, const std::vector<SettingRun>& runs,
+StudyMeans means_of(const StudyChoices& choices, const std::vector<RunRow>& runs,
                     const std::vector<StudyNumber>& numbers) {
-  const std::size_t count = numbers.size();
   StudyMeans means;
   means.numbers = numbers;
-  for (std::size_t s = 0; s < choices.choices.size(); ++s) {
-    SettingMeans& setting = means.settings.emplace_back();
-    setting.name = choices.choices[s].name;
-    std::vector<std::vector<double>> values(count);
-    for (const SettingRun& run : runs)
-      if (run.run->point == s && !run.values.empty()) {
-        assert(run.values.size() == count);
-        ++setting.finished;
-        for (std::size_t n = 0; n < count; ++n)
-          if (run.values[n])
-            values[n].push_back(*run.values[n]);
-      }
-    for (const std::vector<double>& of_number : values)
-      setting.scatter.push_back(scatter_of(of_number));
-  }
+  for (const PointRow& point : point_rows(runs, choices.choices.size(), numbers.size()))
+    means.settings.push_back({point, choices.choices[point.point].name, {}});
   means.reference = choices.reference.value_or(smallest_force_error(means.settings));
   assert(means.reference < means.settings.size());
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   const std::vector<Scatter>& reference = means.settings[means.reference].scatter;
   for (std::size_t s = 0; s < means.settings.size(); ++s)
-    for (std::size_t n = 0; n < count; ++n) // a reference of 0, as a stress without gravity, has no relative difference
-      means.settings[s].from_reference.push_back(s != means.reference && numbers[n].compared && reference[n].mean != 0.0
-                                                     ? mean_difference(reference[n], means.settings[s].scatter[n])
-                                                     : MeanDifference{unknown, unknown});
+    for (std::size_t n = 0; n < numbers.size(); ++n) // a reference of 0, as a stress without gravity, has no relative
+      means.settings[s].from_reference.push_back(    // difference
+          s != means.reference && numbers[n].compared && reference[n].mean != 0.0
+              ? mean_difference(reference[n], means.settings[s].scatter[n])
+              : MeanDifference{unknown, unknown});
   return means;
 }
 
-Json runs_as_json(const StudyPlan& plan, const std::vector<SettingRun>& runs) {
+Json runs_as_json(const StudyPlan& plan, const std::vector<RunRow>& runs) {
   Json rows = Json::array();
-  const std::vector<StudyNumber> numbers = study_numbers(plan.quantities);
-  for (const SettingRun& run : runs) {
-    Json row;
-    row["run"] = run.run->name;
-    row["setting"] = plan.choices.choices[run.run->point].name;
-    row["seed"] = run.run->seed;
-    row["status"] = run.finished ? "finished" : "failed";
-    row["reason"] = run.reason.empty() ? Json(nullptr) : Json(run.reason);
-    for (std::size_t n = 0; n < numbers.size(); ++n)
-      row[numbers[n].column] = run.values.empty() ? Json(nullptr) : or_null(run.values[n]);
+  const std::vector<StudyNumber> numbers = study_numbers(plan);
+  for (const RunRow& run : runs) {
+    Json row = row_of(run, {{"setting", plan.choices.choices[run.run->point].name}});
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+      const std::optional<Estimate> value = run.numbers ? run.numbers->values[n] : std::nullopt;
+      row[numbers[n].column] = value ? or_null(value->value) : Json(nullptr);
+    }
     rows.push_back(row);
   }
   return rows;
@@ -211,16 +209,14 @@ Json runs_as_json(const StudyPlan& plan, const std::vector<SettingRun>& runs) {
 
 Json means_as_json(const StudyMeans& means) {
   Json rows = Json::array();
-  for (std::size_t s = 0; s < means.settings.size(); ++s) {
-    const SettingMeans& setting = means.settings[s];
-    Json row;
-    row["setting"] = setting.name;
-    row["runs"] = setting.finished;
-    row["reference"] = s == means.reference;
+  const std::vector<Scatter>& reference = means.settings[means.reference].scatter;
+  for (const SettingMeans& setting : means.settings) {
+    Json row = {{"setting", setting.name},
+                {"runs", setting.finished},
+                {"reference", setting.point == means.settings[means.reference].point}};
     for (std::size_t n = 0; n < means.numbers.size(); ++n) {
       const std::string& column = means.numbers[n].column;
-      const Scatter& reference = means.settings[means.reference].scatter[n];
-      const double percent = 100.0 / std::fabs(reference.mean);
+      const double percent = 100.0 / std::fabs(reference[n].mean);
       row[column] = or_null(setting.scatter[n].mean);
       row[column + "_bound"] = or_null(mean_bound(setting.scatter[n]));
       if (!means.numbers[n].compared)

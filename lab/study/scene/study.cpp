@@ -40,9 +40,7 @@ void report_warnings(const StudyPlan& plan, const SceneStudySettings& settings) 
 bool carry_out(const std::vector<PlannedRun>& runs, const std::string& stage, const RunFolders& folders, Claims& claims,
                const Stopwatch& watch, const SceneStudySettings& settings, const RunRequests& requests) {
   folders.refuse_changed(runs, settings.scene + ":1:1");
-  WorkOptions work;
-  work.jobs = settings.jobs;
-  work.notice = settings.notice;
+  BatchSettings work = settings;
   work.progress = [&](Progress progress) {
     progress.what = stage + ": " + progress.what;
     progress.elapsed_s = watch.elapsed();
@@ -61,10 +59,10 @@ void require_states(const std::vector<PlannedRun>& runs, const RunFolders& folde
                       run.seed, *reason));
 }
 
-SceneStudyResult write_results(const StudyPlan& plan, const std::vector<PlannedRun>& runs, const RunFolders& folders,
-                               const std::map<std::string, std::string>& made, const SceneStudySettings& settings) {
-  const std::vector<SettingRun> measured = measure_runs(plan, runs, folders);
-  const StudyMeans means = means_of(plan.choices, measured, study_numbers(plan.quantities));
+BatchResult write_results(const StudyPlan& plan, const std::vector<PlannedRun>& runs, const RunFolders& folders,
+                          const std::map<std::string, std::string>& made, const SceneStudySettings& settings) {
+  const std::vector<RunRow> measured = measure_runs(plan, runs, folders);
+  const StudyMeans means = means_of(plan.choices, measured, study_numbers(plan));
   write_study_tables(plan, measured, means, folders.path());
   const auto draw = [&] {
     const bool drawn = draw_study_figure(plan, means, folders.path());
@@ -73,17 +71,12 @@ SceneStudyResult write_results(const StudyPlan& plan, const std::vector<PlannedR
     return drawn;
   };
   draw_and_report(draw, [&](bool drawn) { write_study_report(plan, measured, means, made, folders.path(), drawn); });
-  SceneStudyResult result;
-  for (const SettingRun& run : measured) {
-    result.failed += run.finished ? 0 : 1;
-    result.unmeasurable += run.measurable ? 0 : 1;
-  }
-  return result;
+  return result_of(measured);
 }
 
 } // namespace
 
-SceneStudyResult study_scene(const SceneStudySettings& settings, const RunRequests& requests) {
+BatchResult study_scene(const SceneStudySettings& settings, const RunRequests& requests) {
   const StudyPlan plan = plan_study(settings);
   std::map<std::string, std::string> made = study_provenance(settings.arguments);
   made["scene"] = settings.scene;

@@ -7,11 +7,9 @@
 // docs/manual/commands.md lists the settings, docs/formats.md the files of the folder.
 #pragma once
 
-#include <keeler/core/progress.hpp>
-#include <keeler/runs/run.hpp>
+#include <keeler/batch/rows.hpp>
+#include <keeler/batch/workers.hpp>
 
-#include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,31 +25,20 @@ enum class SceneStudyKind {
   sizes, ///< the distribution of particle sizes
 };
 
-struct SceneStudySettings {
+/// Each run is on one thread.
+struct SceneStudySettings : BatchSettings {
   SceneStudyKind kind = SceneStudyKind::step;
   std::string scene;                  ///< path of the scene file
   std::vector<std::string> overrides; ///< "KEY=VALUE", applied to the scene
-  std::filesystem::path folder;
-  std::optional<std::size_t> seeds;      ///< at least 2; default 3, quick 2
-  std::optional<double> grow_orbits;     ///< to the common state; default 6 with self-gravity, 10 without, quick 1
-  std::optional<double> orbits;          ///< of each run after that, at least 1.5; default 6, quick 2
-  std::vector<std::string> quantities{}; ///< further columns, by their names in keeler analyze
-  bool quick = false;                    ///< few settings, seeds and orbits
-  std::size_t jobs = 1;                  ///< concurrent runs, each a process with one thread
-  std::vector<std::string> arguments;    ///< the command line, for provenance
-  std::function<void(const Progress&)> progress;
-  std::function<void(const std::string&)> notice;
-};
-
-/// The state of the study's folder when study_scene() returns.
-struct SceneStudyResult {
-  bool stopped = false;         ///< on request; a call with the same settings continues
-  std::size_t failed = 0;       ///< runs that are missing from the tables
-  std::size_t unmeasurable = 0; ///< of `failed`: finished runs with unreadable files
+  std::optional<std::size_t> seeds;   ///< at least 2; default 3, quick 2
+  std::optional<double> grow_orbits;  ///< to the common state; default 6 with self-gravity, 10 without, quick 1
+  std::optional<double> orbits;       ///< of each run after that, at least 1.5; default 6, quick 2
+  bool quick = false;                 ///< few settings, seeds and orbits
+  std::vector<std::string> arguments; ///< the command line, for provenance
 };
 
 /// Carries out the missing runs and writes tables, figure and report. Throws UsageError when the scene has no setting
 /// of this kind or the folder holds another study, Error when a common state could not be evolved, and IoError.
-SceneStudyResult study_scene(const SceneStudySettings& settings, const RunRequests& requests);
+BatchResult study_scene(const SceneStudySettings& settings, const RunRequests& requests);
 
 } // namespace keeler

@@ -14,7 +14,7 @@ namespace {
 std::vector<PointRow> made_up_points(const Plan& plan) {
   std::vector<PointRow> points(plan.points.size());
   for (std::size_t p = 0; p < points.size(); ++p) {
-    points[p].point = &plan.points[p];
+    points[p].point = p;
     points[p].values.assign(RunQuantities().columns().size(), Estimate{10.0 * static_cast<double>(p), 0.5});
   }
   return points;

@@ -7,7 +7,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <limits>
 #include <map>
 
 namespace tables_test {
@@ -16,8 +15,6 @@ using namespace keeler;
 using namespace keeler::test;
 
 namespace {
-
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 const char* const text = R"(
 scene = "scene.toml"
@@ -71,20 +68,12 @@ Estimate plain_mean(const std::vector<Estimate>& seeds) {
 
 } // namespace
 
-TEST_CASE("the mean over seeds has the error of their spread, and one seed its own") {
-  const std::vector<Estimate> three = {{1.0, 0.5}, {2.0, unknown}, {6.0, 0.1}};
-  CHECK(seed_mean(three).value == doctest::Approx(3.0));
-  CHECK(seed_mean(three).error == doctest::Approx(std::sqrt(7.0 / 3.0)));
-  CHECK(seed_mean(std::vector<Estimate>{{2.0, 0.25}}).error == 0.25);
-  CHECK(std::isnan(seed_mean(std::vector<Estimate>{{2.0, unknown}}).error));
-}
-
 TEST_CASE("a point has the mean of its finished runs, as sums over all pairs of runs give it") {
   const GridFile file(text);
   const Grid grid = file.grid();
   const Plan plan = plan_runs(grid);
   const std::vector<RunRow> runs = made_up_rows(plan);
-  const std::vector<PointRow> points = point_rows(grid, plan, runs);
+  const std::vector<PointRow> points = point_rows(runs, plan.points.size(), RunQuantities().columns().size());
   REQUIRE(points.size() == 4);
   for (std::size_t p = 0; p < points.size(); ++p)
     for (std::size_t q = 0; q < RunQuantities().columns().size(); ++q) {
@@ -113,7 +102,8 @@ TEST_CASE("tables have finished and failed runs, with gaps where nothing is know
   CHECK(csv.starts_with("run,particles.optical_depth,time.step,seed,status,reason,particle_count,since_orbit,"));
   CHECK(csv.find("\noptical_depth-0.1_step-0.002_seed-2,0.1,0.002,2,failed,\"no room, \"\"none\"\"\",,") != csv.npos);
   CHECK(csv.find("null") == csv.npos);
-  const Json points = points_as_json(grid, plan, point_rows(grid, plan, runs));
+  const Json points =
+      points_as_json(grid, plan, point_rows(runs, plan.points.size(), RunQuantities().columns().size()));
   CHECK(points[3].at("particles.optical_depth") == 0.2);
   CHECK(points[1].at("failed_runs") == 1);
 }

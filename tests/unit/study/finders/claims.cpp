@@ -76,7 +76,7 @@ struct MadeUp {
   // Returns the verdicts on the claims that contain these words.
   std::vector<std::string> on(const std::string& words) const {
     std::vector<std::string> verdicts;
-    for (const Row& row : paper_claims(FinderNumbers(data)))
+    for (const Row& row : paper_claims(data))
       if (row[0].find(words) != std::string::npos)
         verdicts.push_back(row[2]);
     REQUIRE_MESSAGE(!verdicts.empty(), words);
@@ -88,12 +88,12 @@ struct MadeUp {
 
 TEST_CASE("measurements that bear the paper out confirm each of its claims") {
   const MadeUp study;
-  for (const Row& row : paper_claims(FinderNumbers(study.data)))
+  for (const Row& row : paper_claims(study.data))
     if (row[2] != "verdict") {
       CAPTURE(row[0] + ": " + row[1]);
       CHECK(row[2] == "confirmed");
     }
-  CHECK(FinderNumbers(study.data).scatter() == doctest::Approx(0.01));
+  CHECK(study.data.scatter() == doctest::Approx(0.01));
 }
 
 TEST_CASE("each claim can be refuted") {

@@ -96,13 +96,18 @@ TEST_CASE("a study of kicks has its intervals whatever the scene's step is, and 
 TEST_CASE("a study of solvers leaves the mesh out where only some rings of images act") {
   const Scene scene = scene_with({"gravity.solver=\"fft\""});
   const StudyChoices all = study_choices(SceneStudyKind::mesh, scene, false);
-  CHECK(all.choices.size() == 10);
+  CHECK(all.choices.size() == 12);
   CHECK_FALSE(all.reference.has_value());
   CHECK(with(scene, all.choices.front()).gravity->force_error == 3e-4);
-  CHECK(with(scene, all.choices.back()).gravity->opening_angle == 0.9);
+  CHECK(with(scene, all.choices[9]).gravity->opening_angle == 0.9);
+  CHECK(with(scene, all.choices[10]).gravity->solver == GravitySettings::Solver::mesh);
+  CHECK(with(scene, all.choices[11]).gravity->solver == GravitySettings::Solver::direct);
+  const Scene large = scene_with({"box.size=[600.0, 400.0]", "gravity.solver=\"fft\""});
+  CHECK(names_of(study_choices(SceneStudyKind::mesh, large, false)).back() == "mesh"); // too many for all pairs
   const Scene rings = scene_with({"gravity.solver=\"tree\"", "gravity.images=\"rings\""});
   for (const StudyChoice& choice : study_choices(SceneStudyKind::mesh, rings, false).choices)
-    CHECK(with(rings, choice).gravity->solver == GravitySettings::Solver::tree);
+    CHECK(with(rings, choice).gravity->solver ==
+          (choice.name == "direct" ? GravitySettings::Solver::direct : GravitySettings::Solver::tree));
 }
 
 TEST_CASE("boxes have the scene's densities") {

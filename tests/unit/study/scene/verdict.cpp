@@ -21,19 +21,22 @@ public:
     for (const double side : {-1.0, 0.0, 1.0}) {
       PlannedRun& planned = planned_.emplace_back();
       planned.point = choices_.choices.size() - 1;
-      SettingRun run;
+      RunRow& run = runs_.emplace_back();
       run.run = &planned;
-      run.finished = true;
-      run.values.resize(study_numbers().size());
-      run.values[number_at("cpu_s_per_orbit")] = cpu;
-      run.values[number_at("energy_balance")] = balance + side * balance_deviation;
-      run.values[number_at("dispersion_x_m_s")] = dispersion * (1.0 + 0.01 * side);
-      run.values[number_at("force_error")] = force_error;
-      runs_.push_back(run);
+      run.status = RunStatus::finished;
+      std::vector<std::optional<Estimate>>& values = run.numbers.emplace().values;
+      values.resize(study_numbers().size());
+      values[number_at("cpu_s_per_orbit")] = {cpu, 0.0};
+      values[number_at("energy_balance")] = {balance + side * balance_deviation, 0.0};
+      values[number_at("dispersion_x_m_s")] = {dispersion * (1.0 + 0.01 * side), 0.0};
+      values[number_at("force_error")] = {force_error, 0.0};
     }
   }
 
-  void fail_last() { runs_.back().values.clear(); }
+  void fail_last() {
+    runs_.back().status = RunStatus::failed;
+    runs_.back().numbers.reset();
+  }
 
   StudyMeans means(std::optional<std::size_t> reference = 0) {
     choices_.reference = reference;
@@ -43,7 +46,7 @@ public:
 private:
   StudyChoices choices_;
   std::deque<PlannedRun> planned_;
-  std::vector<SettingRun> runs_;
+  std::vector<RunRow> runs_;
 };
 
 } // namespace
