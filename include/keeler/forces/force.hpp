@@ -68,11 +68,11 @@ struct ForceContext {
   Communicator ranks = {}; ///< each rank has its own particles; all ranks make each force together
 };
 
-/// A force that a scene selects by a table: the table's name, its keys, and the function that makes the force.
+/// A force that a scene selects by a table. What the force does follows from its keys: they are in the state hash.
 struct ForceEntry {
-  const char* table;     ///< its name, at the top of the scene
-  std::vector<Key> keys; ///< of the table
-  /// Makes the force. Throws UsageError for values that do not fit.
+  const char* table;     ///< its name in scenes, checkpoints, the time split and the energy budget; a literal
+  std::vector<Key> keys; ///< by their names in the table; all affect the motion
+  /// Makes the force from the checked values; throws UsageError if they do not fit together.
   std::unique_ptr<Force> (*make)(const Parameters& parameters, const ForceContext& context);
   /// Throws UsageError if the values do not fit a box of this radial size; null: no check. `make` repeats the check,
   /// for boxes that the scene does not define.

@@ -61,12 +61,12 @@ private:
 /// Returns the radii of all particles, m.
 std::vector<double> draw_radii(const SizeLaw& law, std::size_t count, std::uint64_t seed);
 
-/// A size law that a scene can choose: its name, its keys, and its factory. `make` throws UsageError if the values are
-/// inconsistent.
+/// A size law that a scene can choose: particles.sizes = { law = NAME, … }.
 struct SizeEntry {
-  const char* name;                              ///< word of the key `law`
-  std::vector<Key> keys;                         ///< beside `law`
-  SizeLaw (*make)(const Parameters& parameters); ///< its factory
+  const char* name;      ///< a literal
+  std::vector<Key> keys; ///< by their names in the table, which all laws share; they only affect the start
+  /// Makes the law from the checked values; throws UsageError if they do not fit together.
+  SizeLaw (*make)(const Parameters& parameters);
 };
 
 /// Returns all size laws. A new law needs one more entry here.

@@ -1,5 +1,4 @@
 // A shared library that is made with the installed package.
-#include <keeler/core/units.hpp>
 #include <keeler/scene/load.hpp>
 #include <keeler/simulation/simulation.hpp>
 
