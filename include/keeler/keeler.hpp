@@ -1,5 +1,5 @@
-// All that Keeler's library offers, by subject. How to build with it, its units, and what may change between versions is
-// in the manual: docs/manual/library.md.
+// All that Keeler's library offers, by subject. How to build with it, its units, and what may change between versions
+// is in the manual: docs/manual/library.md.
 #pragma once
 
 // Scenes
