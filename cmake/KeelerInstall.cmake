@@ -18,7 +18,7 @@ install(FILES "${PROJECT_BINARY_DIR}/keeler-config.cmake" "${PROJECT_BINARY_DIR}
 # The manual as it stands in the source tree: its pages link to each other and to the examples by relative paths.
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}"
   COMPONENT program)
-install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
+install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program PATTERN Doxyfile EXCLUDE)
 install(DIRECTORY examples DESTINATION "${CMAKE_INSTALL_DATADIR}/keeler" COMPONENT program PATTERN __pycache__ EXCLUDE)
 file(RELATIVE_PATH examples_seen_from_manual "${CMAKE_INSTALL_FULL_DOCDIR}" "${CMAKE_INSTALL_FULL_DATADIR}/keeler/examples")
 file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/manual")

@@ -81,7 +81,8 @@ def complaint(root, pages, path, target):
     """Why a link of a page is dead, or None. One that begins with / is seen from the root."""
     parts = urlsplit(target)
     if parts.scheme or parts.netloc:
-        return "is fetched from the network" if target in pages[path].loads else None
+        fetched = parts.scheme != "javascript" and target in pages[path].loads
+        return "is fetched from the network" if fetched else None
     base = root if parts.path.startswith("/") else path.parent
     there = (base / unquote(parts.path).lstrip("/")).resolve() if parts.path else path
     if not there.exists():

@@ -36,7 +36,7 @@ struct CollisionTally {
   double momentum_flux = 0.0;   ///< Σ (x_j − x_i)(p_y gained by j), kg m² rad⁻¹: the collisional viscosity
   double azimuthal_gain = 0.0;  ///< gain of Σ m c_y²: the translational viscosity (docs/dev/diagnostics.md)
 
-  void list_fields(FieldTable& table);
+  void list_fields(FieldTable& table); ///< adds each of them
 };
 
 /// Returns the gain of Σ m (½κ²e² + ½ν²i²) and of the energy of spin by collisions, kg m² rad⁻².
@@ -47,8 +47,9 @@ inline double epicyclic_gain(const CollisionTally& tally, const Frequencies& f) 
 
 /// One collision.
 struct CollisionRecord {
-  double time; ///< relative to the middle of the step, rad
-  std::uint64_t low_id, high_id;
+  double time;                       ///< relative to the middle of the step, rad
+  std::uint64_t low_id;              ///< the lower id
+  std::uint64_t high_id;             ///< the higher id
   Image image;                       ///< of the particle with the higher id
   double normal_speed;               ///< approach speed, m rad⁻¹
   bool fast;                         ///< faster than v_cut
@@ -74,20 +75,22 @@ public:
   /// True: recorded() is called. Steps keep their threads.
   virtual bool wants_records() const { return false; }
 
-  virtual void begins(const DriftStep&) {}
-  virtual void searched(const Query&, const FinderResult&) {}
-  virtual void collided(const CollisionRecord&) {}
-  virtual void changed(std::size_t /*particle*/) {} ///< its velocity
+  virtual void begins(const DriftStep&) {}                    ///< before the first search of a step
+  virtual void searched(const Query&, const FinderResult&) {} ///< a search, and what it has found
+  virtual void collided(const CollisionRecord&) {}            ///< a contact that has been carried out
+  virtual void changed(std::size_t /*particle*/) {}           ///< the velocity of a particle has changed
   /// Receives all contacts of a step at its end, in the order of events.
   virtual void recorded(std::span<const CollisionRecord>) {}
 };
 
 /// Two particles that have touched slowly, by index, the lower id first.
 struct SlowPair {
-  std::uint32_t low, high;
-  float kicks; ///< approach speed over that which a kick of the pair's own gravity gives
+  std::uint32_t low;  ///< has the lower id
+  std::uint32_t high; ///< has the higher id
+  float kicks;        ///< approach speed over that which a kick of the pair's own gravity gives
 };
 
+/// Carries out the collisions of drifts, one drift per call.
 class DriftPhase {
 public:
   /// `step` is the length h of a drift (rad). Precondition: h > 0. Throws UsageError for an unknown finder.
@@ -103,8 +106,8 @@ public:
   std::span<const SlowPair> slow_pairs() const;
 
   ~DriftPhase();
-  DriftPhase(DriftPhase&& other) noexcept;
-  DriftPhase& operator=(DriftPhase&& other) noexcept;
+  DriftPhase(DriftPhase&& other) noexcept;            ///< leaves `other` unusable
+  DriftPhase& operator=(DriftPhase&& other) noexcept; ///< leaves `other` unusable
 
   /// Carries out all collisions in [−h/2, h/2) around the epoch of the elements; `offset` is the box's shear offset at
   /// the epoch. The elements stay at their epoch. `undisturbed` is a promise that saves work: since the last call the
@@ -121,8 +124,8 @@ public:
   bool collide_distributed(Particles& particles, const GhostLayer& ghosts, const Communicator& ranks,
                            const ShearingBox& box, double offset, CollisionTally& tally);
 
-  const Finder& finder() const;
-  DriftCosts costs() const;
+  const Finder& finder() const; ///< the one in use, which may be the observer's
+  DriftCosts costs() const;     ///< since construction
 
   /// Releases memory that the next steps would need again: before a large allocation.
   void release();

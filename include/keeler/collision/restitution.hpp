@@ -11,8 +11,9 @@ namespace keeler {
 
 /// Two particles about to collide.
 struct Impact {
-  double speed = 0.0;                         ///< normal approach speed, m/s
-  double radius_low = 0.0, radius_high = 0.0; ///< m, of the particle with the lower id and of the other
+  double speed = 0.0;       ///< normal approach speed, m/s
+  double radius_low = 0.0;  ///< of the particle with the lower id, m
+  double radius_high = 0.0; ///< of the other particle, m
 };
 
 /// Returns the coefficient of normal restitution, in [0, 1], of an impact. Called from several threads at once.
@@ -50,9 +51,9 @@ void add_own_restitution(const std::string& name, const RestitutionLaw& law);
 
 /// A law that a scene can choose: its name, its keys, and the function that makes it from their values.
 struct RestitutionEntry {
-  const char* name;
-  std::vector<Key> keys;
-  RestitutionLaw (*make)(const Parameters& parameters);
+  const char* name;                                     ///< word of the key `law`
+  std::vector<Key> keys;                                ///< beside `law`
+  RestitutionLaw (*make)(const Parameters& parameters); ///< makes it; throws UsageError for values that do not fit
 };
 
 /// Returns all laws. A new law is one more entry.

@@ -11,15 +11,16 @@ namespace keeler {
 
 /// Friction between rough spheres (friction.hpp has its law).
 struct Friction {
-  static constexpr double unlimited = std::numeric_limits<double>::infinity();
+  static constexpr double unlimited = std::numeric_limits<double>::infinity(); ///< a coefficient without any limit
 
   double tangential_restitution = 1.0; ///< ε_t in [−1, 1]: slip velocity of the surfaces after over before
   double coefficient = unlimited;      ///< Coulomb's: tangential impulse ≤ coefficient × normal impulse
 };
 
+/// How contacts are found, and what they do to the particles.
 struct CollisionSettings {
-  std::string finder = "certified"; ///< a name of finder_table()
-  RestitutionLaw restitution = constant_restitution(0.5);
+  std::string finder = "certified";                       ///< a name of finder_table()
+  RestitutionLaw restitution = constant_restitution(0.5); ///< normal; for approaches faster than v_cut
   double elastic_below = 1e-2;      ///< v_cut in units of (r_i + r_j) Omega / 2: slower contacts bounce elastically
   std::optional<Friction> friction; ///< none: smooth spheres, without spins
 

@@ -27,12 +27,16 @@ using Parcels = std::vector<std::vector<std::byte>>;
 
 /// Equally long blocks of bytes at a constant stride in memory (MPI's hvector): sent from there, or received there.
 struct Blocks {
-  std::byte* first = nullptr;
-  std::size_t count = 0, size = 0, stride = 0; ///< stride: bytes from the begin of one block to that of the next
+  std::byte* first = nullptr; ///< begin of the first block
+  std::size_t count = 0;      ///< number of blocks
+  std::size_t size = 0;       ///< bytes of one block
+  std::size_t stride = 0;     ///< bytes from the begin of one block to that of the next
 };
 
+/// The ranks of one run, as one of them sees them.
 class Communicator {
 public:
+  /// True in a build with KEELER_MPI, which may have several ranks.
 #ifdef KEELER_MPI
   static constexpr bool possible = true;
 #else
@@ -46,15 +50,19 @@ public:
   /// started several processes.
   static Communicator launched();
 
+  /// Returns the number of this rank, from 0.
   std::size_t rank() const {
     return rank_;
   }
+  /// Returns the number of ranks.
   std::size_t size() const {
     return size_;
   }
+  /// True if there are several ranks.
   bool distributed() const {
     return possible && size_ > 1;
   }
+  /// True on rank 0, the root.
   bool is_root() const {
     return rank_ == 0;
   }
@@ -77,14 +85,16 @@ public:
 
   /// Replaces each number by its sum over all ranks, modulo 2⁶⁴.
   void sum(std::span<std::uint64_t> numbers) const;
+  /// Returns the sum of the numbers of all ranks, modulo 2⁶⁴.
   std::uint64_t sum(std::uint64_t number) const {
     sum(std::span(&number, 1));
     return number;
   }
   /// Replaces each exact sum by the exact sum over all ranks.
   void merge(std::initializer_list<ExactSum*> sums) const;
-  /// Returns the extremum over all ranks.
+  /// Returns the largest of the numbers of all ranks.
   double max(double number) const;
+  /// Returns the smallest of the numbers of all ranks.
   double min(double number) const {
     return -max(-number);
   }
@@ -93,18 +103,21 @@ public:
     return max(here ? 1.0 : 0.0) > 0.0;
   }
 
-  /// Replaces the bytes or the text by the root's. Precondition: all ranks give equal numbers of bytes.
+  /// Replaces the bytes by the root's. Precondition: all ranks give equal numbers of bytes.
   void broadcast(std::span<std::byte> bytes) const;
+  /// Replaces the text by the root's, of any length.
   void broadcast(std::string& text) const;
+  /// Returns the root's value.
   template<class Value> Value broadcast(Value value) const {
     static_assert(std::is_trivially_copyable_v<Value>);
     broadcast(std::as_writable_bytes(std::span(&value, 1)));
     return value;
   }
 
-  /// Runs the work on every rank, or on the root alone. If it throws an Error on any rank, all ranks throw: the lowest
-  /// such rank its own exception, the others an Error of the same code and text, which they need not report.
+  /// Runs the work on every rank. If it throws an Error on any rank, all ranks throw: the lowest such rank its own
+  /// exception, the others an Error of the same code and text, which they need not report.
   void together(const std::function<void()>& work) const;
+  /// As together(), with work for the root alone.
   void on_root(const std::function<void()>& work) const;
 
 private:
@@ -121,12 +134,13 @@ private:
 
 /// Communication of this rank since the start of the program.
 struct ExchangeCosts {
-  double seconds = 0.0;                  ///< wall time of communication, waiting for other ranks included
-  std::uint64_t messages = 0, bytes = 0; ///< sent to other ranks by exchange()
-  std::uint64_t collectives = 0;         ///< calls of sum(), merge(), max(), min(), any() and broadcast()
-  std::uint64_t max_bytes = 0;           ///< the most bytes that one call sent from or received on this rank
+  double seconds = 0.0;          ///< wall time of communication, waiting for other ranks included
+  std::uint64_t messages = 0;    ///< sent to other ranks by exchange()
+  std::uint64_t bytes = 0;       ///< of these messages
+  std::uint64_t collectives = 0; ///< calls of sum(), merge(), max(), min(), any() and broadcast()
+  std::uint64_t max_bytes = 0;   ///< the most bytes that one call sent from or received on this rank
 };
-const ExchangeCosts& exchange_costs();
+const ExchangeCosts& exchange_costs(); ///< up to now
 
 /// Ends a launched program that has succeeded; waits for the other ranks.
 void finish_ranks();

@@ -14,8 +14,10 @@ class FieldTable;
 
 /// Two particles by id, the lower one first.
 struct RestingPair {
-  std::uint64_t low = 0, high = 0;
-  friend bool operator==(const RestingPair&, const RestingPair&) = default;
+  std::uint64_t low = 0;                                                    ///< the lower id
+  std::uint64_t high = 0;                                                   ///< the higher id
+  friend bool operator==(const RestingPair&, const RestingPair&) = default; ///< equal ids
+  /// Orders pairs by the lower id, then by the higher one.
   friend bool operator<(const RestingPair& a, const RestingPair& b) {
     return a.low != b.low ? a.low < b.low : a.high < b.high;
   }
@@ -29,7 +31,7 @@ struct RestingLoad {
 
 /// The contacts at rest of a run; part of its checkpoints.
 struct RestingState {
-  std::vector<RestingPair> pairs;
+  std::vector<RestingPair> pairs; ///< in increasing order
   std::vector<RestingLoad> loads; ///< one per pair
   double strongest = 0.0;         ///< largest impulse, in kicks of the pair's gravity
   double work = 0.0;              ///< of the impulses on the relative motion of the pairs, kg m² rad⁻²
@@ -39,7 +41,7 @@ struct RestingState {
   /// Returns this limit for contacts with a particle at rest, which may press as hard as the strongest impulse.
   double slow_limit() const { return slow * std::max(1.0, strongest); }
 
-  void list_fields(FieldTable& table);
+  void list_fields(FieldTable& table); ///< adds everything that an exact restart needs
 };
 
 } // namespace keeler

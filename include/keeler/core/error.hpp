@@ -20,8 +20,8 @@ enum class ExitCode : int {
 /// A message of one line: what is wrong, why, what to do. Unprintable characters become '?'.
 class Error : public std::runtime_error {
 public:
-  Error(ExitCode code, const std::string& message);
-  ExitCode code() const { return code_; }
+  Error(ExitCode code, const std::string& message); ///< replaces unprintable characters of the message
+  ExitCode code() const { return code_; }           ///< of a program that ends by this error
 
 private:
   ExitCode code_;
@@ -29,22 +29,22 @@ private:
 
 /// The command line or the scene requests something that does not exist or is impossible.
 struct UsageError : Error {
-  explicit UsageError(const std::string& message) : Error(ExitCode::usage, message) {}
+  explicit UsageError(const std::string& message) : Error(ExitCode::usage, message) {} ///< with that exit code
 };
 
 /// An unphysical state: overlapping particles, an element that is not finite.
 struct InvariantError : Error {
-  explicit InvariantError(const std::string& message) : Error(ExitCode::invariant, message) {}
+  explicit InvariantError(const std::string& message) : Error(ExitCode::invariant, message) {} ///< with that exit code
 };
 
 /// A file could not be read or written.
 struct IoError : Error {
-  explicit IoError(const std::string& message) : Error(ExitCode::input_output, message) {}
+  explicit IoError(const std::string& message) : Error(ExitCode::input_output, message) {} ///< with that exit code
 };
 
 /// The disk is full, or a quota or file-size limit is reached.
 struct DiskFullError : IoError {
-  explicit DiskFullError(const std::string& message) : IoError(message) {}
+  explicit DiskFullError(const std::string& message) : IoError(message) {} ///< with ExitCode::input_output
 };
 
 /// Message for failed allocations.

@@ -11,8 +11,10 @@
 
 namespace keeler {
 
+/// Work was abandoned on request. Its exit code is ExitCode::run_time.
 struct Interrupted : Error {
   Interrupted() : Interrupted("interrupted on request") {}
+  /// With a message that says why.
   explicit Interrupted(const std::string& message) : Error(ExitCode::run_time, message) {}
 };
 
@@ -20,6 +22,7 @@ struct Interrupted : Error {
 /// outlives this object; objects nest.
 class Interruptible {
 public:
+  /// Registers the flag for work of this thread.
   explicit Interruptible(const std::atomic<bool>& flag) : before_(current_) { current_ = &flag; }
   ~Interruptible() { current_ = before_; }
   Interruptible(const Interruptible&) = delete;
@@ -31,6 +34,7 @@ public:
   /// Sets the flag that ends waiting for other processes, such as the writer of a pipe, in all threads: such a wait may
   /// never end, and interrupting it leaves no incomplete data. Precondition: the flag outlives all waits.
   static void waits_end_by(const std::atomic<bool>& flag) { of_waits_ = &flag; }
+  /// True if the flag that ends waiting is raised.
   static bool waits_are_over() { return of_waits_.load()->load(std::memory_order_relaxed); }
 
 private:

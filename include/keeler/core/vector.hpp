@@ -5,6 +5,6 @@
 
 namespace keeler {
 
-using Vec3 = Eigen::Vector3d;
+using Vec3 = Eigen::Vector3d; ///< a column of three doubles
 
 } // namespace keeler

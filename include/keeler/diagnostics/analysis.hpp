@@ -34,7 +34,7 @@ struct WakeGeometry {
   Measured radial_wavelength;   ///< λ_x, m
   Measured angle_degrees;       ///< of the spectrum
   Measured inner_pitch_degrees; ///< of the ridge
-  Measured outer_pitch_degrees;
+  Measured outer_pitch_degrees; ///< of the ridge
 };
 
 /// Principal axes of the peculiar velocities (velocity_ellipsoid.hpp).
@@ -46,9 +46,10 @@ struct VelocityEllipsoid {
 
 /// Particles with smallest ≤ r < largest (the last class: ≤).
 struct SizeClass {
-  double smallest = 0.0, largest = 0.0; ///< m
-  std::size_t count = 0;
-  double mass_fraction = 0.0;
+  double smallest = 0.0;          ///< m
+  double largest = 0.0;           ///< m
+  std::size_t count = 0;          ///< number of particles
+  double mass_fraction = 0.0;     ///< of the total mass
   Vec3 dispersion = Vec3::Zero(); ///< about the mean velocity of the whole patch, m rad⁻¹; 0 in an empty class
   double scale_height = 0.0;      ///< √⟨z²⟩, m; 0 in an empty class
 };
@@ -63,7 +64,7 @@ struct Growth {
 
 /// A mode in several snapshots.
 struct RadialModeAnalysis {
-  int n = 0;
+  int n = 0;                          ///< of k = 2π n / L_x
   double wavelength = 0.0;            ///< m
   double density_amplitude = 0.0;     ///< mean of |density|
   double density_phase_degrees = 0.0; ///< in the last snapshot: a crest is at x = −phase/k
@@ -101,36 +102,37 @@ struct WaveAnalysis {
 
 /// Means over the snapshots; wakes are measured on the mean autocorrelation.
 struct Analysis {
-  std::size_t snapshots = 0;
-  std::size_t particle_count = 0;
-  double time_orbits = 0.0; ///< of the last snapshot
+  std::size_t snapshots = 0;      ///< number of snapshots
+  std::size_t particle_count = 0; ///< of the last snapshot
+  double time_orbits = 0.0;       ///< of the last snapshot
 
-  double mean_radius_m = 0.0;
-  double optical_depth = 0.0;
-  double surface_density_kg_m2 = 0.0;
-  double critical_wavelength_m = 0.0;
-  double toomre_q = 0.0;
+  double mean_radius_m = 0.0;         ///< plain mean ⟨r⟩
+  double optical_depth = 0.0;         ///< Σ π r² / area
+  double surface_density_kg_m2 = 0.0; ///< total mass / area
+  double critical_wavelength_m = 0.0; ///< λ_cr
+  double toomre_q = 0.0;              ///< Q, from c_x
 
   std::array<double, 3> dispersion_m_s{};     ///< c_x, c_y, c_z
   std::array<double, 3> dispersion_r_omega{}; ///< these in ⟨r⟩ Ω
-  double scale_height_m = 0.0;
-  double translational_viscosity_m2_s = 0.0;
-  double random_energy_m2_s2 = 0.0; ///< ⟨½κ²e² + ½ν²i²⟩ per unit mass
+  double scale_height_m = 0.0;                ///< √⟨z²⟩
+  double translational_viscosity_m2_s = 0.0;  ///< ⟨ẋ (ẏ + S x)⟩ / S without the mean motion
+  double random_energy_m2_s2 = 0.0;           ///< ⟨½κ²e² + ½ν²i²⟩ per unit mass
 
   std::optional<double> wake_pitch_degrees; ///< empty without wakes
   std::optional<double> wake_spacing_m;     ///< radial; empty without wakes or without a side maximum
-  double wake_amplitude = 0.0;
-  WakeGeometry wakes;
+  double wake_amplitude = 0.0;              ///< Wakes::amplitude
+  WakeGeometry wakes;                       ///< in detail
 
-  LocalAnalysis local;
-  std::optional<WaveAnalysis> waves; ///< empty if there are too few particles
-  std::optional<SpinAnalysis> spins; ///< empty for smooth particles
-  ClusterAnalysis clusters;
-  std::vector<RadialModeAnalysis> radial_modes;
-  double radial_mode_noise = 0.0;      ///< rms density amplitude of a mode of random particles, one snapshot
-  VelocityEllipsoid ellipsoid;         ///< of the mean moments
-  std::vector<SizeClass> size_classes; ///< empty if all radii are equal; dispersions in m/s
+  LocalAnalysis local;                          ///< around particles
+  std::optional<WaveAnalysis> waves;            ///< empty if there are too few particles
+  std::optional<SpinAnalysis> spins;            ///< empty for smooth particles
+  ClusterAnalysis clusters;                     ///< of touching spheres
+  std::vector<RadialModeAnalysis> radial_modes; ///< from the longest
+  double radial_mode_noise = 0.0;               ///< rms density amplitude of a mode of random particles, one snapshot
+  VelocityEllipsoid ellipsoid;                  ///< of the mean moments
+  std::vector<SizeClass> size_classes;          ///< empty if all radii are equal; dispersions in m/s
 
+  /// Sets `wakes` and the numbers that repeat parts of it.
   void take_wakes(const WakeGeometry& geometry);
 };
 
@@ -140,7 +142,8 @@ struct AnalysisSettings {
   int radial_modes = 4;                     ///< number of modes, from the longest
 };
 
-/// Throws UsageError if there is no patch, a patch without particles, or patches of different boxes.
+/// Returns the means over the patches. Throws UsageError if there is no patch, a patch without particles, or patches of
+/// different boxes.
 Analysis analyze(std::span<const Patch> patches, const AnalysisSettings& settings = {});
 
 } // namespace keeler

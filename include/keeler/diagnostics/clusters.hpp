@@ -15,8 +15,9 @@
 
 namespace keeler {
 
-inline constexpr double default_cluster_gap = 0.01;
+inline constexpr double default_cluster_gap = 0.01; ///< gap between surfaces / sum of the radii
 
+/// Spheres that touch, directly or through others.
 struct Cluster {
   std::vector<std::uint32_t> members; ///< indices into the patch, ascending
   double mass = 0.0;                  ///< kg
@@ -36,12 +37,12 @@ std::vector<Cluster> find_clusters(const Patch& patch, double gap = default_clus
 struct ClusterAnalysis {
   /// Clusters of `min_members` … 2 × `min_members` − 1 members.
   struct Class {
-    std::size_t min_members = 0;
-    double count = 0.0;         ///< clusters per snapshot
-    double mass_fraction = 0.0; ///< of the total mass
+    std::size_t min_members = 0; ///< a power of two
+    double count = 0.0;          ///< clusters per snapshot
+    double mass_fraction = 0.0;  ///< of the total mass
   };
 
-  double gap = default_cluster_gap;
+  double gap = default_cluster_gap;                       ///< as asked for
   double count = 0.0;                                     ///< clusters per snapshot
   double mass_fraction = 0.0;                             ///< of the total mass, in all clusters
   double largest_mass_fraction = 0.0;                     ///< of the total mass, in the heaviest cluster
@@ -50,7 +51,7 @@ struct ClusterAnalysis {
   std::vector<Class> spectrum;                            ///< from `min_members` = 2 up to the largest
 };
 
-/// Precondition: at least one patch, none of them empty.
+/// Returns means over the patches. Precondition: at least one patch, none of them empty.
 ClusterAnalysis analyze_clusters(std::span<const Patch> patches, double gap = default_cluster_gap);
 
 } // namespace keeler

@@ -18,7 +18,8 @@ namespace keeler {
 
 /// Angles in rad, 0 < elevation ≤ π/2.
 struct LineOfSight {
-  double elevation = 0.0, azimuth = 0.0;
+  double elevation = 0.0; ///< B, above the ring plane
+  double azimuth = 0.0;   ///< φ, from +x towards +y
 };
 
 /// Intersections of rays with the plane z = 0: one at random in each cell of a lattice over the box (stratified
@@ -29,13 +30,14 @@ public:
   /// number per box. Throws UsageError if there is no memory for them.
   RayLattice(const ShearingBox& box, std::size_t rays, double footprint, std::uint64_t seed = 1);
 
-  std::size_t size() const { return positions_.size(); }
-  std::size_t columns() const { return columns_; }
-  std::size_t rows() const { return rows_; }
+  std::size_t size() const { return positions_.size(); } ///< number of rays
+  std::size_t columns() const { return columns_; }       ///< cells along x
+  std::size_t rows() const { return rows_; }             ///< cells along y
+  /// Returns the point of a ray in the plane z = 0, m. Rays are in the order of their cells, column by column.
   Vec3 position(std::size_t ray) const { return {positions_[ray].x, positions_[ray].y, 0.0}; }
 
-  std::size_t footprints() const { return across_ * along_; }
-  std::size_t rays_per_footprint() const { return size() / footprints(); }
+  std::size_t footprints() const { return across_ * along_; }                       ///< number of footprints
+  std::size_t rays_per_footprint() const { return size() / footprints(); }          ///< equal for all
   double footprint_x() const { return box_.size_x / static_cast<double>(across_); } ///< m
   double footprint_y() const { return box_.size_y / static_cast<double>(along_); }  ///< m
 
@@ -57,10 +59,12 @@ private:
 
 /// The transmission T of one patch and its standard error by the finite number of rays.
 struct RayMean {
-  double transmission = 0.0, error = 0.0;
+  double transmission = 0.0; ///< T, the fraction of unblocked rays
+  double error = 0.0;        ///< of T
 };
 
-/// Estimates the error from the differences of rays in neighbouring cells, since each cell holds only one.
+/// Returns T and its error. Estimates the error from the differences of rays in neighbouring cells, since each cell
+/// holds only one.
 RayMean ray_mean(const std::vector<std::uint8_t>& blocked);
 
 } // namespace keeler

@@ -21,11 +21,13 @@ namespace keeler {
 /// The particles at the boundary between two steps, as a force sees them.
 struct Boundary {
   const Particles& particles; ///< elements refer to the epoch
+  /// κ/Ω and ν/Ω.
   Frequencies frequencies;
   double to_epoch; ///< time from this boundary to the epoch, rad
+  /// Its size and shear.
   ShearingBox box;
   double offset;           ///< the box's shear offset at this boundary, m
-  std::int64_t step;       ///< steps done
+  std::int64_t step;       ///< ticks done
   double time = 0.0;       ///< since the run began, rad
   Communicator ranks = {}; ///< each rank has its own particles
 
@@ -33,6 +35,7 @@ struct Boundary {
   Rotation rotation() const { return {frequencies, -to_epoch}; }
 };
 
+/// What accelerates particles between drifts: self-gravity, or an external force.
 class Force {
 public:
   virtual ~Force() = default;
@@ -57,8 +60,10 @@ public:
 /// is also made, and dropped, when a scene is read: then there are no masses.
 struct ForceContext {
   std::span<const double> masses; ///< kg, in the order of the particles
+  /// Its size and shear.
   ShearingBox box;
   double orbital_frequency = 0.0; ///< rad/s
+  /// Seed of all random numbers, particles.seed of the scene.
   std::uint64_t seed = 1;
   Communicator ranks = {}; ///< each rank has its own particles; all ranks make each force together
 };

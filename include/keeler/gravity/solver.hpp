@@ -21,12 +21,13 @@ struct GravityProblem {
   std::span<const Vec3> positions;    ///< m, Hill's frame
   std::span<const double> masses;     ///< kg
   std::span<const std::uint64_t> ids; ///< order sums where positions are equal
-  ShearingBox box;
-  double offset = 0.0;     ///< the box's shear offset at this instant, m
-  double newton_g = 0.0;   ///< m^3 kg^-1 rad^-2
-  Communicator ranks = {}; ///< only `fft` supports more than one
+  ShearingBox box;                    ///< its size and shear
+  double offset = 0.0;                ///< the box's shear offset at this instant, m
+  double newton_g = 0.0;              ///< m^3 kg^-1 rad^-2
+  Communicator ranks = {};            ///< only `fft` supports more than one
 };
 
+/// Computes self-gravity by one method.
 class GravitySolver {
 public:
   virtual ~GravitySolver() = default;
@@ -35,7 +36,7 @@ public:
   /// Precondition: `accelerations` has one entry per particle.
   virtual void accelerate(const GravityProblem& problem, std::span<Vec3> accelerations) = 0;
 
-  virtual std::string name() const = 0;
+  virtual std::string name() const = 0; ///< of the method: "direct", "tree", "fft", …
 };
 
 /// Energy of a patch in its own gravity, images included.
@@ -48,7 +49,7 @@ struct GravityEnergy {
 class EnergyMeter {
 public:
   virtual ~EnergyMeter() = default;
-  virtual GravityEnergy energy(const GravityProblem& problem) = 0;
+  virtual GravityEnergy energy(const GravityProblem& problem) = 0; ///< collective
 };
 
 /// The images that attract.
@@ -59,8 +60,9 @@ struct ImageSettings {
 
 /// The settings of self-gravity.
 struct GravitySettings {
+  /// Methods (docs/theory/gravity.md); chosen_for() replaces `automatic`.
   enum class Solver { direct, tree, fft, mesh, axisymmetric, automatic };
-  Solver solver = Solver::tree;
+  Solver solver = Solver::tree;     ///< the method
   double opening_angle = 0.6;       ///< tree: a cell is opened when its size exceeds this times its distance
   ImageSettings images = {};        ///< direct and tree
   double force_error = 2e-3;        ///< fft and automatic: rms error asked for, over the rms force
@@ -85,10 +87,11 @@ GravitySettings chosen_for(std::size_t count, GravitySettings settings);
 std::unique_ptr<GravitySolver> make_gravity_solver(const GravitySettings& settings, std::span<const double> masses,
                                                    double area, const Communicator& ranks = {});
 
+/// True if make_energy_meter() returns a meter: unless only some rings of images act.
+bool has_energy_meter(const GravitySettings& settings);
 /// Returns the meter of energy and stress for the forces of such a solver: the periodic sum for `direct`, `tree` and
 /// `fft`, the mesh or the radial waves alone for `mesh` and `axisymmetric`; null if only some rings of images act.
 /// Collective. Throws as make_gravity_solver().
-bool has_energy_meter(const GravitySettings& settings);
 std::unique_ptr<EnergyMeter> make_energy_meter(const GravitySettings& settings, std::span<const double> masses,
                                                double area, const Communicator& ranks = {});
 

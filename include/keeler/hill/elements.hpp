@@ -14,8 +14,8 @@ namespace keeler {
 
 /// Epicyclic and vertical frequency in units of the orbital frequency.
 struct Frequencies {
-  double kappa = 1.0;
-  double nu = 1.0;
+  double kappa = 1.0; ///< κ/Ω
+  double nu = 1.0;    ///< ν/Ω
 
   /// Returns the shear rate S = (4 − κ²)/2: guiding centres drift at −S X.
   double shear() const { return 0.5 * (4.0 - kappa * kappa); }
@@ -30,8 +30,8 @@ struct Elements {
   double i_sin = 0.0;     ///< i sin ζ at the epoch
   double i_cos = 0.0;     ///< i cos ζ
 
-  double eccentricity() const { return std::sqrt(e_cos * e_cos + e_sin * e_sin); }
-  double inclination() const { return std::sqrt(i_sin * i_sin + i_cos * i_cos); }
+  double eccentricity() const { return std::sqrt(e_cos * e_cos + e_sin * e_sin); } ///< e, m
+  double inclination() const { return std::sqrt(i_sin * i_sin + i_cos * i_cos); }  ///< i, m
 };
 
 /// Returns the relative elements of b and a: the relative motion of two particles is again an epicycle. Precondition:
@@ -44,17 +44,19 @@ inline Elements operator-(const Elements& b, const Elements& a) {
 /// The rotation of all epicycles from the epoch to a time `after` it: computed once and used for all particles.
 struct Rotation {
   double after = 0.0; ///< time since the epoch, rad
-  double cos_e = 1.0, sin_e = 0.0;
-  double cos_i = 1.0, sin_i = 0.0;
+  double cos_e = 1.0; ///< cos(κ after)
+  double sin_e = 0.0; ///< sin(κ after)
+  double cos_i = 1.0; ///< cos(ν after)
+  double sin_i = 0.0; ///< sin(ν after)
 
   Rotation() = default;
-  Rotation(const Frequencies& frequencies, double after);
+  Rotation(const Frequencies& frequencies, double after); ///< after: rad
 };
 
 /// Position (m) and velocity (m per rad) in Hill's frame.
 struct State {
-  Vec3 position = Vec3::Zero();
-  Vec3 velocity = Vec3::Zero();
+  Vec3 position = Vec3::Zero(); ///< m
+  Vec3 velocity = Vec3::Zero(); ///< m rad⁻¹, shear included
 };
 
 /// Computes sine and cosine by polynomials (arguments up to about 1e5; error below 1.5 ulp of 1). They use only
@@ -114,10 +116,13 @@ inline double epicyclic_energy(const Elements& el, const Frequencies& f) {
 /// A rotation that is applied repeatedly. It adds small increments, with the low-order part of the sine, so that 10^7
 /// turns accumulate a random walk of roundings but no drift of phase or length.
 struct FixedRotation {
-  double sine, sine_low, one_minus_cosine;
+  double sine;             ///< of the angle, rounded
+  double sine_low;         ///< the sine beyond `sine`
+  double one_minus_cosine; ///< 1 − cosine of the angle
 
-  explicit FixedRotation(double angle);
+  explicit FixedRotation(double angle); ///< rad
 
+  /// Rotates (c, s) by the angle: (cos φ, sin φ) becomes (cos(φ + angle), sin(φ + angle)).
   void turn(double& c, double& s) const {
     const double dc = (c * one_minus_cosine + s * sine_low) + s * sine;
     const double ds = (s * one_minus_cosine - c * sine_low) - c * sine;
@@ -129,7 +134,8 @@ struct FixedRotation {
 /// Advances elements to an epoch one fixed interval (rad) later.
 class Rebase {
 public:
-  Rebase(const Frequencies& f, double interval);
+  Rebase(const Frequencies& f, double interval); ///< interval: rad
+  /// Advances the elements of a particle.
   void operator()(Elements& el) const {
     el.guiding_y -= shift_ * el.guiding_x;
     e_.turn(el.e_cos, el.e_sin);

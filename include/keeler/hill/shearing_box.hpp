@@ -15,11 +15,12 @@ namespace keeler {
 
 /// An image of a particle: the shift in boxes, outward and along the orbit.
 struct Image {
-  std::int32_t nx = 0;
-  std::int32_t ny = 0;
-  friend bool operator==(const Image&, const Image&) = default;
+  std::int32_t nx = 0;                                          ///< boxes outward
+  std::int32_t ny = 0;                                          ///< boxes along the orbit
+  friend bool operator==(const Image&, const Image&) = default; ///< equal shifts
 };
 
+/// Returns the opposite shift.
 inline Image operator-(const Image& image) {
   return {-image.nx, -image.ny};
 }
@@ -31,7 +32,7 @@ struct ShearingBox {
   double shear = 1.5;        ///< S, in units of Omega
   double first_offset = 0.0; ///< d at time zero, in [0, L_y)
 
-  double area() const { return size_x * size_y; }
+  double area() const { return size_x * size_y; } ///< m²
 
   /// Returns the shear offset in [0, L_y) after `half_steps` half steps of length half_step (rad).
   double offset(std::int64_t half_steps, double half_step) const;

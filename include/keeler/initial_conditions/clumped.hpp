@@ -25,11 +25,11 @@ struct MeanBounds {
 /// When wakes count as settled: the means of two successive windows agree. docs/dev/starts.md has the runs from which
 /// these numbers were chosen.
 struct SettleCriterion {
-  double samples_per_orbit = 20.0;
-  double first_orbit = 5.0; ///< begin of the earliest window: after the overshoot
-  std::size_t min_window_orbits = 2;
-  double max_orbits = 30.0; ///< give up after this
-  MeanBounds viscosity{.error = 0.10, .change = 0.10};
+  double samples_per_orbit = 20.0;                       ///< measurements of the patch
+  double first_orbit = 5.0;                              ///< begin of the earliest window: after the overshoot
+  std::size_t min_window_orbits = 2;                     ///< shortest window
+  double max_orbits = 30.0;                              ///< give up after this
+  MeanBounds viscosity{.error = 0.10, .change = 0.10};   ///< by the work of the shear
   MeanBounds wavelengths{.error = 0.05, .change = 0.05}; ///< λ_⊥ and λ_x
   double standard_errors = 2.0;                          ///< accepted difference, if that exceeds MeanBounds::change
   double min_standing = 0.5;       ///< fraction of a window's samples with wakes above the noise, each by itself
@@ -41,27 +41,29 @@ struct SettleCriterion {
 
 /// A quantity in two successive windows.
 struct WindowMeans {
-  Estimate before, last;
+  Estimate before;        ///< in the first window
+  Estimate last;          ///< in the second window
   double tolerance = 0.0; ///< of change()
 
-  double mean() const { return 0.5 * (before.value + last.value); }
-  double change() const { return std::fabs(last.value - before.value) / mean(); }
-  double error() const { return std::max(before.error, last.error) / mean(); } ///< the larger of the two
+  double mean() const { return 0.5 * (before.value + last.value); }               ///< of both windows
+  double change() const { return std::fabs(last.value - before.value) / mean(); } ///< relative difference
+  double error() const { return std::max(before.error, last.error) / mean(); }    ///< relative, the larger of the two
 };
 
 /// The last two windows of a history.
 struct Settling {
-  std::size_t window_orbits = 0;
-  WindowMeans viscosity;                     ///< m² rad⁻¹
-  WindowMeans wavelength, radial_wavelength; ///< λ_⊥, λ_x, m; NaN in a window without wakes
-  double standing = 0.0;  ///< fraction of samples with wakes above the noise, the smaller of the two windows
-  double contrast = 0.0;  ///< rms of the smoothed Σ/⟨Σ⟩ − 1 over the last window
-  double deviation = 0.0; ///< |contrast of the last sample − contrast| / contrast
+  std::size_t window_orbits = 0; ///< length of a window
+  WindowMeans viscosity;         ///< m² rad⁻¹
+  WindowMeans wavelength;        ///< λ_⊥, m; NaN in a window without wakes
+  WindowMeans radial_wavelength; ///< λ_x, m; NaN in a window without wakes
+  double standing = 0.0;         ///< fraction of samples with wakes above the noise, the smaller of the two windows
+  double contrast = 0.0;         ///< rms of the smoothed Σ/⟨Σ⟩ − 1 over the last window
+  double deviation = 0.0;        ///< |contrast of the last sample − contrast| / contrast
 };
 
 /// The patch at one instant of the evolution.
 struct ClumpingSample {
-  double orbits = 0.0;
+  double orbits = 0.0;                     ///< since the start
   double work = 0.0;                       ///< of the shear since the start, per mass and S², m²
   double contrast = 0.0;                   ///< rms of the smoothed Σ/⟨Σ⟩ − 1
   std::optional<double> wavelength;        ///< λ_⊥, m; empty if wakes have no direction
@@ -70,27 +72,28 @@ struct ClumpingSample {
 
 /// The record of how a clumped state was made.
 struct Clumping {
-  SettleCriterion criterion;
-  double sample_every_orbits = 0.0; ///< 1 / samples_per_orbit, rounded to whole kick intervals
-  double orbits = 0.0;              ///< number of orbits evolved
-  Settling settling;                ///< at the end
-  std::vector<ClumpingSample> history;
-  double orbital_frequency = 0.0; ///< rad/s: converts m² rad⁻¹ to m²/s
+  SettleCriterion criterion;           ///< as given
+  double sample_every_orbits = 0.0;    ///< 1 / samples_per_orbit, rounded to whole kick intervals
+  double orbits = 0.0;                 ///< number of orbits evolved
+  Settling settling;                   ///< at the end
+  std::vector<ClumpingSample> history; ///< all samples
+  double orbital_frequency = 0.0;      ///< rad/s: converts m² rad⁻¹ to m²/s
 };
 
+/// A clumped patch, and how it was made.
 struct ClumpedState {
-  Patch patch; ///< its time is the orbits evolved
-  Clumping clumping;
+  Patch patch;       ///< its time is the orbits evolved
+  Clumping clumping; ///< the record of the evolution
 };
 
 /// Progress of the evolution, reported after each step.
 struct ClumpingProgress {
-  double orbits = 0.0;
+  double orbits = 0.0;              ///< evolved
   double elapsed_s = 0.0;           ///< wall time
   double contrast = 0.0;            ///< of the last sample: rms of the smoothed Σ/⟨Σ⟩ − 1
   std::optional<Settling> settling; ///< empty before criterion.min_orbits()
-  SettleCriterion criterion;
-  bool settled = false;
+  SettleCriterion criterion;        ///< as given
+  bool settled = false;             ///< true in the last report
 };
 
 /// Evolves the scene's initial state, with the scene's step and gravity, until its wakes have settled; ignores the

@@ -19,14 +19,15 @@ using Provenance = std::map<std::string, std::string>;
 
 /// Content of a snapshot beside the patch.
 struct SnapshotMeta {
-  std::string scene; ///< the resolved scene, as TOML
-  Provenance provenance;
+  std::string scene;                                        ///< the resolved scene, as TOML
+  Provenance provenance;                                    ///< of the program that wrote it
   std::map<std::string, std::vector<double>> clumping = {}; ///< how a clumped state was made; empty for other states
 };
 
+/// The content of a snapshot file.
 struct Snapshot {
-  Patch patch;
-  SnapshotMeta meta;
+  Patch patch;       ///< in internal units
+  SnapshotMeta meta; ///< all else
 };
 
 /// Writes a snapshot; the particles are added piece by piece. The file appears under its name, complete, in finish();
@@ -45,8 +46,9 @@ public:
   /// Writes the next particles, patch[first, first + count), in the order of ids. Precondition: every call but the last
   /// adds a multiple of `piece`.
   void add(const Patch& patch, std::size_t first, std::size_t count);
+  /// As above, for all particles of the patch.
   void add(const Patch& patch) { add(patch, 0, patch.size()); }
-  /// Precondition: all particles have been added.
+  /// Completes the file. Precondition: all particles have been added.
   void finish();
 
 private:

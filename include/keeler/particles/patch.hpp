@@ -12,20 +12,20 @@ namespace keeler {
 
 /// All arrays have one entry per particle, in increasing order of id.
 struct Patch {
-  std::vector<Vec3> positions;  ///< m, Hill's frame; guiding centres inside the cell
-  std::vector<Vec3> velocities; ///< m rad^-1, Hill's frame, shear included
-  std::vector<double> radii;    ///< m
-  std::vector<double> masses;   ///< kg
-  std::vector<std::uint64_t> ids;
+  std::vector<Vec3> positions;    ///< m, Hill's frame; guiding centres inside the cell
+  std::vector<Vec3> velocities;   ///< m rad^-1, Hill's frame, shear included
+  std::vector<double> radii;      ///< m
+  std::vector<double> masses;     ///< kg
+  std::vector<std::uint64_t> ids; ///< unique
   std::vector<Vec3> spins; ///< rad^-1, inertial angular velocity, components in Hill's frame; empty: smooth particles
 
-  ShearingBox box;
+  ShearingBox box;                ///< its size and shear
   double offset = 0.0;            ///< shear offset of the box at this instant, m
   Frequencies frequencies;        ///< κ/Ω, ν/Ω
   double orbital_frequency = 0.0; ///< Ω, rad/s, for conversion to SI
-  double time_orbits = 0.0;
+  double time_orbits = 0.0;       ///< since the run began
 
-  std::size_t size() const { return positions.size(); }
+  std::size_t size() const { return positions.size(); } ///< number of particles
 };
 
 /// Throws InvariantError, naming the first such particle, if a position, velocity or spin is not finite, or a radius or

@@ -11,7 +11,8 @@ namespace keeler {
 
 /// A size distribution, radii in m. Its functions are called from several threads at once.
 struct SizeLaw {
-  double smallest = 0.0, largest = 0.0;
+  double smallest = 0.0;                   ///< smallest radius, m
+  double largest = 0.0;                    ///< largest radius, m
   std::size_t listed = 0;                  ///< number of radii in a list or a table; 0 for a continuous law
   std::function<double(int k)> mean_power; ///< ⟨r^k⟩, k from 0 to 6
   /// Returns the k-th radius, at the quantile u in (0, 1). It must depend on u and k only.
@@ -42,11 +43,12 @@ SizeLaw populations(const NumberRows& table);
 /// seed.
 class DrawnSizes {
 public:
+  /// Sizes for this many particles.
   DrawnSizes(const SizeLaw& law, std::size_t count, std::uint64_t seed) : law_(law), count_(count), seed_(seed) {}
 
-  double radius(std::size_t particle) const; ///< m. Precondition: particle < count
-  bool has_densities() const { return static_cast<bool>(law_.density); }
-  double density(std::size_t particle) const; ///< kg/m³. Precondition: has_densities()
+  double radius(std::size_t particle) const;                             ///< m. Precondition: particle < count
+  bool has_densities() const { return static_cast<bool>(law_.density); } ///< true if the law has them
+  double density(std::size_t particle) const;                            ///< kg/m³. Precondition: has_densities()
 
 private:
   double value(const std::function<double(double u, std::size_t k)>& quantile, std::size_t particle) const;

@@ -14,9 +14,9 @@ class FieldTable;
 
 /// Elements (m) at the common epoch, radius (m) and mass (kg), aligned to one cache line.
 struct alignas(64) Body {
-  Elements elements;
-  double radius = 0.0;
-  double mass = 0.0;
+  Elements elements;   ///< at the common epoch, m
+  double radius = 0.0; ///< m
+  double mass = 0.0;   ///< kg
 };
 static_assert(sizeof(Body) == 64);
 
@@ -27,23 +27,26 @@ inline double azimuthal_gain(const Body& body, const Vec3& dv, const Frequencies
 
 /// The rotation about z, in Hill's frame, of vectors that are constant in the inertial frame.
 struct SpinTurn {
-  double cosine = 1.0, sine = 0.0;
+  double cosine = 1.0; ///< of the time
+  double sine = 0.0;   ///< of the time
 
   SpinTurn() = default;
-  explicit SpinTurn(double time) { sine_cosine(time, sine, cosine); }
+  explicit SpinTurn(double time) { sine_cosine(time, sine, cosine); } ///< since the epoch, rad
 
-  /// Transform components at the epoch to components at `time` after it, and back.
+  /// Transforms components at the epoch to components at `time` after it.
   Vec3 from_epoch(const Vec3& v) const { return {cosine * v.x() + sine * v.y(), cosine * v.y() - sine * v.x(), v.z()}; }
+  /// Inverse of from_epoch().
   Vec3 to_epoch(const Vec3& v) const { return {cosine * v.x() - sine * v.y(), cosine * v.y() + sine * v.x(), v.z()}; }
 };
 
+/// All particles of a state, or those of one rank: arrays with one entry per particle, in their order in memory.
 struct Particles {
-  std::vector<Body> bodies;
-  std::vector<std::uint64_t> ids;
-  bool rough = false;      ///< they have spins
+  std::vector<Body> bodies;       ///< elements, radii and masses
+  std::vector<std::uint64_t> ids; ///< unique; they never change
+  bool rough = false;             ///< they have spins
   std::vector<Vec3> spins; ///< if rough: inertial angular velocity, components in Hill's frame at the epoch, rad⁻¹
 
-  std::size_t size() const { return bodies.size(); }
+  std::size_t size() const { return bodies.size(); } ///< number of particles
 
   /// Prefetches the body a few iterations after k, in loops over all particles: hardware does not always prefetch far
   /// enough ahead when each iteration has many instructions. Precondition: k < size().

@@ -22,15 +22,19 @@ struct Unit {
   std::string_view suffix; ///< "m2_s"; empty if names do not include it
   std::string_view text;   ///< "m²/s", UTF-8
 
-  friend bool operator==(const Unit&, const Unit&) = default;
+  friend bool operator==(const Unit&, const Unit&) = default; ///< equal suffixes and texts
 };
 
+/// The units of Keeler's quantities.
 namespace unit {
+/// @{
+/// A unit by its name; "per radius" and "per gravity" are natural units (PatchUnits).
 inline constexpr Unit none{}, metres{"m", "m"}, metres_per_second{"m_s", "m/s"}, viscosity{"m2_s", "m²/s"},
     specific_energy{"m2_s2", "m²/s²"}, surface_density{"kg_m2", "kg/m²"}, degrees{"degrees", "degrees"},
     orbits{"orbits", "orbits"}, omega{"omega", "Ω"}, seconds{"s", "s"}, megabytes{"mb", "MB"},
     per_radius_speed{"r_omega", "r Ω"}, per_gravity_speed{"g_sigma_omega", "G Σ/Ω"},
     per_radius_viscosity{"r2_omega", "r² Ω"}, per_gravity_viscosity{"g2_sigma2_omega3", "G² Σ²/Ω³"};
+/// @}
 
 /// Returns a unit that is displayed but not part of the name.
 inline constexpr Unit unnamed(std::string_view text) {
@@ -69,15 +73,16 @@ enum class Forms { si, si_and_radius, all };
 /// The shape of a value. `other` (words, lists, several numbers that are not a vector) has no column in tables.
 enum class Shape { number, vector, other };
 
+/// A reported number or word: what it is called and what it means.
 struct Quantity {
-  std::string name;    ///< without its unit; "clusters.count" is `count` of the object `clusters`
-  Unit unit{};         ///< SI, or implied by the name
-  std::string label{}; ///< for texts and pages; empty: not shown there by default
-  std::string meaning{};
-  Spread spread = Spread::none;
-  Forms forms = Forms::si;
-  int digits = 4; ///< significant digits in texts
-  Shape shape = Shape::number;
+  std::string name;             ///< without its unit; "clusters.count" is `count` of the object `clusters`
+  Unit unit{};                  ///< SI, or implied by the name
+  std::string label{};          ///< for texts and pages; empty: not shown there by default
+  std::string meaning{};        ///< with its source, for the manual
+  Spread spread = Spread::none; ///< the uncertainty given with it
+  Forms forms = Forms::si;      ///< systems of units by default
+  int digits = 4;               ///< significant digits in texts
+  Shape shape = Shape::number;  ///< of its value
 
   /// Returns the component of a vector along axis 0, 1 or 2, that is x, y or z: "dispersion_x".
   Quantity along(std::size_t axis) const;
@@ -100,13 +105,13 @@ Quantity word(const std::string& name, const std::string& label, const std::stri
 
 /// An unknown or missing value, and optionally the reason, as part of a sentence.
 struct Unknown {
-  std::string reason{};
+  std::string reason{}; ///< empty: not said
 };
 
 /// A number and its uncertainty (Quantity::spread).
 struct Uncertain {
-  double value = 0.0;
-  std::optional<double> spread{};
+  double value = 0.0;             ///< the number
+  std::optional<double> spread{}; ///< none if unknown
 };
 
 struct Record;
@@ -114,33 +119,38 @@ struct Record;
 /// An object of numbers with names that depend on the results.
 using NamedNumbers = std::vector<std::pair<std::string, double>>;
 
+/// The value of a quantity, in its unit. A list of records is a table.
 using Value = std::variant<Unknown, bool, std::uint64_t, double, Uncertain, std::vector<double>, NamedNumbers,
                            std::string, std::vector<std::string>, std::vector<Record>>;
 
+/// A quantity and its value.
 struct Entry {
-  Quantity quantity;
-  Value value;
+  Quantity quantity; ///< declares the value
+  Value value;       ///< in the unit of the quantity
 };
 
 /// Numbers that belong together, in display order, and the natural units of their patch.
 struct Record {
-  std::vector<Entry> entries{};
-  PatchUnits units{};
-  bool asked = false; ///< requested by name: texts also show numbers without a label, and empty lists
+  std::vector<Entry> entries{}; ///< in display order
+  PatchUnits units{};           ///< to convert from SI
+  bool asked = false;           ///< requested by name: texts also show numbers without a label, and empty lists
 };
 
 /// Returns a value; a number that is not finite is unknown.
 Value value_of(const std::optional<double>& number, const std::string& why_not = {});
+/// As above, with the scatter.
 Value value_of(const Measured& number, const std::string& why_not = {});
+/// As above, with the standard error if it is finite.
 Value value_of(const std::optional<Estimate>& number);
 
 /// A quantity, and the function that computes its value from results.
 template<class Source> struct QuantityRow {
-  Quantity quantity;
-  Value (*value)(const Source&);
+  Quantity quantity;                        ///< declares the value
+  Value (*value)(const Source&);            ///< computes it
   bool (*present)(const Source&) = nullptr; ///< null: always
 };
 
+/// Returns the quantities that these results have, and their values.
 template<class Source>
 std::vector<Entry> entries_of(const std::vector<QuantityRow<Source>>& rows, const Source& source) {
   std::vector<Entry> entries;
@@ -152,6 +162,7 @@ std::vector<Entry> entries_of(const std::vector<QuantityRow<Source>>& rows, cons
   return entries;
 }
 
+/// Returns the quantities of the rows.
 template<class Source> std::vector<Quantity> quantities_of(const std::vector<QuantityRow<Source>>& rows) {
   std::vector<Quantity> all;
   for (const QuantityRow<Source>& row : rows)
@@ -159,6 +170,7 @@ template<class Source> std::vector<Quantity> quantities_of(const std::vector<Qua
   return all;
 }
 
+/// Returns the elements of both lists, in order.
 template<class Element> std::vector<Element> joined(std::vector<Element> first, const std::vector<Element>& second) {
   first.insert(first.end(), second.begin(), second.end());
   return first;
@@ -170,6 +182,7 @@ const Value* find_value(const Record& record, const std::string& name);
 /// Returns the number with that name; none if it is missing, unknown or not a number.
 std::optional<double> number_in(const Record& record, const std::string& name);
 
+/// Returns the quantities of the entries.
 std::vector<Quantity> quantities_of(const Record& record);
 
 /// Throws UsageError for a name that matches none of the quantities (Quantity::is_called()).

@@ -33,30 +33,35 @@ struct RunRequests {
 
 /// The progress of a run, reported after each step.
 struct RunProgress {
-  std::int64_t step = 0, first_step = 0, end_step = 0;
-  double orbits = 0.0, end_orbits = 0.0;
+  std::int64_t step = 0;              ///< ticks done
+  std::int64_t first_step = 0;        ///< tick at which this command began
+  std::int64_t end_step = 0;          ///< tick at which the run ends
+  double orbits = 0.0;                ///< orbits done
+  double end_orbits = 0.0;            ///< orbits at the end
   double elapsed_s = 0.0;             ///< wall time since this command started or resumed the run
   double remaining_s = 0.0;           ///< estimated wall time to the end
   double collisions_per_second = 0.0; ///< per second of wall time, since this command began
 };
 
+/// Options of a run, as `keeler run` and `keeler resume` have them.
 struct RunOptions {
-  std::filesystem::path folder;
+  std::filesystem::path folder;       ///< of the run
   bool force = false;                 ///< replace an existing run in the folder
   bool check = false;                 ///< check all invariants after each step
   std::optional<double> until_orbits; ///< end of the run instead of the scene's
   std::optional<double> wall_time_s;  ///< stop with a checkpoint before this much wall time has passed
   std::vector<std::string> arguments; ///< the command line, for provenance
-  std::function<void(const StartProgress&)> start_progress;
-  std::function<void(const RunProgress&)> progress;
+  std::function<void(const StartProgress&)> start_progress; ///< called while the start is made
+  std::function<void(const RunProgress&)> progress;         ///< called after each step
   Communicator ranks = {}; ///< processes of the run: all call with equal options, the root writes the folder
   std::function<void(const std::string&)> notice; ///< receives lines for the user: rounding, skipped checkpoints
 };
 
+/// How a run ended.
 struct RunResult {
-  bool finished = false; ///< false: stopped on request; a checkpoint is on disk
-  std::int64_t step = 0;
-  std::string state_hash;
+  bool finished = false;      ///< false: stopped on request; a checkpoint is on disk
+  std::int64_t step = 0;      ///< ticks done
+  std::string state_hash;     ///< 32 hexadecimal digits; states of equal hashes are bitwise equal
   std::string resume_command; ///< the command that continues the run, for messages
   Record summary{};           ///< the content of summary.json
 };
@@ -73,10 +78,10 @@ RunResult resume_run(const RunOptions& options, RunRequests& requests);
 
 /// The state of a checkpoint, and its scene.
 struct StoredRun {
-  Scene scene;
-  SimulationState state;
+  Scene scene;           ///< as stored with it
+  SimulationState state; ///< from which the run continues
 };
-/// Throws IoError.
+/// Reads a checkpoint. Throws IoError.
 StoredRun load_checkpoint(const std::filesystem::path& file);
 
 /// Loads the newest valid checkpoint of a run's folder. `notice` receives a line for each damaged checkpoint skipped,

@@ -7,6 +7,7 @@
 
 namespace keeler {
 
+/// The orbit around the planet, by its frequencies.
 struct PlanetSettings {
   std::string preset;             ///< empty if the scene gives the frequencies
   double orbital_frequency = 0.0; ///< rad/s

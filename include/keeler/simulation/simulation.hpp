@@ -29,7 +29,7 @@ struct SlabHolding;
 
 /// Wall time of each part since construction, s.
 struct TimeSplit {
-  double drift = 0.0;
+  double drift = 0.0;                   ///< collisions and the move to the next epoch
   double advance = 0.0;                 ///< part of drift: move to the next epoch, wrap into the cell
   double kick = 0.0;                    ///< part of the forces: half kicks
   double resting = 0.0;                 ///< impulses of contacts at rest
@@ -42,6 +42,7 @@ struct TimeSplit {
   }
 };
 
+/// Runs a scene in memory, step by step; nothing is written.
 class Simulation {
 public:
   /// Starts a run from a patch, at time zero. Collective, as all that follows from it: each rank gives any part of the
@@ -73,16 +74,16 @@ public:
     drifting_ = undisturbed_ = false;
   }
 
-  const SimulationState& state() const { return state_; }
+  const SimulationState& state() const { return state_; } ///< at this boundary
   /// Moves the state out, its arrays in their order in memory. The simulation must not be used afterwards.
   SimulationState take_state() && { return std::move(state_); }
   /// Throws UsageError for settings of a scene with `count` particles that cannot be distributed.
   static void require_distributable(const Scene& scene, std::size_t count);
 
-  const Communicator& ranks() const { return ranks_; }
+  const Communicator& ranks() const { return ranks_; } ///< of the run
   /// Returns the number of particles of all ranks.
   std::size_t count() const { return count_; }
-  double orbits() const { return static_cast<double>(state_.step) * scene_.time.step; }
+  double orbits() const { return static_cast<double>(state_.step) * scene_.time.step; } ///< since the run began
 
   /// Returns the id of the first moonlet, or the number of particles if there is none.
   std::uint64_t first_moonlet() const { return count_ - state_.moonlets.size(); }
@@ -100,9 +101,9 @@ public:
   /// Returns a patch after advance() has thrown: at the last boundary or, within a drift, at the time of the last
   /// contact.
   Patch patch_at_break() const;
-  /// Return that time, in rad from the epoch of the elements, and the box's shear offset at that time.
+  /// Returns that time, in rad from the epoch of the elements.
   double time_at_break() const { return drifting_ ? drift_.reached() : -0.5 * state_.step_length; }
-  double offset_at_break() const;
+  double offset_at_break() const; ///< the box's shear offset at that time, m
 
   /// Returns the particles at this boundary as forces see them. Valid until the next step.
   Boundary boundary() const;
@@ -122,7 +123,7 @@ public:
   /// As above, with means that are known already.
   EnergyBalance balance(const ParticleMeans& now) const { return state_.balance(now, scene_.planet.frequencies); }
 
-  const TimeSplit& time_split() const { return split_; }
+  const TimeSplit& time_split() const { return split_; } ///< up to now
 
   /// Returns the cost of contacts at rest at the last kick.
   const RestingCosts& resting_costs() const;

@@ -42,13 +42,14 @@ struct EnergyBalance {
 /// The path of a moonlet, from which its drift follows. X and Y minus the shift belong to the body itself, never
 /// wrapped.
 struct MoonletTrack {
-  double start_x = 0.0;                ///< X when the run began, m
-  double shift_x = 0.0, shift_y = 0.0; ///< by all wraps, m
+  double start_x = 0.0; ///< X when the run began, m
+  double shift_x = 0.0; ///< of X by all wraps, m
+  double shift_y = 0.0; ///< of Y by all wraps, m
 };
 
 /// The part of the state that belongs to one force.
 struct ForceState {
-  std::string name;
+  std::string name;                  ///< Force::name()
   std::vector<Vec3> accelerations;   ///< of its last kick, m rad⁻², in the order of the particles
   double work = 0.0;                 ///< of its kicks on the motion beyond the shear, kg m² rad⁻²
   double azimuthal_gain = 0.0;       ///< change of Σ m c_y² by its kicks, kg m² rad⁻²
@@ -58,13 +59,14 @@ struct ForceState {
 /// The automatic step (step_control.hpp). Lengths in ticks, powers of two. A step never crosses a multiple of its
 /// length, nor of the kick interval.
 struct StepControl {
-  std::int64_t step = 1;
+  std::int64_t step = 1;  ///< length of the next step
   std::int64_t kick = 0;  ///< interval of all forces; 0: set by the scene for each force
   std::int64_t steps = 0; ///< done since the run began
 
   // tally at the last decision
-  std::int64_t decided_at = 0; ///< tick
-  std::uint64_t contacts = 0, unresolved = 0;
+  std::int64_t decided_at = 0;  ///< tick
+  std::uint64_t contacts = 0;   ///< since the run began, up to that tick
+  std::uint64_t unresolved = 0; ///< of these
 
   /// True if a step may begin at that tick.
   bool fits(std::int64_t tick) const { return tick % step == 0 && (kick == 0 || kick % step == 0); }
@@ -72,20 +74,20 @@ struct StepControl {
   /// Returns the first lengths of an automatic step.
   static StepControl automatic(bool with_forces);
 
-  void list_fields(FieldTable& table);
+  void list_fields(FieldTable& table); ///< adds each of them
 };
 
-/// Elements refer to the middle of the next step, h/2 after the current tick.
+/// All that a run continues from. Elements refer to the middle of the next step, h/2 after the current tick.
 struct SimulationState {
-  Particles particles;
-  std::vector<ForceState> forces; ///< self-gravity first, then the external forces of the scene
-  ShearingBox box;
-  std::int64_t step = 0;    ///< ticks done; equal to steps unless these are automatic
-  double step_length = 0.0; ///< h of the next step, rad
-  StepControl control;
-  CollisionTally collisions;
-  RestingState resting;
-  EnergyStart energy;
+  Particles particles;                ///< of this rank
+  std::vector<ForceState> forces;     ///< self-gravity first, then the external forces of the scene
+  ShearingBox box;                    ///< its size and shear
+  std::int64_t step = 0;              ///< ticks done; equal to steps unless these are automatic
+  double step_length = 0.0;           ///< h of the next step, rad
+  StepControl control;                ///< lengths of the step and of the kick interval
+  CollisionTally collisions;          ///< since the run began
+  RestingState resting;               ///< contacts at rest
+  EnergyStart energy;                 ///< when the run began
   std::vector<MoonletTrack> moonlets; ///< the moonlets have the last ids, in this order
   bool carries = false;               ///< true if contacts at rest may carry kicks in this scene
 
@@ -103,8 +105,9 @@ struct SimulationState {
   /// themselves. Collective: each rank has a part of the particles, or none.
   std::string fault(const Scene& scene, const Communicator& ranks = {}) const;
 
-  /// Return the shear offset at the epoch of the elements, and at this boundary between steps.
+  /// Returns the shear offset at the epoch of the elements, m.
   double epoch_offset() const { return box.offset(2 * step + control.step, 0.5 * tick()); }
+  /// Returns the shear offset at this boundary between steps, m.
   double boundary_offset() const { return box.offset(2 * step, 0.5 * tick()); }
 
   /// Returns the length of a tick, rad.
@@ -113,7 +116,7 @@ struct SimulationState {
   /// Returns the energy gained from the kicks of all forces, kg m² rad⁻².
   double kick_work() const;
 
-  /// Precondition: `means` of the particles at this boundary.
+  /// Returns the balance since the run began. Precondition: `means` are those of the particles at this boundary.
   EnergyBalance balance(const ParticleMeans& means, const Frequencies& frequencies) const;
 };
 

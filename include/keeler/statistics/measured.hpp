@@ -8,10 +8,11 @@ namespace keeler {
 
 /// A mean and its standard error.
 struct Estimate {
-  double value = 0.0;
+  double value = 0.0; ///< the mean
   double error = 0.0; ///< NaN if there are too few values
 };
 
+/// A number measured on several snapshots.
 struct Measured {
   std::optional<double> value;   ///< of all snapshots together; none if it cannot be measured
   std::optional<double> scatter; ///< standard deviation of single snapshots about their mean; none if fewer than two
