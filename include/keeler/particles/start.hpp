@@ -14,9 +14,10 @@ namespace keeler {
 
 /// The particles to be placed. Lengths in m, masses in kg, times in rad (one orbit is 2π). Valid only during the call.
 struct StartRequest {
-  std::span<const double> radii, masses; ///< one per particle, in the order of the ids from 0
-  ShearingBox box;                       ///< its middle is the origin; its shear offset is zero
-  Frequencies frequencies;
+  std::span<const double> radii;    ///< one per particle, in the order of the ids from 0
+  std::span<const double> masses;   ///< likewise
+  ShearingBox box;                  ///< its middle is the origin; its shear offset is zero
+  Frequencies frequencies;          ///< κ/Ω, ν/Ω
   double orbital_frequency = 0.0;   ///< Ω, rad/s: 1 m/s is 1/Ω m rad⁻¹
   double velocity_dispersion = 0.0; ///< c_x that the scene asks for, m rad⁻¹
   std::uint64_t seed = 1;           ///< of the scene

@@ -12,10 +12,10 @@ namespace keeler {
 
 /// A column of series.csv, after Keeler's. All texts are literals in UTF-8.
 struct OwnColumn {
-  const char* name; ///< in the header, with its unit: "gas_torque_n_m"
-  const char* unit; ///< "N m"; "1" for a pure number
-  const char* plot; ///< "TITLE: CURVE" in plots; columns of one title are curves of one plot
-  const char* meaning;
+  const char* name;    ///< in the header, with its unit: "gas_torque_n_m"
+  const char* unit;    ///< "N m"; "1" for a pure number
+  const char* plot;    ///< "TITLE: CURVE" in plots; columns of one title are curves of one plot
+  const char* meaning; ///< a line for people
   /// Returns the value between two steps. Collective: all ranks call it, and the value of the root is written. It must
   /// not change the simulation. A value that is not finite is written as nan or inf.
   double (*value)(const Simulation& simulation, const Scene& scene);
@@ -24,10 +24,10 @@ struct OwnColumn {
 
 /// A quantity that `analyze` reports of snapshots: the mean over them. All texts are literals in UTF-8.
 struct OwnQuantity {
-  const char* name;  ///< in JSON and tables, with its unit: "gas_torque_n_m"
-  const char* unit;  ///< in texts: "N m"; empty for a pure number
-  const char* label; ///< in texts and on pages; empty: not shown there
-  const char* meaning;
+  const char* name;                       ///< in JSON and tables, with its unit: "gas_torque_n_m"
+  const char* unit;                       ///< in texts: "N m"; empty for a pure number
+  const char* label;                      ///< in texts and on pages; empty: not shown there
+  const char* meaning;                    ///< a line for people
   double (*value)(const Patch& snapshot); ///< a value that is not finite is unknown
 };
 
@@ -36,6 +36,7 @@ struct OwnQuantity {
 /// and '_', or a call that comes too late. A run goes on in a program without its columns only if series.csv is
 /// removed.
 void add_series_column(const OwnColumn& column);
+/// As add_series_column(), for a quantity.
 void add_quantity(const OwnQuantity& quantity);
 
 /// Returns the quantities of a snapshot, or of the steady part of a run's folder, with the added ones: the JSON that

@@ -54,8 +54,8 @@ public:
   /// accelerations, and all other state.
   Simulation(const Scene& scene, SimulationState state, const Communicator& ranks = {});
   ~Simulation();
-  Simulation(Simulation&& other) noexcept;
-  Simulation& operator=(Simulation&& other) noexcept;
+  Simulation(Simulation&& other) noexcept;            ///< leaves `other` unusable
+  Simulation& operator=(Simulation&& other) noexcept; ///< leaves `other` unusable
 
   /// Advances by one step; collective. Throws InvariantError, or Interrupted at the request of an Interruptible
   /// (interrupt.hpp). After that the state is that of an unfinished step and must not be stored.
