@@ -3,6 +3,7 @@
 #include "disk.hpp"
 
 #include <keeler/core/interrupt.hpp>
+#include <keeler/files/descriptor.hpp>
 #include <keeler/files/naming_guard.hpp>
 
 #include <doctest/doctest.h>

@@ -73,7 +73,7 @@ TEST_CASE("the tuned scene is the resolved scene with the choices") {
   GravitySettings fft;
   fft.solver = GravitySettings::Solver::fft;
   fft.force_error = 5e-3;
-  row.choice = {"fft", "force_error 0.005", "", 0.0, fft};
+  row.choice = {"fft", "force_error 0.005", fft};
   row.errors.rms = 2e-3;
   t.gravity = {row};
   t.kicks = {{5e-3, 0.006}};
